@@ -1,0 +1,5 @@
+export { Ellipsoid } from './Ellipsoid'
+export { Geodetic } from './Geodetic'
+export type { GeodeticLike } from './Geodetic'
+export { eciToECEF, siderealAngle } from './earthRotation'
+export { moonDirectionECEF, moonPositionECEF, sunDirectionECEF, sunPositionECEF } from './sunAndMoon'
