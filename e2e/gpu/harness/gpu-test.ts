@@ -1,0 +1,36 @@
+import type { GpuContext } from './context'
+
+export type Backend = 'webgpu' | 'webgl'
+
+export interface GpuTest {
+  name: string
+  body: (context: GpuContext) => Promise<void> | void
+  backends: Backend[]
+  timeoutSeconds: number
+}
+
+/** Tests of the one suite that this page has loaded. */
+export const registeredTests: GpuTest[] = []
+
+/**
+ * Adds a test that runs in Chromium once per backend, in a page of its suite's own.
+ * It fails on a thrown error and on any error or warning of three's in the console.
+ *
+ * @param name - What holds, as a sentence; unique in its file.
+ */
+export function gpuTest(
+  name: string,
+  body: GpuTest['body'],
+  options: Partial<Pick<GpuTest, 'backends' | 'timeoutSeconds'>> = {}
+): void {
+  if (registeredTests.some(test => test.name === name)) {
+    throw new Error(`gpuTest: two tests are named '${name}'`)
+  }
+  registeredTests.push({
+    backends: ['webgpu', 'webgl'],
+    timeoutSeconds: 60,
+    ...options,
+    name,
+    body
+  })
+}

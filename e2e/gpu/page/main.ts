@@ -1,0 +1,56 @@
+import { modules } from 'virtual:modules'
+import { createContext } from '../harness/context'
+import { registeredTests, type Backend } from '../harness/gpu-test'
+
+export interface TestListing {
+  name: string
+  timeoutSeconds: number
+}
+
+export interface TestOutcome {
+  /** Stack or message of the failure; absent when the test passed. */
+  error?: string
+  milliseconds: number
+  notes: string[]
+}
+
+export interface TestPage {
+  list: (suite: string, backend: Backend) => Promise<TestListing[]>
+  run: (name: string, backend: Backend) => Promise<TestOutcome>
+}
+
+declare global {
+  interface Window {
+    welkinTests: TestPage
+  }
+}
+
+window.welkinTests = {
+  async list(suite, backend) {
+    const load = modules[suite]
+    if (load === undefined) throw new Error(`no suite named ${suite}`)
+    await load()
+    return registeredTests
+      .filter(test => test.backends.includes(backend))
+      .map(({ name, timeoutSeconds }) => ({ name, timeoutSeconds }))
+  },
+
+  async run(name, backend) {
+    const test = registeredTests.find(candidate => candidate.name === name)
+    if (test === undefined) throw new Error(`no test named ${name}`)
+    const { context, finish } = createContext(backend)
+    const start = performance.now()
+    const problems: string[] = []
+    try {
+      await test.body(context)
+    } catch (error) {
+      problems.push(error instanceof Error ? (error.stack ?? error.message) : String(error))
+    }
+    const { messages, notes } = await finish()
+    problems.push(...messages)
+    const milliseconds = performance.now() - start
+    return problems.length === 0
+      ? { milliseconds, notes }
+      : { error: problems.join('\n'), milliseconds, notes }
+  }
+}

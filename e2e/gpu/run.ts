@@ -1,0 +1,91 @@
+import { readdirSync } from 'node:fs'
+import { join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { parseArgs } from 'node:util'
+import type { Browser, Page } from 'playwright-core'
+import { launchChromium } from '../harness/browser'
+import { bundlePage } from '../harness/bundle'
+import { Report } from '../harness/report'
+import { serveStatic } from '../harness/serve'
+import type { Backend } from './harness/gpu-test'
+import type { TestListing, TestOutcome } from './page/main'
+
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { backend: { type: 'string' }, test: { type: 'string' } }
+})
+const backends = (values.backend?.split(',') ?? ['webgpu', 'webgl']) as Backend[]
+
+const folder = fileURLToPath(new URL('.', import.meta.url))
+const suites = readdirSync(folder)
+  .filter(file => file.endsWith('.gpu.ts'))
+  .map(file => file.replace('.gpu.ts', ''))
+  .filter(suite => positionals.length === 0 || positionals.some(word => suite.includes(word)))
+  .toSorted()
+
+const report = new Report()
+
+async function openPage(browser: Browser, origin: string): Promise<Page> {
+  const page = await browser.newPage()
+  page.on('pageerror', error => console.log(`      page error: ${error.stack ?? error.message}`))
+  await page.goto(`${origin}/index.html`)
+  await page.waitForFunction(() => 'welkinTests' in window)
+  return page
+}
+
+async function withLimit<T>(work: Promise<T>, seconds: number): Promise<T> {
+  let timer: NodeJS.Timeout | undefined
+  const limit = new Promise<never>((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`no answer in ${seconds} s`)), seconds * 1000)
+  })
+  return Promise.race([work, limit]).finally(() => clearTimeout(timer))
+}
+
+async function runSuite(browser: Browser, origin: string, suite: string, backend: Backend) {
+  let page = await openPage(browser, origin)
+  const list = (): Promise<TestListing[]> =>
+    page.evaluate(([s, b]) => window.welkinTests.list(s, b), [suite, backend] as const)
+  let tests: TestListing[]
+  try {
+    tests = await withLimit(list(), 60)
+  } catch (error) {
+    report.fail(`${suite} [${backend}] loads`, String(error))
+    await page.close()
+    return
+  }
+  for (const { name, timeoutSeconds } of tests) {
+    if (values.test !== undefined && !name.includes(values.test)) continue
+    const label = `${suite} [${backend}] ${name}`
+    try {
+      const run: Promise<TestOutcome> = page.evaluate(([n, b]) => window.welkinTests.run(n, b), [
+        name,
+        backend
+      ] as const)
+      const { error, milliseconds, notes } = await withLimit(run, timeoutSeconds)
+      const detail = [`${(milliseconds / 1000).toFixed(1)} s`, ...notes].join(', ')
+      if (error === undefined) report.pass(label, detail)
+      else report.fail(label, [error, ...notes].join('\n'))
+    } catch (error) {
+      report.fail(label, String(error))
+      // The page hangs or has crashed: the rest of the suite gets a fresh one.
+      await page.close()
+      page = await openPage(browser, origin)
+      await withLimit(list(), 60)
+    }
+  }
+  await page.close()
+}
+
+const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${suite}.gpu.ts`)]))
+const bundle = await bundlePage(join(folder, 'page'), files)
+const server = await serveStatic([{ path: '/', folder: bundle }])
+const browser = await launchChromium()
+try {
+  for (const suite of suites) {
+    for (const backend of backends) await runSuite(browser, server.origin, suite, backend)
+  }
+} finally {
+  await browser.close()
+  await server.close()
+}
+report.finish()
