@@ -1,0 +1,48 @@
+import { CloudLayer, type CloudLayerParameters } from './CloudLayer'
+
+/**
+ * The one to four layers that make up a sky's clouds. Layers may overlap in altitude.
+ *
+ * ```ts
+ * const layers = new CloudLayers([{ coverage: 0.5 }, { baseAltitude: 8500, topAltitude: 9500 }])
+ * layers.at(0).set({ coverage: 0.7 })
+ * ```
+ */
+export class CloudLayers implements Iterable<CloudLayer> {
+  /** A shader evaluates every layer at every sample: this many fit its uniforms. */
+  static readonly maxLayers = 4
+
+  readonly #layers: readonly CloudLayer[]
+
+  /**
+   * @param layers - Layers, shared with the caller, or parameters of new ones. Left out: one
+   *   layer of scattered fair-weather cumulus.
+   * @throws Error when there is no layer, more than four, or a parameter is out of its range.
+   */
+  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}]) {
+    if (!Array.isArray(layers) || layers.length < 1 || layers.length > CloudLayers.maxLayers) {
+      const got = Array.isArray(layers) ? `${layers.length}` : String(layers)
+      throw new Error(`CloudLayers: layers must be 1 to ${CloudLayers.maxLayers}, got ${got}`)
+    }
+    this.#layers = layers.map((layer: CloudLayer | Partial<CloudLayerParameters>) =>
+      layer instanceof CloudLayer ? layer : new CloudLayer(layer)
+    )
+  }
+
+  get length(): number {
+    return this.#layers.length
+  }
+
+  /** @throws Error when there is no layer of this index. */
+  at(index: number): CloudLayer {
+    const layer = this.#layers[index]
+    if (layer === undefined) {
+      throw new Error(`CloudLayers: index must be 0 to ${this.length - 1}, got ${index}`)
+    }
+    return layer
+  }
+
+  [Symbol.iterator](): Iterator<CloudLayer> {
+    return this.#layers[Symbol.iterator]()
+  }
+}

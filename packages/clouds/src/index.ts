@@ -1,0 +1,2 @@
+export { CloudLayer, type CloudLayerParameters, type CloudWind } from './CloudLayer'
+export { CloudLayers } from './CloudLayers'

@@ -1,0 +1,53 @@
+import { describe, expect, it } from 'vitest'
+import { CloudLayer, CloudLayers, type CloudLayerParameters } from '../src/index'
+
+const invalid: [Partial<CloudLayerParameters>, RegExp][] = [
+  [{ baseAltitude: -1 }, /baseAltitude must be .* got -1/],
+  [{ baseAltitude: 3000, topAltitude: 2000 }, /topAltitude must be above .*3000 m.* got 2000/],
+  [{ topAltitude: 1e6 }, /topAltitude must be .* got 1000000/],
+  [{ coverage: 1.2 }, /coverage must be .* got 1.2/],
+  [{ density: NaN }, /density must be .* got NaN/],
+  [{ profileExponent: 0 }, /profileExponent must be .* got 0/],
+  [{ weatherWeights: [0, 0, 0, 2] }, /weatherWeights\[3\] must be .* got 2/],
+  [{ weatherWeights: [0, 0] as never }, /weatherWeights must be 4 numbers, got \[0,0\]/],
+  [{ wind: { east: Infinity, north: 0 } }, /wind.east must be .* got Infinity/],
+  [{ shadow: 1 as never }, /shadow must be true or false, got 1/],
+  [{ covrage: 1 } as never, /no parameter covrage/]
+]
+
+describe('CloudLayer', () => {
+  it.for(invalid)('rejects %o', ([parameters, message]) => {
+    expect(() => new CloudLayer(parameters)).toThrow(message)
+  })
+
+  it('stays as it was when a change is not valid', () => {
+    const layer = new CloudLayer({ coverage: 0.5 })
+    expect(() => layer.set({ coverage: 2 })).toThrow(/coverage/)
+    expect(layer.parameters.coverage).toBe(0.5)
+    expect(layer.set({ coverage: 0.7 }).parameters.coverage).toBe(0.7)
+  })
+
+  it('does not share arrays with its caller or its clone', () => {
+    const weatherWeights: [number, number, number, number] = [1, 0, 0, 0]
+    const layer = new CloudLayer({ weatherWeights })
+    weatherWeights[0] = 0.25
+    const clone = layer.clone().set({ coverage: 0.9 })
+    expect(layer.parameters.weatherWeights[0]).toBe(1)
+    expect(layer.parameters.coverage).not.toBe(clone.parameters.coverage)
+  })
+})
+
+describe('CloudLayers', () => {
+  it('holds one to four layers', () => {
+    expect(new CloudLayers().length).toBe(1)
+    expect([...new CloudLayers([{}, {}, {}, {}])]).toHaveLength(4)
+    expect(() => new CloudLayers([])).toThrow(/1 to 4, got 0/)
+    expect(() => new CloudLayers([{}, {}, {}, {}, {}])).toThrow(/1 to 4, got 5/)
+  })
+
+  it('keeps the layers that it is given', () => {
+    const layer = new CloudLayer()
+    expect(new CloudLayers([layer]).at(0)).toBe(layer)
+    expect(() => new CloudLayers([layer]).at(1)).toThrow(/got 1/)
+  })
+})
