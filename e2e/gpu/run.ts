@@ -5,6 +5,7 @@ import { parseArgs } from 'node:util'
 import type { Browser, Page } from 'playwright-core'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
+import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
 import type { Backend } from './harness/gpu-test'
@@ -31,14 +32,6 @@ async function openPage(browser: Browser, origin: string): Promise<Page> {
   await page.goto(`${origin}/index.html`)
   await page.waitForFunction(() => 'welkinTests' in window)
   return page
-}
-
-async function withLimit<T>(work: Promise<T>, seconds: number): Promise<T> {
-  let timer: NodeJS.Timeout | undefined
-  const limit = new Promise<never>((_, reject) => {
-    timer = setTimeout(() => reject(new Error(`no answer in ${seconds} s`)), seconds * 1000)
-  })
-  return Promise.race([work, limit]).finally(() => clearTimeout(timer))
 }
 
 async function runSuite(browser: Browser, origin: string, suite: string, backend: Backend) {

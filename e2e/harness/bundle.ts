@@ -25,7 +25,11 @@ function modulesPlugin(files: Record<string, string>): Plugin {
  * @param root - Folder of the page's `index.html`.
  * @param files - Test modules by name; one that does not compile fails only runs that select it.
  */
-export async function bundlePage(root: string, files: Record<string, string>): Promise<string> {
+export async function bundlePage(
+  root: string,
+  files: Record<string, string>,
+  plugins: Plugin[] = []
+): Promise<string> {
   // Of this process alone: two runs at once must not empty each other's folder.
   const outDir = join(outputFolder, 'pages', `${basename(dirname(root))}-${process.pid}`)
   process.once('exit', () => rmSync(outDir, { recursive: true, force: true }))
@@ -35,7 +39,7 @@ export async function bundlePage(root: string, files: Record<string, string>): P
     logLevel: 'warn',
     base: './',
     publicDir: false,
-    plugins: [modulesPlugin(files)],
+    plugins: [modulesPlugin(files), ...plugins],
     resolve: { alias: sourceAliases, dedupe: ['three'] },
     build: {
       outDir,

@@ -1,0 +1,99 @@
+import { modules } from 'virtual:modules'
+import { ConsoleWatch } from '../../gpu/harness/console'
+import type { Backend } from '../../gpu/harness/gpu-test'
+
+/** What a story's scene module offers; Storybook and this page drive the same thing. */
+interface SceneView {
+  ready: Promise<void>
+  resize: (width: number, height: number, pixelRatio: number) => void
+  update: (args: object) => void
+  render: () => void
+  dispose: () => void
+}
+
+type CreateScene = (canvas: HTMLCanvasElement, args: object) => Promise<SceneView>
+
+interface Story {
+  args?: object
+  tags?: string[]
+}
+
+export interface Shot {
+  /** The frame as a PNG data URL. */
+  url: string
+  messages: string[]
+  milliseconds: number
+}
+
+export interface VisualPage {
+  /** Stories with the tag `screenshot`, per file. */
+  list: () => Promise<{ file: string; story: string }[]>
+  shoot: (file: string, story: string, backend: Backend) => Promise<Shot>
+}
+
+declare global {
+  interface Window {
+    welkinVisual: VisualPage
+  }
+}
+
+async function load(name: string): Promise<Record<string, unknown>> {
+  const module = await modules[name]?.()
+  if (typeof module !== 'object' || module === null) throw new Error(`no module ${name}`)
+  return module as Record<string, unknown>
+}
+
+async function findCreate(file: string): Promise<CreateScene> {
+  const module = await load(`${file}.scene`)
+  const found = Object.entries(module).find(
+    ([name, value]) => /^create[A-Z]?/.test(name) && typeof value === 'function'
+  )
+  if (found === undefined) throw new Error(`${file}.scene.ts exports no create function`)
+  return found[1] as CreateScene
+}
+
+window.welkinVisual = {
+  async list() {
+    const found: { file: string; story: string }[] = []
+    for (const name of Object.keys(modules).filter(key => key.endsWith('.stories'))) {
+      const { default: meta, ...stories } = await load(name)
+      const inherited = (meta as Story).tags ?? []
+      for (const [story, value] of Object.entries(stories)) {
+        const tags = new Set([...inherited, ...((value as Story).tags ?? [])])
+        if (tags.has('screenshot') && !tags.has('!screenshot')) {
+          found.push({ file: name.replace('.stories', ''), story })
+        }
+      }
+    }
+    return found
+  },
+
+  async shoot(file, story, backend) {
+    const create = await findCreate(file)
+    const stories = await load(`${file}.stories`)
+    const args = {
+      ...(stories.default as Story).args,
+      ...(stories[story] as Story).args,
+      forceWebGL: backend === 'webgl',
+      frame: true
+    }
+    const canvas = document.createElement('canvas')
+    Object.assign(canvas.style, { display: 'block', width: '100vw', height: '100vh' })
+    document.body.append(canvas)
+    const watch = new ConsoleWatch()
+    const start = performance.now()
+    const view = await create(canvas, args)
+    view.update(args)
+    view.resize(innerWidth, innerHeight, 1)
+    await view.ready
+    view.render()
+    // In the task of the drawing: later, a WebGPU canvas reads as blank.
+    const url = canvas.toDataURL('image/png')
+    const milliseconds = performance.now() - start
+    await new Promise(resolve => setTimeout(resolve, 20))
+    const messages = watch.stop()
+    view.dispose()
+    canvas.remove()
+    return { url, messages, milliseconds }
+  }
+}

@@ -1,0 +1,127 @@
+import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs'
+import { basename, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { parseArgs } from 'node:util'
+import type { Page } from 'playwright-core'
+import { PNG } from 'pngjs'
+import { worldData } from '../../stories/vite/worldData.ts'
+import type { Backend } from '../gpu/harness/gpu-test'
+import { launchChromium } from '../harness/browser'
+import { bundlePage } from '../harness/bundle'
+import { withLimit } from '../harness/limit'
+import { outputFolder, Report } from '../harness/report'
+import { serveStatic } from '../harness/serve'
+import { compare, isBlank } from './compare'
+
+const viewport = { width: 320, height: 180 }
+const limitSeconds = 120
+const largestBaseline = 100_000
+
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { backend: { type: 'string' }, update: { type: 'boolean' } }
+})
+const backends = (values.backend?.split(',') ?? ['webgpu', 'webgl']) as Backend[]
+
+const storiesFolder = fileURLToPath(new URL('../../stories/src', import.meta.url))
+const baselineFolder = fileURLToPath(new URL('baselines', import.meta.url))
+const failuresFolder = join(outputFolder, 'visual')
+mkdirSync(baselineFolder, { recursive: true })
+mkdirSync(failuresFolder, { recursive: true })
+
+const report = new Report()
+
+function writePng(file: string, png: PNG): number {
+  const bytes = PNG.sync.write(png, { colorType: 2, deflateLevel: 9 })
+  writeFileSync(file, bytes)
+  return bytes.length
+}
+
+/** The first backend of an update run makes the baseline; the other is held to it. */
+function judge(name: string, backend: Backend, actual: PNG, detail: string): void {
+  const label = `${name} [${backend}]`
+  const file = join(baselineFolder, `${name}.png`)
+  if (isBlank(actual)) {
+    report.fail(label, 'the canvas is blank')
+    return
+  }
+  if (values.update && backend === backends[0]) {
+    const bytes = writePng(file, actual)
+    report.check(bytes < largestBaseline, label, `written, ${(bytes / 1000).toFixed(0)} kB`)
+    return
+  }
+  if (!existsSync(file)) {
+    writePng(join(failuresFolder, `${name}.${backend}.actual.png`), actual)
+    report.fail(label, 'no baseline: run npm run test:visual -- --update')
+    return
+  }
+  const comparison = compare(actual, PNG.sync.read(readFileSync(file)))
+  if (comparison.same) {
+    report.pass(label, `${detail}, ${comparison.detail}`)
+    return
+  }
+  const failure = join(failuresFolder, `${name}.${backend}`)
+  writePng(`${failure}.actual.png`, actual)
+  writePng(`${failure}.diff.png`, comparison.diff)
+  report.fail(label, `${comparison.detail}\nsee e2e/output/visual/${name}.${backend}.*.png`)
+}
+
+async function shoot(page: Page, file: string, story: string, backend: Backend): Promise<void> {
+  const name = `${file}-${story}`.toLowerCase()
+  try {
+    const shot = await withLimit(
+      page.evaluate(([f, s, b]) => window.welkinVisual.shoot(f, s, b), [
+        file,
+        story,
+        backend
+      ] as const),
+      limitSeconds
+    )
+    if (shot.messages.length > 0) {
+      report.fail(`${name} [${backend}]`, shot.messages.join('\n'))
+      return
+    }
+    const png = PNG.sync.read(Buffer.from(shot.url.split(',')[1], 'base64'))
+    judge(name, backend, png, `${(shot.milliseconds / 1000).toFixed(1)} s`)
+  } catch (error) {
+    report.fail(`${name} [${backend}]`, String(error))
+  }
+}
+
+const files = Object.fromEntries(
+  readdirSync(storiesFolder, { recursive: true, encoding: 'utf8' })
+    .filter(file => /\.(scene|stories)\.ts$/.test(file))
+    .map(file => [basename(file, '.ts'), join(storiesFolder, file)])
+)
+const root = fileURLToPath(new URL('page', import.meta.url))
+const server = await serveStatic([
+  { path: '/', folder: await bundlePage(root, files, [worldData()]) }
+])
+const browser = await launchChromium()
+
+async function openPage(): Promise<Page> {
+  const page = await browser.newPage({ viewport, deviceScaleFactor: 1 })
+  page.on('pageerror', error => console.log(`      page error: ${error.stack ?? error.message}`))
+  await page.goto(`${server.origin}/index.html`)
+  await page.waitForFunction(() => 'welkinVisual' in window)
+  return page
+}
+
+try {
+  const listing = await openPage()
+  const cases = await listing.evaluate(() => window.welkinVisual.list())
+  await listing.close()
+  for (const { file, story } of cases) {
+    const name = `${file}-${story}`.toLowerCase()
+    if (positionals.length > 0 && !positionals.some(word => name.includes(word))) continue
+    for (const backend of backends) {
+      const page = await openPage()
+      await shoot(page, file, story, backend)
+      await page.close()
+    }
+  }
+} finally {
+  await browser.close()
+  await server.close()
+}
+report.finish()
