@@ -1,0 +1,117 @@
+import { execFileSync } from 'node:child_process'
+import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import { join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { PNG } from 'pngjs'
+import { launchChromium } from '../harness/browser'
+import { withLimit } from '../harness/limit'
+import { Report } from '../harness/report'
+import { serveStatic } from '../harness/serve'
+import { expectations } from './expectations'
+
+const root = fileURLToPath(new URL('../..', import.meta.url))
+const template = fileURLToPath(new URL('app', import.meta.url))
+const report = new Report()
+
+/** Runs npm, or a command of the app's, and answers with its standard output. */
+function execute(command: string, args: string[], cwd: string): string {
+  return execFileSync(command, args, {
+    cwd,
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'pipe'],
+    shell: process.platform === 'win32',
+    timeout: 300_000
+  })
+}
+
+function attempt(name: string, work: () => string): boolean {
+  try {
+    report.pass(name, work())
+    return true
+  } catch (error) {
+    const { stdout = '', stderr = '' } = error as { stdout?: string; stderr?: string }
+    report.fail(name, `${String(error)}\n${stdout}${stderr}`.trim())
+    return false
+  }
+}
+
+const workspace = (
+  JSON.parse(readFileSync(join(root, 'package.json'), 'utf8')) as {
+    devDependencies: Record<string, string>
+  }
+).devDependencies
+
+/** Installs the packed packages as a user would: from files, with the versions of the workspace. */
+function install(app: string): string {
+  const packed = ['geo', 'atmosphere', 'clouds'].map(name => {
+    const output = execute(
+      'npm',
+      ['pack', '--json', '--pack-destination', app, join(root, 'packages', name)],
+      app
+    )
+    const [{ filename }] = JSON.parse(output) as [{ filename: string }]
+    return `./${filename}`
+  })
+  const tools = ['three', '@types/three', 'typescript', 'vite'].map(
+    name => `${name}@${workspace[name]}`
+  )
+  execute('npm', ['install', '--no-audit', '--no-fund', ...packed, ...tools], app)
+  return packed.map(file => file.replace('./', '')).join(', ')
+}
+
+async function look(folder: string): Promise<void> {
+  const server = await serveStatic([{ path: '/', folder }])
+  const browser = await launchChromium()
+  try {
+    for (const backend of ['webgpu', 'webgl'] as const) {
+      const page = await browser.newPage()
+      const errors: string[] = []
+      page.on('pageerror', error => errors.push(String(error)))
+      page.on('console', message => {
+        if (message.type() === 'error') errors.push(message.text())
+      })
+      const query = backend === 'webgl' ? '?webgl' : ''
+      try {
+        await page.goto(`${server.origin}/index.html${query}`)
+        await page.waitForFunction(() => 'draw' in window, undefined, { timeout: 60_000 })
+        const url = await withLimit(
+          page.evaluate(() =>
+            (window as unknown as { draw: () => string | Promise<string> }).draw()
+          ),
+          120
+        )
+        const png = PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'))
+        const wrong = [...errors, ...expectations(png)]
+        if (wrong.length === 0) report.pass(`the app draws what it should [${backend}]`)
+        else report.fail(`the app draws what it should [${backend}]`, wrong.join('\n'))
+      } catch (error) {
+        report.fail(`the app starts [${backend}]`, [String(error), ...errors].join('\n'))
+      }
+      await page.close()
+    }
+  } finally {
+    await browser.close()
+    await server.close()
+  }
+}
+
+const app = mkdtempSync(join(tmpdir(), 'welkin-consumer-'))
+try {
+  cpSync(template, app, { recursive: true })
+  const steps: [string, () => string][] = [
+    ['npm install of the packed packages', () => install(app)],
+    ['strict types, skipLibCheck off', () => execute('npx', ['--no-install', 'tsc'], app)],
+    [
+      'vite build',
+      () => {
+        execute('npx', ['--no-install', 'vite', 'build'], app)
+        return ''
+      }
+    ]
+  ]
+  if (steps.every(([name, work]) => attempt(name, work))) await look(join(app, 'dist'))
+} finally {
+  rmSync(app, { recursive: true, force: true })
+}
+report.finish()
