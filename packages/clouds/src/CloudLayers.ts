@@ -21,7 +21,7 @@ export class CloudLayers implements Iterable<CloudLayer> {
    */
   constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}]) {
     if (!Array.isArray(layers) || layers.length < 1 || layers.length > CloudLayers.maxLayers) {
-      const got = Array.isArray(layers) ? `${layers.length}` : String(layers)
+      const got = Array.isArray(layers) ? layers.length : typeof layers
       throw new Error(`CloudLayers: layers must be 1 to ${CloudLayers.maxLayers}, got ${got}`)
     }
     this.#layers = layers.map((layer: CloudLayer | Partial<CloudLayerParameters>) =>
