@@ -3,12 +3,12 @@ import { PNG } from 'pngjs'
 /**
  * What two frames of the same scene may differ by. Rounding differs between backends and between
  * versions of the software renderer; a changed model shows as a mean shift, a changed shape as
- * pixels that are far off.
+ * pixels that are far off. A difference is measured from the range of the 3×3 pixels around.
  */
 export const tolerance = {
-  /** Mean absolute difference over all channels [1/255]. */
-  mean: 0.6,
-  /** A channel is far off this far outside the range of the 3×3 pixels around it [1/255]. */
+  /** Mean difference over all channels [1/255]. */
+  mean: 0.4,
+  /** A pixel is far off when one of its channels differs by more than this [1/255]. */
   farOff: 6,
   /** Share of pixels that may be far off. */
   farOffShare: 0.002
@@ -53,10 +53,11 @@ export function compare(actual: PNG, expected: PNG): Comparison {
       let furthest = 0
       for (let channel = 0; channel < 3; channel++) {
         const value = actual.data[pixel + channel]
+        const distance = distanceFromRange(expected, x, y, channel, value)
+        sum += distance
+        furthest = Math.max(furthest, distance)
         const difference = Math.abs(value - expected.data[pixel + channel])
-        sum += difference
         diff.data[pixel + channel] = Math.min(255, 8 * difference)
-        furthest = Math.max(furthest, distanceFromRange(expected, x, y, channel, value))
       }
       diff.data[pixel + 3] = 255
       if (furthest > tolerance.farOff) farOff++

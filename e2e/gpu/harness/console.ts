@@ -14,11 +14,13 @@ export class ConsoleWatch {
     this.allowed.push(pattern)
   }
 
-  /** Restores the console; answers with the complaints that no pattern allows. */
+  /** Restores the console; answers with the complaints that no pattern allows, each once. */
   stop(): string[] {
     Object.assign(console, this.original)
     removeEventListener('unhandledrejection', this.onRejection)
-    return this.messages.filter(message => !this.allowed.some(pattern => pattern.test(message)))
+    return [...new Set(this.messages)].filter(
+      message => !this.allowed.some(pattern => pattern.test(message))
+    )
   }
 
   private add(kind: string, parts: unknown[]): void {

@@ -81,6 +81,8 @@ window.welkinVisual = {
     Object.assign(canvas.style, { display: 'block', width: '100vw', height: '100vh' })
     document.body.append(canvas)
     const watch = new ConsoleWatch()
+    // Other libraries may warn; three's warnings, and all errors, count.
+    watch.allow(/^console warning: (?!THREE)/)
     const start = performance.now()
     const view = await create(canvas, args)
     view.update(args)
