@@ -153,7 +153,10 @@ export class Ellipsoid {
     const { x, y, z } = this.radii
     const normal = footPointNormal(positionECEF, this.radii, scratchNormal)
     const support = Math.hypot(x * normal.x, y * normal.y, z * normal.z)
-    return target.set(x * x, y * y, z * z).multiply(normal).divideScalar(support)
+    return target
+      .set(x * x, y * y, z * z)
+      .multiply(normal)
+      .divideScalar(support)
   }
 
   /**
@@ -255,12 +258,14 @@ export class Ellipsoid {
    * @param vector - Position or displacement in ECEF.
    */
   toSphere(vector: Vector3, target: Vector3 = new Vector3()): Vector3 {
-    return target.copy(vector).divide(this.radii).multiplyScalar(this.a)
+    const { x, y, z } = this.radii
+    return target.set(vector.x, vector.y * (x / y), vector.z * (x / z))
   }
 
   /** The inverse of `toSphere`. */
   fromSphere(vector: Vector3, target: Vector3 = new Vector3()): Vector3 {
-    return target.copy(vector).multiply(this.radii).divideScalar(this.a)
+    const { x, y, z } = this.radii
+    return target.set(vector.x, vector.y / (x / y), vector.z / (x / z))
   }
 
   /**
@@ -301,11 +306,7 @@ export class Ellipsoid {
    * @returns Centre in ECEF [m] and radius [m].
    * @throws Error if a component is not finite or the radius is not positive.
    */
-  osculatingSphere(
-    positionECEF: Vector3,
-    radius?: number,
-    target: Sphere = new Sphere()
-  ): Sphere {
+  osculatingSphere(positionECEF: Vector3, radius?: number, target: Sphere = new Sphere()): Sphere {
     const foot = this.footPoint(positionECEF, scratchOrigin)
     const { x, y, z } = this.radii
     const weight = (foot.x / x / x) ** 2 + (foot.y / y / y) ** 2 + (foot.z / z / z) ** 2

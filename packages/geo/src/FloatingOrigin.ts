@@ -122,6 +122,7 @@ function shift(object: Object3D, offset: Vector3): void {
     const m = object.matrix.elements
     object.matrix.setPosition(m[12] - local.x, m[13] - local.y, m[14] - local.z)
     object.position.setFromMatrixPosition(object.matrix)
+    object.matrixWorldNeedsUpdate = true
   }
   object.updateWorldMatrix(false, true)
 }

@@ -1,5 +1,5 @@
 import { Matrix4, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
-import { checkFinite, checkNonNegative, checkPositive, fail } from './check'
+import { checkFinite, checkNonNegative, checkPositive, checkVector, fail } from './check'
 import { Ellipsoid } from './Ellipsoid'
 import { visibleDistance } from './horizon'
 
@@ -52,6 +52,7 @@ export function fitGlobeCamera(
   const positionECEF = new Vector3()
     .setFromMatrixPosition(camera.matrixWorld)
     .applyMatrix4(settings.worldToECEF)
+  checkVector('fitGlobeCamera', 'camera position in ECEF', positionECEF)
   const { near, far } =
     camera instanceof OrthographicCamera
       ? orthographicRange(camera, positionECEF, settings)
@@ -82,8 +83,8 @@ function perspectiveRange(
   const clearance =
     settings.clearance ?? Math.max(ellipsoid.heightAt(positionECEF) - maximumHeight, 0)
   // A point at distance D in a corner of the picture is only D cos(half diagonal) deep.
-  const [sx = 1, , , , , sy = 1, , , ox = 0, oy = 0] = camera.projectionMatrix.elements
-  const corner = Math.hypot((1 + Math.abs(ox)) / sx, (1 + Math.abs(oy)) / sy, 1)
+  const p = camera.projectionMatrix.elements
+  const corner = Math.hypot((1 + Math.abs(p[8])) / p[0], (1 + Math.abs(p[9])) / p[5], 1)
   const near = Math.max(minimumNear, (0.99 * clearance) / corner)
 
   // On a spheroid the horizon is nearest and farthest along the meridian or the parallel.
@@ -95,7 +96,7 @@ function perspectiveRange(
     })
     far = Math.max(far, distance)
   }
-  return { near, far: Math.max(1.01 * far, 2 * near) }
+  return { near, far: 1.01 * Math.max(far, near) }
 }
 
 /** Parallel rays see past the horizon of the camera's place, so this is the globe's whole depth. */
@@ -110,7 +111,7 @@ function orthographicRange(
   const center = -positionECEF.dot(forward)
   const extent = forward.multiply(ellipsoid.grown(maximumHeight).radii).length()
   const near = Math.max(clearance ?? center - extent, minimumNear)
-  return { near, far: Math.max(center + extent, 2 * near) }
+  return { near, far: Math.max(center + extent, 1.01 * near) }
 }
 
 function resolve(

@@ -23,9 +23,9 @@ const axes: readonly Axis[] = ['z', 'y', 'x']
  */
 export function footPointNormal(position: Vector3, radii: Vector3, target: Vector3): Vector3 {
   const smallest = Math.min(radii.x, radii.y, radii.z)
-  const px = position.x / smallest
-  const py = position.y / smallest
-  const pz = position.z / smallest
+  const px = withoutDenormals(position.x / smallest)
+  const py = withoutDenormals(position.y / smallest)
+  const pz = withoutDenormals(position.z / smallest)
   const rx = radii.x / smallest
   const ry = radii.y / smallest
   const rz = radii.z / smallest
@@ -34,12 +34,7 @@ export function footPointNormal(position: Vector3, radii: Vector3, target: Vecto
   const gapZ = (rz - 1) * (rz + 1)
 
   // Where one of F's squares is 1; the largest of them has F ≥ 0.
-  let u = Math.max(
-    rx * Math.abs(px) - gapX,
-    ry * Math.abs(py) - gapY,
-    rz * Math.abs(pz) - gapZ,
-    0
-  )
+  let u = Math.max(rx * Math.abs(px) - gapX, ry * Math.abs(py) - gapY, rz * Math.abs(pz) - gapZ, 0)
   for (let i = 0; i < 64; ++i) {
     const x = ratio(rx * px, u + gapX)
     const y = ratio(ry * py, u + gapY)
@@ -70,4 +65,9 @@ function addNormalOfSmallestAxis(target: Vector3, radii: Vector3, smallest: numb
 /** 0 / 0 is 0 here: a coordinate that is zero stays zero on the foot point. */
 function ratio(numerator: number, denominator: number): number {
   return numerator === 0 ? 0 : numerator / denominator
+}
+
+/** Squares of such coordinates would underflow; at this scale they are 0 in any unit of length. */
+function withoutDenormals(value: number): number {
+  return Math.abs(value) < 1e-140 ? 0 : value
 }

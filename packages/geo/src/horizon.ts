@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
 import type { Matrix4 } from 'three'
-import { checkFinite, checkVector } from './check'
+import { checkFinite, checkVector, fail } from './check'
 import { Ellipsoid } from './Ellipsoid'
 
 /** What is looked at, and which way. */
@@ -61,7 +61,7 @@ export function tangentLimbDistance(
  * @param targetHeight - Greatest height of what is to be seen, above the ellipsoid [m].
  * @param surfaceHeight - Height of the surface that hides it [m], at most `targetHeight`; default 0.
  * @returns [m].
- * @throws Error if a value is not finite.
+ * @throws Error if a value is not finite or `targetHeight` is below `surfaceHeight`.
  */
 export function visibleDistance(
   positionECEF: Vector3,
@@ -71,6 +71,13 @@ export function visibleDistance(
 ): number {
   checkFinite('visibleDistance', 'targetHeight', targetHeight)
   checkFinite('visibleDistance', 'surfaceHeight', surfaceHeight)
+  if (targetHeight < surfaceHeight) {
+    fail(
+      'visibleDistance',
+      `targetHeight must be at least surfaceHeight (${surfaceHeight})`,
+      targetHeight
+    )
+  }
   const ray = tangentRay('visibleDistance', positionECEF, surfaceHeight, options)
   const shell = (options.ellipsoid ?? Ellipsoid.WGS84).grown(targetHeight)
   const tangentPoint = positionECEF.clone().addScaledVector(ray.direction, ray.distance)

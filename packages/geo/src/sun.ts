@@ -92,8 +92,7 @@ function computeSunPosition(date: Date, target: Vector3): Vector3 {
   const obliquity = (tobl * Math.PI) / 180
 
   const distance = series(distanceTerms, millennia)
-  const longitude =
-    series(longitudeTerms, millennia) + Math.PI + nutation - aberration / distance
+  const longitude = series(longitudeTerms, millennia) + Math.PI + nutation - aberration / distance
   // The sun's ecliptic latitude stays below 1.2″ and is left out.
   const x = Math.cos(longitude)
   const y = Math.sin(longitude) * Math.cos(obliquity)
