@@ -3,7 +3,9 @@ import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { fileURLToPath } from 'node:url'
+import type { Browser } from 'playwright-core'
 import { PNG } from 'pngjs'
+import type { Backend } from '../gpu/harness/gpu-test'
 import { launchChromium } from '../harness/browser'
 import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
@@ -60,35 +62,42 @@ function install(app: string): string {
   return packed.map(file => file.replace('./', '')).join(', ')
 }
 
-async function look(folder: string): Promise<void> {
+async function look(browser: Browser, origin: string, scene: string, backend: Backend) {
+  const label = `the app's ${scene} scene draws what it should [${backend}]`
+  const page = await browser.newPage()
+  const errors: string[] = []
+  page.on('pageerror', error => errors.push(String(error)))
+  page.on('console', message => {
+    // Three warns when it falls back from WebGPU.
+    const text = message.text()
+    if (message.type() === 'error' || text.startsWith('THREE')) errors.push(text)
+  })
+  try {
+    const query = backend === 'webgl' ? '&webgl' : ''
+    await page.goto(`${origin}/index.html?scene=${scene}${query}`)
+    await page.waitForFunction(() => 'draw' in window, undefined, { timeout: 60_000 })
+    const url = await withLimit(
+      page.evaluate(() => (window as unknown as { draw: () => string }).draw()),
+      120
+    )
+    const png = PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'))
+    errors.push(...expectations[scene](png))
+  } catch (error) {
+    errors.push(String(error))
+  }
+  await page.close()
+  if (errors.length === 0) report.pass(label)
+  else report.fail(label, errors.join('\n'))
+}
+
+async function lookAtAll(folder: string): Promise<void> {
   const server = await serveStatic([{ path: '/', folder }])
   const browser = await launchChromium()
   try {
-    for (const backend of ['webgpu', 'webgl'] as const) {
-      const page = await browser.newPage()
-      const errors: string[] = []
-      page.on('pageerror', error => errors.push(String(error)))
-      page.on('console', message => {
-        if (message.type() === 'error') errors.push(message.text())
-      })
-      const query = backend === 'webgl' ? '?webgl' : ''
-      try {
-        await page.goto(`${server.origin}/index.html${query}`)
-        await page.waitForFunction(() => 'draw' in window, undefined, { timeout: 60_000 })
-        const url = await withLimit(
-          page.evaluate(() =>
-            (window as unknown as { draw: () => string | Promise<string> }).draw()
-          ),
-          120
-        )
-        const png = PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'))
-        const wrong = [...errors, ...expectations(png)]
-        if (wrong.length === 0) report.pass(`the app draws what it should [${backend}]`)
-        else report.fail(`the app draws what it should [${backend}]`, wrong.join('\n'))
-      } catch (error) {
-        report.fail(`the app starts [${backend}]`, [String(error), ...errors].join('\n'))
+    for (const scene of Object.keys(expectations)) {
+      for (const backend of ['webgpu', 'webgl'] as const) {
+        await look(browser, server.origin, scene, backend)
       }
-      await page.close()
     }
   } finally {
     await browser.close()
@@ -102,15 +111,9 @@ try {
   const steps: [string, () => string][] = [
     ['npm install of the packed packages', () => install(app)],
     ['strict types, skipLibCheck off', () => execute('npx', ['--no-install', 'tsc'], app)],
-    [
-      'vite build',
-      () => {
-        execute('npx', ['--no-install', 'vite', 'build'], app)
-        return ''
-      }
-    ]
+    ['vite build', () => execute('npx', ['--no-install', 'vite', 'build', '--logLevel=warn'], app)]
   ]
-  if (steps.every(([name, work]) => attempt(name, work))) await look(join(app, 'dist'))
+  if (steps.every(([name, work]) => attempt(name, work))) await lookAtAll(join(app, 'dist'))
 } finally {
   rmSync(app, { recursive: true, force: true })
 }

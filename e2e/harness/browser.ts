@@ -56,7 +56,8 @@ function downloadWithPlaywright(): void {
 function installWithApt(): void {
   if (process.platform !== 'linux' || process.getuid?.() !== 0) return
   if (findCommand('apt-get') === undefined) return
-  const options = { stdio: 'inherit', timeout: 600_000 } as const
+  const env = { ...process.env, DEBIAN_FRONTEND: 'noninteractive' }
+  const options = { stdio: 'inherit', timeout: 600_000, env } as const
   spawnSync('apt-get', ['update', '-q'], options)
   spawnSync('apt-get', ['install', '-y', '-q', '--no-install-recommends', 'chromium'], options)
 }
