@@ -1,0 +1,266 @@
+import { EventDispatcher, Matrix4, Vector3 } from 'three'
+import type { Camera } from 'three'
+import type { Renderer } from 'three/webgpu'
+import { Ellipsoid, Geodetic, sunDirectionECEF } from '@welkin/geo'
+import type { GeodeticLike } from '@welkin/geo'
+import { AtmosphereParameters } from './AtmosphereParameters'
+import { AtmosphereTables } from './AtmosphereTables'
+import { AtmosphereView } from './AtmosphereView'
+import { AtmosphereQuery } from './cpu/AtmosphereQuery'
+import { SphericalSpace } from './cpu/spherical'
+import type { Triple } from './cpu/color'
+
+/** Options of {@link Atmosphere}. */
+export interface AtmosphereOptions {
+  /** What the air is made of; by default the Earth's. Shared, not copied. */
+  parameters?: AtmosphereParameters
+  /** The planet's figure; by default WGS84. */
+  ellipsoid?: Ellipsoid
+}
+
+/** How the scene's world space lies on the planet. */
+export type AtmosphereFrame = 'local' | 'ecef'
+
+const _position = new Vector3()
+const _rotation = new Matrix4()
+
+/**
+ * A planet's air, sun and place: what every node and light of this package is made from.
+ *
+ * ```ts
+ * const atmosphere = new Atmosphere()
+ * atmosphere.place({ longitude: 139.77, latitude: 35.68 })
+ * atmosphere.date = new Date('2026-06-21T09:30:00Z')
+ * ```
+ *
+ * Out of the box it suits a plain three scene: metres, Y up, X east, Z south, origin at sea level at
+ * longitude and latitude 0, sun 45° high in the south-east. Tables are computed on the GPU when a
+ * node that uses them is first rendered, and again when `parameters` change.
+ */
+export class Atmosphere extends EventDispatcher<{ dispose: object }> {
+  /** What the air is made of. Change it with `parameters.set(…)`. */
+  readonly parameters: AtmosphereParameters
+  /** The planet's figure. */
+  readonly ellipsoid: Ellipsoid
+  /**
+   * World units to metres in ECEF. {@link place} and {@link frame} set it; set it yourself for any
+   * other frame, such as the inverse of a tile set's `group.matrixWorld`. It must keep angles.
+   */
+  readonly worldToECEF = new Matrix4()
+  /** Output of every node per luminance [1/(cd/m²)]. */
+  luminanceScale = 1e-4
+  /**
+   * Most steps of baking tables in one frame; a bake has 20. The default bakes at once. Until the
+   * first bake is done the sky is black; after a change the old tables stand until the new are ready.
+   */
+  bakeStepsPerFrame = Infinity
+  #metersPerUnit = 1
+  #frame: AtmosphereFrame = 'local'
+  readonly #place = new Geodetic()
+  #date: Date | null = null
+  readonly #sunECEF = new Vector3()
+  readonly #sunWorld = new Vector3(1, Math.SQRT2, 1).normalize()
+  /** What is kept on the GPU. */
+  readonly tables = new AtmosphereTables()
+  readonly #views = new WeakMap<Camera, AtmosphereView>()
+  readonly #space = new SphericalSpace()
+
+  /** @throws If an option is of the wrong kind. */
+  constructor({ parameters, ellipsoid }: AtmosphereOptions = {}) {
+    super()
+    if (parameters !== undefined && !(parameters instanceof AtmosphereParameters)) {
+      throw new Error(`Atmosphere: parameters must be AtmosphereParameters, got ${String(parameters)}`)
+    }
+    if (ellipsoid !== undefined && !(ellipsoid instanceof Ellipsoid)) {
+      throw new Error(`Atmosphere: ellipsoid must be an Ellipsoid, got ${String(ellipsoid)}`)
+    }
+    this.parameters = parameters ?? new AtmosphereParameters()
+    this.ellipsoid = ellipsoid ?? Ellipsoid.WGS84
+    this.#updateFrame()
+  }
+
+  /**
+   * Puts the world's origin at a place, Y up, X east, Z south.
+   *
+   * @param geodetic - Longitude, latitude [°], height above the ellipsoid [m], default 0.
+   * @throws If a coordinate is not finite or out of range.
+   */
+  place(geodetic: GeodeticLike): this {
+    this.#place.set(geodetic.longitude, geodetic.latitude, geodetic.height ?? 0)
+    this.#frame = 'local'
+    this.#updateFrame()
+    return this
+  }
+
+  /** `'local'`: as {@link place} says. `'ecef'`: world axes are ECEF's. */
+  get frame(): AtmosphereFrame {
+    return this.#frame
+  }
+
+  set frame(value: AtmosphereFrame) {
+    if (value !== 'local' && value !== 'ecef') {
+      throw new Error(`Atmosphere: frame must be 'local' or 'ecef', got ${String(value)}`)
+    }
+    this.#frame = value
+    this.#updateFrame()
+  }
+
+  /** Metres in a world unit, > 0. Setting it resets {@link worldToECEF} to the frame's. */
+  get metersPerUnit(): number {
+    return this.#metersPerUnit
+  }
+
+  set metersPerUnit(value: number) {
+    if (!(value > 0 && value < Infinity)) {
+      throw new Error(`Atmosphere: metersPerUnit must be positive and finite, got ${value}`)
+    }
+    this.#metersPerUnit = value
+    this.#updateFrame()
+  }
+
+  #updateFrame(): void {
+    const unit = this.#metersPerUnit
+    if (this.#frame === 'ecef') {
+      this.worldToECEF.makeScale(unit, unit, unit)
+      return
+    }
+    this.ellipsoid.geodeticToECEF(this.#place, _position)
+    this.ellipsoid.localYUpFrame(_position, this.worldToECEF)
+    this.worldToECEF.scale(_position.setScalar(unit))
+  }
+
+  /** When it is: the sun follows. Null if the sun's direction was set by hand. */
+  get date(): Date | null {
+    return this.#date
+  }
+
+  set date(value: Date | null) {
+    if (value !== null && !(value instanceof Date && Number.isFinite(value.getTime()))) {
+      throw new Error(`Atmosphere: date must be a valid Date or null, got ${String(value)}`)
+    }
+    if (value === null) this.#sunWorld.copy(this.sunDirection)
+    else sunDirectionECEF(value, this.#sunECEF)
+    this.#date = value
+  }
+
+  /**
+   * Direction to the sun in world space, unit length; a copy. Setting it stops following the date.
+   */
+  get sunDirection(): Vector3 {
+    if (this.#date === null) return this.#sunWorld.clone()
+    _rotation.copy(this.worldToECEF).invert()
+    return this.#sunECEF.clone().transformDirection(_rotation)
+  }
+
+  set sunDirection(world: Vector3) {
+    const length = world.length()
+    if (!(length > 0 && length < Infinity)) {
+      const { x, y, z } = world
+      throw new Error(`Atmosphere: sunDirection must be finite and not zero, got (${x}, ${y}, ${z})`)
+    }
+    this.#sunWorld.copy(world).divideScalar(length)
+    this.#date = null
+  }
+
+  /**
+   * Points the sun by angles at the world's origin, for scenes without a date.
+   *
+   * @param elevation - Above the horizon, in [−90, 90] [°].
+   * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
+   */
+  setSunAngles(elevation: number, azimuth: number): this {
+    if (!(elevation >= -90 && elevation <= 90)) {
+      throw new Error(`Atmosphere: elevation must be in [-90, 90], got ${elevation}`)
+    }
+    if (!Number.isFinite(azimuth)) {
+      throw new Error(`Atmosphere: azimuth must be finite, got ${azimuth}`)
+    }
+    const [up, north] = [elevation, azimuth].map(degrees => (degrees * Math.PI) / 180) as [
+      number,
+      number
+    ]
+    const level = Math.cos(up)
+    const local = new Vector3(level * Math.sin(north), Math.sin(up), -level * Math.cos(north))
+    if (this.#frame === 'ecef') {
+      this.ellipsoid.geodeticToECEF(this.#place, _position)
+      local.transformDirection(this.ellipsoid.localYUpFrame(_position, _rotation))
+    }
+    this.sunDirection = local
+    return this
+  }
+
+  /** World space to the space in which the planet is a sphere, as it is now. */
+  get space(): SphericalSpace {
+    this.#space.set(this.worldToECEF, this.ellipsoid, this.parameters.bottomRadius)
+    return this.#space
+  }
+
+  /**
+   * Bakes stale tables and computes the sky volume for a camera. Nodes call it as they are rendered;
+   * call it yourself to choose when the work is done.
+   *
+   * @param camera - Its `matrixWorld` must be up to date.
+   */
+  update(renderer: Renderer, camera: Camera): AtmosphereView {
+    this.tables.update(renderer, this.parameters, this.luminanceScale, this.bakeStepsPerFrame)
+    let view = this.#views.get(camera)
+    if (view === undefined) this.#views.set(camera, (view = new AtmosphereView(this, camera)))
+    view.update(renderer)
+    return view
+  }
+
+  /**
+   * Bakes all tables now and reads back what {@link skyIlluminanceAt} and {@link skyLuminance} need.
+   *
+   * @param renderer - Initialised.
+   */
+  async bake(renderer: Renderer): Promise<void> {
+    this.tables.update(renderer, this.parameters, this.luminanceScale, Infinity)
+    await this.tables.read()
+  }
+
+  #query(): AtmosphereQuery {
+    const { parameters, space, sunDirection, tables } = this
+    return new AtmosphereQuery(parameters, space, sunDirection, tables.data)
+  }
+
+  /**
+   * Illuminance by the sun on a plane that faces it, reddened by the air and blocked by the planet.
+   *
+   * @param position - World.
+   * @returns Linear sRGB [lx].
+   */
+  sunIlluminanceAt(position: Vector3): Triple {
+    return this.#query().sunIlluminance(position)
+  }
+
+  /**
+   * Illuminance by sky and ground on a plane.
+   *
+   * @param position - World.
+   * @param normal - World, unit length: where the plane faces.
+   * @returns Linear sRGB [lx].
+   * @throws Before the tables were baked and read back: await {@link bake} first.
+   */
+  skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
+    return this.#query().skyIlluminance(position, normal)
+  }
+
+  /**
+   * Luminance of the sky, or of the model's ground, in a direction; without the sun's disc.
+   *
+   * @param position - World.
+   * @param direction - World, unit length.
+   * @returns Linear sRGB [cd/m²].
+   * @throws Before the tables were baked and read back: await {@link bake} first.
+   */
+  skyLuminance(position: Vector3, direction: Vector3): Triple {
+    return this.#query().skyLuminance(position, direction)
+  }
+
+  /** Frees all GPU memory. The atmosphere can be used again, from nothing. */
+  dispose(): void {
+    this.tables.dispose()
+    this.dispatchEvent({ type: 'dispose' })
+  }
+}

@@ -1,0 +1,78 @@
+import { Vector3, Vector4 } from 'three'
+import { renderGroup, uniform } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
+import type { AtmosphereParameters, Spectrum } from './AtmosphereParameters'
+import { asymmetryMoments, cornetteShanksFactor } from './cpu/phase'
+import { linearSRGBColumns, whiteBalancedColumns } from './cpu/color'
+
+const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup) as never
+const spectrum = (): UniformNode<'vec4', Vector4> =>
+  uniform(new Vector4()).setGroup(renderGroup) as never
+const columns = (): UniformNode<'vec3', Vector3>[] =>
+  [0, 1, 2, 3].map(() => uniform(new Vector3()).setGroup(renderGroup) as never)
+
+/**
+ * The parameters of an atmosphere as shader uniforms: changing a parameter recompiles nothing.
+ * Field names and units are those of {@link AtmosphereParameters}.
+ */
+export class AtmosphereUniforms {
+  readonly bottomRadius = number()
+  /** Thickness of the air [m]. */
+  readonly thickness = number()
+  readonly rayleighScattering = spectrum()
+  readonly rayleighScaleHeight = number()
+  readonly mieScattering = spectrum()
+  readonly mieExtinction = spectrum()
+  readonly mieScaleHeight = number()
+  readonly mieAsymmetry = number()
+  /** 3/(8π) (1 − g²)/(2 + g²), what is constant in the Cornette–Shanks phase function [1/sr]. */
+  readonly miePhaseFactor = number()
+  /** χ₁ and χ₂, first Legendre coefficients of the aerosols' phase function. */
+  readonly mieMoment1 = number()
+  readonly mieMoment2 = number()
+  readonly absorptionExtinction = spectrum()
+  readonly absorptionAltitude = number()
+  readonly absorptionHalfWidth = number()
+  readonly groundAlbedo = spectrum()
+  readonly sunAngularRadius = number()
+  readonly limbDarkening = spectrum()
+  /** Columns of the matrix from radiance per unit of solar irradiance [1/sr] to scaled linear sRGB. */
+  readonly linearSRGB = columns()
+  /** Columns of the matrix from spectral transmittance to that of sunlight seen as linear sRGB. */
+  readonly transmittanceRGB = columns()
+
+  /**
+   * Copies the parameters.
+   *
+   * @param luminanceScale - Output per luminance [1/(cd/m²)].
+   */
+  update(parameters: AtmosphereParameters, luminanceScale: number): void {
+    const set = (node: UniformNode<'vec4', Vector4>, value: Spectrum): void => {
+      node.value.set(...value)
+    }
+    this.bottomRadius.value = parameters.bottomRadius
+    this.thickness.value = parameters.topRadius - parameters.bottomRadius
+    set(this.rayleighScattering, parameters.rayleighScattering)
+    this.rayleighScaleHeight.value = parameters.rayleighScaleHeight
+    set(this.mieScattering, parameters.mieScattering)
+    set(this.mieExtinction, parameters.mieExtinction)
+    this.mieScaleHeight.value = parameters.mieScaleHeight
+    this.mieAsymmetry.value = parameters.mieAsymmetry
+    this.miePhaseFactor.value = cornetteShanksFactor(parameters.mieAsymmetry)
+    const [, moment1, moment2] = asymmetryMoments(parameters.mieAsymmetry)
+    this.mieMoment1.value = moment1
+    this.mieMoment2.value = moment2
+    set(this.absorptionExtinction, parameters.absorptionExtinction)
+    this.absorptionAltitude.value = parameters.absorptionAltitude
+    this.absorptionHalfWidth.value = parameters.absorptionHalfWidth
+    set(this.groundAlbedo, parameters.groundAlbedo)
+    this.sunAngularRadius.value = parameters.sunAngularRadius
+    set(this.limbDarkening, parameters.limbDarkening)
+    linearSRGBColumns(parameters, luminanceScale).forEach((column, i) => {
+      this.linearSRGB[i]!.value.set(...column)
+    })
+    whiteBalancedColumns(parameters).forEach((column, i) => {
+      this.transmittanceRGB[i]!.value.set(...column)
+    })
+  }
+}

@@ -1,0 +1,52 @@
+import { Matrix3, Vector3 } from 'three'
+import type { Camera } from 'three'
+import type { Renderer } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import { eyeScalars } from './cpu/eye'
+import type { SkyVolume } from './SkyVolume'
+import type { EyeScalars } from './tsl/eye'
+
+const _position = new Vector3()
+
+/** A camera in the space where the planet is a sphere, computed in float64. */
+export class AtmosphereView {
+  /** Height above the ground, which may be negative [m]. */
+  height = 0
+  /** Zenith, unit length. */
+  readonly up = new Vector3()
+  /** Direction to the sun, unit length. */
+  readonly sunDirection = new Vector3()
+  /** Displacements in view space [world units] to the mapped space [m]. */
+  readonly viewToMapped = new Matrix3()
+  eye: EyeScalars<number> | null = null
+  volume: SkyVolume | null = null
+  readonly #atmosphere: Atmosphere
+  readonly #camera: Camera
+
+  constructor(atmosphere: Atmosphere, camera: Camera) {
+    this.#atmosphere = atmosphere
+    this.#camera = camera
+  }
+
+  /** Follows the camera, and sees that there is a sky volume for it. */
+  update(renderer: Renderer): void {
+    const { space, parameters, sunDirection, tables } = this.#atmosphere
+    const { matrixWorld } = this.#camera
+    space.position(_position.setFromMatrixPosition(matrixWorld), this.up)
+    const radius = this.up.length()
+    this.height = radius - parameters.bottomRadius
+    // At the very centre any direction is up.
+    if (radius > 0) this.up.divideScalar(radius)
+    else this.up.set(0, 0, 1)
+    space.direction(sunDirection, this.sunDirection)
+    space.displacement(matrixWorld, this.viewToMapped)
+    const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
+    this.eye = eyeScalars(parameters, this.height, cosSun)
+    const volume = tables.volumeFor(renderer, this.eye, this.volume)
+    if (volume !== this.volume) {
+      if (this.volume !== null) this.volume.users--
+      volume.users++
+      this.volume = volume
+    }
+  }
+}

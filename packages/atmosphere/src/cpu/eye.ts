@@ -1,0 +1,45 @@
+import type { AtmosphereParameters } from '../AtmosphereParameters'
+import type { EyeScalars } from '../tsl/eye'
+
+/** How much faster than the density of molecules the steps grow along a ray. */
+const STEP_GROWTH = 0.4
+
+/** Eyes lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */
+export const LOWEST_EYE = 1
+
+function exponent(rise: number, scaleHeight: number): number {
+  const value = Math.min(Math.max((STEP_GROWTH * rise) / scaleHeight, -4), 4)
+  return Math.sign(value || 1) * Math.max(Math.abs(value), 0.05)
+}
+
+/**
+ * Scalars that the sky volume is computed and read with.
+ *
+ * @param altitude - Of the eye in the mapped space [m].
+ * @param cosSun - μ_s at the eye.
+ */
+export function eyeScalars(
+  parameters: AtmosphereParameters,
+  altitude: number,
+  cosSun: number
+): EyeScalars<number> {
+  const { bottomRadius, topRadius, rayleighScaleHeight } = parameters
+  const thickness = topRadius - bottomRadius
+  const h = Math.max(altitude, LOWEST_EYE)
+  const radius = bottomRadius + h
+  const sinHorizon = bottomRadius / radius
+  const dip = Math.acos(sinHorizon)
+  const above =
+    radius > topRadius ? Math.asin(topRadius / radius) - Math.asin(sinHorizon) : Math.PI / 2 + dip
+  const start = Math.min(h, thickness)
+  return {
+    altitude: h,
+    cosSun,
+    cosHorizon: -Math.sin(dip),
+    sinHorizon,
+    belowSpan: Math.tan((Math.PI / 2 - dip) / 2),
+    aboveSpan: Math.tan(above / 2),
+    groundExponent: exponent(-start, rayleighScaleHeight),
+    skyExponent: exponent(thickness - start, rayleighScaleHeight)
+  }
+}

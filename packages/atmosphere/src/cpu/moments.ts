@@ -1,0 +1,39 @@
+/** Real spherical harmonics of degree ≤ 2 of a unit vector whose y does not matter by symmetry. */
+function harmonics(x: number, z: number): [number, number, number, number, number, number] {
+  const ySquared = 1 - x * x - z * z
+  return [
+    0.28209479177387814,
+    0.4886025119029199 * z,
+    0.4886025119029199 * x,
+    0.31539156525252005 * (3 * z * z - 1),
+    1.0925484305920792 * x * z,
+    0.5462742152960396 * (x * x - ySquared)
+  ]
+}
+
+/**
+ * Σ_l a_l Σ_m M_lm Y_lm(v) for a field that is symmetric about the sun's vertical plane.
+ *
+ * @param moments - M₀₀, M₁₀, M₁₁/sin θ_s, M₂₀, M₂₁/sin θ_s, M₂₂/sin² θ_s.
+ * @param weights - a₀, a₁, a₂.
+ * @param cosView - v against the zenith.
+ * @param cosSun - The sun against the zenith.
+ * @param cosViewSun - v against the sun.
+ */
+export function applyMoments(
+  moments: readonly number[],
+  weights: readonly [number, number, number],
+  cosView: number,
+  cosSun: number,
+  cosViewSun: number
+): number {
+  const sinSun = Math.max(Math.sqrt(Math.max(1 - cosSun ** 2, 0)), 1e-9)
+  const x = (cosViewSun - cosView * cosSun) / sinSun
+  const [y00, y10, y11, y20, y21, y22] = harmonics(x, cosView)
+  const [m00, m10, m11, m20, m21, m22] = moments as [number, number, number, number, number, number]
+  return (
+    weights[0] * m00 * y00 +
+    weights[1] * (m10 * y10 + m11 * sinSun * y11) +
+    weights[2] * (m20 * y20 + m21 * sinSun * y21 + m22 * sinSun ** 2 * y22)
+  )
+}

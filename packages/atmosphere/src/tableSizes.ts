@@ -1,0 +1,23 @@
+/** Transmittance: (cosine of the zenith angle, altitude). */
+export const TRANSMITTANCE_SIZE = [256, 64] as const
+
+/** Diffuse light: (sun's cosine, altitude), a tile per quantity in {@link DIFFUSE_TILES}. */
+export const DIFFUSE_SIZE = [96, 16] as const
+
+/**
+ * What the tiles of the diffuse-light table hold, side by side: six moments, then the irradiance on
+ * a plane that faces up and on one that faces down.
+ */
+export const DIFFUSE_TILES = 8
+
+/** Sky volume: azimuth × elevation × distance. */
+export const VOLUME_SIZE = [32, 96, 32] as const
+
+/** How the distances of the sky volume lie in its atlas: columns × rows of tiles. */
+export const VOLUME_TILES = [8, 4] as const
+
+/** Columns of the table of optical depth along a ray; two for each distance of the volume. */
+export const DEPTH_COLUMNS = 64
+
+/** Factor by which tables of radiance are scaled, to stay clear of subnormal half floats at night. */
+export const RADIANCE_SCALE = 4096

@@ -1,0 +1,74 @@
+import { float, vec2 } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
+import type { AtmosphereUniforms } from '../AtmosphereUniforms'
+import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../tableSizes'
+import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import { diffuseSunCosine, diffuseSunSlope, diffuseSunOrigin } from '../cpu/diffuseLight'
+import type { Moments } from './moments'
+
+const [COLUMNS, ROWS] = DIFFUSE_SIZE
+
+type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
+
+/** Position of the sun's cosine among the columns, in [0, 1]. Columns crowd about the horizon. */
+function sunColumn(cosSun: Float): Float {
+  const x = cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst()
+  // asinh, from its magnitude: the plain form cancels for x < 0.
+  const magnitude = x.abs()
+  const asinh = magnitude.add(x.mul(x).add(1).sqrt()).log().mul(x.sign())
+  return asinh.sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp() as Float
+}
+
+/** Position of an altitude among the rows, in [0, 1]. Rows crowd at the ground. */
+function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float {
+  return altitude.div(thickness).clamp().sqrt() as Float
+}
+
+/** A function that reads a tile of the diffuse-light table at an altitude and sun angle. */
+export function diffuseLightReader(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosSun: Float
+): (tile: number) => Vec4 {
+  const uv = vec2(
+    sunColumn(cosSun).mul(COLUMNS - 1).add(0.5).div(COLUMNS * DIFFUSE_TILES),
+    altitudeRow(uniforms, altitude).mul(ROWS - 1).add(0.5).div(ROWS)
+  ).toConst()
+  return tile =>
+    sampleLevel0(table, (tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0))) as Vec2)
+}
+
+/**
+ * Moments of the diffuse light at a point, for unit irradiance of the sun, times `RADIANCE_SCALE`.
+ *
+ * @param table - Diffuse-light table.
+ * @param altitude - Above the ground, in [0, thickness] [m].
+ * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ */
+export function diffuseMoments(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosSun: Float
+): Moments<Vec4> {
+  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  const [m00, m10, m11, m20, m21, m22] = [0, 1, 2, 3, 4, 5].map(tile => read(tile).toConst()) as unknown as SixTiles
+  return { m00, m10, m11, m20, m21, m22 }
+}
+
+/**
+ * Diffuse irradiance on horizontal ground, for unit irradiance of the sun.
+ *
+ * @param table - Diffuse-light table.
+ * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ */
+export function groundIrradiance(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  cosSun: Float
+): Vec4 {
+  return diffuseLightReader(uniforms, table, float(0) as Float, cosSun)(6).div(
+    RADIANCE_SCALE
+  ) as Vec4
+}

@@ -1,0 +1,124 @@
+import { Fn, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
+import type { TwoOutputs } from '../FragmentPass'
+import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_TILES } from '../tableSizes'
+import { loop, sampleLevel0, type Float, type Int, type Vec2, type Vec4 } from '../tsl-types'
+import type { Eye } from './eye'
+import { pointAlong, scatterSegment, segmentDepth, type Air, type Ray } from './scattering'
+import { columnCosine, rayLimits, rowCosine, sliceDistance, type RayLimits } from './skyVolume'
+
+const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
+const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
+
+/** What the two attachments of a target receive. */
+interface Parts {
+  molecular: Vec4
+  aerosol: Vec4
+}
+
+function twoOutputs(body: () => Parts): TwoOutputs {
+  const first = property('vec4') as unknown as Vec4
+  const second = property('vec4') as unknown as Vec4
+  const assign = Fn(() => {
+    const { molecular, aerosol } = body()
+    first.assign(molecular)
+    second.assign(aerosol)
+    return vec4(0)
+  })
+  return { color: assign() as never, output: outputStruct(first, second) as never }
+}
+
+/** The same ray from where it enters the air. */
+function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
+  const entry = pointAlong(air, ray, limits.start)
+  return {
+    altitude: entry.altitude.min(air.uniforms.thickness).toConst() as Float,
+    cosView: entry.cosView,
+    cosSun: entry.cosSun,
+    cosViewSun: ray.cosViewSun
+  }
+}
+
+/** Shader of the table of optical depth: rows are elevations, columns distances. */
+export function bakeDepth(air: Air, eye: Eye): Vec4 {
+  return Fn(() => {
+    const texel = uv() as Vec2
+    const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(ELEVATIONS) as Float)
+    const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
+    const { altitude, cosSun } = eye
+    const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun: cosSun }, limits)
+    const start = float(0).toVar()
+    const depth = vec4(0).toVar()
+    const column = int(texel.x.mul(DEPTH_COLUMNS).floor())
+    loop('segment', column.add(1) as Int, segment => {
+      const position = float(segment).add(1).div(DEPTH_COLUMNS)
+      const end = sliceDistance(eye, limits, position as Float).toConst()
+      depth.addAssign(segmentDepth(air, ray, start as Float, end as Float).depth)
+      start.assign(end)
+    })
+    return depth
+  })() as unknown as Vec4
+}
+
+/** Position of a texel in the atlas of slices. */
+function atlasPosition(texel: Vec2) {
+  const x = texel.x.mul(AZIMUTHS * TILE_COLUMNS).floor().toConst()
+  const y = texel.y.mul(ELEVATIONS * TILE_ROWS).floor().toConst()
+  const tileColumn = x.div(AZIMUTHS).floor().toConst()
+  const tileRow = y.div(ELEVATIONS).floor().toConst()
+  return {
+    column: x.sub(tileColumn.mul(AZIMUTHS)).toConst() as Float,
+    row: y.sub(tileRow.mul(ELEVATIONS)).toConst() as Float,
+    slice: tileRow.mul(TILE_COLUMNS).add(tileColumn).toConst() as Float
+  }
+}
+
+/**
+ * Shader that fills the atlas with the light scattered between one slice and the next, as seen from
+ * the eye.
+ *
+ * @param depth - Table of {@link bakeDepth} for the same eye.
+ */
+export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs {
+  return twoOutputs(() => {
+    const { column, row, slice } = atlasPosition(uv() as Vec2)
+    const { cosView, hitsGround } = rowCosine(eye, row.add(0.5) as Float)
+    const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
+    const cosViewSun = columnCosine(eye, cosView, column)
+    const { altitude, cosSun } = eye
+    const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
+    const start = sliceDistance(eye, limits, slice.div(DISTANCES) as Float).toConst() as Float
+    const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES) as Float).toConst() as Float
+    const perSlice = DEPTH_COLUMNS / DISTANCES
+    const depthUV = vec2(
+      slice.mul(perSlice).sub(0.5).max(0.5).div(DEPTH_COLUMNS),
+      row.add(0.5).div(ELEVATIONS)
+    )
+    const before = sampleLevel0(depth, depthUV as Vec2).mul(slice.greaterThan(0).select(1, 0))
+    const through = before.negate().exp().toConst()
+    const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
+    return {
+      molecular: light.molecular.mul(through) as Vec4,
+      aerosol: light.aerosol.mul(through) as Vec4
+    }
+  })
+}
+
+/** Shader that sums the segments up to each slice. */
+export function sumSegments(molecular: TextureNode, aerosol: TextureNode): TwoOutputs {
+  return twoOutputs(() => {
+    const { column, row, slice } = atlasPosition(uv() as Vec2)
+    const sums = { molecular: vec4(0).toVar(), aerosol: vec4(0).toVar() }
+    const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
+    loop('before', int(slice).add(1) as Int, index => {
+      const before = float(index).toConst()
+      const tileRow = before.add(0.5).div(TILE_COLUMNS).floor().toConst()
+      const tileColumn = before.sub(tileRow.mul(TILE_COLUMNS))
+      const corner = vec2(tileColumn.mul(AZIMUTHS), tileRow.mul(ELEVATIONS))
+      const at = vec2(column, row).add(corner).add(0.5).mul(size).toConst() as Vec2
+      sums.molecular.addAssign(sampleLevel0(molecular, at))
+      sums.aerosol.addAssign(sampleLevel0(aerosol, at))
+    })
+    return sums as unknown as Parts
+  })
+}
