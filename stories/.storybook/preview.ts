@@ -1,0 +1,10 @@
+import type { Preview } from '@storybook/html-vite'
+
+const preview: Preview = {
+  parameters: {
+    layout: 'fullscreen',
+    options: { storySort: { order: ['Globe', 'Plain scene', 'Tables'] } }
+  }
+}
+
+export default preview

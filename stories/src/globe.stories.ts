@@ -1,0 +1,47 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { createGlobe } from './globe.scene'
+import type { GlobeArgs } from './globe.scene'
+import { PLACES } from './globe/places'
+import { mount } from './mount'
+import { rendererArgTypes, timeArgTypes } from './storyArgs'
+
+const meta: Meta<GlobeArgs> = {
+  title: 'Globe',
+  render: mount(createGlobe),
+  argTypes: {
+    place: {
+      name: 'Camera',
+      description: 'Where the camera goes; fly on from there with the mouse',
+      options: Object.keys(PLACES),
+      control: {
+        type: 'select',
+        labels: Object.fromEntries(Object.entries(PLACES).map(([name, { label }]) => [name, label]))
+      }
+    },
+    ...timeArgTypes,
+    ...rendererArgTypes
+  },
+  args: { place: 'street', day: Date.UTC(2026, 5, 21), hour: 0.5, exposure: 0, forceWebGL: false, frame: false }
+}
+
+export default meta
+
+type Story = StoryObj<GlobeArgs>
+
+/** Half past nine on a summer morning, eye height. */
+export const Street: Story = { tags: ['screenshot'] }
+
+export const Rooftops: Story = { name: '1 km', args: { place: 'rooftops', hour: 6.5 }, tags: ['screenshot'] }
+
+export const Coast: Story = { name: '10 km', args: { place: 'coast', hour: 7 }, tags: ['screenshot'] }
+
+export const Orbit: Story = { name: '400 km', args: { place: 'orbit', hour: 5 }, tags: ['screenshot'] }
+
+/** The terminator crosses the Indian Ocean. */
+export const WholeGlobe: Story = { name: '20,000 km', args: { place: 'globe', hour: 1 }, tags: ['screenshot'] }
+
+/** Eye height, between ridges of real heights. */
+export const Valley: Story = { args: { place: 'valley', hour: 13.5 }, tags: ['screenshot'] }
+
+/** Early morning along the Jacksboro fault. */
+export const Ridges: Story = { args: { place: 'ridges', hour: 12 }, tags: ['screenshot'] }

@@ -1,0 +1,138 @@
+import { Ellipsoid } from '@welkin/geo'
+import {
+  CylinderGeometry,
+  Group,
+  IcosahedronGeometry,
+  InstancedMesh,
+  MathUtils,
+  Matrix4,
+  Mesh,
+  PlaneGeometry,
+  Vector3
+} from 'three'
+import type { BufferGeometry, DataTexture } from 'three'
+import { abs, color, float, fract, fwidth, max, mix, positionLocal, smoothstep, step, texture, uv, vec2, vertexColor } from 'three/tsl'
+import { MeshStandardNodeMaterial } from 'three/webgpu'
+import type { Node } from 'three/webgpu'
+import { randomSequence } from '../random'
+import { BLOCK, CITY_EXTENT, createBuildings, STREET_WIDTH } from './cityBuildings'
+import type { Point } from './cityBuildings'
+import { CITY, PLACES } from './places'
+
+/** Streets lie this far above the ellipsoid, clear of the globe's tiles [m]. */
+const GROUND_HEIGHT = 0.3
+
+/** 1 on `width` around every multiple of `period`, smoothed over a pixel. */
+function stripes(x: Node<'float'>, period: number, width: number): Node<'float'> {
+  const distance = abs(fract(x.div(period).add(0.5)).sub(0.5)).mul(period)
+  const soft = max(fwidth(x), 0.02)
+  return smoothstep(soft, soft.negate(), distance.sub(width / 2))
+}
+
+function facadeMaterial(): MeshStandardNodeMaterial {
+  const cell = uv().div(vec2(2.8, 3.5))
+  const inCell = fract(cell)
+  const sharp = step(0.16, inCell.x).mul(step(inCell.x, 0.84)).mul(step(0.28, inCell.y)).mul(step(inCell.y, 0.8))
+  // Where a window is smaller than a pixel, a wall has the mean of wall and window.
+  const blur = smoothstep(0.3, 0.9, max(fwidth(cell.x), fwidth(cell.y)))
+  const isWall = step(0.001, uv().x.add(uv().y))
+  const window = mix(sharp, float(0.35), blur).mul(isWall)
+  const material = new MeshStandardNodeMaterial()
+  material.colorNode = mix(vertexColor().rgb, color('#1b2530'), window)
+  material.roughnessNode = mix(0.85, 0.12, window)
+  return material
+}
+
+function streetMaterial(noise: DataTexture): MeshStandardNodeMaterial {
+  const { x, z } = positionLocal
+  const grain = texture(noise, positionLocal.xz.div(6)).r.add(texture(noise, positionLocal.xz.div(170)).r).mul(0.5)
+  const road = max(stripes(x, BLOCK.width, STREET_WIDTH - 8), stripes(z, BLOCK.depth, STREET_WIDTH - 8))
+  const street = max(stripes(x, BLOCK.width, STREET_WIDTH), stripes(z, BLOCK.depth, STREET_WIDTH))
+  const dashes = stripes(x, BLOCK.width, 0.18).mul(step(fract(z.div(9)), 0.45))
+  const crossing = stripes(z, BLOCK.depth, STREET_WIDTH)
+  const lines = dashes.mul(crossing.oneMinus())
+  const lots = color('#6d6a60')
+  const pavement = mix(lots, color('#8f8c86'), street)
+  const surface = mix(pavement, color('#45464a'), road)
+  // Outwards the streets fade into the globe beneath them.
+  const ragged = grain.sub(0.5).mul(CITY_EXTENT * 0.9)
+  const outside = smoothstep(CITY_EXTENT * 0.45, CITY_EXTENT * 1.05, vec2(x, z).length().add(ragged))
+  const material = new MeshStandardNodeMaterial({ transparent: true, depthWrite: false })
+  material.colorNode = mix(surface, color('#c9c7bd'), lines).mul(grain.mul(0.5).add(0.75))
+  material.opacityNode = outside.oneMinus()
+  material.roughnessNode = float(0.9)
+  return material
+}
+
+/** A crown of leaves: a sphere pushed in and out, so that it does not look turned on a lathe. */
+function crownGeometry(): BufferGeometry {
+  const geometry = new IcosahedronGeometry(2.1, 1)
+  const { position, normal } = geometry.attributes
+  const vertex = new Vector3()
+  for (let i = 0; i < position.count; i++) {
+    vertex.fromBufferAttribute(position, i)
+    normal.setXYZ(i, ...vertex.clone().normalize().toArray())
+    const bumps = Math.sin(vertex.x * 2.1 + 1) * Math.sin(vertex.y * 1.9) * Math.sin(vertex.z * 2.3 + 2)
+    vertex.multiplyScalar(1 + bumps * 0.25)
+    position.setXYZ(i, vertex.x, vertex.y * 1.15, vertex.z)
+  }
+  return geometry
+}
+
+function plant(geometry: BufferGeometry, material: MeshStandardNodeMaterial, points: Point[], y: number): InstancedMesh {
+  const mesh = new InstancedMesh(geometry, material, points.length)
+  const random = randomSequence(7)
+  const matrix = new Matrix4()
+  const scale = new Vector3()
+  points.forEach(({ x, z }, i) => {
+    const size = 0.8 + random() * 0.5
+    matrix.makeRotationY(random() * Math.PI * 2).scale(scale.setScalar(size)).setPosition(x, y * size, z)
+    mesh.setMatrixAt(i, matrix)
+  })
+  mesh.castShadow = true
+  mesh.receiveShadow = true
+  return mesh
+}
+
+export interface City {
+  /** In ECEF [m]. */
+  object: Group
+  dispose(): void
+}
+
+/** A made-up district of boxes and streets, for scale: the imagery knows nothing smaller than 20 km. */
+export function createCity(noise: DataTexture): City {
+  const originECEF = Ellipsoid.WGS84.geodeticToECEF({ ...CITY, height: GROUND_HEIGHT })
+  const object = new Group()
+  const streets = new Group()
+  object.add(streets)
+  Ellipsoid.WGS84.localYUpFrame(originECEF, object.matrix).decompose(object.position, object.quaternion, object.scale)
+  streets.rotation.y = -PLACES.street.heading * MathUtils.DEG2RAD
+
+  const { geometry, trees } = createBuildings()
+  const buildings = new Mesh(geometry, facadeMaterial())
+  buildings.castShadow = true
+  buildings.receiveShadow = true
+
+  const ground = new Mesh(new PlaneGeometry(CITY_EXTENT * 2.2, CITY_EXTENT * 2.2).rotateX(-Math.PI / 2), streetMaterial(noise))
+  ground.receiveShadow = true
+
+  const leaves = new MeshStandardNodeMaterial({ color: '#3f5a2c', roughness: 0.9 })
+  const bark = new MeshStandardNodeMaterial({ color: '#4a3b2e', roughness: 0.95 })
+  const crowns = plant(crownGeometry(), leaves, trees, 5)
+  const trunks = plant(new CylinderGeometry(0.13, 0.18, 4, 6), bark, trees, 2)
+  const meshes = [buildings, ground, crowns, trunks]
+  streets.add(...meshes)
+
+  return {
+    object,
+    dispose() {
+      for (const { geometry: shape, material } of meshes) {
+        shape.dispose()
+        ;(material as MeshStandardNodeMaterial).dispose()
+      }
+      crowns.dispose()
+      trunks.dispose()
+    }
+  }
+}

@@ -1,0 +1,69 @@
+import { Ellipsoid } from '@welkin/geo'
+import { Matrix4, Vector3 } from 'three'
+import type { PerspectiveCamera } from 'three'
+
+/** Where the camera stands and looks. */
+export interface Place {
+  label: string
+  /** [degrees] */
+  longitude: number
+  /** [degrees] */
+  latitude: number
+  /** Above the ellipsoid [m]. */
+  height: number
+  /** Clockwise from north [degrees]. */
+  heading: number
+  /** Above the horizontal [degrees]. */
+  pitch: number
+}
+
+/** Middle of the made-up city block, near Tokyo's main station. */
+export const CITY = { longitude: 139.767, latitude: 35.681 }
+
+export const PLACES = {
+  street: { label: 'Tokyo, street, 2 m', ...CITY, height: 2, heading: 248, pitch: 4 },
+  rooftops: { label: 'Tokyo, 1 km', longitude: 139.784, latitude: 35.686, height: 1000, heading: 252, pitch: -19 },
+  coast: { label: 'Tokyo Bay, 10 km', longitude: 140.1, latitude: 35.3, height: 10_000, heading: 300, pitch: -6 },
+  orbit: { label: 'Japan, 400 km', longitude: 141.5, latitude: 32, height: 400_000, heading: 325, pitch: -20 },
+  globe: { label: 'Asia, 20,000 km', longitude: 125, latitude: 20, height: 20_000_000, heading: 0, pitch: -90 },
+  // 2 m above the tileset's finest triangles.
+  valley: { label: 'Tennessee, valley, 2 m', longitude: -84.178, latitude: 36.622, height: 341.8, heading: 318, pitch: 5 },
+  ridges: {
+    label: 'Tennessee, ridges, 1 km',
+    longitude: -84.1517,
+    latitude: 36.479,
+    height: 1330,
+    heading: 322,
+    pitch: -10
+  }
+} satisfies Record<string, Place>
+
+export type PlaceName = keyof typeof PLACES
+
+const frame = new Matrix4()
+const east = new Vector3()
+const north = new Vector3()
+const up = new Vector3()
+const forward = new Vector3()
+const back = new Vector3()
+const right = new Vector3()
+const radians = Math.PI / 180
+
+/** Puts a camera at a place of a world that is ECEF, in metres. */
+export function moveCamera(camera: PerspectiveCamera, place: Place): void {
+  const position = Ellipsoid.WGS84.geodeticToECEF(place)
+  Ellipsoid.WGS84.eastNorthUpFrame(position, frame).extractBasis(east, north, up)
+  const heading = place.heading * radians
+  const pitch = place.pitch * radians
+  forward
+    .copy(north)
+    .multiplyScalar(Math.cos(heading) * Math.cos(pitch))
+    .addScaledVector(east, Math.sin(heading) * Math.cos(pitch))
+    .addScaledVector(up, Math.sin(pitch))
+  right.copy(east).multiplyScalar(Math.cos(heading)).addScaledVector(north, -Math.sin(heading))
+  back.copy(forward).negate()
+  up.crossVectors(back, right)
+  camera.quaternion.setFromRotationMatrix(frame.makeBasis(right, up, back))
+  camera.position.copy(position)
+  camera.updateMatrixWorld()
+}

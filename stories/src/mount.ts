@@ -1,0 +1,148 @@
+import type { CreateScene, RendererArgs, SceneHandle } from './scene'
+
+declare global {
+  interface Window {
+    /** The scene of the story on show, for tests: `welkinScene.render()` and then `canvas.toDataURL()`. */
+    welkinScene?: SceneHandle<never>
+  }
+}
+
+interface Mounted {
+  key: string
+  element: HTMLElement
+  update(args: object): void
+  dispose(): void
+}
+
+let mounted: Mounted | undefined
+
+const STYLE = `
+  .welkin { position: fixed; inset: 0; background: #05070a; font: 13px/1.4 system-ui, sans-serif; color: #e8edf2 }
+  .welkin canvas { display: block; width: 100%; height: 100%; outline: none }
+  .welkin-note { position: absolute; left: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px;
+    background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity .4s }
+  .welkin-note progress { width: 140px; height: 6px; margin-right: 8px; accent-color: #8fc7ff }
+  .welkin-error { position: absolute; inset: 0; display: grid; place-items: center; padding: 10%; text-align: center;
+    white-space: pre-line }
+`
+
+/**
+ * Turns a scene into the render function of a story.
+ *
+ * The canvas fills the page; new arguments go to the running scene. With `frame` it draws once, when everything is
+ * loaded, and sets `data-ready="true"` on the body.
+ */
+export function mount<Args extends RendererArgs>(
+  create: CreateScene<Args>
+): (args: Args, context: { id: string }) => HTMLElement {
+  return (args, { id }) => {
+    const key = [id, args.forceWebGL, args.frame].join(' ')
+    if (mounted?.key === key && mounted.element.isConnected) {
+      mounted.update(args)
+    } else {
+      mounted?.dispose()
+      mounted = start(key, create, args)
+    }
+    return mounted.element
+  }
+}
+
+function start<Args extends RendererArgs>(key: string, create: CreateScene<Args>, args: Args): Mounted {
+  delete document.body.dataset.ready
+  const element = document.createElement('div')
+  element.className = 'welkin'
+  element.innerHTML = `<style>${STYLE}</style><canvas></canvas>
+    <div class="welkin-note"><progress max="1"></progress><span>Loading</span></div>`
+  const canvas = element.querySelector('canvas')!
+  const note = element.querySelector<HTMLElement>('.welkin-note')!
+  let latest = args
+  let handle: SceneHandle<Args> | undefined
+  let disposed = false
+
+  const resize = (): void => {
+    const { clientWidth, clientHeight } = element
+    if (handle !== undefined && clientWidth > 0 && clientHeight > 0) {
+      handle.resize(clientWidth, clientHeight, args.frame ? 1 : Math.min(devicePixelRatio, 2))
+    }
+  }
+  const observer = new ResizeObserver(resize)
+
+  const dispose = (): void => {
+    if (!disposed) {
+      disposed = true
+      observer.disconnect()
+      void handle?.renderer.setAnimationLoop(null)
+      handle?.dispose()
+      delete window.welkinScene
+    }
+  }
+
+  const showProgress = (): void => {
+    const progress = handle?.progress ?? 0
+    note.style.opacity = progress < 1 ? '1' : '0'
+    note.querySelector('progress')!.value = progress
+  }
+
+  const drawFrame = async (): Promise<void> => {
+    delete document.body.dataset.ready
+    await handle!.ready
+    if (!disposed) {
+      handle!.render()
+      showProgress()
+      document.body.dataset.ready = 'true'
+    }
+  }
+
+  const run = async (): Promise<void> => {
+    const created = await create(canvas, latest)
+    if (disposed) {
+      created.dispose()
+      return
+    }
+    handle = created
+    window.welkinScene = created as unknown as SceneHandle<never>
+    handle.update(latest)
+    resize()
+    observer.observe(element)
+    if (args.frame) {
+      await drawFrame()
+      return
+    }
+    await handle.renderer.setAnimationLoop(() => {
+      // Storybook takes the element away without notice when another page is shown.
+      if (element.isConnected) {
+        handle!.render()
+        showProgress()
+      } else {
+        dispose()
+      }
+    })
+    await handle.ready
+    document.body.dataset.ready = 'true'
+  }
+
+  run().catch((error: unknown) => {
+    console.error(error)
+    const message = document.createElement('div')
+    message.className = 'welkin-error'
+    message.textContent = `This story could not start.\nIt needs a browser with WebGPU or WebGL 2.\n\n${String(error)}`
+    element.append(message)
+    note.remove()
+    document.body.dataset.ready = 'error'
+  })
+
+  return {
+    key,
+    element,
+    update(next) {
+      latest = next as Args
+      if (handle !== undefined) {
+        handle.update(latest)
+        if (args.frame) {
+          void drawFrame()
+        }
+      }
+    },
+    dispose
+  }
+}

@@ -1,0 +1,149 @@
+import { sunDirectionECEF, Ellipsoid } from '@welkin/geo'
+import {
+  BoxGeometry,
+  Matrix4,
+  Mesh,
+  MeshPhysicalMaterial,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Scene,
+  SphereGeometry,
+  TorusKnotGeometry,
+  Vector3
+} from 'three'
+import type { Material } from 'three'
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { Daylight } from './globe/daylight'
+import { createRenderer, dateOf, exposureOf } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface PlainArgs extends RendererArgs {
+  /** [degrees] */
+  longitude: number
+  /** [degrees] */
+  latitude: number
+  /** Of the scene's ground above the ellipsoid [m]. */
+  height: number
+  /** A moment of the day [ms since 1970]. */
+  day: number
+  /** Hour of that day, UTC [h]. */
+  hour: number
+  /** [stops], 0 for daylight. */
+  exposure: number
+}
+
+/** A scene like any other of three: y up, metres, built-in materials. */
+function populate(scene: Scene): Mesh[] {
+  const standing = (mesh: Mesh, x: number, y: number, z: number): Mesh => {
+    mesh.position.set(x, y, z)
+    mesh.castShadow = true
+    mesh.receiveShadow = true
+    return mesh
+  }
+  const ground = new Mesh(
+    new PlaneGeometry(400, 400).rotateX(-Math.PI / 2),
+    new MeshStandardMaterial({ color: '#7d7a6d', roughness: 0.95 })
+  )
+  ground.receiveShadow = true
+  const meshes: Mesh[] = [ground]
+
+  const ball = new SphereGeometry(0.8, 48, 32)
+  for (let i = 0; i < 5; i++) {
+    const roughness = 0.1 + i * 0.2
+    const x = (i - 2) * 2
+    const metal = new MeshStandardMaterial({ color: '#d9a441', metalness: 1, roughness })
+    const paint = new MeshStandardMaterial({ color: '#a8322a', metalness: 0, roughness })
+    meshes.push(standing(new Mesh(ball, metal), x, 0.8, -2.5), standing(new Mesh(ball, paint), x, 0.8, 0))
+  }
+
+  const white = new MeshStandardMaterial({ color: '#d8d8d4', roughness: 0.8 })
+  meshes.push(
+    standing(new Mesh(new BoxGeometry(2, 5, 2), white), -7, 2.5, -5),
+    standing(new Mesh(new BoxGeometry(3, 1.5, 1.5), white), 7, 0.75, -1),
+    standing(
+      new Mesh(new TorusKnotGeometry(1.2, 0.38, 160, 24), new MeshStandardMaterial({ color: '#2f6f8f', roughness: 0.3 })),
+      6,
+      3.4,
+      -6
+    )
+  )
+
+  const glass = new MeshPhysicalMaterial({ color: '#cfe8e4', roughness: 0.03, transparent: true, opacity: 0.25 })
+  const pane = standing(new Mesh(new BoxGeometry(3.4, 2.4, 0.06), glass), -3.4, 1.3, 2.4)
+  const bubble = standing(new Mesh(ball, glass), 2.6, 0.8, 2.6)
+  pane.castShadow = bubble.castShadow = false
+  meshes.push(pane, bubble)
+  scene.add(...meshes)
+  return meshes
+}
+
+export async function createPlain(canvas: HTMLCanvasElement, args: PlainArgs): Promise<SceneHandle<PlainArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(48, 1, 0.1, 5000)
+  camera.position.set(3.5, 3, 11.5)
+  const controls = new OrbitControls(camera, args.frame ? null : canvas)
+  controls.target.set(0.2, 1.5, -1)
+  controls.maxPolarAngle = Math.PI * 0.53
+  controls.enableDamping = true
+  controls.update()
+  const meshes = populate(scene)
+
+  const daylight = new Daylight(scene)
+  const { sun } = daylight
+  sun.castShadow = true
+  sun.shadow.mapSize.setScalar(2048)
+  sun.shadow.camera.left = sun.shadow.camera.bottom = -14
+  sun.shadow.camera.right = sun.shadow.camera.top = 14
+  sun.shadow.camera.far = 100
+  sun.shadow.normalBias = 0.02
+
+  const current = { ...args }
+  const sunDirection = new Vector3()
+  const up = new Vector3(0, 1, 0)
+  const worldToECEF = new Matrix4()
+
+  const apply = (): void => {
+    const position = Ellipsoid.WGS84.geodeticToECEF(current)
+    Ellipsoid.WGS84.localYUpFrame(position, worldToECEF)
+    sunDirectionECEF(dateOf(current.day, current.hour), sunDirection).transformDirection(worldToECEF.clone().invert())
+    sun.position.copy(sunDirection).multiplyScalar(50)
+    daylight.update(sunDirection, up, current.height)
+    renderer.toneMappingExposure = exposureOf(current.exposure)
+  }
+  apply()
+
+  return {
+    renderer,
+    scene,
+    camera,
+    ready: Promise.resolve(),
+    progress: 1,
+    render() {
+      if (!current.frame) {
+        controls.update()
+      }
+      renderer.render(scene, camera)
+    },
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      camera.updateProjectionMatrix()
+    },
+    update(changes) {
+      Object.assign(current, changes)
+      apply()
+    },
+    dispose() {
+      controls.dispose()
+      daylight.dispose()
+      for (const { geometry, material } of meshes) {
+        geometry.dispose()
+        ;(material as Material).dispose()
+      }
+      renderer.dispose()
+    }
+  }
+}

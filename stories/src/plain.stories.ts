@@ -1,0 +1,44 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { createPlain } from './plain.scene'
+import type { PlainArgs } from './plain.scene'
+import { rendererArgTypes, timeArgTypes } from './storyArgs'
+
+const meta: Meta<PlainArgs> = {
+  title: 'Plain scene',
+  render: mount(createPlain),
+  argTypes: {
+    longitude: { name: 'Longitude [°]', control: { type: 'range', min: -180, max: 180, step: 0.01 } },
+    latitude: { name: 'Latitude [°]', control: { type: 'range', min: -90, max: 90, step: 0.01 } },
+    height: {
+      name: 'Height [m]',
+      control: { type: 'range', min: 0, max: 30_000, step: 10 },
+      description: 'Of the ground, above the ellipsoid'
+    },
+    ...timeArgTypes,
+    ...rendererArgTypes
+  },
+  args: {
+    longitude: 139.77,
+    latitude: 35.68,
+    height: 0,
+    day: Date.UTC(2026, 5, 21),
+    hour: 7,
+    exposure: 0,
+    forceWebGL: false,
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<PlainArgs>
+
+/** Four in the afternoon in Tokyo. */
+export const Afternoon: Story = { tags: ['screenshot'] }
+
+/** A quarter of an hour before sunset. */
+export const Sunset: Story = { args: { hour: 9.75, exposure: 2 }, tags: ['screenshot'] }
+
+/** Nautical twilight: the sun is 8° down. */
+export const Dusk: Story = { args: { hour: 10.75, exposure: 9 }, tags: ['screenshot'] }

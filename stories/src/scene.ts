@@ -1,0 +1,61 @@
+import { AgXToneMapping } from 'three'
+import type { Camera, Scene } from 'three'
+import { WebGPURenderer } from 'three/webgpu'
+
+/** A scene that draws itself, apart from the page and the clock: what a story shows and a test drives. */
+export interface SceneHandle<Args> {
+  readonly renderer: WebGPURenderer
+  readonly scene: Scene
+  readonly camera: Camera
+  /** Settles when everything that the current view needs is loaded. */
+  readonly ready: Promise<void>
+  /** How much of that is loaded, in [0, 1]. */
+  readonly progress: number
+  /** Draws one frame. The same arguments and size give the same pixels once `ready`. */
+  render(): void
+  /** @param pixelRatio - Device pixels per CSS pixel; width and height are CSS pixels. */
+  resize(width: number, height: number, pixelRatio: number): void
+  update(args: Partial<Args>): void
+  dispose(): void
+}
+
+export interface RendererArgs {
+  /** Draw with WebGL 2 even where WebGPU is available. */
+  forceWebGL: boolean
+  /** Draw one reproducible frame, with no controls, and stop. */
+  frame: boolean
+}
+
+export type CreateScene<Args extends RendererArgs> = (
+  canvas: HTMLCanvasElement,
+  args: Args
+) => Promise<SceneHandle<Args>>
+
+export async function createRenderer(canvas: HTMLCanvasElement, forceWebGL: boolean): Promise<WebGPURenderer> {
+  // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
+  const renderer = new WebGPURenderer({ canvas, antialias: true, forceWebGL, reversedDepthBuffer: true })
+  renderer.highPrecision = true
+  renderer.shadowMap.enabled = true
+  renderer.toneMapping = AgXToneMapping
+  await renderer.init()
+  return renderer
+}
+
+/**
+ * Photographic stops to a factor of brightness.
+ *
+ * @param stops - 0 suits daylight; each stop more doubles the brightness.
+ */
+export function exposureOf(stops: number): number {
+  return 2 ** stops
+}
+
+/**
+ * @param day - Any moment of the day, milliseconds since 1970.
+ * @param hour - Hours of that day, UTC.
+ */
+export function dateOf(day: number, hour: number): Date {
+  const date = new Date(day)
+  date.setUTCHours(0, 0, 0, 0)
+  return new Date(date.getTime() + hour * 3_600_000)
+}

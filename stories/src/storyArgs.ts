@@ -1,0 +1,21 @@
+import type { ArgTypes } from '@storybook/html-vite'
+import type { RendererArgs } from './scene'
+
+export const timeArgTypes: ArgTypes<{ day: number; hour: number; exposure: number }> = {
+  day: { name: 'Date', control: 'date', description: 'Day, UTC' },
+  hour: {
+    name: 'Time [h UTC]',
+    control: { type: 'range', min: 0, max: 24, step: 0.05 },
+    description: 'Hour of the day'
+  },
+  exposure: {
+    name: 'Exposure [stops]',
+    control: { type: 'range', min: -4, max: 20, step: 0.25 },
+    description: '0 suits daylight; one more is twice as bright'
+  }
+}
+
+export const rendererArgTypes: ArgTypes<RendererArgs> = {
+  forceWebGL: { name: 'WebGL 2', control: 'boolean', description: 'Draw with WebGL 2 instead of WebGPU' },
+  frame: { name: 'One frame', control: 'boolean', description: 'Draw one reproducible frame, without controls' }
+}
