@@ -48,7 +48,8 @@ export async function bundlePage(
       minify: false,
       sourcemap: 'inline',
       assetsInlineLimit: 0,
-      chunkSizeWarningLimit: 100_000
+      chunkSizeWarningLimit: 100_000,
+      rolldownOptions: { checks: { pluginTimings: false } }
     }
   })
   return outDir
