@@ -86,7 +86,9 @@ export function makeTerrain(directory: string): { tiles: number; bytes: number }
           high + TREE_HEIGHT
         ]
       },
-      geometricError: children ? Math.max(error, ...children.map(child => child.geometricError + 1)) : 0,
+      geometricError: children
+        ? Math.max(error, ...children.map(child => child.geometricError + 1))
+        : 0,
       refine: 'REPLACE',
       content: { uri },
       children
@@ -101,8 +103,14 @@ export function makeTerrain(directory: string): { tiles: number; bytes: number }
 
 function fingerprint(): string {
   const hash = createHash('sha256')
-  const sources = readdirSync(new URL('terrain/', import.meta.url)).map(name => new URL(`terrain/${name}`, import.meta.url))
-  for (const url of [new URL('jacksboro-dem.i16.gz', DATA), new URL('make-terrain.ts', import.meta.url), ...sources]) {
+  const sources = readdirSync(new URL('terrain/', import.meta.url)).map(
+    name => new URL(`terrain/${name}`, import.meta.url)
+  )
+  for (const url of [
+    new URL('jacksboro-dem.i16.gz', DATA),
+    new URL('make-terrain.ts', import.meta.url),
+    ...sources
+  ]) {
     hash.update(readFileSync(url))
   }
   return hash.digest('hex')

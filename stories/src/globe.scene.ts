@@ -28,7 +28,10 @@ export interface GlobeArgs extends RendererArgs {
 const CITY_CEILING = 60_000
 
 /** The Earth from a street to 20,000 km: streamed imagery and terrain in a world that is ECEF, in metres. */
-export async function createGlobe(canvas: HTMLCanvasElement, args: GlobeArgs): Promise<SceneHandle<GlobeArgs>> {
+export async function createGlobe(
+  canvas: HTMLCanvasElement,
+  args: GlobeArgs
+): Promise<SceneHandle<GlobeArgs>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const camera = new PerspectiveCamera(50, 1, 1, 1e7)
@@ -135,7 +138,7 @@ export async function createGlobe(canvas: HTMLCanvasElement, args: GlobeArgs): P
       city.dispose()
       daylight.dispose()
       noise.dispose()
-      renderer.dispose()
+      void renderer.dispose()
     }
   }
 }

@@ -21,7 +21,14 @@ const meta: Meta<GlobeArgs> = {
     ...timeArgTypes,
     ...rendererArgTypes
   },
-  args: { place: 'street', day: Date.UTC(2026, 5, 21), hour: 0.5, exposure: 0, forceWebGL: false, frame: false }
+  args: {
+    place: 'street',
+    day: Date.UTC(2026, 5, 21),
+    hour: 0.5,
+    exposure: 0,
+    forceWebGL: false,
+    frame: false
+  }
 }
 
 export default meta
@@ -31,14 +38,30 @@ type Story = StoryObj<GlobeArgs>
 /** Half past nine on a summer morning, eye height. */
 export const Street: Story = { tags: ['screenshot'] }
 
-export const Rooftops: Story = { name: '1 km', args: { place: 'rooftops', hour: 6.5 }, tags: ['screenshot'] }
+export const Rooftops: Story = {
+  name: '1 km',
+  args: { place: 'rooftops', hour: 6.5 },
+  tags: ['screenshot']
+}
 
-export const Coast: Story = { name: '10 km', args: { place: 'coast', hour: 7 }, tags: ['screenshot'] }
+export const Coast: Story = {
+  name: '10 km',
+  args: { place: 'coast', hour: 7 },
+  tags: ['screenshot']
+}
 
-export const Orbit: Story = { name: '400 km', args: { place: 'orbit', hour: 5 }, tags: ['screenshot'] }
+export const Orbit: Story = {
+  name: '400 km',
+  args: { place: 'orbit', hour: 5 },
+  tags: ['screenshot']
+}
 
 /** The terminator crosses the Indian Ocean. */
-export const WholeGlobe: Story = { name: '20,000 km', args: { place: 'globe', hour: 1 }, tags: ['screenshot'] }
+export const WholeGlobe: Story = {
+  name: '20,000 km',
+  args: { place: 'globe', hour: 1 },
+  tags: ['screenshot']
+}
 
 /** Eye height, between ridges of real heights. */
 export const Valley: Story = { args: { place: 'valley', hour: 13.5 }, tags: ['screenshot'] }

@@ -47,7 +47,11 @@ export function mount<Args extends RendererArgs>(
   }
 }
 
-function start<Args extends RendererArgs>(key: string, create: CreateScene<Args>, args: Args): Mounted {
+function start<Args extends RendererArgs>(
+  key: string,
+  create: CreateScene<Args>,
+  args: Args
+): Mounted {
   delete document.body.dataset.ready
   const element = document.createElement('div')
   element.className = 'welkin'

@@ -54,7 +54,10 @@ function populate(scene: Scene): Mesh[] {
     const x = (i - 2) * 2
     const metal = new MeshStandardMaterial({ color: '#d9a441', metalness: 1, roughness })
     const paint = new MeshStandardMaterial({ color: '#a8322a', metalness: 0, roughness })
-    meshes.push(standing(new Mesh(ball, metal), x, 0.8, -2.5), standing(new Mesh(ball, paint), x, 0.8, 0))
+    meshes.push(
+      standing(new Mesh(ball, metal), x, 0.8, -2.5),
+      standing(new Mesh(ball, paint), x, 0.8, 0)
+    )
   }
 
   const white = new MeshStandardMaterial({ color: '#d8d8d4', roughness: 0.8 })
@@ -62,14 +65,22 @@ function populate(scene: Scene): Mesh[] {
     standing(new Mesh(new BoxGeometry(2, 5, 2), white), -7, 2.5, -5),
     standing(new Mesh(new BoxGeometry(3, 1.5, 1.5), white), 7, 0.75, -1),
     standing(
-      new Mesh(new TorusKnotGeometry(1.2, 0.38, 160, 24), new MeshStandardMaterial({ color: '#2f6f8f', roughness: 0.3 })),
+      new Mesh(
+        new TorusKnotGeometry(1.2, 0.38, 160, 24),
+        new MeshStandardMaterial({ color: '#2f6f8f', roughness: 0.3 })
+      ),
       6,
       3.4,
       -6
     )
   )
 
-  const glass = new MeshPhysicalMaterial({ color: '#cfe8e4', roughness: 0.03, transparent: true, opacity: 0.25 })
+  const glass = new MeshPhysicalMaterial({
+    color: '#cfe8e4',
+    roughness: 0.03,
+    transparent: true,
+    opacity: 0.25
+  })
   const pane = standing(new Mesh(new BoxGeometry(3.4, 2.4, 0.06), glass), -3.4, 1.3, 2.4)
   const bubble = standing(new Mesh(ball, glass), 2.6, 0.8, 2.6)
   pane.castShadow = bubble.castShadow = false
@@ -78,7 +89,10 @@ function populate(scene: Scene): Mesh[] {
   return meshes
 }
 
-export async function createPlain(canvas: HTMLCanvasElement, args: PlainArgs): Promise<SceneHandle<PlainArgs>> {
+export async function createPlain(
+  canvas: HTMLCanvasElement,
+  args: PlainArgs
+): Promise<SceneHandle<PlainArgs>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const camera = new PerspectiveCamera(48, 1, 0.1, 5000)
@@ -107,7 +121,9 @@ export async function createPlain(canvas: HTMLCanvasElement, args: PlainArgs): P
   const apply = (): void => {
     const position = Ellipsoid.WGS84.geodeticToECEF(current)
     Ellipsoid.WGS84.localYUpFrame(position, worldToECEF)
-    sunDirectionECEF(dateOf(current.day, current.hour), sunDirection).transformDirection(worldToECEF.clone().invert())
+    sunDirectionECEF(dateOf(current.day, current.hour), sunDirection).transformDirection(
+      worldToECEF.clone().invert()
+    )
     sun.position.copy(sunDirection).multiplyScalar(50)
     daylight.update(sunDirection, up, current.height)
     renderer.toneMappingExposure = exposureOf(current.exposure)
@@ -143,7 +159,7 @@ export async function createPlain(canvas: HTMLCanvasElement, args: PlainArgs): P
         geometry.dispose()
         ;(material as Material).dispose()
       }
-      renderer.dispose()
+      void renderer.dispose()
     }
   }
 }

@@ -8,7 +8,10 @@ const meta: Meta<PlainArgs> = {
   title: 'Plain scene',
   render: mount(createPlain),
   argTypes: {
-    longitude: { name: 'Longitude [°]', control: { type: 'range', min: -180, max: 180, step: 0.01 } },
+    longitude: {
+      name: 'Longitude [°]',
+      control: { type: 'range', min: -180, max: 180, step: 0.01 }
+    },
     latitude: { name: 'Latitude [°]', control: { type: 'range', min: -90, max: 90, step: 0.01 } },
     height: {
       name: 'Height [m]',

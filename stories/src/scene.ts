@@ -31,9 +31,17 @@ export type CreateScene<Args extends RendererArgs> = (
   args: Args
 ) => Promise<SceneHandle<Args>>
 
-export async function createRenderer(canvas: HTMLCanvasElement, forceWebGL: boolean): Promise<WebGPURenderer> {
+export async function createRenderer(
+  canvas: HTMLCanvasElement,
+  forceWebGL: boolean
+): Promise<WebGPURenderer> {
   // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
-  const renderer = new WebGPURenderer({ canvas, antialias: true, forceWebGL, reversedDepthBuffer: true })
+  const renderer = new WebGPURenderer({
+    canvas,
+    antialias: true,
+    forceWebGL,
+    reversedDepthBuffer: true
+  })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
   renderer.toneMapping = AgXToneMapping

@@ -51,10 +51,15 @@ export class TexturePictures {
     this.shown = pictures.map(picture => {
       const slice = uniform(picture.slice ?? 0)
       const scale = uniform(picture.scale ?? 1)
-      const material = new MeshBasicNodeMaterial({ depthTest: false, depthWrite: false, toneMapped: false })
-      const texel = picture.texture instanceof Data3DTexture || 'isRenderTarget3DTexture' in picture.texture
-        ? texture3D(picture.texture as Data3DTexture, vec3(uv(), slice))
-        : texture(picture.texture, uv())
+      const material = new MeshBasicNodeMaterial({
+        depthTest: false,
+        depthWrite: false,
+        toneMapped: false
+      })
+      const texel =
+        picture.texture instanceof Data3DTexture
+          ? texture3D(picture.texture, vec3(uv(), slice))
+          : texture(picture.texture, uv())
       const node = texel as unknown as Node<'vec4'>
       material.colorNode = (picture.color?.(node) ?? node.rgb).mul(scale)
       const mesh = new Mesh(new PlaneGeometry(1, 1), material)

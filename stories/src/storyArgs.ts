@@ -16,6 +16,14 @@ export const timeArgTypes: ArgTypes<{ day: number; hour: number; exposure: numbe
 }
 
 export const rendererArgTypes: ArgTypes<RendererArgs> = {
-  forceWebGL: { name: 'WebGL 2', control: 'boolean', description: 'Draw with WebGL 2 instead of WebGPU' },
-  frame: { name: 'One frame', control: 'boolean', description: 'Draw one reproducible frame, without controls' }
+  forceWebGL: {
+    name: 'WebGL 2',
+    control: 'boolean',
+    description: 'Draw with WebGL 2 instead of WebGPU'
+  },
+  frame: {
+    name: 'One frame',
+    control: 'boolean',
+    description: 'Draw one reproducible frame, without controls'
+  }
 }

@@ -9,13 +9,22 @@ export interface TablesArgs extends RendererArgs {
 }
 
 /** Textures of the atmosphere as pictures; until it is here, the ground's detail noise stands in. */
-export async function createTables(canvas: HTMLCanvasElement, args: TablesArgs): Promise<SceneHandle<TablesArgs>> {
+export async function createTables(
+  canvas: HTMLCanvasElement,
+  args: TablesArgs
+): Promise<SceneHandle<TablesArgs>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   renderer.setClearColor('#14181d')
   const noise = createNoiseTexture()
   const pictures = new TexturePictures(canvas, [
     { label: 'Detail noise', texture: noise, width: 256, height: 256, color: texel => texel.rrr },
-    { label: 'Detail noise, wide', texture: noise, width: 256, height: 64, color: texel => texel.rrr }
+    {
+      label: 'Detail noise, wide',
+      texture: noise,
+      width: 256,
+      height: 64,
+      color: texel => texel.rrr
+    }
   ])
   const current = { ...args }
   const apply = (): void => {
@@ -44,7 +53,7 @@ export async function createTables(canvas: HTMLCanvasElement, args: TablesArgs):
     dispose() {
       pictures.dispose()
       noise.dispose()
-      renderer.dispose()
+      void renderer.dispose()
     }
   }
 }

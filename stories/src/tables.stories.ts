@@ -8,7 +8,10 @@ const meta: Meta<TablesArgs> = {
   title: 'Tables',
   render: mount(createTables),
   argTypes: {
-    exposure: { name: 'Exposure [stops]', control: { type: 'range', min: -4, max: 20, step: 0.25 } },
+    exposure: {
+      name: 'Exposure [stops]',
+      control: { type: 'range', min: -4, max: 20, step: 0.25 }
+    },
     ...rendererArgTypes
   },
   args: { exposure: 0, forceWebGL: false, frame: false }

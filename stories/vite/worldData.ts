@@ -54,7 +54,10 @@ export function worldData(): Plugin {
           response.end()
           return
         }
-        response.setHeader('Content-Type', TYPES[file.slice(file.lastIndexOf('.') + 1)] ?? 'application/octet-stream')
+        response.setHeader(
+          'Content-Type',
+          TYPES[file.slice(file.lastIndexOf('.') + 1)] ?? 'application/octet-stream'
+        )
         createReadStream(file).pipe(response)
       })
     },
@@ -62,7 +65,11 @@ export function worldData(): Plugin {
       for (const [name, directory] of directories) {
         for (const file of filesUnder(directory)) {
           const path = relative(directory, file).split(sep).join('/')
-          this.emitFile({ type: 'asset', fileName: `${PREFIX}/${name}/${path}`, source: readFileSync(file) })
+          this.emitFile({
+            type: 'asset',
+            fileName: `${PREFIX}/${name}/${path}`,
+            source: readFileSync(file)
+          })
         }
       }
     }

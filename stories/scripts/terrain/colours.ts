@@ -38,12 +38,22 @@ export function woodland(height: number, slope: number, row: number, column: num
  * @param outside - 0 on measured ground to 1 at the end of the apron, where it meets the globe.
  * @returns sRGB, 0–255.
  */
-export function groundColour(height: number, slope: number, row: number, column: number, outside: number): Colour {
+export function groundColour(
+  height: number,
+  slope: number,
+  row: number,
+  column: number,
+  outside: number
+): Colour {
   const patches = fractalNoise(row / 5, column / 5, 5)
   const crowns = fractalNoise(row * 2, column * 2, 2)
   const forest = mix(DEEP_FOREST, LIGHT_FOREST, smoothstep(0.2, 0.8, patches * 0.5 + crowns * 0.5))
   const open = mix(PASTURE, FIELD, smoothstep(0.5, 0.62, fractalNoise(row / 3 + 91, column / 3, 3)))
   const ground = mix(open, forest, woodland(height, slope, row, column))
   const rocky = mix(ground, ROCK, smoothstep(0.6, 0.9, slope + (crowns - 0.5) * 0.3))
-  return mix(rocky, SURROUNDINGS, smoothstep(0.05, 0.75, outside + (patches - 0.5) * 0.5 * smoothstep(0, 0.1, outside)))
+  return mix(
+    rocky,
+    SURROUNDINGS,
+    smoothstep(0.05, 0.75, outside + (patches - 0.5) * 0.5 * smoothstep(0, 0.1, outside))
+  )
 }

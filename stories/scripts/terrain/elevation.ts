@@ -37,7 +37,10 @@ export class Elevation {
     this.heights = new Float64Array(size * size)
     for (let row = 0; row < size; row++) {
       for (let column = 0; column < size; column++) {
-        this.heights[row * size + column] = this.extended(row - this.rowPad, column - this.columnPad)
+        this.heights[row * size + column] = this.extended(
+          row - this.rowPad,
+          column - this.columnPad
+        )
       }
     }
   }
@@ -48,7 +51,9 @@ export class Elevation {
   readonly stepLongitude: number
 
   static read(directory: URL, cells: number): Elevation {
-    const figures = JSON.parse(readFileSync(new URL('jacksboro-dem.json', directory), 'utf8')) as Figures
+    const figures = JSON.parse(
+      readFileSync(new URL('jacksboro-dem.json', directory), 'utf8')
+    ) as Figures
     const bytes = gunzipSync(readFileSync(new URL('jacksboro-dem.i16.gz', directory)))
     const count = figures.rows * figures.columns
     if (bytes.length !== count * 2) {

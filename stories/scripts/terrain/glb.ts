@@ -59,13 +59,25 @@ class Binary {
 
   view(data: ArrayBufferView, target?: number, byteStride?: number): number {
     const part = padded(new Uint8Array(data.buffer, data.byteOffset, data.byteLength), 0)
-    this.bufferViews.push({ buffer: 0, byteOffset: this.length, byteLength: data.byteLength, byteStride, target })
+    this.bufferViews.push({
+      buffer: 0,
+      byteOffset: this.length,
+      byteLength: data.byteLength,
+      byteStride,
+      target
+    })
     this.parts.push(part)
     this.length += part.length
     return this.bufferViews.length - 1
   }
 
-  accessor(bufferView: number, componentType: number, type: string, count: number, more: object = {}): number {
+  accessor(
+    bufferView: number,
+    componentType: number,
+    type: string,
+    count: number,
+    more: object = {}
+  ): number {
     this.accessors.push({ bufferView, componentType, type, count, ...more })
     return this.accessors.length - 1
   }
@@ -76,13 +88,29 @@ class Binary {
     const indexType = indices instanceof Uint16Array ? 5123 : 5125
     return {
       attributes: {
-        POSITION: this.accessor(this.view(turned, ARRAY_BUFFER), FLOAT, 'VEC3', count, bounds(turned)),
-        NORMAL: this.accessor(this.view(toYUp(normals, 4), ARRAY_BUFFER, 8), SHORT, 'VEC3', count, { normalized: true }),
+        POSITION: this.accessor(
+          this.view(turned, ARRAY_BUFFER),
+          FLOAT,
+          'VEC3',
+          count,
+          bounds(turned)
+        ),
+        NORMAL: this.accessor(this.view(toYUp(normals, 4), ARRAY_BUFFER, 8), SHORT, 'VEC3', count, {
+          normalized: true
+        }),
         TEXCOORD_0: uvs && this.accessor(this.view(uvs, ARRAY_BUFFER), FLOAT, 'VEC2', count),
         COLOR_0:
-          colors && this.accessor(this.view(colors, ARRAY_BUFFER, 4), UNSIGNED_BYTE, 'VEC4', count, { normalized: true })
+          colors &&
+          this.accessor(this.view(colors, ARRAY_BUFFER, 4), UNSIGNED_BYTE, 'VEC4', count, {
+            normalized: true
+          })
       },
-      indices: this.accessor(this.view(indices, ELEMENT_ARRAY_BUFFER), indexType, 'SCALAR', indices.length),
+      indices: this.accessor(
+        this.view(indices, ELEMENT_ARRAY_BUFFER),
+        indexType,
+        'SCALAR',
+        indices.length
+      ),
       material: uvs ? 0 : 1
     }
   }
@@ -105,7 +133,13 @@ export function encodeGLB({ centre: [x, y, z], primitives, image }: Tile): Uint8
     nodes: [{ mesh: 0, translation: [x, z, -y] }],
     meshes: [{ primitives: encoded }],
     materials: [
-      { pbrMetallicRoughness: { baseColorTexture: { index: 0 }, metallicFactor: 0, roughnessFactor: 0.95 } },
+      {
+        pbrMetallicRoughness: {
+          baseColorTexture: { index: 0 },
+          metallicFactor: 0,
+          roughnessFactor: 0.95
+        }
+      },
       { pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 0.95 } }
     ],
     textures: [{ source: 0, sampler: 0 }],

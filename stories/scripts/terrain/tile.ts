@@ -24,10 +24,15 @@ export function toECEF(latitude: number, longitude: number, height: number): Vec
 }
 
 /** Rise per metre towards the east and the north, over two samples on either side. */
-export function gradient(grid: Elevation, row: number, column: number): [east: number, north: number] {
+export function gradient(
+  grid: Elevation,
+  row: number,
+  column: number
+): [east: number, north: number] {
   const phi = (grid.latitude(row) * Math.PI) / 180
   const w = Math.sqrt(1 - ECCENTRICITY_SQUARED * Math.sin(phi) ** 2)
-  const metresPerRow = ((grid.stepLatitude * Math.PI) / 180) * ((SEMI_MAJOR * (1 - ECCENTRICITY_SQUARED)) / w ** 3)
+  const metresPerRow =
+    ((grid.stepLatitude * Math.PI) / 180) * ((SEMI_MAJOR * (1 - ECCENTRICITY_SQUARED)) / w ** 3)
   const metresPerColumn = ((grid.stepLongitude * Math.PI) / 180) * (SEMI_MAJOR / w) * Math.cos(phi)
   return [
     (grid.at(row, column + 1) - grid.at(row, column - 1)) / (2 * metresPerColumn),
@@ -35,10 +40,18 @@ export function gradient(grid: Elevation, row: number, column: number): [east: n
   ]
 }
 
-export function localFrame(latitude: number, longitude: number): { east: Vec3; north: Vec3; up: Vec3 } {
+export function localFrame(
+  latitude: number,
+  longitude: number
+): { east: Vec3; north: Vec3; up: Vec3 } {
   const phi = (latitude * Math.PI) / 180
   const lambda = (longitude * Math.PI) / 180
-  const [sinPhi, cosPhi, sinLambda, cosLambda] = [Math.sin(phi), Math.cos(phi), Math.sin(lambda), Math.cos(lambda)]
+  const [sinPhi, cosPhi, sinLambda, cosLambda] = [
+    Math.sin(phi),
+    Math.cos(phi),
+    Math.sin(lambda),
+    Math.cos(lambda)
+  ]
   return {
     east: [-sinLambda, cosLambda, 0],
     north: [-sinPhi * cosLambda, -sinPhi * sinLambda, cosPhi],
@@ -47,7 +60,13 @@ export function localFrame(latitude: number, longitude: number): { east: Vec3; n
 }
 
 /** The tile whose north-west vertex is (row, column), with a vertex every `step` samples and a skirt around it. */
-export function makeTile(grid: Elevation, row: number, column: number, step: number, skirt: number): Tile {
+export function makeTile(
+  grid: Elevation,
+  row: number,
+  column: number,
+  step: number,
+  skirt: number
+): Tile {
   const side = TILE_CELLS + 1
   const skirtCount = 4 * side
   const count = side * side + skirtCount
@@ -86,7 +105,14 @@ export function makeTile(grid: Elevation, row: number, column: number, step: num
       setVertex(y * side + x, y, x, 0)
       if (y < TILE_CELLS && x < TILE_CELLS) {
         const corner = y * side + x
-        indices.push(corner, corner + side, corner + 1, corner + 1, corner + side, corner + side + 1)
+        indices.push(
+          corner,
+          corner + side,
+          corner + 1,
+          corner + 1,
+          corner + side,
+          corner + side + 1
+        )
       }
     }
   }
@@ -129,7 +155,10 @@ function tileImage(grid: Elevation, row: number, column: number, step: number): 
       const gridColumn = column + x * samplesPerTexel
       const height = grid.onTriangles(gridRow, gridColumn)
       const slope = Math.hypot(...gradient(grid, Math.round(gridRow), Math.round(gridColumn)))
-      rgb.set(groundColour(height, slope, gridRow, gridColumn, grid.outside(gridRow, gridColumn)), (y * TEXELS + x) * 3)
+      rgb.set(
+        groundColour(height, slope, gridRow, gridColumn, grid.outside(gridRow, gridColumn)),
+        (y * TEXELS + x) * 3
+      )
     }
   }
   return encodePNG(rgb, TEXELS, TEXELS)

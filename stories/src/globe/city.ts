@@ -11,7 +11,22 @@ import {
   Vector3
 } from 'three'
 import type { BufferGeometry, DataTexture } from 'three'
-import { abs, color, float, fract, fwidth, max, mix, positionLocal, smoothstep, step, texture, uv, vec2, vertexColor } from 'three/tsl'
+import {
+  abs,
+  color,
+  float,
+  fract,
+  fwidth,
+  max,
+  mix,
+  positionLocal,
+  smoothstep,
+  step,
+  texture,
+  uv,
+  vec2,
+  vertexColor
+} from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
@@ -32,7 +47,10 @@ function stripes(x: Node<'float'>, period: number, width: number): Node<'float'>
 function facadeMaterial(): MeshStandardNodeMaterial {
   const cell = uv().div(vec2(2.8, 3.5))
   const inCell = fract(cell)
-  const sharp = step(0.16, inCell.x).mul(step(inCell.x, 0.84)).mul(step(0.28, inCell.y)).mul(step(inCell.y, 0.8))
+  const sharp = step(0.16, inCell.x)
+    .mul(step(inCell.x, 0.84))
+    .mul(step(0.28, inCell.y))
+    .mul(step(inCell.y, 0.8))
   // Where a window is smaller than a pixel, a wall has the mean of wall and window.
   const blur = smoothstep(0.3, 0.9, max(fwidth(cell.x), fwidth(cell.y)))
   const isWall = step(0.001, uv().x.add(uv().y))
@@ -45,8 +63,13 @@ function facadeMaterial(): MeshStandardNodeMaterial {
 
 function streetMaterial(noise: DataTexture): MeshStandardNodeMaterial {
   const { x, z } = positionLocal
-  const grain = texture(noise, positionLocal.xz.div(6)).r.add(texture(noise, positionLocal.xz.div(170)).r).mul(0.5)
-  const road = max(stripes(x, BLOCK.width, STREET_WIDTH - 8), stripes(z, BLOCK.depth, STREET_WIDTH - 8))
+  const grain = texture(noise, positionLocal.xz.div(6))
+    .r.add(texture(noise, positionLocal.xz.div(170)).r)
+    .mul(0.5)
+  const road = max(
+    stripes(x, BLOCK.width, STREET_WIDTH - 8),
+    stripes(z, BLOCK.depth, STREET_WIDTH - 8)
+  )
   const street = max(stripes(x, BLOCK.width, STREET_WIDTH), stripes(z, BLOCK.depth, STREET_WIDTH))
   const dashes = stripes(x, BLOCK.width, 0.18).mul(step(fract(z.div(9)), 0.45))
   const crossing = stripes(z, BLOCK.depth, STREET_WIDTH)
@@ -56,7 +79,11 @@ function streetMaterial(noise: DataTexture): MeshStandardNodeMaterial {
   const surface = mix(pavement, color('#45464a'), road)
   // Outwards the streets fade into the globe beneath them.
   const ragged = grain.sub(0.5).mul(CITY_EXTENT * 0.9)
-  const outside = smoothstep(CITY_EXTENT * 0.45, CITY_EXTENT * 1.05, vec2(x, z).length().add(ragged))
+  const outside = smoothstep(
+    CITY_EXTENT * 0.45,
+    CITY_EXTENT * 1.05,
+    vec2(x, z).length().add(ragged)
+  )
   const material = new MeshStandardNodeMaterial({ transparent: true, depthWrite: false })
   material.colorNode = mix(surface, color('#c9c7bd'), lines).mul(grain.mul(0.5).add(0.75))
   material.opacityNode = outside.oneMinus()
@@ -72,21 +99,30 @@ function crownGeometry(): BufferGeometry {
   for (let i = 0; i < position.count; i++) {
     vertex.fromBufferAttribute(position, i)
     normal.setXYZ(i, ...vertex.clone().normalize().toArray())
-    const bumps = Math.sin(vertex.x * 2.1 + 1) * Math.sin(vertex.y * 1.9) * Math.sin(vertex.z * 2.3 + 2)
+    const bumps =
+      Math.sin(vertex.x * 2.1 + 1) * Math.sin(vertex.y * 1.9) * Math.sin(vertex.z * 2.3 + 2)
     vertex.multiplyScalar(1 + bumps * 0.25)
     position.setXYZ(i, vertex.x, vertex.y * 1.15, vertex.z)
   }
   return geometry
 }
 
-function plant(geometry: BufferGeometry, material: MeshStandardNodeMaterial, points: Point[], y: number): InstancedMesh {
+function plant(
+  geometry: BufferGeometry,
+  material: MeshStandardNodeMaterial,
+  points: Point[],
+  y: number
+): InstancedMesh {
   const mesh = new InstancedMesh(geometry, material, points.length)
   const random = randomSequence(7)
   const matrix = new Matrix4()
   const scale = new Vector3()
   points.forEach(({ x, z }, i) => {
     const size = 0.8 + random() * 0.5
-    matrix.makeRotationY(random() * Math.PI * 2).scale(scale.setScalar(size)).setPosition(x, y * size, z)
+    matrix
+      .makeRotationY(random() * Math.PI * 2)
+      .scale(scale.setScalar(size))
+      .setPosition(x, y * size, z)
     mesh.setMatrixAt(i, matrix)
   })
   mesh.castShadow = true
@@ -106,7 +142,11 @@ export function createCity(noise: DataTexture): City {
   const object = new Group()
   const streets = new Group()
   object.add(streets)
-  Ellipsoid.WGS84.localYUpFrame(originECEF, object.matrix).decompose(object.position, object.quaternion, object.scale)
+  Ellipsoid.WGS84.localYUpFrame(originECEF, object.matrix).decompose(
+    object.position,
+    object.quaternion,
+    object.scale
+  )
   streets.rotation.y = -PLACES.street.heading * MathUtils.DEG2RAD
 
   const { geometry, trees } = createBuildings()
@@ -114,7 +154,10 @@ export function createCity(noise: DataTexture): City {
   buildings.castShadow = true
   buildings.receiveShadow = true
 
-  const ground = new Mesh(new PlaneGeometry(CITY_EXTENT * 2.2, CITY_EXTENT * 2.2).rotateX(-Math.PI / 2), streetMaterial(noise))
+  const ground = new Mesh(
+    new PlaneGeometry(CITY_EXTENT * 2.2, CITY_EXTENT * 2.2).rotateX(-Math.PI / 2),
+    streetMaterial(noise)
+  )
   ground.receiveShadow = true
 
   const leaves = new MeshStandardNodeMaterial({ color: '#3f5a2c', roughness: 0.9 })

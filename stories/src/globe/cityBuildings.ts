@@ -8,7 +8,16 @@ export const STREET_WIDTH = 18
 /** Half the side of the square that is built on [m]. */
 export const CITY_EXTENT = 900
 
-const FACADES = ['#b8b2a6', '#9a9da0', '#c9c1b2', '#84807c', '#a7957f', '#d2cfc8', '#767c84', '#b39f92']
+const FACADES = [
+  '#b8b2a6',
+  '#9a9da0',
+  '#c9c1b2',
+  '#84807c',
+  '#a7957f',
+  '#d2cfc8',
+  '#767c84',
+  '#b39f92'
+]
 
 interface Box {
   x: number
@@ -50,21 +59,28 @@ function layOut(): { boxes: Box[]; trees: Point[] } {
           continue
         }
         const gap = 0.8 + random() * 2.5
-        const height = 3.5 * Math.round(2 + random() ** 2.2 * 22 * Math.max(1 - fromCentre * 1.3, 0.06) + random() * 3)
+        const height =
+          3.5 *
+          Math.round(2 + random() ** 2.2 * 22 * Math.max(1 - fromCentre * 1.3, 0.06) + random() * 3)
         boxes.push({
           x: left + lotWidth * ((lot % 2) + 0.5),
           z: near + lotDepth * (Math.floor(lot / 2) + 0.5),
           width: lotWidth - gap,
           depth: lotDepth - gap,
           height: random() < 0.03 && fromCentre < 0.5 ? height + 60 : height,
-          color: new Color(FACADES[Math.floor(random() * FACADES.length)]).multiplyScalar(0.55 + random() * 0.35)
+          color: new Color(FACADES[Math.floor(random() * FACADES.length)]).multiplyScalar(
+            0.55 + random() * 0.35
+          )
         })
       }
     }
   }
   for (let z = -CITY_EXTENT; z < CITY_EXTENT; z += 11) {
     for (const side of [-1, 1]) {
-      if (Math.abs(((z / BLOCK.depth) % 1) - Math.round((z / BLOCK.depth) % 1)) * BLOCK.depth > STREET_WIDTH / 2 + 2) {
+      if (
+        Math.abs(((z / BLOCK.depth) % 1) - Math.round((z / BLOCK.depth) % 1)) * BLOCK.depth >
+        STREET_WIDTH / 2 + 2
+      ) {
         trees.push({ x: side * (STREET_WIDTH / 2 - 2.2), z: z + random() })
       }
     }
@@ -85,7 +101,13 @@ export function createBuildings(): { geometry: BufferGeometry; trees: Point[] } 
   const colors: number[] = []
   const indices: number[] = []
 
-  const quad = (corners: number[][], normal: number[], width: number, height: number, color: Color): void => {
+  const quad = (
+    corners: number[][],
+    normal: number[],
+    width: number,
+    height: number,
+    color: Color
+  ): void => {
     const first = positions.length / 3
     corners.forEach((corner, i) => {
       positions.push(...corner)
@@ -100,14 +122,36 @@ export function createBuildings(): { geometry: BufferGeometry; trees: Point[] } 
     const [x0, x1, z0, z1] = [x - width / 2, x + width / 2, z - depth / 2, z + depth / 2]
     const wall = (ax: number, az: number, bx: number, bz: number, normal: number[]): void => {
       const length = Math.hypot(bx - ax, bz - az)
-      quad([[ax, 0, az], [bx, 0, bz], [bx, height, bz], [ax, height, az]], normal, length, height, color)
+      quad(
+        [
+          [ax, 0, az],
+          [bx, 0, bz],
+          [bx, height, bz],
+          [ax, height, az]
+        ],
+        normal,
+        length,
+        height,
+        color
+      )
     }
     wall(x0, z1, x1, z1, [0, 0, 1])
     wall(x1, z1, x1, z0, [1, 0, 0])
     wall(x1, z0, x0, z0, [0, 0, -1])
     wall(x0, z0, x0, z1, [-1, 0, 0])
     const roof = new Color(0.28, 0.28, 0.29)
-    quad([[x0, height, z1], [x1, height, z1], [x1, height, z0], [x0, height, z0]], [0, 1, 0], 0, 0, roof)
+    quad(
+      [
+        [x0, height, z1],
+        [x1, height, z1],
+        [x1, height, z0],
+        [x0, height, z0]
+      ],
+      [0, 1, 0],
+      0,
+      0,
+      roof
+    )
   }
 
   const geometry = new BufferGeometry()

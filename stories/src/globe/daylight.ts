@@ -1,5 +1,5 @@
-import { Color, DirectionalLight, HemisphereLight, MathUtils, Vector3 } from 'three'
-import type { Scene } from 'three'
+import { Color, DirectionalLight, HemisphereLight, MathUtils } from 'three'
+import type { Scene, Vector3 } from 'three'
 
 const SPACE = new Color('#000004')
 const SKY_INTENSITY = 1.8

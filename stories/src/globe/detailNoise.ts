@@ -1,11 +1,19 @@
-import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from 'three'
+import {
+  DataTexture,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  RedFormat,
+  RepeatWrapping,
+  UnsignedByteType
+} from 'three'
 import { texture } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 
 const SIZE = 256
 
 function hash(x: number, y: number, period: number): number {
-  let bits = Math.imul((x + period) % period, 0x27d4eb2d) ^ Math.imul((y + period) % period, 0x165667b1)
+  let bits =
+    Math.imul((x + period) % period, 0x27d4eb2d) ^ Math.imul((y + period) % period, 0x165667b1)
   bits = Math.imul(bits ^ (bits >>> 15) ^ period, 0x2c1b3c6d)
   bits = Math.imul(bits ^ (bits >>> 12), 0x297a2d39)
   return ((bits ^ (bits >>> 15)) >>> 0) / 4294967296

@@ -1,8 +1,23 @@
 import { TilesRenderer } from '3d-tiles-renderer'
-import { GeneratedSurfacePlugin, TILE_LEVEL, TILE_X, TILE_Y, TMSTilesOverlay } from '3d-tiles-renderer/plugins'
-import { Float32BufferAttribute, Mesh } from 'three'
-import type { DataTexture, PlaneGeometry, Texture } from 'three'
-import { attribute, materialColor, mix, replaceDefaultUV, smoothstep, texture, uv, vec2 } from 'three/tsl'
+import {
+  GeneratedSurfacePlugin,
+  TILE_LEVEL,
+  TILE_X,
+  TILE_Y,
+  TMSTilesOverlay
+} from '3d-tiles-renderer/plugins'
+import { Float32BufferAttribute } from 'three'
+import type { DataTexture, Mesh, PlaneGeometry, Texture } from 'three'
+import {
+  attribute,
+  materialColor,
+  mix,
+  replaceDefaultUV,
+  smoothstep,
+  texture,
+  uv,
+  vec2
+} from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
 import { groundDetail } from './detailNoise'
@@ -87,7 +102,7 @@ class EarthSurfacePlugin extends GeneratedSurfacePlugin {
     url: string,
     abortSignal: AbortSignal
   ): Promise<Mesh | null> {
-    const mesh = (await super.parseToMesh(buffer, tile, extension, url, abortSignal)) as Mesh | null
+    const mesh = await super.parseToMesh(buffer, tile, extension, url, abortSignal)
     if (mesh === null) {
       return null
     }
@@ -136,8 +151,14 @@ function addDetailCoordinates(geometry: PlaneGeometry, [west, south, east, north
 function surfaceNodes(noise: DataTexture): { color: Node<'vec3'>; roughness: Node<'float'> } {
   const detail = attribute<'vec2'>('detail', 'vec2')
   // A texel is 20 km. Shifting the look-up by up to about one turns the blur between texels into coasts and borders.
-  const shift = vec2(texture(noise, detail.mul(2)).r, texture(noise, detail.mul(2).add(0.37)).r).sub(0.5)
-  const imagery = replaceDefaultUV(() => uv().add(shift.mul(1.8 / 256)), materialColor).toVar() as unknown as Node<'vec3'>
+  const shift = vec2(
+    texture(noise, detail.mul(2)).r,
+    texture(noise, detail.mul(2).add(0.37)).r
+  ).sub(0.5)
+  const imagery = replaceDefaultUV(
+    () => uv().add(shift.mul(1.8 / 256)),
+    materialColor
+  ).toVar() as unknown as Node<'vec3'>
   const water = smoothstep(0.01, 0.06, imagery.b.sub(imagery.r))
   const land = groundDetail(noise, detail)
   // A map is lighter than the ground it stands for: this brings woods to an albedo near 0.1 and seas near 0.05.

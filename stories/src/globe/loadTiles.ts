@@ -17,7 +17,10 @@ function isIdle(tiles: TilesRenderer): boolean {
 
 export function tilesProgress(tilesets: TilesRenderer[]): number {
   const states = tilesets as unknown as LoadState[]
-  return states.reduce((sum, { root, loadProgress }) => sum + (root === null ? 0 : loadProgress), 0) / states.length
+  return (
+    states.reduce((sum, { root, loadProgress }) => sum + (root === null ? 0 : loadProgress), 0) /
+    states.length
+  )
 }
 
 /**
@@ -33,14 +36,22 @@ export async function loadTiles(
   isCancelled: () => boolean
 ): Promise<void> {
   let failure: Error | undefined
-  const onError = ({ tile, error, url }: { tile: object | null; error: Error; url: string | URL }): void => {
+  const onError = ({
+    tile,
+    error,
+    url
+  }: {
+    tile: object | null
+    error: Error
+    url: string | URL
+  }): void => {
     if (tile === null) {
       failure = new Error(`loadTiles: ${String(url)} could not be loaded: ${error.message}`)
     }
   }
   tilesets.forEach(tiles => tiles.addEventListener('load-error', onError))
   try {
-    for (let quiet = 0; quiet < QUIET_PASSES; ) {
+    for (let quiet = 0; quiet < QUIET_PASSES;) {
       update()
       await new Promise(resolve => setTimeout(resolve, 4))
       if (isCancelled()) {

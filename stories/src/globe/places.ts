@@ -22,12 +22,47 @@ export const CITY = { longitude: 139.767, latitude: 35.681 }
 
 export const PLACES = {
   street: { label: 'Tokyo, street, 2 m', ...CITY, height: 2, heading: 248, pitch: 4 },
-  rooftops: { label: 'Tokyo, 1 km', longitude: 139.784, latitude: 35.686, height: 1000, heading: 252, pitch: -19 },
-  coast: { label: 'Tokyo Bay, 10 km', longitude: 140.1, latitude: 35.3, height: 10_000, heading: 300, pitch: -6 },
-  orbit: { label: 'Japan, 400 km', longitude: 141.5, latitude: 32, height: 400_000, heading: 325, pitch: -20 },
-  globe: { label: 'Asia, 20,000 km', longitude: 125, latitude: 20, height: 20_000_000, heading: 0, pitch: -90 },
+  rooftops: {
+    label: 'Tokyo, 1 km',
+    longitude: 139.784,
+    latitude: 35.686,
+    height: 1000,
+    heading: 252,
+    pitch: -19
+  },
+  coast: {
+    label: 'Tokyo Bay, 10 km',
+    longitude: 140.1,
+    latitude: 35.3,
+    height: 10_000,
+    heading: 300,
+    pitch: -6
+  },
+  orbit: {
+    label: 'Japan, 400 km',
+    longitude: 141.5,
+    latitude: 32,
+    height: 400_000,
+    heading: 325,
+    pitch: -20
+  },
+  globe: {
+    label: 'Asia, 20,000 km',
+    longitude: 125,
+    latitude: 20,
+    height: 20_000_000,
+    heading: 0,
+    pitch: -90
+  },
   // 2 m above the tileset's finest triangles.
-  valley: { label: 'Tennessee, valley, 2 m', longitude: -84.178, latitude: 36.622, height: 341.8, heading: 318, pitch: 5 },
+  valley: {
+    label: 'Tennessee, valley, 2 m',
+    longitude: -84.178,
+    latitude: 36.622,
+    height: 341.8,
+    heading: 318,
+    pitch: 5
+  },
   ridges: {
     label: 'Tennessee, ridges, 1 km',
     longitude: -84.1517,

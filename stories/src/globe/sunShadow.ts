@@ -40,7 +40,10 @@ export function aimShadow(
   const extent = Math.min(SMALLEST + 4 * altitude, LARGEST)
   camera.getWorldDirection(forward)
   forward.addScaledVector(upWorld, -forward.dot(upWorld))
-  focus.copy(camera.position).addScaledVector(upWorld, -altitude).addScaledVector(forward, extent * 0.7)
+  focus
+    .copy(camera.position)
+    .addScaledVector(upWorld, -altitude)
+    .addScaledVector(forward, extent * 0.7)
   axes.lookAt(sunDirectionWorld, centre.set(0, 0, 0), camera.up).extractBasis(right, top, centre)
   const texel = (2 * extent) / MAP_SIZE
   for (const axis of [right, top]) {

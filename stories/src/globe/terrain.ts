@@ -24,8 +24,13 @@ export function createTerrain(url: string, noise: DataTexture): Terrain {
   const place = uniform(new Vector3()).onObjectUpdate(({ object }, self) => {
     self.value.copy((object as Object3D).userData.place as Vector3)
   })
-  const inTile = uv().mul(TEXELS).sub(0.5).div(TEXELS - 1)
-  const color = materialColor.mul(groundDetail(noise, inTile.mul(place.z).add(place.xy).mul(DETAIL_PERIODS)))
+  const inTile = uv()
+    .mul(TEXELS)
+    .sub(0.5)
+    .div(TEXELS - 1)
+  const color = materialColor.mul(
+    groundDetail(noise, inTile.mul(place.z).add(place.xy).mul(DETAIL_PERIODS))
+  )
 
   tiles.addEventListener('load-model', ({ scene, url: tileUrl }) => {
     const [level, y, x] = /(\d+)-(\d+)-(\d+)\.glb/.exec(tileUrl)!.slice(1).map(Number)
