@@ -209,6 +209,11 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return view
   }
 
+  /** A camera's view as {@link update} last left it. */
+  viewOf(camera: Camera): AtmosphereView | undefined {
+    return this.#views.get(camera)
+  }
+
   /**
    * Bakes all tables now and reads back what {@link skyIlluminanceAt} and {@link skyLuminance} need.
    *

@@ -4,34 +4,28 @@ import type { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereUniforms } from './AtmosphereUniforms'
 import { DiffuseLightTable } from './DiffuseLightTable'
 import type { DiffuseLightData } from './cpu/diffuseLight'
-import { SkyVolume, SkyVolumeBaker } from './SkyVolume'
+import { SkyVolumes } from './SkyVolumes'
 import { TransmittanceTable } from './TransmittanceTable'
-import type { EyeScalars } from './tsl/eye'
-
-/** Most sky volumes that are kept for different places at a time. */
-const MOST_VOLUMES = 4
 
 /** What an atmosphere keeps on the GPU: its two tables and the sky volumes made from them. */
 export class AtmosphereTables {
   readonly uniforms = new AtmosphereUniforms()
   readonly transmittance = new TransmittanceTable(this.uniforms)
   readonly diffuseLight = new DiffuseLightTable(this.uniforms, this.transmittance.target)
-  readonly volumes: SkyVolume[] = []
-  /** Counts the times that the tables were finished; 0 before the first. */
-  version = 0
-  /** The diffuse-light table as numbers, or null until it was read back. */
-  data: DiffuseLightData | null = null
-  readonly #volumeBaker = new SkyVolumeBaker(
+  readonly volumes = new SkyVolumes(
     this.uniforms,
     this.transmittance.target,
     this.diffuseLight.target
   )
+  /** Counts the times that the tables were finished; 0 before the first. */
+  version = 0
+  /** The diffuse-light table as numbers, or null until it was read back. */
+  data: DiffuseLightData | null = null
   #renderer: Renderer | null = null
   #parametersVersion = -1
   #scale = NaN
   #work: Generator<void, void, void> | null = null
   #reading: Promise<void> | null = null
-  #uses = 0
 
   /**
    * Brings the tables up to date, or some steps nearer to it.
@@ -52,7 +46,7 @@ export class AtmosphereTables {
     if (stale) {
       this.#work?.return()
       // Another renderer shares no textures with the last one.
-      if (renderer !== this.#renderer) for (const volume of this.volumes) volume.eye = null
+      if (renderer !== this.#renderer) this.volumes.invalidate()
       this.#renderer = renderer
       this.#parametersVersion = parameters.version
       this.#work = this.#bake(renderer)
@@ -90,43 +84,12 @@ export class AtmosphereTables {
     await this.#reading
   }
 
-  /**
-   * A sky volume for an eye: one that is there already, or `last` computed anew, or another.
-   *
-   * @param last - Volume that the same camera used last.
-   */
-  volumeFor(renderer: Renderer, eye: EyeScalars<number>, last: SkyVolume | null): SkyVolume {
-    const fits = ({ eye: other, tablesVersion }: SkyVolume): boolean =>
-      other !== null && tablesVersion === this.version && isSameEye(other, eye)
-    let volume = last !== null && fits(last) ? last : this.volumes.find(fits)
-    if (volume === undefined) {
-      volume = this.#reusable(last)
-      volume.tablesVersion = this.version
-      this.#volumeBaker.bake(renderer, volume, eye)
-    }
-    volume.lastUsed = ++this.#uses
-    return volume
-  }
-
-  #reusable(last: SkyVolume | null): SkyVolume {
-    if (last !== null && last.users <= 1 && this.volumes.includes(last)) return last
-    if (this.volumes.length < MOST_VOLUMES) {
-      const volume = new SkyVolume()
-      this.volumes.push(volume)
-      return volume
-    }
-    return this.volumes.reduce((oldest, other) =>
-      other.lastUsed < oldest.lastUsed ? other : oldest
-    )
-  }
-
   /** Bytes of GPU memory that the tables and volumes take. */
   get bytes(): number {
     const targets = [
       this.transmittance.target,
       this.diffuseLight.target,
-      this.#volumeBaker.scratch,
-      ...this.volumes.flatMap(volume => [volume.light, volume.depth])
+      ...this.volumes.targets
     ]
     const bytesPerTexel = 8
     return targets.reduce(
@@ -142,15 +105,6 @@ export class AtmosphereTables {
     this.#renderer = null
     this.version++
     this.data = null
-    const owned = [this.transmittance, this.diffuseLight, this.#volumeBaker, ...this.volumes]
-    for (const part of owned) part.dispose()
-    this.volumes.length = 0
+    for (const part of [this.transmittance, this.diffuseLight, this.volumes]) part.dispose()
   }
-}
-
-function isSameEye(a: EyeScalars<number>, b: EyeScalars<number>): boolean {
-  return (
-    Math.abs(a.altitude - b.altitude) <= 1e-4 * (b.altitude + 10) &&
-    Math.abs(a.cosSun - b.cosSun) <= 1e-6
-  )
 }

@@ -3,7 +3,6 @@ import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import { eyeScalars } from './cpu/eye'
-import type { SkyVolume } from './SkyVolume'
 import type { EyeScalars } from './tsl/eye'
 
 const _position = new Vector3()
@@ -19,7 +18,8 @@ export class AtmosphereView {
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = new Matrix3()
   eye: EyeScalars<number> | null = null
-  volume: SkyVolume | null = null
+  /** Number of its volume in the atlas. */
+  slot = 0
   readonly #atmosphere: Atmosphere
   readonly #camera: Camera
 
@@ -42,11 +42,6 @@ export class AtmosphereView {
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
     this.eye = eyeScalars(parameters, this.height, cosSun)
-    const volume = tables.volumeFor(renderer, this.eye, this.volume)
-    if (volume !== this.volume) {
-      if (this.volume !== null) this.volume.users--
-      volume.users++
-      this.volume = volume
-    }
+    this.slot = tables.volumes.volumeFor(renderer, this.eye, tables.version).slot
   }
 }

@@ -13,6 +13,9 @@ export const DIFFUSE_TILES = 8
 /** Sky volume: azimuth × elevation × distance. */
 export const VOLUME_SIZE = [32, 96, 32] as const
 
+/** Places that volumes are kept for at a time: a scene's camera and its mirror image, say. */
+export const VOLUME_SLOTS = 2
+
 /** How the distances of the sky volume lie in its atlas: columns × rows of tiles. */
 export const VOLUME_TILES = [8, 4] as const
 

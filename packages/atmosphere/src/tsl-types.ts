@@ -1,6 +1,6 @@
 // What @types/three 0.187 lacks or gets wrong, in one place.
 import { Loop as threeLoop, uniformArray as threeUniformArray } from 'three/tsl'
-import type { Texture, Vector4 } from 'three'
+import type { Vector4 } from 'three'
 import type { Node, TextureNode } from 'three/webgpu'
 
 export type Float = Node<'float'>
@@ -10,6 +10,9 @@ export type Vec2 = Node<'vec2'>
 export type Vec3 = Node<'vec3'>
 export type Vec4 = Node<'vec4'>
 export type Mat3 = Node<'mat3'>
+
+/** A matrix whose columns can be taken. */
+export type Mat4 = Node<'mat4'> & { element(column: number): Vec4 & { element(row: number): Float } }
 
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {
@@ -27,9 +30,6 @@ export interface Vec4Array extends Node {
 }
 export const vec4Array = (values: Vector4[]): Vec4Array =>
   threeUniformArray(values, 'vec4') as unknown as Vec4Array
-
-/** A texture node whose texture may be swapped after the shader is built. */
-export type SwappableTexture = TextureNode & { value: Texture }
 
 /** Reads a texture bilinearly, at its only level, wherever the control flow is. */
 export const sampleLevel0 = (source: TextureNode, uv: Vec2): Vec4 =>

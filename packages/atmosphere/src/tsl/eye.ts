@@ -23,5 +23,7 @@ export interface EyeScalars<T> {
   skyExponent: T
 }
 
-/** {@link EyeScalars} as shader nodes. */
-export type Eye = EyeScalars<Float>
+/** {@link EyeScalars} as shader nodes, and the number of its volume in the atlas. */
+export interface Eye extends EyeScalars<Float> {
+  slot: Float
+}

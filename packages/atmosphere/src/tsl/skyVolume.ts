@@ -1,7 +1,7 @@
 import { float, mix, vec2 } from 'three/tsl'
 import type { Node, TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_TILES } from '../tableSizes'
+import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { distanceToGround, groundDiscriminant } from './boundary'
 import type { Eye } from './eye'
@@ -146,6 +146,12 @@ function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
   return part.mul(exponent.exp().sub(1)).add(1).log().div(exponent).clamp() as Float
 }
 
+/** Where the table of optical depth keeps a column and row, in texels. */
+export function depthUV(eye: Eye, column: Float, row: Float): Vec2 {
+  const rowInTable = row.add(eye.slot.mul(ELEVATIONS))
+  return vec2(column.div(DEPTH_COLUMNS), rowInTable.div(ELEVATIONS * VOLUME_SLOTS)) as Vec2
+}
+
 /** Light scattered between the eye and a point, with the optical depth between them. */
 export interface AirBetween extends Scattered {
   depth: Vec4
@@ -170,14 +176,20 @@ export function sampleVolume(
   const row = elevationRow(eye, cosView, limits.hitsGround).toConst() as Float
   const column = azimuthColumn(eye, cosView, cosViewSun)
   const inTile = vec2(column, row).toConst() as Vec2
-  const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
+  const atlas = vec2(
+    1 / (AZIMUTHS * TILE_COLUMNS),
+    1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS)
+  )
   const fetch = (source: TextureNode, slice: Float): Vec4 => {
     const tileRow = slice.div(TILE_COLUMNS).floor()
-    const corner = vec2(slice.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS), tileRow.mul(ELEVATIONS))
+    const corner = vec2(
+      slice.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS),
+      tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)
+    )
     return sampleLevel0(source, inTile.add(corner).mul(atlas) as Vec2)
   }
   const depthAt = (column: Float): Vec4 =>
-    sampleLevel0(textures.depth, vec2(column.div(DEPTH_COLUMNS), row.div(ELEVATIONS)) as Vec2)
+    sampleLevel0(textures.depth, depthUV(eye, column, row))
 
   const exists = limits.length.greaterThan(0).select(1, 0)
   if (distance === null) {

@@ -1,11 +1,18 @@
-import { Fn, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
+import { Discard, Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { TwoOutputs } from '../FragmentPass'
-import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_TILES } from '../tableSizes'
+import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { loop, sampleLevel0, type Float, type Int, type Vec2, type Vec4 } from '../tsl-types'
 import type { Eye } from './eye'
 import { pointAlong, scatterSegment, segmentDepth, type Air, type Ray } from './scattering'
-import { columnCosine, rayLimits, rowCosine, sliceDistance, type RayLimits } from './skyVolume'
+import {
+  columnCosine,
+  depthUV,
+  rayLimits,
+  rowCosine,
+  sliceDistance,
+  type RayLimits
+} from './skyVolume'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
@@ -39,10 +46,20 @@ function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   }
 }
 
+/** Texture coordinates within the eye's part of a target; fragments elsewhere are discarded. */
+function withinSlot(eye: Eye): Vec2 {
+  const texel = uv() as Vec2
+  const y = texel.y.mul(VOLUME_SLOTS).sub(eye.slot).toConst()
+  If(y.lessThan(0).or(y.greaterThan(1)), () => {
+    Discard()
+  })
+  return vec2(texel.x, y).toConst() as Vec2
+}
+
 /** Shader of the table of optical depth: rows are elevations, columns distances. */
 export function bakeDepth(air: Air, eye: Eye): Vec4 {
   return Fn(() => {
-    const texel = uv() as Vec2
+    const texel = withinSlot(eye)
     const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(ELEVATIONS) as Float)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
     const { altitude, cosSun } = eye
@@ -90,11 +107,10 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
     const start = sliceDistance(eye, limits, slice.div(DISTANCES) as Float).toConst() as Float
     const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES) as Float).toConst() as Float
     const perSlice = DEPTH_COLUMNS / DISTANCES
-    const depthUV = vec2(
-      slice.mul(perSlice).sub(0.5).max(0.5).div(DEPTH_COLUMNS),
-      row.add(0.5).div(ELEVATIONS)
+    const depthColumn = slice.mul(perSlice).sub(0.5).max(0.5) as Float
+    const before = sampleLevel0(depth, depthUV(eye, depthColumn, row.add(0.5) as Float)).mul(
+      slice.greaterThan(0).select(1, 0)
     )
-    const before = sampleLevel0(depth, depthUV as Vec2).mul(slice.greaterThan(0).select(1, 0))
     const through = before.negate().exp().toConst()
     const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
     return {
@@ -105,9 +121,13 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
 }
 
 /** Shader that sums the segments up to each slice. */
-export function sumSegments(molecular: TextureNode, aerosol: TextureNode): TwoOutputs {
+export function sumSegments(
+  eye: Eye,
+  molecular: TextureNode,
+  aerosol: TextureNode
+): TwoOutputs {
   return twoOutputs(() => {
-    const { column, row, slice } = atlasPosition(uv() as Vec2)
+    const { column, row, slice } = atlasPosition(withinSlot(eye))
     const sums = { molecular: vec4(0).toVar(), aerosol: vec4(0).toVar() }
     const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
     loop('before', int(slice).add(1) as Int, index => {

@@ -1,0 +1,34 @@
+import { Fn, output, positionView, vec4 } from 'three/tsl'
+import type { Node, NodeBuilder } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import { AtmosphereNode } from './AtmosphereNode'
+import { aerialPerspectiveTo } from './tsl/aerialPerspective'
+import type { Vec3 } from './tsl-types'
+
+/**
+ * Aerial perspective as a scene's fog: every material with `fog`, opaque or transparent, dims and
+ * gains the light scattered between it and the camera.
+ *
+ * ```ts
+ * scene.fogNode = aerialPerspectiveFog(atmosphere)
+ * ```
+ */
+export class AerialPerspectiveFogNode extends AtmosphereNode {
+  static get type(): string {
+    return 'AerialPerspectiveFogNode'
+  }
+
+  override setup(_builder: NodeBuilder): Node {
+    return Fn(() => {
+      const { transmittance, inScatter } = aerialPerspectiveTo(
+        this.view,
+        positionView as unknown as Vec3
+      )
+      return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
+    })() as unknown as Node
+  }
+}
+
+/** Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}. */
+export const aerialPerspectiveFog = (atmosphere: Atmosphere): AerialPerspectiveFogNode =>
+  new AerialPerspectiveFogNode(atmosphere)

@@ -1,0 +1,74 @@
+import { LightProbe } from 'three'
+import { Fn, normalView, positionView } from 'three/tsl'
+import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
+import type { NodeBuilder, NodeFrame } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import { linearSRGB } from './tsl/color'
+import { skyIrradiance } from './tsl/skyIrradiance'
+import type { Vec3 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+import { viewNodes } from './ViewNodes'
+
+/**
+ * Light of sky and ground: a light probe whose irradiance is looked up per fragment, at the
+ * fragment's own place and altitude, day and night side of the globe alike.
+ *
+ * `intensity` multiplies the physical illuminance; the probe's `sh` is not used.
+ */
+export class SkyLightProbe extends LightProbe {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+
+  constructor(atmosphere: Atmosphere) {
+    super()
+    this.atmosphere = atmosphere
+  }
+}
+
+/** Per-fragment irradiance of a {@link SkyLightProbe}. */
+export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
+  static get type(): string {
+    return 'SkyLightProbeNode'
+  }
+
+  readonly #view: ViewNodes
+
+  constructor(light: SkyLightProbe) {
+    super(light)
+    this.#view = viewNodes(light.atmosphere)
+    this.updateBeforeType = NodeUpdateType.RENDER
+    this.updateType = NodeUpdateType.RENDER
+  }
+
+  override updateBefore(frame: NodeFrame): undefined {
+    this.#view.prepare(frame)
+  }
+
+  override update(frame: NodeFrame): undefined {
+    super.update(frame)
+    this.#view.update(frame)
+  }
+
+  override setup(builder: NodeBuilder): undefined {
+    const irradiance = Fn(() => {
+      const { air } = this.#view
+      const offset = this.#view.toMapped(positionView as unknown as Vec3).toConst()
+      const { altitude, cosSun, up } = this.#view.place(offset as Vec3)
+      const normal = this.#view.toMapped(normalView as unknown as Vec3).normalize().toConst()
+      const received = skyIrradiance(
+        air.uniforms,
+        air.diffuse!,
+        altitude,
+        normal.dot(up) as never,
+        cosSun,
+        normal.dot(this.#view.sunDirection) as never
+      )
+      return linearSRGB(air.uniforms, received).mul((this as unknown as { colorNode: Vec3 }).colorNode)
+    })()
+    const { irradiance: sum } = builder.context as { irradiance: { addAssign(node: unknown): void } }
+    sum.addAssign(irradiance)
+  }
+}
+
+// In the same file: `sideEffects: false` would drop a separate one.
+SkyLightProbe.registerNode(SkyLightProbeNode)

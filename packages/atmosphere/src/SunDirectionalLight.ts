@@ -1,0 +1,86 @@
+import { DirectionalLight, Vector3 } from 'three'
+import type { Color } from 'three'
+import { Fn, positionView, uniform, renderGroup } from 'three/tsl'
+import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
+import type { NodeFrame } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import { linearSRGB } from './tsl/color'
+import { sunTransmittance } from './tsl/transmittance'
+import type { Vec3 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+import { viewNodes } from './ViewNodes'
+
+const _direction = new Vector3()
+
+/**
+ * Sunlight: a directional light that comes from the atmosphere's sun, reddened by the air above each
+ * fragment and blocked by the planet, so that one light is right on the whole globe.
+ *
+ * `color` and `intensity` multiply the physical illuminance. Shadows, cascades included, are three's:
+ * set `castShadow`, the shadow camera and `target`, around which the light is placed at
+ * {@link distance}.
+ */
+export class SunDirectionalLight extends DirectionalLight {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  /** From the target to the light, along the sun's direction [world units]. */
+  distance = 1
+
+  /** @param distance - From the target to the light [world units]. */
+  constructor(atmosphere: Atmosphere, distance = 1) {
+    super()
+    this.atmosphere = atmosphere
+    this.distance = distance
+    this.follow()
+  }
+
+  /** Moves to where the sun is; rendering does this by itself. */
+  follow(): void {
+    this.target.updateWorldMatrix(true, false)
+    _direction.copy(this.atmosphere.sunDirection).multiplyScalar(this.distance)
+    this.position.setFromMatrixPosition(this.target.matrixWorld).add(_direction)
+    this.parent?.worldToLocal(this.position)
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    this.follow()
+    super.updateMatrixWorld(force)
+  }
+}
+
+/** Per-fragment colour of a {@link SunDirectionalLight}. */
+export class SunDirectionalLightNode extends DirectionalLightNode {
+  static get type(): string {
+    return 'SunDirectionalLightNode'
+  }
+
+  readonly #view: ViewNodes
+
+  constructor(light: SunDirectionalLight) {
+    super(light)
+    this.#view = viewNodes(light.atmosphere)
+    this.updateBeforeType = NodeUpdateType.RENDER
+    this.updateType = NodeUpdateType.RENDER
+    const node = this as unknown as { color: Color; colorNode: unknown }
+    const tint = uniform(node.color).setGroup(renderGroup) as unknown as Vec3
+    node.colorNode = Fn(() => {
+      const { uniforms, transmittance } = this.#view.air
+      const offset = this.#view.toMapped(positionView as unknown as Vec3).toConst()
+      const { altitude, cosSun } = this.#view.place(offset as Vec3)
+      const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
+      return linearSRGB(uniforms, sunlight).mul(tint)
+    })()
+  }
+
+  override updateBefore(frame: NodeFrame): undefined {
+    this.#view.prepare(frame)
+  }
+
+  override update(frame: NodeFrame): undefined {
+    super.update(frame)
+    this.#view.update(frame)
+  }
+}
+
+// In the same file: `sideEffects: false` would drop a separate one.
+SunDirectionalLight.registerNode(SunDirectionalLightNode as never)

@@ -1,0 +1,106 @@
+import { Matrix3, Vector3 } from 'three'
+import type { Camera } from 'three'
+import { renderGroup, texture, uniform } from 'three/tsl'
+import type { NodeFrame, UniformNode } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import { EyeUniforms } from './SkyVolumes'
+import type { Air } from './tsl/scattering'
+import type { VolumeTextures } from './tsl/skyVolume'
+import type { Float, Mat3, Vec3 } from './tsl-types'
+
+const vector = (): UniformNode<'vec3', Vector3> =>
+  uniform(new Vector3()).setGroup(renderGroup) as never
+
+/** An atmosphere as seen from a camera: the uniforms and textures that shaders of a view share. */
+export class ViewNodes {
+  readonly atmosphere: Atmosphere
+  readonly air: Air
+  readonly volume: VolumeTextures
+  readonly eye = new EyeUniforms()
+  /** Height of the camera above the ground, which may be negative [m]. */
+  readonly height = uniform(0).setGroup(renderGroup) as unknown as UniformNode<'float', number>
+  /** Zenith at the camera, in the mapped space. */
+  readonly up = vector()
+  /** Direction to the sun, in the mapped space. */
+  readonly sunDirection = vector()
+  /** Displacements in view space [world units] to the mapped space [m]. */
+  readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup) as unknown as UniformNode<
+    'mat3',
+    Matrix3
+  >
+  readonly #camera: Camera | null
+
+  /** @param camera - The camera; null for whichever renders. */
+  constructor(atmosphere: Atmosphere, camera: Camera | null) {
+    const { uniforms, transmittance, diffuseLight, volumes } = atmosphere.tables
+    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
+    this.atmosphere = atmosphere
+    this.#camera = camera
+    this.air = {
+      uniforms,
+      transmittance: texture(transmittance.target.texture),
+      diffuse: texture(diffuseLight.target.texture)
+    }
+    this.volume = {
+      molecular: molecular!,
+      aerosol: aerosol!,
+      depth: texture(volumes.depth.texture)
+    }
+  }
+
+  /** Bakes what the camera that renders needs. To be called before a render starts. */
+  prepare(frame: NodeFrame): void {
+    const camera = this.#camera ?? frame.camera
+    if (frame.renderer !== null && camera !== null) {
+      this.atmosphere.update(frame.renderer as never, camera)
+    }
+  }
+
+  /** Sets the uniforms for the camera that renders. */
+  update(frame: NodeFrame): void {
+    const camera = this.#camera ?? frame.camera
+    const view = camera === null ? undefined : this.atmosphere.viewOf(camera)
+    if (view?.eye == null) return
+    this.eye.set(view.eye, view.slot)
+    this.height.value = view.height
+    this.up.value.copy(view.up)
+    this.sunDirection.value.copy(view.sunDirection)
+    this.viewToMapped.value.copy(view.viewToMapped)
+  }
+
+  /** A displacement in view space [world units] in the mapped space [m]. */
+  toMapped(displacementView: Vec3): Vec3 {
+    return (this.viewToMapped as unknown as Mat3).mul(displacementView) as unknown as Vec3
+  }
+
+  /**
+   * Altitude and sun of a point, without cancellation: h' = h + (2 r d·up + d²)/(r' + r).
+   *
+   * @param offset - From the camera, in the mapped space [m].
+   */
+  place(offset: Vec3): { altitude: Float; cosSun: Float; up: Vec3 } {
+    const { bottomRadius, thickness } = this.air.uniforms
+    const radius = bottomRadius.add(this.height).toConst()
+    const rise = offset.dot(this.up).mul(radius).mul(2).add(offset.dot(offset)).toConst()
+    const radiusThere = radius.mul(radius).add(rise).max(1).sqrt().toConst()
+    const altitude = this.height.add(rise.div(radiusThere.add(radius))).clamp(0, thickness)
+    const up = this.up.mul(radius).add(offset).div(radiusThere).toConst()
+    return {
+      altitude: altitude.toConst() as Float,
+      cosSun: up.dot(this.sunDirection).clamp(-1, 1).toConst() as Float,
+      up: up as Vec3
+    }
+  }
+}
+
+const shared = new WeakMap<Atmosphere, WeakMap<object, ViewNodes>>()
+
+/** The nodes of an atmosphere for a camera, made once. */
+export function viewNodes(atmosphere: Atmosphere, camera: Camera | null = null): ViewNodes {
+  const key = camera ?? atmosphere
+  let views = shared.get(atmosphere)
+  if (views === undefined) shared.set(atmosphere, (views = new WeakMap()))
+  let view = views.get(key)
+  if (view === undefined) views.set(key, (view = new ViewNodes(atmosphere, camera)))
+  return view
+}

@@ -1,0 +1,33 @@
+import type { Float, Vec3 } from '../tsl-types'
+import type { ViewNodes } from '../ViewNodes'
+import { linearSRGB, transmittanceRGB } from './color'
+import { scatteredRadiance } from './scattering'
+import { rayLimits, sampleVolume } from './skyVolume'
+
+/** What the air between the eye and a point does to light from there. */
+export interface AerialPerspective {
+  /** Factors for linear-sRGB components. */
+  transmittance: Vec3
+  /** Light added, linear sRGB × `luminanceScale`. */
+  inScatter: Vec3
+}
+
+/**
+ * Air between the camera and a point, from the sky volume.
+ *
+ * @param displacementView - From the camera to the point, in view space [world units].
+ */
+export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
+  const { air, volume, eye } = view
+  const offset = view.toMapped(displacementView).toConst()
+  const distance = offset.length().max(1e-3).toConst() as Float
+  const direction = offset.div(distance).toConst()
+  const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
+  const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
+  const limits = rayLimits(air.uniforms, eye, cosView)
+  const between = sampleVolume(volume, eye, cosView, cosViewSun, limits, distance)
+  return {
+    transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp() as never),
+    inScatter: linearSRGB(air.uniforms, scatteredRadiance(air.uniforms, between, cosViewSun))
+  }
+}
