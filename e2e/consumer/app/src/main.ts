@@ -9,7 +9,8 @@ declare global {
 
 /** One file per package that the app tries; each exports `create`, which answers with what draws. */
 const scenes: Record<string, () => Promise<{ create: CreateScene }>> = {
-  geo: () => import('./geo')
+  geo: () => import('./geo'),
+  atmosphere: () => import('./atmosphere')
 }
 
 export type CreateScene = (renderer: WebGPURenderer) => Promise<() => void> | (() => void)
