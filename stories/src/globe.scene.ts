@@ -1,16 +1,17 @@
 import { GlobeControls } from '3d-tiles-renderer'
 import type { TilesRenderer } from '3d-tiles-renderer'
-import { Ellipsoid, fitGlobeCamera, sunDirectionECEF } from '@welkin/geo'
+import { Atmosphere } from '@welkin/atmosphere'
+import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
 import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { createCity } from './globe/city'
-import { Daylight } from './globe/daylight'
 import { createNoiseTexture } from './globe/detailNoise'
 import { createEarthSurface } from './globe/earthSurface'
 import { moveCamera, PLACES } from './globe/places'
 import type { PlaceName } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
 import { createTerrain } from './globe/terrain'
-import { createRenderer, dateOf, exposureOf } from './scene'
+import { Air } from './air'
+import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { loadTiles, tilesProgress } from './globe/loadTiles'
 
@@ -45,8 +46,10 @@ export async function createGlobe(
   land.add(surface.tiles.group, terrain.tiles.group)
   scene.add(land, city.object)
 
-  const daylight = new Daylight(scene)
-  prepareShadow(daylight.sun)
+  const atmosphere = new Atmosphere()
+  atmosphere.frame = 'ecef'
+  const air = new Air(renderer, scene, camera, atmosphere, args.path)
+  prepareShadow(air.sun)
 
   const controls = new GlobeControls(land, camera, args.frame ? undefined : canvas)
   controls.setEllipsoid(surface.tiles.ellipsoid, surface.tiles.group)
@@ -59,7 +62,6 @@ export async function createGlobe(
   }
 
   const current = { ...args }
-  const sunDirection = new Vector3()
   const up = new Vector3()
   let ready: Promise<void> = Promise.resolve()
   let disposed = false
@@ -72,16 +74,33 @@ export async function createGlobe(
     }
   }
 
-  const goTo = (place: PlaceName): void => {
-    moveCamera(camera, PLACES[place])
-    controls.setCamera(camera)
-    ready = loadTiles(tilesets, prepare, () => disposed)
+  const draw = (): void => {
+    prepare()
+    const altitude = Ellipsoid.WGS84.heightAt(camera.position)
+    Ellipsoid.WGS84.surfaceNormal(camera.position, up)
+    city.object.visible = altitude < CITY_CEILING
+    aimShadow(air.sun, camera, Math.max(altitude, 2), up)
+    air.render()
+  }
+
+  const load = (): void => {
+    ready = loadTiles(tilesets, prepare, () => disposed).then(() => {
+      for (let i = 0; current.frame && !disposed && i < WARM_UP_FRAMES; i++) {
+        draw()
+      }
+    })
     // A failure is reported to whoever awaits `ready`.
     ready.catch(() => {})
   }
 
+  const goTo = (place: PlaceName): void => {
+    moveCamera(camera, PLACES[place])
+    controls.setCamera(camera)
+    load()
+  }
+
   const applyLight = (): void => {
-    sunDirectionECEF(dateOf(current.day, current.hour), sunDirection)
+    atmosphere.date = dateOf(current.day, current.hour)
     renderer.toneMappingExposure = exposureOf(current.exposure)
   }
 
@@ -102,13 +121,7 @@ export async function createGlobe(
       if (!current.frame) {
         controls.update()
       }
-      prepare()
-      const altitude = Ellipsoid.WGS84.heightAt(camera.position)
-      Ellipsoid.WGS84.surfaceNormal(camera.position, up)
-      city.object.visible = altitude < CITY_CEILING
-      daylight.update(sunDirection, up, altitude)
-      aimShadow(daylight.sun, camera, Math.max(altitude, 2), up, sunDirection)
-      renderer.render(scene, camera)
+      draw()
     },
     resize(width, height, pixelRatio) {
       renderer.setPixelRatio(pixelRatio)
@@ -118,8 +131,7 @@ export async function createGlobe(
       for (const tiles of tilesets) {
         tiles.setResolution(camera, width * pixelRatio, height * pixelRatio)
       }
-      ready = loadTiles(tilesets, prepare, () => disposed)
-      ready.catch(() => {})
+      load()
     },
     update(changes) {
       const place = changes.place ?? current.place
@@ -136,7 +148,7 @@ export async function createGlobe(
       surface.dispose()
       terrain.dispose()
       city.dispose()
-      daylight.dispose()
+      air.dispose()
       noise.dispose()
       void renderer.dispose()
     }

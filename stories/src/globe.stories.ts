@@ -24,9 +24,10 @@ const meta: Meta<GlobeArgs> = {
   args: {
     place: 'street',
     day: Date.UTC(2026, 5, 21),
-    hour: 0.5,
+    hour: 22,
     exposure: 0,
     forceWebGL: false,
+    path: 'forward',
     frame: false
   }
 }
@@ -35,7 +36,7 @@ export default meta
 
 type Story = StoryObj<GlobeArgs>
 
-/** Half past nine on a summer morning, eye height. */
+/** Seven on a summer morning, eye height. */
 export const Street: Story = { tags: ['screenshot'] }
 
 export const Rooftops: Story = {
@@ -52,14 +53,14 @@ export const Coast: Story = {
 
 export const Orbit: Story = {
   name: '400 km',
-  args: { place: 'orbit', hour: 5 },
+  args: { place: 'orbit', hour: 5, exposure: -1 },
   tags: ['screenshot']
 }
 
 /** The terminator crosses the Indian Ocean. */
 export const WholeGlobe: Story = {
   name: '20,000 km',
-  args: { place: 'globe', hour: 1 },
+  args: { place: 'globe', hour: 1, exposure: -1 },
   tags: ['screenshot']
 }
 

@@ -36,7 +36,7 @@ export function mount<Args extends RendererArgs>(
   create: CreateScene<Args>
 ): (args: Args, context: { id: string }) => HTMLElement {
   return (args, { id }) => {
-    const key = [id, args.forceWebGL, args.frame].join(' ')
+    const key = [id, args.forceWebGL, args.path, args.frame].join(' ')
     if (mounted?.key === key && mounted.element.isConnected) {
       mounted.update(args)
     } else {

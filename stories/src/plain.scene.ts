@@ -1,21 +1,19 @@
-import { sunDirectionECEF, Ellipsoid } from '@welkin/geo'
+import { Atmosphere } from '@welkin/atmosphere'
 import {
   BoxGeometry,
-  Matrix4,
+  CircleGeometry,
   Mesh,
   MeshPhysicalMaterial,
   MeshStandardMaterial,
   PerspectiveCamera,
-  PlaneGeometry,
   Scene,
   SphereGeometry,
-  TorusKnotGeometry,
-  Vector3
+  TorusKnotGeometry
 } from 'three'
 import type { Material } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { Daylight } from './globe/daylight'
-import { createRenderer, dateOf, exposureOf } from './scene'
+import { Air } from './air'
+import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface PlainArgs extends RendererArgs {
@@ -33,6 +31,9 @@ export interface PlainArgs extends RendererArgs {
   exposure: number
 }
 
+/** Far enough to reach the horizon of a camera a few metres up [m]. */
+const GROUND_RADIUS = 15_000
+
 /** A scene like any other of three: y up, metres, built-in materials. */
 function populate(scene: Scene): Mesh[] {
   const standing = (mesh: Mesh, x: number, y: number, z: number): Mesh => {
@@ -42,7 +43,7 @@ function populate(scene: Scene): Mesh[] {
     return mesh
   }
   const ground = new Mesh(
-    new PlaneGeometry(400, 400).rotateX(-Math.PI / 2),
+    new CircleGeometry(GROUND_RADIUS, 96).rotateX(-Math.PI / 2),
     new MeshStandardMaterial({ color: '#7d7a6d', roughness: 0.95 })
   )
   ground.receiveShadow = true
@@ -95,7 +96,7 @@ export async function createPlain(
 ): Promise<SceneHandle<PlainArgs>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
-  const camera = new PerspectiveCamera(48, 1, 0.1, 5000)
+  const camera = new PerspectiveCamera(48, 1, 0.1, 2 * GROUND_RADIUS)
   camera.position.set(3.5, 3, 11.5)
   const controls = new OrbitControls(camera, args.frame ? null : canvas)
   controls.target.set(0.2, 1.5, -1)
@@ -104,8 +105,10 @@ export async function createPlain(
   controls.update()
   const meshes = populate(scene)
 
-  const daylight = new Daylight(scene)
-  const { sun } = daylight
+  const atmosphere = new Atmosphere()
+  const air = new Air(renderer, scene, camera, atmosphere, args.path)
+  const { sun } = air
+  sun.distance = 50
   sun.castShadow = true
   sun.shadow.mapSize.setScalar(2048)
   sun.shadow.camera.left = sun.shadow.camera.bottom = -14
@@ -114,39 +117,40 @@ export async function createPlain(
   sun.shadow.normalBias = 0.02
 
   const current = { ...args }
-  const sunDirection = new Vector3()
-  const up = new Vector3(0, 1, 0)
-  const worldToECEF = new Matrix4()
 
   const apply = (): void => {
-    const position = Ellipsoid.WGS84.geodeticToECEF(current)
-    Ellipsoid.WGS84.localYUpFrame(position, worldToECEF)
-    sunDirectionECEF(dateOf(current.day, current.hour), sunDirection).transformDirection(
-      worldToECEF.clone().invert()
-    )
-    sun.position.copy(sunDirection).multiplyScalar(50)
-    daylight.update(sunDirection, up, current.height)
+    atmosphere.place(current)
+    atmosphere.date = dateOf(current.day, current.hour)
     renderer.toneMappingExposure = exposureOf(current.exposure)
   }
   apply()
+  let ready: Promise<void> = Promise.resolve()
+  const warmUp = async (): Promise<void> => {
+    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
+      air.render()
+    }
+  }
 
   return {
     renderer,
     scene,
     camera,
-    ready: Promise.resolve(),
+    get ready() {
+      return ready
+    },
     progress: 1,
     render() {
       if (!current.frame) {
         controls.update()
       }
-      renderer.render(scene, camera)
+      air.render()
     },
     resize(width, height, pixelRatio) {
       renderer.setPixelRatio(pixelRatio)
       renderer.setSize(width, height, false)
       camera.aspect = width / height
       camera.updateProjectionMatrix()
+      ready = warmUp()
     },
     update(changes) {
       Object.assign(current, changes)
@@ -154,7 +158,7 @@ export async function createPlain(
     },
     dispose() {
       controls.dispose()
-      daylight.dispose()
+      air.dispose()
       for (const { geometry, material } of meshes) {
         geometry.dispose()
         ;(material as Material).dispose()

@@ -29,6 +29,7 @@ const meta: Meta<PlainArgs> = {
     hour: 7,
     exposure: 0,
     forceWebGL: false,
+    path: 'forward',
     frame: false
   }
 }

@@ -1,6 +1,7 @@
 import { AgXToneMapping } from 'three'
 import type { Camera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
+import type { AirPath } from './air'
 
 /** A scene that draws itself, apart from the page and the clock: what a story shows and a test drives. */
 export interface SceneHandle<Args> {
@@ -22,6 +23,8 @@ export interface SceneHandle<Args> {
 export interface RendererArgs {
   /** Draw with WebGL 2 even where WebGPU is available. */
   forceWebGL: boolean
+  /** How the air is drawn. */
+  path: AirPath
   /** Draw one reproducible frame, with no controls, and stop. */
   frame: boolean
 }
@@ -30,6 +33,12 @@ export type CreateScene<Args extends RendererArgs> = (
   canvas: HTMLCanvasElement,
   args: Args
 ) => Promise<SceneHandle<Args>>
+
+/**
+ * Frames to draw before one counts. three r187 updates the matrices of a shadow after the objects that use them, and
+ * in a `pass()` one frame later still.
+ */
+export const WARM_UP_FRAMES = 3
 
 export async function createRenderer(
   canvas: HTMLCanvasElement,

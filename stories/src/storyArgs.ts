@@ -21,6 +21,12 @@ export const rendererArgTypes: ArgTypes<RendererArgs> = {
     control: 'boolean',
     description: 'Draw with WebGL 2 instead of WebGPU'
   },
+  path: {
+    name: 'Air',
+    options: ['forward', 'post'],
+    control: 'inline-radio',
+    description: 'Drawn by the materials, or over the finished picture'
+  },
   frame: {
     name: 'One frame',
     control: 'boolean',

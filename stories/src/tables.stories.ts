@@ -14,7 +14,7 @@ const meta: Meta<TablesArgs> = {
     },
     ...rendererArgTypes
   },
-  args: { exposure: 0, forceWebGL: false, frame: false }
+  args: { exposure: 0, forceWebGL: false, path: 'forward', frame: false }
 }
 
 export default meta

@@ -76,7 +76,7 @@ function streetMaterial(noise: DataTexture): MeshStandardNodeMaterial {
   const lines = dashes.mul(crossing.oneMinus())
   const lots = color('#6d6a60')
   const pavement = mix(lots, color('#8f8c86'), street)
-  const surface = mix(pavement, color('#45464a'), road)
+  const surface = mix(pavement, color('#5b5b5d'), road)
   // Outwards the streets fade into the globe beneath them.
   const ragged = grain.sub(0.5).mul(CITY_EXTENT * 0.9)
   const outside = smoothstep(

@@ -26,6 +26,13 @@ import { groundDetail } from './detailNoise'
 const IMAGERY_LEVEL = 2
 /** The finest level of the geometry: tiles of 600 m, whose chords are a fraction of a millimetre below the ellipsoid. */
 const GEOMETRY_LEVEL = 15
+/**
+ * The coarsest level that is drawn. Pieces of coarser ones are as much as 35 km below the ellipsoid, these 500 m,
+ * and they are only ever seen from far away.
+ */
+const COARSEST_LEVEL = 3
+/** More than any view forgives [m]. */
+const NEVER_ENOUGH = 1e6
 /** Periods of the detail noise around the equator: 78 km each. */
 const DETAIL_PERIODS = 512
 
@@ -93,6 +100,14 @@ class EarthSurfacePlugin extends GeneratedSurfacePlugin {
       return [u, v, u + size, v + size]
     }
     return super.loadRootTileset()
+  }
+
+  override createChild(x: number, y: number, level: number): { geometricError: number } | null {
+    const child = super.createChild(x, y, level)
+    if (child !== null && level < COARSEST_LEVEL) {
+      child.geometricError = NEVER_ENOUGH
+    }
+    return child
   }
 
   override async parseToMesh(

@@ -1,5 +1,6 @@
 import { Matrix4, Vector3 } from 'three'
-import type { DirectionalLight, PerspectiveCamera } from 'three'
+import type { SunDirectionalLight } from '@welkin/atmosphere'
+import type { PerspectiveCamera } from 'three'
 
 const MAP_SIZE = 2048
 const SMALLEST = 150
@@ -15,7 +16,7 @@ const top = new Vector3()
 const centre = new Vector3()
 
 /** Shadow settings that hold at any altitude; `aimShadow` adapts the rest every frame. */
-export function prepareShadow(light: DirectionalLight): void {
+export function prepareShadow(light: SunDirectionalLight): void {
   light.castShadow = true
   light.shadow.mapSize.setScalar(MAP_SIZE)
   light.shadow.radius = 1.5
@@ -28,14 +29,12 @@ export function prepareShadow(light: DirectionalLight): void {
  *
  * @param altitude - Of the camera above the ground [m].
  * @param upWorld - Away from the ground, unit vector.
- * @param sunDirectionWorld - Towards the sun, unit vector.
  */
 export function aimShadow(
-  light: DirectionalLight,
+  light: SunDirectionalLight,
   camera: PerspectiveCamera,
   altitude: number,
-  upWorld: Vector3,
-  sunDirectionWorld: Vector3
+  upWorld: Vector3
 ): void {
   const extent = Math.min(SMALLEST + 4 * altitude, LARGEST)
   camera.getWorldDirection(forward)
@@ -44,14 +43,16 @@ export function aimShadow(
     .copy(camera.position)
     .addScaledVector(upWorld, -altitude)
     .addScaledVector(forward, extent * 0.7)
-  axes.lookAt(sunDirectionWorld, centre.set(0, 0, 0), camera.up).extractBasis(right, top, centre)
+  axes
+    .lookAt(light.atmosphere.sunDirection, centre.set(0, 0, 0), camera.up)
+    .extractBasis(right, top, centre)
   const texel = (2 * extent) / MAP_SIZE
   for (const axis of [right, top]) {
     const along = focus.dot(axis)
     focus.addScaledVector(axis, Math.round(along / texel) * texel - along)
   }
   light.target.position.copy(focus)
-  light.position.copy(focus).addScaledVector(sunDirectionWorld, extent * 2)
+  light.distance = extent * 2
   light.target.updateMatrixWorld()
   const { shadow } = light
   shadow.camera.left = shadow.camera.bottom = -extent
@@ -59,6 +60,8 @@ export function aimShadow(
   shadow.camera.near = 0
   shadow.camera.far = extent * 4
   shadow.camera.updateProjectionMatrix()
+  light.updateMatrixWorld()
+  shadow.updateMatrices(light)
   shadow.normalBias = texel * 1.5
   shadow.bias = 0
   shadow.intensity = altitude < CEILING ? 1 : 0

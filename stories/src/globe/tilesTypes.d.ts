@@ -10,6 +10,7 @@ declare module '3d-tiles-renderer/plugins' {
   export class GeneratedSurfacePlugin {
     constructor(options: { overlay: TMSTilesOverlay })
     loadRootTileset(): Promise<object>
+    createChild(x: number, y: number, level: number): { geometricError: number } | null
     parseToMesh(
       buffer: ArrayBuffer,
       tile: object,

@@ -1,0 +1,60 @@
+import {
+  aerialPerspective,
+  aerialPerspectiveFog,
+  SkyLightProbe,
+  skyBackground,
+  SunDirectionalLight
+} from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
+import type { Camera, Scene } from 'three'
+import { pass } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import type { WebGPURenderer } from 'three/webgpu'
+
+/** How the air is drawn: by the materials themselves, or over the finished picture. */
+export type AirPath = 'forward' | 'post'
+
+/** Sky, haze, sunlight and sky light for a scene, by either path. */
+export class Air {
+  readonly sun: SunDirectionalLight
+  private readonly sky: SkyLightProbe
+  private readonly pipeline: RenderPipeline | undefined
+
+  constructor(
+    private readonly renderer: WebGPURenderer,
+    private readonly scene: Scene,
+    private readonly camera: Camera,
+    private readonly atmosphere: Atmosphere,
+    path: AirPath
+  ) {
+    this.sun = new SunDirectionalLight(atmosphere)
+    this.sky = new SkyLightProbe(atmosphere)
+    scene.add(this.sun, this.sun.target, this.sky)
+    if (path === 'forward') {
+      scene.backgroundNode = skyBackground(atmosphere)
+      scene.fogNode = aerialPerspectiveFog(atmosphere)
+    } else {
+      const scenePass = pass(scene, camera)
+      const color = scenePass.getTextureNode()
+      const depth = scenePass.getTextureNode('depth')
+      this.pipeline = new RenderPipeline(renderer)
+      this.pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
+    }
+  }
+
+  render(): void {
+    if (this.pipeline === undefined) {
+      this.renderer.render(this.scene, this.camera)
+    } else {
+      this.pipeline.render()
+    }
+  }
+
+  dispose(): void {
+    this.scene.remove(this.sun, this.sun.target, this.sky)
+    this.sun.dispose()
+    this.sky.dispose()
+    this.pipeline?.dispose()
+    this.atmosphere.dispose()
+  }
+}
