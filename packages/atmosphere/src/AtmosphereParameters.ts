@@ -45,7 +45,11 @@ export interface AtmosphereParametersInit {
   groundAlbedo?: Spectrum
   /**
    * Turns spectral radiance at the four wavelengths into CIE 1931 XYZ
-   * [683⁻¹ cd/m² per W/m²/sr/nm]. Fitted by `packages/atmosphere/scripts/fit-color.ts`.
+   * [683⁻¹ cd/m² per W/m²/sr/nm].
+   *
+   * Fitted by `packages/atmosphere/scripts/fit-color.ts` to a solution at 35 wavelengths. Skies that
+   * the fit has not seen: ΔE2000 mean 0.05, 95th percentile 0.11. Sunlight, at zenith angles from 0°
+   * to 88°: chromaticity ΔE2000 ≤ 0.24, illuminance within 0.2 %; 132 klx above the air.
    */
   spectralToXYZ?: SpectralMatrix
 }
@@ -97,9 +101,9 @@ const EARTH: Required<AtmosphereParametersInit> = {
   absorptionHalfWidth: OZONE_HALF_WIDTH,
   groundAlbedo: /*#__PURE__*/ all(0.1),
   spectralToXYZ: [
-    [16.292, -1.919, 49.226, 42.474],
-    [3.477, 28.936, 53.956, 20.504],
-    [81.698, 42.008, -18.727, 1.093]
+    [15.257, -0.058, 48.316, 42.835],
+    [2.101, 32.104, 52.066, 20.727],
+    [79.586, 46.384, -21.308, 1.692]
   ]
 }
 

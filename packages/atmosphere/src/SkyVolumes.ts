@@ -3,7 +3,7 @@ import { renderGroup, texture, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from './AtmosphereUniforms'
 import { FragmentPass, tableTarget } from './FragmentPass'
-import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from './tableSizes'
+import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from './tableSizes'
 import type { EyeScalars } from './tsl/eye'
 import type { Air } from './tsl/scattering'
 import { bakeDepth, bakeSegments, sumSegments } from './tsl/skyVolumeBake'
@@ -22,7 +22,9 @@ export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
   readonly belowSpan = scalar()
   readonly aboveSpan = scalar()
   readonly groundExponent = scalar()
+  readonly groundGrowth = scalar()
   readonly skyExponent = scalar()
+  readonly skyGrowth = scalar()
   /** Number of the volume in the atlas. */
   readonly slot = scalar()
 
@@ -60,11 +62,11 @@ export class SkyVolumes {
     ELEVATIONS * TILE_ROWS * VOLUME_SLOTS,
     2
   )
-  /** Optical depth along rays. */
+  /** Mean extinction along rays. */
   readonly depth: RenderTarget = tableTarget(
     'SkyVolume.depth',
-    DEPTH_COLUMNS,
-    ELEVATIONS * VOLUME_SLOTS
+    DEPTH_SIZE[0],
+    DEPTH_SIZE[1] * VOLUME_SLOTS
   )
   /** Light of each segment alone, before the sum. */
   readonly #segments: RenderTarget = tableTarget(

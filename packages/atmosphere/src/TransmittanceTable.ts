@@ -1,19 +1,47 @@
-import { Fn, float, uv } from 'three/tsl'
-import { vec4 } from 'three/tsl'
+import { Fn, float, uv, vec4 } from 'three/tsl'
 import type { RenderTarget } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereUniforms } from './AtmosphereUniforms'
 import { FragmentPass, tableTarget } from './FragmentPass'
 import { TRANSMITTANCE_SIZE } from './tableSizes'
+import { distanceToTop } from './tsl/boundary'
 import { segmentDepth, stepExponent, type Air } from './tsl/scattering'
 import { transmittanceRay } from './tsl/transmittance'
-import { loop, type Float, type Vec2 } from './tsl-types'
+import { loop, type Float, type Vec2, type Vec4 } from './tsl-types'
 
-/** Two evaluations each. */
-const STEPS = 40
+/** Of a march to the top of the air; two evaluations each. */
+const STEPS = 30
 
 /**
- * Optical depth from a point to the top of the air, by altitude and zenith angle.
+ * Heights on the sun's disc in units of its radius, with the part of its area that each stands for:
+ * Gauss–Chebyshev quadrature of the second kind, whose weight is the disc's width.
+ */
+const DISC = [1, 2, 3, 4].map(k => {
+  const angle = (k * Math.PI) / 5
+  return { height: Math.cos(angle), area: (Math.sin(angle) ** 2 * 2) / 5 }
+})
+
+/** Optical depth from a point to the top of the air. */
+function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
+  const { bottomRadius, thickness } = air.uniforms
+  const distance = distanceToTop(altitude, cosView, bottomRadius, thickness)
+  const ray = { altitude, cosView, cosSun: cosView, cosViewSun: cosView }
+  const exponent = stepExponent(air.uniforms, thickness.sub(altitude) as Float).toConst()
+  const scale = distance.div(exponent.exp().sub(1)).toConst()
+  const start = float(0).toVar()
+  const depth = vec4(0).toVar()
+  loop('step', STEPS, step => {
+    const x = float(step).add(1).div(STEPS)
+    const end = exponent.mul(x).exp().sub(1).mul(scale).toConst()
+    depth.addAssign(segmentDepth(air, ray, start as Float, end as Float).depth)
+    start.assign(end)
+  })
+  return depth as Vec4
+}
+
+/**
+ * Optical depth from a point to the sun, by altitude and zenith angle: −ln of the transmittance's mean
+ * over the part of the disc that is above the horizon.
  *
  * Depth, not transmittance: it keeps its relative precision in half floats where transmittance
  * underflows, and is nearly linear between texels.
@@ -24,25 +52,37 @@ export class TransmittanceTable {
   readonly #pass: FragmentPass
 
   constructor(uniforms: AtmosphereUniforms) {
+    const { bottomRadius, sunAngularRadius } = uniforms
     const air: Air = { uniforms, transmittance: null as never, diffuse: null }
     this.#pass = new FragmentPass(
       'Welkin.Transmittance',
       Fn(() => {
-        const { altitude, cosView, distance } = transmittanceRay(uniforms, uv() as Vec2)
-        const ray = { altitude, cosView, cosSun: cosView, cosViewSun: cosView }
-        const rise = uniforms.thickness.sub(altitude)
-        const exponent = stepExponent(uniforms, rise as Float).toConst()
-        const scale = distance.div(exponent.exp().sub(1)).toConst()
-        const start = float(0).toVar()
-        const depth = vec4(0).toVar()
-        loop('step', STEPS, step => {
-          const x = float(step).add(1).div(STEPS)
-          const end = exponent.mul(x).exp().sub(1).mul(scale).toConst()
-          depth.addAssign(segmentDepth(air, ray, start as Float, end as Float).depth)
-          start.assign(end)
-        })
-        return depth
-      })()
+        const { altitude, cosView } = transmittanceRay(uniforms, uv() as Vec2)
+        const radius = bottomRadius.add(altitude)
+        const cosHorizon = altitude
+          .mul(bottomRadius.mul(2).add(altitude))
+          .sqrt()
+          .div(radius)
+          .negate()
+          .toConst()
+        const sinView = cosView.mul(cosView).oneMinus().max(0).sqrt().toConst()
+        const light = vec4(0).toVar()
+        const area = float(0).toVar()
+        const least = vec4(1e9).toVar()
+        for (const part of DISC) {
+          const cosPart = cosView.add(sinView.mul(sunAngularRadius).mul(part.height)).min(1)
+          const depth = depthToTop(air, altitude, cosPart.max(cosHorizon).toConst() as Float)
+          const visible = cosPart.greaterThanEqual(cosHorizon).select(part.area, 0).toConst()
+          // Relative to the least, so that thick air does not underflow.
+          const lower = least.min(depth).toConst()
+          light.assign(
+            light.mul(lower.sub(least).exp()).add(lower.sub(depth).exp().mul(visible))
+          )
+          least.assign(lower)
+          area.addAssign(visible)
+        }
+        return least.sub(light.div(area).log())
+      })() as unknown as Vec4
     )
   }
 

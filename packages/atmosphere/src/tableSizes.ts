@@ -11,16 +11,16 @@ export const DIFFUSE_SIZE = [96, 16] as const
 export const DIFFUSE_TILES = 8
 
 /** Sky volume: azimuth × elevation × distance. */
-export const VOLUME_SIZE = [32, 96, 32] as const
+export const VOLUME_SIZE = [32, 96, 24] as const
 
 /** Places that volumes are kept for at a time: a scene's camera and its mirror image, say. */
 export const VOLUME_SLOTS = 2
 
 /** How the distances of the sky volume lie in its atlas: columns × rows of tiles. */
-export const VOLUME_TILES = [8, 4] as const
+export const VOLUME_TILES = [6, 4] as const
 
-/** Columns of the table of optical depth along a ray; two for each distance of the volume. */
-export const DEPTH_COLUMNS = 64
+/** Mean extinction along rays: distance × elevation. It costs a row little, and needs many. */
+export const DEPTH_SIZE = [32, 192] as const
 
 /** Factor by which tables of radiance are scaled, to stay clear of subnormal half floats at night. */
 export const RADIANCE_SCALE = 4096

@@ -32,6 +32,8 @@ export function eyeScalars(
   const above =
     radius > topRadius ? Math.asin(topRadius / radius) - Math.asin(sinHorizon) : Math.PI / 2 + dip
   const start = Math.min(h, thickness)
+  const groundExponent = exponent(-start, rayleighScaleHeight)
+  const skyExponent = exponent(thickness - start, rayleighScaleHeight)
   return {
     altitude: h,
     cosSun,
@@ -39,7 +41,9 @@ export function eyeScalars(
     sinHorizon,
     belowSpan: Math.tan((Math.PI / 2 - dip) / 2),
     aboveSpan: Math.tan(above / 2),
-    groundExponent: exponent(-start, rayleighScaleHeight),
-    skyExponent: exponent(thickness - start, rayleighScaleHeight)
+    groundExponent,
+    groundGrowth: Math.expm1(groundExponent),
+    skyExponent,
+    skyGrowth: Math.expm1(skyExponent)
   }
 }

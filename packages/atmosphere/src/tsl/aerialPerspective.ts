@@ -25,7 +25,7 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const limits = rayLimits(air.uniforms, eye, cosView)
-  const between = sampleVolume(volume, eye, cosView, cosViewSun, limits, distance)
+  const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
   return {
     transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp() as never),
     inScatter: linearSRGB(air.uniforms, scatteredRadiance(air.uniforms, between, cosViewSun))

@@ -10,13 +10,16 @@ const [COLUMNS, ROWS] = DIFFUSE_SIZE
 
 type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 
+/** asinh, from the magnitude: the plain form cancels for negative arguments. */
+export function asinh(x: Float): Float {
+  const magnitude = x.abs()
+  return magnitude.add(x.mul(x).add(1).sqrt()).log().mul(x.sign()) as Float
+}
+
 /** Position of the sun's cosine among the columns, in [0, 1]. Columns crowd about the horizon. */
 function sunColumn(cosSun: Float): Float {
   const x = cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst()
-  // asinh, from its magnitude: the plain form cancels for x < 0.
-  const magnitude = x.abs()
-  const asinh = magnitude.add(x.mul(x).add(1).sqrt()).log().mul(x.sign())
-  return asinh.sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp() as Float
+  return asinh(x as Float).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp() as Float
 }
 
 /** Position of an altitude among the rows, in [0, 1]. Rows crowd at the ground. */

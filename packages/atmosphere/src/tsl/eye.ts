@@ -17,10 +17,14 @@ export interface EyeScalars<T> {
   belowSpan: T
   /** The same above the horizon: to the zenith, or from outside the air to its top limb. */
   aboveSpan: T
-  /** κ, growth of the steps of rays to the ground. */
+  /** κ of the distances along rays to the ground: t(x) = t_max (e^{κx} − 1)/(e^κ − 1). */
   groundExponent: T
-  /** κ, growth of the steps of rays to the top of the air. */
+  /** e^κ − 1 of the same. */
+  groundGrowth: T
+  /** κ of the distances along rays to the top of the air. */
   skyExponent: T
+  /** e^κ − 1 of the same. */
+  skyGrowth: T
 }
 
 /** {@link EyeScalars} as shader nodes, and the number of its volume in the atlas. */

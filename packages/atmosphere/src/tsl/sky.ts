@@ -5,7 +5,13 @@ import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
 import type { Eye } from './eye'
 import { groundRadiance, pointAlong, scatteredRadiance, type Air } from './scattering'
-import { rayLimits, sampleVolume, type RayLimits, type VolumeTextures } from './skyVolume'
+import {
+  rayLimits,
+  sampleVolume,
+  type AirBetween,
+  type RayLimits,
+  type VolumeTextures
+} from './skyVolume'
 
 /** What is seen in a direction when nothing is in the way. */
 export interface Sky {
@@ -30,7 +36,23 @@ export function skyInDirection(
   cosViewSun: Float
 ): Sky {
   const limits = rayLimits(air.uniforms, eye, cosView)
-  const between = sampleVolume(volume, eye, cosView, cosViewSun, limits, null)
+  const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, null)
+  return skyBehind(air, eye, cosView, cosViewSun, limits, between)
+}
+
+/**
+ * Light of all the air along a ray, and of the ground where the ray meets it.
+ *
+ * @param between - Air from the eye to the end of the ray, however it was found.
+ */
+export function skyBehind(
+  air: Air,
+  eye: Eye,
+  cosView: Float,
+  cosViewSun: Float,
+  limits: RayLimits,
+  between: AirBetween
+): Sky {
   const transmittance = between.depth.negate().exp().toConst() as Vec4
   const radiance = scatteredRadiance(air.uniforms, between, cosViewSun).toVar()
   If(limits.hitsGround, () => {

@@ -1,15 +1,17 @@
-import { float, mix, vec2 } from 'three/tsl'
-import type { Node, TextureNode } from 'three/webgpu'
+import { If, float, mix, vec2 } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
+import { diffuseSunCosine } from '../cpu/diffuseLight'
+import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { distanceToGround, groundDiscriminant } from './boundary'
+import { asinh } from './diffuseLight'
 import type { Eye } from './eye'
 import type { Scattered } from './scattering'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
-const HALF = ELEVATIONS / 2
+const [DEPTH_COLUMNS, DEPTH_ROWS] = DEPTH_SIZE
 
 /** Textures of a sky volume. */
 export interface VolumeTextures {
@@ -17,7 +19,7 @@ export interface VolumeTextures {
   molecular: TextureNode
   /** Light scattered by aerosols once, without its phase function. */
   aerosol: TextureNode
-  /** Optical depth. */
+  /** Mean extinction along rays [1/m]. */
   depth: TextureNode
 }
 
@@ -60,24 +62,35 @@ export function rayLimits(
 }
 
 /**
- * Row of an elevation, in texels: √tan(α/2), α from the horizon, in either half.
+ * Where an elevation lies in its half (below or above the horizon), in [0, 1] from the horizon:
+ * √tan(α/2), α the angle from it.
  *
  * @param cosView - μ, ray against the zenith of the eye.
  * @param hitsGround - Which half.
  */
-function elevationRow(eye: Eye, cosView: Float, hitsGround: Node<'bool'>): Float {
+function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool): Float {
   const sinView = cosView.mul(cosView).oneMinus().max(0).sqrt().toConst()
   const sine = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
   const cosine = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
   const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
-  const position = sine.div(cosine.add(1).max(1e-6)).div(span).clamp().sqrt()
-  return position.mul(HALF - 1).add(hitsGround.select(0.5, HALF + 0.5)) as Float
+  return sine.div(cosine.add(1).max(1e-6)).div(span).clamp().sqrt() as Float
 }
 
-/** Cosine of the zenith angle of a row, the inverse of {@link elevationRow}. */
-export function rowCosine(eye: Eye, row: Float): { cosView: Float; hitsGround: Bool } {
-  const hitsGround = row.lessThan(HALF).toConst()
-  const position = row.sub(hitsGround.select(0, HALF)).floor().div(HALF - 1).toConst()
+/** Row of a position in a table with that many rows, the lower half below the horizon, in texels. */
+function elevationRow(position: Float, hitsGround: Bool, rows: number): Float {
+  const half = rows / 2
+  return position.mul(half - 1).add(hitsGround.select(0.5, half + 0.5)) as Float
+}
+
+/** Cosine of the zenith angle of a row, counted in whole texels. */
+export function rowCosine(
+  eye: Eye,
+  row: Float,
+  rows: number
+): { cosView: Float; hitsGround: Bool; position: Float } {
+  const half = rows / 2
+  const hitsGround = row.lessThan(half).toConst()
+  const position = row.floor().sub(hitsGround.select(0, half)).div(half - 1).toConst()
   const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
   const tangent = position.mul(position).mul(span).toConst()
   const square = tangent.mul(tangent).toConst()
@@ -87,35 +100,93 @@ export function rowCosine(eye: Eye, row: Float): { cosView: Float; hitsGround: B
     .add(eye.sinHorizon.mul(sine))
     .div(square.add(1))
     .clamp(-1, 1)
-  return { cosView: cosView.toConst() as Float, hitsGround: hitsGround as Bool }
+  return {
+    cosView: cosView.toConst() as Float,
+    hitsGround: hitsGround as Bool,
+    position: position as Float
+  }
 }
 
 /**
- * Column of an azimuth φ from the sun, in texels: sin(φ/2) = √((1 − cos φ)/2).
+ * The sun's cosine where a ray from outside the air meets the ground or passes nearest to it:
+ * the mean over azimuths, and the most that an azimuth adds or takes away.
+ */
+function sunAtFoot(uniforms: AtmosphereUniforms, eye: Eye, cosView: Float, limits: RayLimits) {
+  const radius = uniforms.bottomRadius.add(eye.altitude)
+  const sinView = cosView.mul(cosView).oneMinus().max(0).sqrt().toConst()
+  const distance = limits.hitsGround.select(
+    limits.start.add(limits.length),
+    radius.mul(cosView).negate()
+  )
+  const across = distance.mul(sinView).toConst()
+  const along = radius.add(distance.mul(cosView)).toConst()
+  const inverse = across.mul(across).add(along.mul(along)).max(1).inverseSqrt().toConst()
+  const sinSun = eye.cosSun.mul(eye.cosSun).oneMinus().max(0).sqrt()
+  return {
+    mean: along.mul(inverse).mul(eye.cosSun).toConst() as Float,
+    swing: across.mul(inverse).mul(sinSun).abs().max(1e-4).toConst() as Float
+  }
+}
+
+/** asinh of the sun's cosine, as the diffuse-light table spaces it: fine about the horizon. */
+const spread = (cosSun: Float): Float => {
+  const { centre, width } = diffuseSunCosine
+  return asinh(cosSun.sub(centre).div(width) as Float)
+}
+
+/**
+ * Column of an azimuth φ from the sun, in texels.
+ *
+ * In the air: sin(φ/2), for the light is smooth in cos φ but changes most towards the sun. From outside
+ * the azimuth sweeps over day, dusk and night: there columns crowd at dusk.
  *
  * @param cosView - μ.
  * @param cosViewSun - ν.
  */
-function azimuthColumn(eye: Eye, cosView: Float, cosViewSun: Float): Float {
+function azimuthColumn(
+  uniforms: AtmosphereUniforms,
+  eye: Eye,
+  cosView: Float,
+  cosViewSun: Float,
+  limits: RayLimits
+): Float {
   const sines = cosView
     .mul(cosView)
     .oneMinus()
     .mul(eye.cosSun.mul(eye.cosSun).oneMinus())
     .max(1e-12)
     .sqrt()
-  const cosAzimuth = cosViewSun.sub(cosView.mul(eye.cosSun)).div(sines).clamp(-1, 1)
-  return cosAzimuth
-    .oneMinus()
-    .mul(0.5)
-    .sqrt()
-    .mul(AZIMUTHS - 1)
-    .add(0.5) as Float
+  const cosAzimuth = cosViewSun.sub(cosView.mul(eye.cosSun)).div(sines).clamp(-1, 1).toConst()
+  const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
+  If(eye.altitude.greaterThan(uniforms.thickness), () => {
+    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
+    const first = spread(mean.add(swing) as Float).toConst()
+    const last = spread(mean.sub(swing) as Float)
+    const here = spread(mean.add(swing.mul(cosAzimuth)) as Float)
+    position.assign(first.sub(here).div(first.sub(last)).clamp())
+  })
+  return position.mul(AZIMUTHS - 1).add(0.5) as Float
 }
 
-/** ν of a column, the inverse of {@link azimuthColumn}. */
-export function columnCosine(eye: Eye, cosView: Float, column: Float): Float {
-  const sine = column.floor().div(AZIMUTHS - 1)
-  const cosAzimuth = sine.mul(sine).mul(2).oneMinus()
+/** ν of a column, counted in whole texels: the inverse of {@link azimuthColumn}. */
+export function columnCosine(
+  uniforms: AtmosphereUniforms,
+  eye: Eye,
+  cosView: Float,
+  column: Float,
+  limits: RayLimits
+): Float {
+  const position = column.floor().div(AZIMUTHS - 1).toConst()
+  const cosAzimuth = position.mul(position).mul(2).oneMinus().toVar()
+  If(eye.altitude.greaterThan(uniforms.thickness), () => {
+    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
+    const first = spread(mean.add(swing) as Float).toConst()
+    const last = spread(mean.sub(swing) as Float)
+    const x = mix(first, last, position).toConst()
+    const sinh = x.exp().sub(x.negate().exp()).mul(0.5)
+    const cosSun = sinh.mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
+    cosAzimuth.assign(cosSun.sub(mean).div(swing).clamp(-1, 1))
+  })
   const sines = cosView
     .mul(cosView)
     .oneMinus()
@@ -125,32 +196,50 @@ export function columnCosine(eye: Eye, cosView: Float, column: Float): Float {
   return cosView.mul(eye.cosSun).add(sines.mul(cosAzimuth)).clamp(-1, 1).toConst() as Float
 }
 
-const exponentOf = (eye: Eye, hitsGround: Bool): Float =>
-  hitsGround.select(eye.groundExponent, eye.skyExponent).toConst() as Float
+/** κ and e^κ − 1 of a ray's distances. */
+function spacing(eye: Eye, hitsGround: Bool): { exponent: Float; growth: Float } {
+  return {
+    exponent: hitsGround.select(eye.groundExponent, eye.skyExponent).toConst() as Float,
+    growth: hitsGround.select(eye.groundGrowth, eye.skyGrowth).toConst() as Float
+  }
+}
 
 /** Distance along a ray at a position x in [0, 1] among the slices [m]. */
 export function sliceDistance(eye: Eye, limits: RayLimits, position: Float): Float {
-  const exponent = exponentOf(eye, limits.hitsGround)
-  return exponent
-    .mul(position)
-    .exp()
-    .sub(1)
-    .div(exponent.exp().sub(1))
-    .mul(limits.length) as Float
+  const { exponent, growth } = spacing(eye, limits.hitsGround)
+  return exponent.mul(position).exp().sub(1).div(growth).mul(limits.length) as Float
 }
 
 /** Position among the slices of a distance, the inverse of {@link sliceDistance}. */
 function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
-  const exponent = exponentOf(eye, limits.hitsGround)
+  const { exponent, growth } = spacing(eye, limits.hitsGround)
   const part = distance.div(limits.length.max(1e-3)).clamp()
-  return part.mul(exponent.exp().sub(1)).add(1).log().div(exponent).clamp() as Float
+  return part.mul(growth).add(1).log().div(exponent).clamp() as Float
 }
 
-/** Where the table of optical depth keeps a column and row, in texels. */
-export function depthUV(eye: Eye, column: Float, row: Float): Vec2 {
-  const rowInTable = row.add(eye.slot.mul(ELEVATIONS))
-  return vec2(column.div(DEPTH_COLUMNS), rowInTable.div(ELEVATIONS * VOLUME_SLOTS)) as Vec2
+/**
+ * Mean extinction from where a ray enters the air to a position among the distances [1/m].
+ *
+ * Depth over distance varies little from row to row, even just below the horizon, where the distance
+ * to the ground varies most.
+ *
+ * @param elevation - Position in the ray's half.
+ */
+export function meanExtinction(
+  depth: TextureNode,
+  eye: Eye,
+  elevation: Float,
+  hitsGround: Bool,
+  position: Float
+): Vec4 {
+  const row = elevationRow(elevation, hitsGround, DEPTH_ROWS).add(eye.slot.mul(DEPTH_ROWS))
+  const column = position.mul(DEPTH_COLUMNS).max(1).sub(0.5)
+  const uv = vec2(column.div(DEPTH_COLUMNS), row.div(DEPTH_ROWS * VOLUME_SLOTS))
+  return sampleLevel0(depth, uv as Vec2).mul(1 / EXTINCTION_SCALE) as Vec4
 }
+
+/** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
+export const EXTINCTION_SCALE = 1e5
 
 /** Light scattered between the eye and a point, with the optical depth between them. */
 export interface AirBetween extends Scattered {
@@ -166,6 +255,7 @@ export interface AirBetween extends Scattered {
  * @param distance - From the eye; null for the whole ray [m].
  */
 export function sampleVolume(
+  uniforms: AtmosphereUniforms,
   textures: VolumeTextures,
   eye: Eye,
   cosView: Float,
@@ -173,8 +263,10 @@ export function sampleVolume(
   limits: RayLimits,
   distance: Float | null
 ): AirBetween {
-  const row = elevationRow(eye, cosView, limits.hitsGround).toConst() as Float
-  const column = azimuthColumn(eye, cosView, cosViewSun)
+  const { hitsGround, length } = limits
+  const elevation = elevationPosition(eye, cosView, hitsGround).toConst() as Float
+  const row = elevationRow(elevation, hitsGround, ELEVATIONS)
+  const column = azimuthColumn(uniforms, eye, cosView, cosViewSun, limits)
   const inTile = vec2(column, row).toConst() as Vec2
   const atlas = vec2(
     1 / (AZIMUTHS * TILE_COLUMNS),
@@ -188,19 +280,22 @@ export function sampleVolume(
     )
     return sampleLevel0(source, inTile.add(corner).mul(atlas) as Vec2)
   }
-  const depthAt = (column: Float): Vec4 =>
-    sampleLevel0(textures.depth, depthUV(eye, column, row))
+  const inAir = distance === null ? length : distance.sub(limits.start).clamp(0, length).toConst()
+  const position =
+    distance === null
+      ? (float(1) as Float)
+      : (slicePosition(eye, limits, inAir as Float).toConst() as Float)
+  const depth = meanExtinction(textures.depth, eye, elevation, hitsGround, position).mul(inAir)
 
-  const exists = limits.length.greaterThan(0).select(1, 0)
+  const exists = length.greaterThan(0).select(1, 0)
   if (distance === null) {
     const last = float(DISTANCES - 1) as Float
     return {
       molecular: fetch(textures.molecular, last).mul(exists) as Vec4,
       aerosol: fetch(textures.aerosol, last).mul(exists) as Vec4,
-      depth: depthAt(float(DEPTH_COLUMNS - 0.5) as Float).mul(exists) as Vec4
+      depth: depth as Vec4
     }
   }
-  const position = slicePosition(eye, limits, distance.sub(limits.start).max(0) as Float).toConst()
   // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
   const grown = position.mul(DISTANCES).min(1).mul(exists).toConst()
   const slice = position.mul(DISTANCES).sub(1).max(0).toConst()
@@ -209,12 +304,9 @@ export function sampleVolume(
   const part = slice.sub(near)
   const read = (source: TextureNode): Vec4 =>
     mix(fetch(source, near), fetch(source, far), part).mul(grown) as Vec4
-  const depthPosition = position.mul(DEPTH_COLUMNS).toConst()
-  const depth = depthAt(depthPosition.max(1).sub(0.5) as Float)
   return {
     molecular: read(textures.molecular),
     aerosol: read(textures.aerosol),
-    depth: depth.mul(depthPosition.min(1)).mul(exists) as Vec4
+    depth: depth as Vec4
   }
 }
-

@@ -1,13 +1,14 @@
 import { Discard, Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { TwoOutputs } from '../FragmentPass'
-import { DEPTH_COLUMNS, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
+import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { loop, sampleLevel0, type Float, type Int, type Vec2, type Vec4 } from '../tsl-types'
 import type { Eye } from './eye'
 import { pointAlong, scatterSegment, segmentDepth, type Air, type Ray } from './scattering'
 import {
+  EXTINCTION_SCALE,
   columnCosine,
-  depthUV,
+  meanExtinction,
   rayLimits,
   rowCosine,
   sliceDistance,
@@ -16,6 +17,7 @@ import {
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
+const [DEPTH_COLUMNS, DEPTH_ROWS] = DEPTH_SIZE
 
 /** What the two attachments of a target receive. */
 interface Parts {
@@ -36,7 +38,7 @@ function twoOutputs(body: () => Parts): TwoOutputs {
 }
 
 /** The same ray from where it enters the air. */
-function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
+export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   const entry = pointAlong(air, ray, limits.start)
   return {
     altitude: entry.altitude.min(air.uniforms.thickness).toConst() as Float,
@@ -56,11 +58,11 @@ function withinSlot(eye: Eye): Vec2 {
   return vec2(texel.x, y).toConst() as Vec2
 }
 
-/** Shader of the table of optical depth: rows are elevations, columns distances. */
+/** Shader of the table of mean extinction: rows are elevations, columns distances. */
 export function bakeDepth(air: Air, eye: Eye): Vec4 {
   return Fn(() => {
     const texel = withinSlot(eye)
-    const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(ELEVATIONS) as Float)
+    const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(DEPTH_ROWS) as Float, DEPTH_ROWS)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun: cosSun }, limits)
@@ -73,7 +75,7 @@ export function bakeDepth(air: Air, eye: Eye): Vec4 {
       depth.addAssign(segmentDepth(air, ray, start as Float, end as Float).depth)
       start.assign(end)
     })
-    return depth
+    return depth.div(start.max(1)).mul(EXTINCTION_SCALE)
   })() as unknown as Vec4
 }
 
@@ -99,18 +101,15 @@ function atlasPosition(texel: Vec2) {
 export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs {
   return twoOutputs(() => {
     const { column, row, slice } = atlasPosition(uv() as Vec2)
-    const { cosView, hitsGround } = rowCosine(eye, row.add(0.5) as Float)
+    const { cosView, hitsGround, position } = rowCosine(eye, row, ELEVATIONS)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
-    const cosViewSun = columnCosine(eye, cosView, column)
+    const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, limits)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
     const start = sliceDistance(eye, limits, slice.div(DISTANCES) as Float).toConst() as Float
     const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES) as Float).toConst() as Float
-    const perSlice = DEPTH_COLUMNS / DISTANCES
-    const depthColumn = slice.mul(perSlice).sub(0.5).max(0.5) as Float
-    const before = sampleLevel0(depth, depthUV(eye, depthColumn, row.add(0.5) as Float)).mul(
-      slice.greaterThan(0).select(1, 0)
-    )
+    const reached = slice.div(DISTANCES) as Float
+    const before = meanExtinction(depth, eye, position, hitsGround, reached).mul(start)
     const through = before.negate().exp().toConst()
     const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
     return {

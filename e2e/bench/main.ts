@@ -1,0 +1,145 @@
+import { writeFileSync } from 'node:fs'
+import { parseArgs } from 'node:util'
+import { BenchDevice, finished, gpuMilliseconds } from './device'
+import { benchScene, setSun, type Path } from './scene'
+import { median } from './statistics'
+
+const { values } = parseArgs({
+  options: {
+    json: { type: 'boolean', default: false },
+    frames: { type: 'string', default: '40' },
+    size: { type: 'string', default: '1920x1080' },
+    out: { type: 'string' }
+  }
+})
+const frames = Number(values.frames)
+const [width, height] = values.size.split('x').map(Number) as [number, number]
+if (!Number.isInteger(frames) || frames < 1 || !(width > 0 && height > 0)) {
+  throw new Error(`bench: --frames must be a positive integer and --size WIDTHxHEIGHT`)
+}
+
+const ALTITUDES = [2, 1e3, 1e4, 4e5, 2e7]
+const PATHS: Path[] = ['forward', 'post']
+const WARM_UP = 15
+
+interface Case {
+  path: Path
+  altitude: number
+  compositeMs: number
+  volumeUpdateMs: number
+}
+
+const device = await BenchDevice.open()
+const log = (text: string): void => {
+  if (!values.json) console.log(text)
+}
+log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
+
+/** GPU milliseconds of one frame, median after warm-up; and CPU milliseconds to submit it. */
+async function time(
+  path: Path,
+  altitude: number,
+  withAir: boolean,
+  sunMoves: boolean
+): Promise<{ gpu: number; cpu: number }> {
+  const renderer = await device.renderer(width, height)
+  const scene = benchScene(renderer, path, altitude, withAir, [width, height])
+  const gpu: number[] = []
+  const cpu: number[] = []
+  for (let frame = 0; frame < WARM_UP + frames; frame++) {
+    if (sunMoves) setSun(scene.atmosphere, scene.camera, 30 + frame * 0.05)
+    const start = performance.now()
+    scene.draw()
+    const submitted = performance.now() - start
+    const elapsed = await gpuMilliseconds(renderer)
+    if (frame >= WARM_UP) {
+      gpu.push(elapsed)
+      cpu.push(submitted)
+    }
+  }
+  scene.dispose()
+  renderer.dispose()
+  return { gpu: median(gpu), cpu: median(cpu) }
+}
+
+const cases: Case[] = []
+const cpuCosts: number[] = []
+for (const path of PATHS) {
+  for (const altitude of ALTITUDES) {
+    const without = await time(path, altitude, false, false)
+    const still = await time(path, altitude, true, false)
+    const moving = await time(path, altitude, true, true)
+    const compositeMs = still.gpu - without.gpu
+    const volumeUpdateMs = moving.gpu - still.gpu
+    cases.push({ path, altitude, compositeMs, volumeUpdateMs })
+    cpuCosts.push(moving.cpu - without.cpu)
+    log(
+      `${path.padEnd(8)} ${String(altitude).padStart(9)} m   composite ${compositeMs.toFixed(3)} ms` +
+        `   volume update ${volumeUpdateMs.toFixed(3)} ms   (scene alone ${without.gpu.toFixed(3)} ms)`
+    )
+  }
+}
+
+/** GPU time of a bake, one step a frame: in all, and the most in a frame. */
+async function timeBake(): Promise<{ total: number; most: number; bytes: number }> {
+  const runs: { total: number; most: number; bytes: number }[] = []
+  for (let run = 0; run < 5; run++) {
+    const renderer = await device.renderer(64, 36)
+    const scene = benchScene(renderer, 'forward', 2, true, [64, 36])
+    scene.draw()
+    await gpuMilliseconds(renderer)
+    scene.draw()
+    const still = await gpuMilliseconds(renderer)
+    scene.atmosphere.bakeStepsPerFrame = 1
+    scene.atmosphere.parameters.set({})
+    const steps: number[] = []
+    const { tables } = scene.atmosphere
+    for (const before = tables.version; tables.version === before; ) {
+      scene.draw()
+      steps.push((await gpuMilliseconds(renderer)) - still)
+    }
+    const total = steps.reduce((sum, value) => sum + value, 0)
+    runs.push({ total, most: Math.max(...steps), bytes: tables.bytes })
+    scene.dispose()
+    renderer.dispose()
+  }
+  return {
+    total: median(runs.map(run => run.total)),
+    most: median(runs.map(run => run.most)),
+    bytes: runs[0]!.bytes
+  }
+}
+
+/** From no renderer to the first finished frame, tables baked: wall-clock. */
+async function timeFirstFrame(): Promise<number> {
+  const start = performance.now()
+  const renderer = await device.renderer(320, 180)
+  const scene = benchScene(renderer, 'forward', 2, true, [320, 180])
+  scene.draw()
+  await finished(renderer)
+  const elapsed = performance.now() - start
+  scene.dispose()
+  renderer.dispose()
+  return elapsed
+}
+
+const bake = await timeBake()
+const firstFrameMs = await timeFirstFrame()
+const result = {
+  device: device.name,
+  cases,
+  bakeMs: bake.total,
+  bakeMaxFrameMs: bake.most,
+  gpuBytes: bake.bytes,
+  firstFrameMs,
+  cpuMsPerFrame: median(cpuCosts)
+}
+log(`
+bake           ${bake.total.toFixed(2)} ms in all, ${bake.most.toFixed(2)} ms at most in a frame
+GPU memory     ${(bake.bytes / 1e6).toFixed(2)} MB
+first frame    ${firstFrameMs.toFixed(0)} ms at 320×180
+CPU            ${result.cpuMsPerFrame.toFixed(2)} ms a frame while the volume is updated`)
+if (values.json) console.log(JSON.stringify(result, null, 2))
+if (values.out !== undefined) writeFileSync(values.out, JSON.stringify(result, null, 2))
+// Dawn's objects outlive the script otherwise, and the process does not end.
+device.close()

@@ -1,0 +1,77 @@
+import { DataTexture, FloatType, NearestFilter, RenderTarget, RGBAFormat } from 'three'
+import { Discard, Fn, If, int, ivec2, screenCoordinate, textureLoad, uniform, vec4 } from 'three/tsl'
+import type { WebGPURenderer } from 'three/webgpu'
+import { FragmentPass } from '../../../packages/atmosphere/src/FragmentPass'
+import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
+import { readPicture } from '../../gpu/harness/picture'
+import type { RayRequest } from '../request'
+
+const COLUMNS = 64
+
+/** A ray, as the shader sees it. */
+export interface RayNodes {
+  cosView: Float
+  cosViewSun: Float
+  distance: Float
+}
+
+/** Rays from many eyes, a pixel each, drawn eye by eye. */
+export class RayBatch {
+  readonly #count: number
+  readonly #eyes: Set<number>
+  readonly #source: DataTexture
+  readonly #target: RenderTarget
+  readonly #pass: FragmentPass
+  readonly #eye = uniform(0)
+
+  /**
+   * @param rays - With the number of each one's eye.
+   * @param body - What is computed per ray.
+   */
+  constructor(rays: (RayRequest & { eye: number })[], body: (ray: RayNodes) => Vec4) {
+    const rows = Math.max(Math.ceil(rays.length / COLUMNS), 1)
+    const texels = new Float32Array(4 * COLUMNS * rows).fill(-1)
+    rays.forEach(({ cosView, cosViewSun, distance = 0, eye }, i) =>
+      texels.set([cosView, cosViewSun, distance, eye], 4 * i)
+    )
+    this.#count = rays.length
+    this.#eyes = new Set(rays.map(ray => ray.eye))
+    this.#source = new DataTexture(texels, COLUMNS, rows, RGBAFormat, FloatType)
+    this.#source.minFilter = this.#source.magFilter = NearestFilter
+    this.#source.needsUpdate = true
+    this.#target = new RenderTarget(COLUMNS, rows, { type: FloatType, depthBuffer: false })
+    this.#target.texture.minFilter = this.#target.texture.magFilter = NearestFilter
+    this.#pass = new FragmentPass(
+      'Validation',
+      Fn(() => {
+        const pixel = ivec2(int(screenCoordinate.x), int(screenCoordinate.y))
+        const ray = textureLoad(this.#source, pixel).toConst()
+        If(ray.w.notEqual(this.#eye), () => {
+          Discard()
+        })
+        return vec4(
+          body({
+            cosView: ray.x as Float,
+            cosViewSun: ray.y as Float,
+            distance: ray.z as Float
+          })
+        )
+      })() as unknown as Vec4
+    )
+  }
+
+  /** Draws the rays of one eye. */
+  render(renderer: WebGPURenderer, eye: number): void {
+    if (!this.#eyes.has(eye)) return
+    this.#eye.value = eye
+    this.#pass.render(renderer, this.#target)
+  }
+
+  /** Four numbers per ray; frees what the batch holds. */
+  async read(renderer: WebGPURenderer): Promise<number[]> {
+    // A target that nothing was drawn to does not exist yet.
+    const data = this.#count === 0 ? [] : (await readPicture(renderer, this.#target)).data
+    for (const owned of [this.#source, this.#target, this.#pass]) owned.dispose()
+    return [...data.slice(0, 4 * this.#count)]
+  }
+}

@@ -1,0 +1,71 @@
+import type { AtmosphereParametersInit } from '@welkin/atmosphere'
+import type { Backend } from '../gpu/harness/gpu-test'
+
+/** How light along rays is found: read from the sky volume, or marched. */
+export type Path = 'volume' | 'march'
+
+/** A place, as the sky volume sees it. */
+export interface EyePlace {
+  /** Above the ground [m]. */
+  altitude: number
+  /** Sun against zenith. */
+  cosSun: number
+}
+
+/** A ray from an eye. */
+export interface RayRequest extends EyePlace {
+  cosView: number
+  cosViewSun: number
+  /** Length of a segment; absent for the whole ray [m]. */
+  distance?: number
+}
+
+/** What the page is asked to compute. */
+export interface EvaluationRequest {
+  backend: Backend
+  path: Path
+  parameters: AtmosphereParametersInit
+  /** Whole rays: radiance of the sky or ground. */
+  sky: RayRequest[]
+  /** Segments: light scattered in them, and transmittance. */
+  segments: RayRequest[]
+  /** Cosines of the sun's zenith angle: irradiance on horizontal ground. */
+  grounds: number[]
+}
+
+/** Four numbers per request, for unit irradiance of the sun above the air. */
+export interface EvaluationResult {
+  sky: number[]
+  inscatter: number[]
+  transmittance: number[]
+  skyIrradiance: number[]
+  sunIrradiance: number[]
+}
+
+const cosDegrees = (degrees: number): number => Math.cos((degrees * Math.PI) / 180)
+const sinDegrees = (degrees: number): number => Math.sin((degrees * Math.PI) / 180)
+
+/**
+ * A ray from the angles of the reference files.
+ *
+ * @param heightKm - Of the eye above the ground [km].
+ * @param viewZenith - Of the ray [°].
+ * @param sunZenith - Of the sun [°].
+ * @param azimuth - Of the ray from the sun's azimuth [°].
+ */
+export function rayFromAngles(
+  heightKm: number,
+  viewZenith: number,
+  sunZenith: number,
+  azimuth: number
+): RayRequest {
+  const cosView = cosDegrees(viewZenith)
+  const cosSun = cosDegrees(sunZenith)
+  const level = sinDegrees(viewZenith) * sinDegrees(sunZenith)
+  return {
+    altitude: 1000 * heightKm,
+    cosSun,
+    cosView,
+    cosViewSun: cosView * cosSun + level * cosDegrees(azimuth)
+  }
+}
