@@ -43,8 +43,8 @@ function interpolate(
   const a = (row * columns + column) * size
   const b = a + columns * size
   for (let i = 0; i < size; i++) {
-    const lower = values[a + i]! * (1 - u) + values[a + size + i]! * u
-    const upper = values[b + i]! * (1 - u) + values[b + size + i]! * u
+    const lower = values[a + i] * (1 - u) + values[a + size + i] * u
+    const upper = values[b + i] * (1 - u) + values[b + size + i] * u
     target[i] = lower * (1 - v) + upper * v
   }
 }
@@ -91,7 +91,7 @@ class Sunlight {
     const [columns, rows] = [Sunlight.#columns, Sunlight.#rows]
     const y = (horizon / this.#chord) * (rows - 1)
     interpolate(this.#depth, columns, rows, 4, x * (columns - 1), y, target)
-    for (let i = 0; i < 4; i++) target[i] = visible * Math.exp(-target[i]!)
+    for (let i = 0; i < 4; i++) target[i] = visible * Math.exp(-target[i])
   }
 }
 
@@ -123,10 +123,9 @@ class Gatherer {
   /** Legendre-weighted field in a direction, for one wavelength of the scratch cell. */
   #field(i: number, basis: readonly number[], weight1: number, weight2: number): number {
     const cell = this.#cell
-    const first = cell[4 + i]! * basis[1]! + cell[8 + i]! * basis[2]!
-    const second =
-      cell[12 + i]! * basis[3]! + cell[16 + i]! * basis[4]! + cell[20 + i]! * basis[5]!
-    return cell[i]! * basis[0]! + weight1 * first + weight2 * second
+    const first = cell[4 + i] * basis[1] + cell[8 + i] * basis[2]
+    const second = cell[12 + i] * basis[3] + cell[16 + i] * basis[4] + cell[20 + i] * basis[5]
+    return cell[i] * basis[0] + weight1 * first + weight2 * second
   }
 
   /**
@@ -160,12 +159,12 @@ class Gatherer {
         const r = Math.sqrt(radius ** 2 + 2 * radius * cosView * t + t ** 2)
         const altitude = Math.max(r - p.bottomRadius, 0)
         const density = densities(p, altitude)
-        const extinction = this.#extinctions[which]!
+        const extinction = this.#extinctions[which]
         for (let i = 0; i < 4; i++) {
           extinction[i] =
-            p.rayleighScattering[i]! * density[0] +
-            p.mieExtinction[i]! * density[1] +
-            p.absorptionExtinction[i]! * density[2]
+            p.rayleighScattering[i] * density[0] +
+            p.mieExtinction[i] * density[1] +
+            p.absorptionExtinction[i] * density[2]
         }
         return { t, r, altitude, density, node }
       })
@@ -177,21 +176,21 @@ class Gatherer {
         else this.#lookUp(light, altitude, sunThere)
         const basis = light === null ? [] : harmonics(cosThere, sunThere, cosViewSun)
         for (let i = 0; i < 4; i++) {
-          const byMolecules = p.rayleighScattering[i]! * density[0]
-          const byAerosols = p.mieScattering[i]! * density[1]
+          const byMolecules = p.rayleighScattering[i] * density[0]
+          const byAerosols = p.mieScattering[i] * density[1]
           const source =
             light === null
-              ? (byMolecules * phases[0]! + byAerosols * phases[1]!) * this.#sun[i]!
+              ? (byMolecules * phases[0] + byAerosols * phases[1]) * this.#sun[i]
               : byMolecules * this.#field(i, basis, 0, 0.1) +
                 byAerosols * this.#field(i, basis, this.#mie[1], this.#mie[2])
           // Extinction as the line through both nodes, integrated from the step's start.
-          const mean = (first[i]! + second[i]!) / 2
-          const slope = ((second[i]! - first[i]!) * Math.sqrt(3)) / 2
+          const mean = (first[i] + second[i]) / 2
+          const slope = ((second[i] - first[i]) * Math.sqrt(3)) / 2
           const before = half * (mean * node + (slope * ((node - 1) ** 2 - 1)) / 2)
-          this.radiance[i]! += source * half * Math.exp(-this.depth[i]! - Math.max(before, 0))
+          this.radiance[i] += source * half * Math.exp(-this.depth[i] - Math.max(before, 0))
         }
       }
-      for (let i = 0; i < 4; i++) this.depth[i]! += half * (first[i]! + second[i]!)
+      for (let i = 0; i < 4; i++) this.depth[i] += half * (first[i] + second[i])
     }
   }
 
@@ -201,9 +200,9 @@ class Gatherer {
     if (light === null) this.#sunlight.transmittance(p.bottomRadius, cosSun, this.#sun)
     else this.#lookUp(light, 0, cosSun)
     for (let i = 0; i < 4; i++) {
-      const irradiance = light === null ? this.#sun[i]! * Math.max(cosSun, 0) : this.#cell[24 + i]!
-      const reflected = (irradiance * p.groundAlbedo[i]!) / Math.PI
-      this.radiance[i]! += reflected * Math.exp(-this.depth[i]!)
+      const irradiance = light === null ? this.#sun[i] * Math.max(cosSun, 0) : this.#cell[24 + i]
+      const reflected = (irradiance * p.groundAlbedo[i]) / Math.PI
+      this.radiance[i] += reflected * Math.exp(-this.depth[i])
     }
   }
 }
@@ -241,12 +240,12 @@ function gatherOrder(
     for (let ray = 0; ray < 2 * elevations * azimuths; ray++) {
       const index = Math.floor(ray / azimuths)
       const up = index < elevations
-      const x = rule.nodes[index % elevations]!
+      const x = rule.nodes[index % elevations]
       const span = Math.PI / 2 + (up ? dip : -dip)
       const angle = span * (0.3 * x + 0.7 * x * x)
       const elevation = (up ? angle : -angle) - dip
       const level = Math.cos(elevation)
-      const width = span * (0.3 + 1.4 * x) * rule.weights[index % elevations]!
+      const width = span * (0.3 + 1.4 * x) * rule.weights[index % elevations]
       const weight = (width * level * 2 * Math.PI) / azimuths
       const cosView = Math.sin(elevation)
       const towards = level * Math.cos((Math.PI * ((ray % azimuths) + 0.5)) / azimuths)
@@ -262,19 +261,19 @@ function gatherOrder(
       // The basis of `harmonics` has powers of sin θ_s in it that the moments must be rid of.
       const basis = harmonics(cosView, cosSun, cosViewSun)
       const weights = [
-        basis[0]!,
-        basis[1]!,
-        basis[2]! / sinSun ** 2,
-        basis[3]!,
-        basis[4]! / sinSun ** 2,
-        basis[5]! / sinSun ** 4,
+        basis[0],
+        basis[1],
+        basis[2] / sinSun ** 2,
+        basis[3],
+        basis[4] / sinSun ** 2,
+        basis[5] / sinSun ** 4,
         Math.max(cosView, 0),
         Math.max(-cosView, 0)
       ]
       for (let tile = 0; tile < DIFFUSE_TILES; tile++) {
         for (let i = 0; i < 4; i++) {
           const at = cell * PER_CELL + 4 * tile + i
-          result[at]! += weights[tile]! * weight * gatherer.radiance[i]!
+          result[at] += weights[tile] * weight * gatherer.radiance[i]
         }
       }
     }
@@ -298,7 +297,7 @@ export function solveDiffuseLight(
   let before: Float64Array | null = null
   for (let order = 0; order < orders; order++) {
     const light: Float64Array = gatherOrder(p, gatherer, before, order === 0 ? sun : diffuse)
-    light.forEach((value, i) => (total[i]! += value))
+    light.forEach((value, i) => (total[i] += value))
     if (order === orders - 1 && before !== null) addTail(total, before, light)
     before = light
   }
@@ -309,7 +308,7 @@ export function solveDiffuseLight(
       const row = Math.floor(cell / COLUMNS)
       const texel = (row * DIFFUSE_TILES + tile) * COLUMNS + (cell % COLUMNS)
       for (let i = 0; i < 4; i++) {
-        values[4 * texel + i] = RADIANCE_SCALE * total[cell * PER_CELL + 4 * tile + i]!
+        values[4 * texel + i] = RADIANCE_SCALE * total[cell * PER_CELL + 4 * tile + i]
       }
     }
   }
@@ -320,11 +319,11 @@ export function solveDiffuseLight(
 function addTail(total: Float64Array, before: Float64Array, last: Float64Array): void {
   for (let cell = 0; cell < COLUMNS * ROWS; cell++) {
     for (let i = 0; i < 4; i++) {
-      const [a, b] = [before[cell * PER_CELL + i]!, last[cell * PER_CELL + i]!]
+      const [a, b] = [before[cell * PER_CELL + i], last[cell * PER_CELL + i]]
       const ratio = a > 0 ? Math.min(b / a, 0.95) : 0
       for (let tile = 0; tile < DIFFUSE_TILES; tile++) {
         const at = cell * PER_CELL + 4 * tile + i
-        total[at]! += (last[at]! * ratio) / (1 - ratio)
+        total[at] += (last[at] * ratio) / (1 - ratio)
       }
     }
   }

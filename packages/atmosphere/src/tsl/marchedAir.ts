@@ -27,5 +27,5 @@ export function marchedAir(
   const inside = distance === null ? limits.length : distance.sub(limits.start).max(0)
   const length = inside.min(limits.length).toConst() as Float
   const end = pointAlong(air, ray, length)
-  return scattering(air, ray, length, end.altitude.sub(ray.altitude) as Float, steps)
+  return scattering(air, ray, length, end.altitude.sub(ray.altitude), steps)
 }

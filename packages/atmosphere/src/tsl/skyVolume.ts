@@ -273,7 +273,8 @@ export function sampleVolume(
     1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS)
   )
   const fetch = (source: TextureNode, slice: Float): Vec4 => {
-    const tileRow = slice.div(TILE_COLUMNS).floor()
+    // Half a tile from the edges: a division that rounds down must not land in another row.
+    const tileRow = slice.add(0.5).div(TILE_COLUMNS).floor()
     const corner = vec2(
       slice.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS),
       tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)

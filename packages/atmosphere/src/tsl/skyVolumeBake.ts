@@ -81,10 +81,11 @@ export function bakeDepth(air: Air, eye: Eye): Vec4 {
 
 /** Position of a texel in the atlas of slices. */
 function atlasPosition(texel: Vec2) {
+  // Half a texel from the edges: a division that rounds down must not land in another tile.
   const x = texel.x.mul(AZIMUTHS * TILE_COLUMNS).floor().toConst()
   const y = texel.y.mul(ELEVATIONS * TILE_ROWS).floor().toConst()
-  const tileColumn = x.div(AZIMUTHS).floor().toConst()
-  const tileRow = y.div(ELEVATIONS).floor().toConst()
+  const tileColumn = x.add(0.5).div(AZIMUTHS).floor().toConst()
+  const tileRow = y.add(0.5).div(ELEVATIONS).floor().toConst()
   return {
     column: x.sub(tileColumn.mul(AZIMUTHS)).toConst() as Float,
     row: y.sub(tileRow.mul(ELEVATIONS)).toConst() as Float,
