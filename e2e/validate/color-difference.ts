@@ -13,7 +13,7 @@ const radians = Math.PI / 180
  */
 export function xyzToLab(xyz: Readonly<Triple>, whiteY: number): Triple {
   const [x, y, z] = xyz.map((value, i) => {
-    const t = value / (D65[i]! * whiteY)
+    const t = value / (D65[i] * whiteY)
     return t > (6 / 29) ** 3 ? Math.cbrt(t) : t / (3 * (6 / 29) ** 2) + 4 / 29
   }) as Triple
   return [116 * y - 16, 500 * (x - y), 200 * (y - z)]

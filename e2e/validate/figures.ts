@@ -1,4 +1,4 @@
-import { AtmosphereParameters } from '@welkin/atmosphere'
+import { AtmosphereParameters, type AtmosphereParametersInit } from '@welkin/atmosphere'
 import { ciede2000, xyzToLab, type Triple } from './color-difference'
 import type { ColorSample, SkyReference } from './reference'
 import {
@@ -19,12 +19,7 @@ interface Angles {
 }
 
 const rayOf = (sample: Angles): RayRequest =>
-  rayFromAngles(
-    sample.h_km,
-    sample.view_zenith_deg,
-    sample.sun_zenith_deg,
-    sample.rel_azimuth_deg
-  )
+  rayFromAngles(sample.h_km, sample.view_zenith_deg, sample.sun_zenith_deg, sample.rel_azimuth_deg)
 
 const labelOf = (sample: Angles): string =>
   `${sample.h_km} km, view ${sample.view_zenith_deg}°, sun ${sample.sun_zenith_deg}°, ` +
@@ -37,7 +32,9 @@ export function skyRequest(reference: SkyReference, where: Where): EvaluationReq
     ...where,
     parameters,
     sky: sky.map(rayOf),
-    segments: segments.map(sample => ({ ...rayOf(sample), distance: 1e3 * sample.distance_km })),
+    segments: segments.map(sample =>
+      Object.assign(rayOf(sample), { distance: 1e3 * sample.distance_km })
+    ),
     grounds: irradiance.map(sample => Math.cos((sample.sun_zenith_deg * Math.PI) / 180))
   }
 }
@@ -92,23 +89,22 @@ export function compareSky(reference: SkyReference, result: EvaluationResult): S
       const sun = sample.sun_zenith_deg
       const bySky = four(result.skyIrradiance, i)
       const bySun = four(result.sunIrradiance, i)
-      const both = bySky.map((value, k) => value + bySun[k]!)
-      const reference = sample.sky.map((value, k) => value + sample.direct[k]!)
+      const both = bySky.map((value, k) => value + bySun[k])
+      const reference = sample.sky.map((value, k) => value + sample.direct[k])
       const isNight = sample.direct.every(value => value === 0)
       const against = (model: number[], values: number[], what: string): Comparison[] =>
         compare(sun, model, values, sample.sky_stderr, solarIrradiance, `${what}, sun ${sun}°`)
-      return [
-        ...against(bySky, sample.sky, 'by the sky'),
-        ...(isNight ? [] : against(both, reference, 'by sky and sun'))
-      ]
+      const skyAlone = against(bySky, sample.sky, 'by the sky')
+      return isNight ? skyAlone : skyAlone.concat(against(both, reference, 'by sky and sun'))
     })
   }
   return Object.fromEntries(Object.entries(comparisons).filter(([, list]) => list !== undefined))
 }
 
 /**
- * Irradiance of the ground by the sun alone, beside the figures that have goals: the model takes the
- * sun's light from the middle of its disc, the reference from all of it, which differs at sunset.
+ * Irradiance of the ground by the sun alone, beside the figures that have goals. The model lights the
+ * ground with the disc's mean transmittance from the direction of its middle; the reference takes the
+ * cosine at every point of the disc, which differs at sunset.
  */
 export function compareSun(reference: SkyReference, result: EvaluationResult): Comparison[] {
   return (reference.irradiance ?? []).flatMap((sample, i) =>
@@ -132,7 +128,7 @@ function colorParameters(): AtmosphereParameters {
 export function colorRequest(samples: ColorSample[], where: Where): EvaluationRequest {
   return {
     ...where,
-    parameters: { ...colorParameters() },
+    parameters: Object.assign<AtmosphereParametersInit, unknown>({}, colorParameters()),
     sky: samples.map(rayOf),
     segments: [],
     grounds: []
@@ -162,7 +158,7 @@ export function colorDifferences(samples: ColorSample[], xyz: Triple[]): number[
   return samples.map((sample, i) => {
     const bright = luminances.get(bin(sample))!
     const whiteY = (4 * bright.reduce((sum, y) => sum + y, 0)) / bright.length
-    return ciede2000(xyzToLab(xyz[i]!, whiteY), xyzToLab(sample.XYZ, whiteY))
+    return ciede2000(xyzToLab(xyz[i], whiteY), xyzToLab(sample.XYZ, whiteY))
   })
 }
 
@@ -172,7 +168,10 @@ export function compareColors(samples: ColorSample[], result: EvaluationResult):
   const xyz = samples.map(
     (_, i) =>
       spectralToXYZ.map(row =>
-        row.reduce((sum, weight, k) => sum + 683 * weight * solarIrradiance[k]! * result.sky[4 * i + k]!, 0)
+        row.reduce(
+          (sum, weight, k) => sum + 683 * weight * solarIrradiance[k] * result.sky[4 * i + k],
+          0
+        )
       ) as Triple
   )
   const differences = colorDifferences(samples, xyz)

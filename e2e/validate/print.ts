@@ -23,7 +23,9 @@ class Tally {
     if (goal === undefined) return cell(format(value), 10).padEnd(24)
     const met = value <= goal
     if (!met) this.missed++
-    return `${cell(format(value), 10)} ${`≤ ${format(goal)}`.padEnd(10)}${met ? '✓' : '✗'}`.padEnd(24)
+    return `${cell(format(value), 10)} ${`≤ ${format(goal)}`.padEnd(10)}${met ? '✓' : '✗'}`.padEnd(
+      24
+    )
   }
 }
 
@@ -70,7 +72,9 @@ export function printQuantities(
 export function printSun(comparisons: Comparison[]): void {
   const zeniths = [...new Set(comparisons.map(({ sunZenith }) => sunZenith))]
   if (zeniths.length === 0) return
-  console.log('Irradiance of the ground by the sun alone (from the middle of its disc): no goal')
+  console.log(
+    'Irradiance of the ground by the sun alone, all light from the middle of its disc: no goal'
+  )
   for (const zenith of zeniths) {
     const errors = comparisons.filter(({ sunZenith }) => sunZenith === zenith)
     const text = errors.map(({ error }) => cell(`${(100 * error).toFixed(2)} %`, 11)).join('')

@@ -135,8 +135,11 @@ function angles(reader: Reader, item: Json): Angles {
 
 /** A number of {@link Spectrum}'s length: a single number for all, or the list, its last repeated. */
 function spectrum(reader: Reader, value: unknown, channels: number, scale = 1): Spectrum {
-  const values = typeof value === 'number' ? [reader.number(value)] : reader.numbers(value, channels)
-  return [0, 1, 2, 3].map(i => scale * values[Math.min(i, values.length - 1)]!) as unknown as Spectrum
+  const values =
+    typeof value === 'number' ? [reader.number(value)] : reader.numbers(value, channels)
+  return [0, 1, 2, 3].map(
+    i => scale * values[Math.min(i, values.length - 1)]
+  ) as unknown as Spectrum
 }
 
 function readParameters(reader: Reader, p: Json, channels: number): AtmosphereParametersInit {
@@ -159,8 +162,8 @@ function readParameters(reader: Reader, p: Json, channels: number): AtmospherePa
     mieScaleHeight: number('mie_scale_height_km', 1e3),
     mieAsymmetry: asymmetry,
     absorptionExtinction: values('absorption_extinction_per_km', 1e-3),
-    absorptionAltitude: 1e3 * peak!,
-    absorptionHalfWidth: 1e3 * halfWidth!,
+    absorptionAltitude: 1e3 * peak,
+    absorptionHalfWidth: 1e3 * halfWidth,
     groundAlbedo: values('ground_albedo')
   }
 }
@@ -222,12 +225,13 @@ export function readSkyReference(file: string): SkyReference {
  */
 export function readColorReference(file: string): ColorSample[] {
   const { reader, content } = readJson(file)
-  return reader.at('sky').list(content.sky).map((value, i) => {
-    const place = reader.at('sky').at(i)
-    const item = place.object(value)
-    return {
-      ...angles(place, item),
-      XYZ: place.at('XYZ').numbers(item.XYZ, 3) as [number, number, number]
-    }
-  })
+  return reader
+    .at('sky')
+    .list(content.sky)
+    .map((value, i) => {
+      const place = reader.at('sky').at(i)
+      const item = place.object(value)
+      const XYZ = place.at('XYZ').numbers(item.XYZ, 3) as [number, number, number]
+      return Object.assign(angles(place, item), { XYZ })
+    })
 }

@@ -39,7 +39,7 @@ export function quantile(values: readonly number[], part: number): number {
   const position = part * (sorted.length - 1)
   const below = Math.floor(position)
   const above = Math.min(below + 1, sorted.length - 1)
-  return sorted[below]! + (position - below) * (sorted[above]! - sorted[below]!)
+  return sorted[below] + (position - below) * (sorted[above] - sorted[below])
 }
 
 /**
@@ -58,11 +58,11 @@ export function compare(
   label: string
 ): Comparison[] {
   return reference.flatMap((value, i) => {
-    const expected = value / scale[i]!
+    const expected = value / scale[i]
     if (!(expected >= NEGLIGIBLE)) return []
-    const error = (model[i]! - expected) / expected
+    const error = (model[i] - expected) / expected
     if (!Number.isFinite(error)) throw new Error(`${label}: the model gave ${model[i]}`)
-    const spread = stderr === null ? 0 : stderr[i]! / value
+    const spread = stderr === null ? 0 : stderr[i] / value
     return [{ sunZenith, error, stderr: spread, label: `${label} #${i}` }]
   })
 }

@@ -1,5 +1,15 @@
 import { DataTexture, FloatType, NearestFilter, RenderTarget, RGBAFormat } from 'three'
-import { Discard, Fn, If, int, ivec2, screenCoordinate, textureLoad, uniform, vec4 } from 'three/tsl'
+import {
+  Discard,
+  Fn,
+  If,
+  int,
+  ivec2,
+  screenCoordinate,
+  textureLoad,
+  uniform,
+  vec4
+} from 'three/tsl'
 import type { WebGPURenderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/FragmentPass'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
@@ -51,12 +61,12 @@ export class RayBatch {
         })
         return vec4(
           body({
-            cosView: ray.x as Float,
-            cosViewSun: ray.y as Float,
-            distance: ray.z as Float
+            cosView: ray.x,
+            cosViewSun: ray.y,
+            distance: ray.z
           })
         )
-      })() as unknown as Vec4
+      })()
     )
   }
 
@@ -70,8 +80,8 @@ export class RayBatch {
   /** Four numbers per ray; frees what the batch holds. */
   async read(renderer: WebGPURenderer): Promise<number[]> {
     // A target that nothing was drawn to does not exist yet.
-    const data = this.#count === 0 ? [] : (await readPicture(renderer, this.#target)).data
+    const pixels = this.#count === 0 ? [] : (await readPicture(renderer, this.#target)).data
     for (const owned of [this.#source, this.#target, this.#pass]) owned.dispose()
-    return [...data.slice(0, 4 * this.#count)]
+    return Array.from(pixels).slice(0, 4 * this.#count)
   }
 }

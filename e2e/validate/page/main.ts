@@ -68,10 +68,7 @@ async function evaluateRays(
     inscatter: batch(segments, ray =>
       scatteredRadiance(view.air.uniforms, airInSegment(view, path, ray), ray.cosViewSun)
     ),
-    transmittance: batch(
-      segments,
-      ray => airInSegment(view, path, ray).depth.negate().exp() as Vec4
-    )
+    transmittance: batch(segments, ray => airInSegment(view, path, ray).depth.negate().exp())
   }
   eyes.forEach(({ altitude, cosSun }, i) => {
     const scalars = eyeScalars(parameters, altitude, cosSun)
@@ -95,16 +92,15 @@ async function evaluateGrounds(
   if (cosines.length === 0) return { skyIrradiance: [], sunIrradiance: [] }
   const { uniforms, transmittance, diffuse } = viewNodes(atmosphere).air
   const evaluate = async (body: (cosSun: Float) => Vec4): Promise<number[]> => {
-    const run = (input: Node<'vec4'>): Node => body(input.x as Float)
+    const run = (input: Node<'vec4'>): Node => body(input.x)
     const inputs = cosines.map(cosine => [cosine])
     return [...(await evaluateOnGpu(renderer, inputs, run))]
   }
   const ground = vec4(0).x as Float
   return {
     skyIrradiance: await evaluate(cosSun => groundIrradiance(uniforms, diffuse!, cosSun)),
-    sunIrradiance: await evaluate(
-      cosSun =>
-        sunTransmittance(uniforms, transmittance, ground, cosSun).mul(cosSun.max(0)) as Vec4
+    sunIrradiance: await evaluate(cosSun =>
+      sunTransmittance(uniforms, transmittance, ground, cosSun).mul(cosSun.max(0))
     )
   }
 }
@@ -114,16 +110,19 @@ window.welkinEvaluate = async request => {
   const parameters = new AtmosphereParameters(request.parameters)
   const ellipsoid = new Ellipsoid(parameters.bottomRadius)
   const atmosphere = new Atmosphere({ parameters, ellipsoid })
+  let result: EvaluationResult
+  let messages: string[]
   try {
     const renderer = await context.createRenderer()
     await atmosphere.bake(renderer)
-    return {
+    result = {
       ...(await evaluateRays(renderer, atmosphere, request)),
       ...(await evaluateGrounds(renderer, atmosphere, request.grounds))
     }
   } finally {
     atmosphere.dispose()
-    const { messages } = await finish()
-    if (messages.length > 0) throw new Error(messages.join('\n'))
+    messages = (await finish()).messages
   }
+  if (messages.length > 0) throw new Error(messages.join('\n'))
+  return result
 }
