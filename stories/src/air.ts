@@ -34,7 +34,8 @@ export class Air {
       scene.backgroundNode = skyBackground(atmosphere)
       scene.fogNode = aerialPerspectiveFog(atmosphere)
     } else {
-      const scenePass = pass(scene, camera)
+      // One sample: the air needs the depth of the very point that the colour is of.
+      const scenePass = pass(scene, camera, { samples: 0 })
       const color = scenePass.getTextureNode()
       const depth = scenePass.getTextureNode('depth')
       this.pipeline = new RenderPipeline(renderer)

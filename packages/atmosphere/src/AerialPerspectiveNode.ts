@@ -23,13 +23,15 @@ import type { Float, Vec3, Vec4 } from './tsl-types'
  * of it, and draws the sky where nothing was.
  *
  * ```ts
- * const scenePass = pass(scene, camera)
+ * const scenePass = pass(scene, camera, { samples: 0 })
  * pipeline.outputNode = aerialPerspective(
  *   scenePass.getTextureNode(), scenePass.getTextureNode('depth'), camera, atmosphere
  * )
  * ```
  *
- * Leave `scene.background` and `scene.fogNode` empty. What is transparent and writes no depth gets the
+ * Leave `scene.background` and `scene.fogNode` empty, and draw without multisampling: a pixel has one
+ * depth, which is wrong for most of its samples at silhouettes and, from space, everywhere (smooth
+ * edges afterwards, or use the fog node). What is transparent and writes no depth gets the
  * air of what is behind it; the fog node has no such limit. Knows standard, reversed and logarithmic
  * depth, perspective and orthographic cameras.
  */
@@ -101,12 +103,13 @@ export class AerialPerspectiveNode extends AtmosphereNode {
           ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
           : position(depth)
         const air = aerialPerspectiveTo(this.view, at as Vec3)
-        result.assign(color.rgb.mul(air.transmittance).add(air.inScatter))
+        const gained = this.showSky ? air.inScatter.mul(color.a) : air.inScatter
+        result.assign(color.rgb.mul(air.transmittance).add(gained))
       })
       if (this.showSky) {
-        If(isSky, () => {
+        // Silhouettes (with multisampling) and transparent things leave their coverage in alpha.
+        If(isSky.or(color.a.lessThan(1)), () => {
           const sky = skyColor(this.view, ray, this.showSun ? pixel : null)
-          // Transparent things in front of the sky have left their coverage in alpha.
           result.addAssign(sky.mul(color.a.oneMinus()))
         })
       }
