@@ -12,7 +12,7 @@ await build({
   format: 'esm',
   target: 'node20',
   external: ['webgpu'],
-  alias: sourceAliases as Record<string, string>,
+  alias: sourceAliases,
   logLevel: 'warning'
 })
 console.log(outfile)

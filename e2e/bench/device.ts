@@ -81,7 +81,7 @@ export class BenchDevice {
       antialias: false,
       trackTimestamp: true,
       device
-    } as never)
+    })
     await renderer.init()
     renderer.setPixelRatio(1)
     renderer.setSize(width, height, false)

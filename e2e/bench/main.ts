@@ -58,7 +58,7 @@ async function time(
     }
   }
   scene.dispose()
-  renderer.dispose()
+  void renderer.dispose()
   return { gpu: median(gpu), cpu: median(cpu) }
 }
 
@@ -94,19 +94,19 @@ async function timeBake(): Promise<{ total: number; most: number; bytes: number 
     scene.atmosphere.parameters.set({})
     const steps: number[] = []
     const { tables } = scene.atmosphere
-    for (const before = tables.version; tables.version === before; ) {
+    for (const before = tables.version; tables.version === before;) {
       scene.draw()
       steps.push((await gpuMilliseconds(renderer)) - still)
     }
     const total = steps.reduce((sum, value) => sum + value, 0)
     runs.push({ total, most: Math.max(...steps), bytes: tables.bytes })
     scene.dispose()
-    renderer.dispose()
+    void renderer.dispose()
   }
   return {
     total: median(runs.map(run => run.total)),
     most: median(runs.map(run => run.most)),
-    bytes: runs[0]!.bytes
+    bytes: runs[0].bytes
   }
 }
 
@@ -119,7 +119,7 @@ async function timeFirstFrame(): Promise<number> {
   await finished(renderer)
   const elapsed = performance.now() - start
   scene.dispose()
-  renderer.dispose()
+  void renderer.dispose()
   return elapsed
 }
 

@@ -10,7 +10,12 @@ import {
 } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import { Atmosphere, aerialPerspective, aerialPerspectiveFog, skyBackground } from '@welkin/atmosphere'
+import {
+  Atmosphere,
+  aerialPerspective,
+  aerialPerspectiveFog,
+  skyBackground
+} from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 
 /** How the air is drawn: as background and fog, or as a post effect. */
@@ -61,7 +66,10 @@ export function benchScene(
   placeCamera(camera, altitude)
   setSun(atmosphere, camera, 40)
   const scene = new Scene()
-  const globe = new Mesh(new SphereGeometry(1, 256, 128), new MeshBasicMaterial({ color: 0x557799 }))
+  const globe = new Mesh(
+    new SphereGeometry(1, 256, 128),
+    new MeshBasicMaterial({ color: 0x557799 })
+  )
   globe.geometry.rotateX(Math.PI / 2)
   globe.scale.copy(SHAPE.radii)
   globe.updateMatrixWorld()

@@ -3,7 +3,6 @@ import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import { AtmosphereNode } from './AtmosphereNode'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
-import type { Vec3 } from './tsl-types'
 
 /**
  * Aerial perspective as a scene's fog: every material with `fog`, opaque or transparent, dims and
@@ -20,12 +19,9 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   override setup(_builder: NodeBuilder): Node {
     return Fn(() => {
-      const { transmittance, inScatter } = aerialPerspectiveTo(
-        this.view,
-        positionView as unknown as Vec3
-      )
+      const { transmittance, inScatter } = aerialPerspectiveTo(this.view, positionView)
       return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
-    })() as unknown as Node
+    })()
   }
 }
 

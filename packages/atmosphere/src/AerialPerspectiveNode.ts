@@ -80,19 +80,18 @@ export class AerialPerspectiveNode extends AtmosphereNode {
   }
 
   override setup(builder: NodeBuilder): Node {
-    const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera === true
+    const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
     const { logarithmicDepthBuffer } = builder.renderer as Renderer & {
       logarithmicDepthBuffer: boolean
     }
     const isLogarithmic = logarithmicDepthBuffer && !isOrthographic
-    const position = (depth: Float): Vec3 =>
-      getViewPosition(uv(), depth, this.#projectionInverse) as unknown as Vec3
+    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this.#projectionInverse)
 
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
       const depth = float((this.depthNode as Vec4).r).toConst() as Float
       // Any depth that is neither near nor far gives the direction.
-      const middle = position(float(0.5) as Float).toConst() as Vec3
+      const middle = position(float(0.5)).toConst() as Vec3
       const result = color.rgb.toVar()
       const isSky = isBackgroundDepth(depth).toConst()
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
@@ -102,7 +101,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
         const at = isLogarithmic
           ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
           : position(depth)
-        const air = aerialPerspectiveTo(this.view, at as Vec3)
+        const air = aerialPerspectiveTo(this.view, at)
         const gained = this.showSky ? air.inScatter.mul(color.a) : air.inScatter
         result.assign(color.rgb.mul(air.transmittance).add(gained))
       })
@@ -114,7 +113,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
         })
       }
       return vec4(result, this.showSky ? float(1) : color.a)
-    })() as unknown as Node
+    })()
   }
 }
 

@@ -69,7 +69,9 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   constructor({ parameters, ellipsoid }: AtmosphereOptions = {}) {
     super()
     if (parameters !== undefined && !(parameters instanceof AtmosphereParameters)) {
-      throw new Error(`Atmosphere: parameters must be AtmosphereParameters, got ${String(parameters)}`)
+      throw new Error(
+        `Atmosphere: parameters must be AtmosphereParameters, got ${String(parameters)}`
+      )
     }
     if (ellipsoid !== undefined && !(ellipsoid instanceof Ellipsoid)) {
       throw new Error(`Atmosphere: ellipsoid must be an Ellipsoid, got ${String(ellipsoid)}`)
@@ -156,7 +158,9 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     const length = world.length()
     if (!(length > 0 && length < Infinity)) {
       const { x, y, z } = world
-      throw new Error(`Atmosphere: sunDirection must be finite and not zero, got (${x}, ${y}, ${z})`)
+      throw new Error(
+        `Atmosphere: sunDirection must be finite and not zero, got (${x}, ${y}, ${z})`
+      )
     }
     this.#sunWorld.copy(world).divideScalar(length)
     this.#date = null

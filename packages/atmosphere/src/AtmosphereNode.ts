@@ -17,7 +17,9 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   constructor(atmosphere: Atmosphere, camera: Camera | null = null) {
     super('vec4')
     if (atmosphere === undefined || atmosphere === null) {
-      throw new Error(`${this.constructor.name}: atmosphere must be an Atmosphere, got ${atmosphere}`)
+      throw new Error(
+        `${this.constructor.name}: atmosphere must be an Atmosphere, got ${atmosphere}`
+      )
     }
     this.atmosphere = atmosphere
     this.view = viewNodes(atmosphere, camera)

@@ -73,7 +73,7 @@ export class AtmosphereTables {
     const { width, height } = target
     const halves = await renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height)
     if (version !== this.version) return
-    const values = Float32Array.from(halves as Uint16Array, DataUtils.fromHalfFloat)
+    const values = Float32Array.from(halves as Uint16Array, half => DataUtils.fromHalfFloat(half))
     // WebGL reads from the bottom row up, which texture coordinates there call the first.
     const backend = renderer.backend as { isWebGPUBackend?: boolean }
     this.data = { values, isFlipped: backend.isWebGPUBackend !== true }
@@ -86,11 +86,7 @@ export class AtmosphereTables {
 
   /** Bytes of GPU memory that the tables and volumes take. */
   get bytes(): number {
-    const targets = [
-      this.transmittance.target,
-      this.diffuseLight.target,
-      ...this.volumes.targets
-    ]
+    const targets = [this.transmittance.target, this.diffuseLight.target, ...this.volumes.targets]
     const bytesPerTexel = 8
     return targets.reduce(
       (sum, { width, height, textures }) => sum + width * height * textures.length * bytesPerTexel,

@@ -5,9 +5,8 @@ import type { AtmosphereParameters, Spectrum } from './AtmosphereParameters'
 import { asymmetryMoments, cornetteShanksFactor } from './cpu/phase'
 import { linearSRGBColumns, whiteBalancedColumns } from './cpu/color'
 
-const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup) as never
-const spectrum = (): UniformNode<'vec4', Vector4> =>
-  uniform(new Vector4()).setGroup(renderGroup) as never
+const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
+const spectrum = (): UniformNode<'vec4', Vector4> => uniform(new Vector4()).setGroup(renderGroup)
 const columns = (): UniformNode<'vec3', Vector3>[] =>
   [0, 1, 2, 3].map(() => uniform(new Vector3()).setGroup(renderGroup) as never)
 
@@ -69,10 +68,10 @@ export class AtmosphereUniforms {
     this.sunAngularRadius.value = parameters.sunAngularRadius
     set(this.limbDarkening, parameters.limbDarkening)
     linearSRGBColumns(parameters, luminanceScale).forEach((column, i) => {
-      this.linearSRGB[i]!.value.set(...column)
+      this.linearSRGB[i].value.set(...column)
     })
     whiteBalancedColumns(parameters).forEach((column, i) => {
-      this.transmittanceRGB[i]!.value.set(...column)
+      this.transmittanceRGB[i].value.set(...column)
     })
   }
 }

@@ -20,7 +20,7 @@ const MOST_RAYS = 2 * SUN_ROUND.elevations * SUN_ROUND.azimuths
 /** Orders of scattering that are computed; those beyond are summed as a geometric series. */
 const ORDERS = 5
 
-const integer = (): UniformNode<'int', number> => uniform(0, 'int') as never
+const integer = (): UniformNode<'int', number> => uniform(0, 'int')
 
 /** What baking needs and the finished table does not. */
 class Workshop {
@@ -32,7 +32,7 @@ class Workshop {
   readonly #azimuths = integer()
   readonly #offset = integer()
   readonly #firstRow = integer()
-  readonly #previous = texture(this.orders[0]!.texture)
+  readonly #previous = texture(this.orders[0].texture)
   readonly #sunRays: FragmentPass
   readonly #diffuseRays: FragmentPass
   readonly #reduce: FragmentPass
@@ -77,10 +77,10 @@ class Workshop {
     this.#azimuths.value = round.azimuths
     this.#offset.value = order === 0 ? 0 : SUN_ROUND.elevations
     this.#firstRow.value = firstRow
-    if (order > 0) this.#previous.value = this.orders[order - 1]!.texture
+    if (order > 0) this.#previous.value = this.orders[order - 1].texture
     const rays = order === 0 ? this.#sunRays : this.#diffuseRays
     rays.render(renderer, this.rays)
-    this.#reduce.render(renderer, this.orders[order]!)
+    this.#reduce.render(renderer, this.orders[order])
   }
 
   /** Sums all orders into the table. */

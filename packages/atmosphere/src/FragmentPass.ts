@@ -1,5 +1,5 @@
-import { HalfFloatType, LinearFilter, NearestFilter, NoBlending, RenderTarget } from 'three'
-import type { TextureFilter } from 'three'
+import { HalfFloatType, LinearFilter, NoBlending, RenderTarget } from 'three'
+import type { TextureFilter, NearestFilter } from 'three'
 import { NodeMaterial, QuadMesh, RendererUtils } from 'three/webgpu'
 import type { Node, Renderer } from 'three/webgpu'
 import type { Vec4 } from './tsl-types'

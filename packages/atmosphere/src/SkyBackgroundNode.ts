@@ -30,7 +30,7 @@ export class SkyBackgroundNode extends AtmosphereNode {
     return Fn(() => {
       const ray = screenRay().toConst() as Vec3
       return vec4(skyColor(this.view, ray, this.showSun ? pixelAngle(ray) : null), 1)
-    })() as unknown as Node
+    })()
   }
 }
 
@@ -42,7 +42,7 @@ function screenRay(): Vec3 {
   const perspective = vec3(inverse.mul(vec4(ndc, 0.5, 1)).xyz)
   const isOrthographic = inverse.element(3).element(3).equal(1)
   const direction = perspective.mul(perspective.z.lessThan(0).select(1, -1))
-  return select(isOrthographic, vec3(0, 0, -1), direction) as unknown as Vec3
+  return select(isOrthographic, vec3(0, 0, -1), direction)
 }
 
 /** The sky as a scene's background: see {@link SkyBackgroundNode}. */

@@ -52,20 +52,24 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
   override setup(builder: NodeBuilder): undefined {
     const irradiance = Fn(() => {
       const { air } = this.#view
-      const offset = this.#view.toMapped(positionView as unknown as Vec3).toConst()
-      const { altitude, cosSun, up } = this.#view.place(offset as Vec3)
-      const normal = this.#view.toMapped(normalView as unknown as Vec3).normalize().toConst()
+      const offset = this.#view.toMapped(positionView).toConst()
+      const { altitude, cosSun, up } = this.#view.place(offset)
+      const normal = this.#view.toMapped(normalView).normalize().toConst()
       const received = skyIrradiance(
         air.uniforms,
         air.diffuse!,
         altitude,
-        normal.dot(up) as never,
+        normal.dot(up),
         cosSun,
-        normal.dot(this.#view.sunDirection) as never
+        normal.dot(this.#view.sunDirection)
       )
-      return linearSRGB(air.uniforms, received).mul((this as unknown as { colorNode: Vec3 }).colorNode)
+      return linearSRGB(air.uniforms, received).mul(
+        (this as unknown as { colorNode: Vec3 }).colorNode
+      )
     })()
-    const { irradiance: sum } = builder.context as { irradiance: { addAssign(node: unknown): void } }
+    const { irradiance: sum } = builder.context as {
+      irradiance: { addAssign(node: unknown): void }
+    }
     sum.addAssign(irradiance)
   }
 }

@@ -11,7 +11,7 @@ import { bakeDepth, bakeSegments, sumSegments } from './tsl/skyVolumeBake'
 const [AZIMUTHS, ELEVATIONS] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 
-const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup) as never
+const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
 
 /** Uniforms of an eye, and a way to set them all. */
 export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
@@ -101,7 +101,7 @@ export class SkyVolumes {
     )
     this.#sumPass = new FragmentPass(
       'Welkin.SkyVolume.sum',
-      sumSegments(this.#eye, molecular!, aerosol!)
+      sumSegments(this.#eye, molecular, aerosol)
     )
   }
 

@@ -65,8 +65,8 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
     const tint = uniform(node.color).setGroup(renderGroup) as unknown as Vec3
     node.colorNode = Fn(() => {
       const { uniforms, transmittance } = this.#view.air
-      const offset = this.#view.toMapped(positionView as unknown as Vec3).toConst()
-      const { altitude, cosSun } = this.#view.place(offset as Vec3)
+      const offset = this.#view.toMapped(positionView).toConst()
+      const { altitude, cosSun } = this.#view.place(offset)
       const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
       return linearSRGB(uniforms, sunlight).mul(tint)
     })()

@@ -7,7 +7,7 @@ import { TRANSMITTANCE_SIZE } from './tableSizes'
 import { distanceToTop } from './tsl/boundary'
 import { segmentDepth, stepExponent, type Air } from './tsl/scattering'
 import { transmittanceRay } from './tsl/transmittance'
-import { loop, type Float, type Vec2, type Vec4 } from './tsl-types'
+import { loop, type Float, type Vec4 } from './tsl-types'
 
 /** Of a march to the top of the air; two evaluations each. */
 const STEPS = 30
@@ -26,17 +26,17 @@ function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
   const { bottomRadius, thickness } = air.uniforms
   const distance = distanceToTop(altitude, cosView, bottomRadius, thickness)
   const ray = { altitude, cosView, cosSun: cosView, cosViewSun: cosView }
-  const exponent = stepExponent(air.uniforms, thickness.sub(altitude) as Float).toConst()
+  const exponent = stepExponent(air.uniforms, thickness.sub(altitude)).toConst()
   const scale = distance.div(exponent.exp().sub(1)).toConst()
   const start = float(0).toVar()
   const depth = vec4(0).toVar()
   loop('step', STEPS, step => {
     const x = float(step).add(1).div(STEPS)
     const end = exponent.mul(x).exp().sub(1).mul(scale).toConst()
-    depth.addAssign(segmentDepth(air, ray, start as Float, end as Float).depth)
+    depth.addAssign(segmentDepth(air, ray, start, end).depth)
     start.assign(end)
   })
-  return depth as Vec4
+  return depth
 }
 
 /**
@@ -57,7 +57,7 @@ export class TransmittanceTable {
     this.#pass = new FragmentPass(
       'Welkin.Transmittance',
       Fn(() => {
-        const { altitude, cosView } = transmittanceRay(uniforms, uv() as Vec2)
+        const { altitude, cosView } = transmittanceRay(uniforms, uv())
         const radius = bottomRadius.add(altitude)
         const cosHorizon = altitude
           .mul(bottomRadius.mul(2).add(altitude))
@@ -71,18 +71,16 @@ export class TransmittanceTable {
         const least = vec4(1e9).toVar()
         for (const part of DISC) {
           const cosPart = cosView.add(sinView.mul(sunAngularRadius).mul(part.height)).min(1)
-          const depth = depthToTop(air, altitude, cosPart.max(cosHorizon).toConst() as Float)
+          const depth = depthToTop(air, altitude, cosPart.max(cosHorizon).toConst())
           const visible = cosPart.greaterThanEqual(cosHorizon).select(part.area, 0).toConst()
           // Relative to the least, so that thick air does not underflow.
           const lower = least.min(depth).toConst()
-          light.assign(
-            light.mul(lower.sub(least).exp()).add(lower.sub(depth).exp().mul(visible))
-          )
+          light.assign(light.mul(lower.sub(least).exp()).add(lower.sub(depth).exp().mul(visible)))
           least.assign(lower)
           area.addAssign(visible)
         }
         return least.sub(light.div(area).log())
-      })() as unknown as Vec4
+      })()
     )
   }
 

@@ -8,8 +8,7 @@ import type { Air } from './tsl/scattering'
 import type { VolumeTextures } from './tsl/skyVolume'
 import type { Float, Mat3, Vec3 } from './tsl-types'
 
-const vector = (): UniformNode<'vec3', Vector3> =>
-  uniform(new Vector3()).setGroup(renderGroup) as never
+const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
 
 /** An atmosphere as seen from a camera: the uniforms and textures that shaders of a view share. */
 export class ViewNodes {
@@ -18,16 +17,13 @@ export class ViewNodes {
   readonly volume: VolumeTextures
   readonly eye = new EyeUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */
-  readonly height = uniform(0).setGroup(renderGroup) as unknown as UniformNode<'float', number>
+  readonly height = uniform(0).setGroup(renderGroup)
   /** Zenith at the camera, in the mapped space. */
   readonly up = vector()
   /** Direction to the sun, in the mapped space. */
   readonly sunDirection = vector()
   /** Displacements in view space [world units] to the mapped space [m]. */
-  readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup) as unknown as UniformNode<
-    'mat3',
-    Matrix3
-  >
+  readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
   readonly #camera: Camera | null
 
   /** @param camera - The camera; null for whichever renders. */
@@ -42,8 +38,8 @@ export class ViewNodes {
       diffuse: texture(diffuseLight.target.texture)
     }
     this.volume = {
-      molecular: molecular!,
-      aerosol: aerosol!,
+      molecular: molecular,
+      aerosol: aerosol,
       depth: texture(volumes.depth.texture)
     }
   }
@@ -52,7 +48,7 @@ export class ViewNodes {
   prepare(frame: NodeFrame): void {
     const camera = this.#camera ?? frame.camera
     if (frame.renderer !== null && camera !== null) {
-      this.atmosphere.update(frame.renderer as never, camera)
+      this.atmosphere.update(frame.renderer, camera)
     }
   }
 
@@ -60,7 +56,7 @@ export class ViewNodes {
   update(frame: NodeFrame): void {
     const camera = this.#camera ?? frame.camera
     const view = camera === null ? undefined : this.atmosphere.viewOf(camera)
-    if (view?.eye == null) return
+    if (view === undefined || view.eye === null) return
     this.eye.set(view.eye, view.slot)
     this.height.value = view.height
     this.up.value.copy(view.up)
@@ -70,7 +66,7 @@ export class ViewNodes {
 
   /** A displacement in view space [world units] in the mapped space [m]. */
   toMapped(displacementView: Vec3): Vec3 {
-    return (this.viewToMapped as unknown as Mat3).mul(displacementView) as unknown as Vec3
+    return (this.viewToMapped as unknown as Mat3).mul(displacementView)
   }
 
   /**
@@ -86,9 +82,9 @@ export class ViewNodes {
     const altitude = this.height.add(rise.div(radiusThere.add(radius))).clamp(0, thickness)
     const up = this.up.mul(radius).add(offset).div(radiusThere).toConst()
     return {
-      altitude: altitude.toConst() as Float,
-      cosSun: up.dot(this.sunDirection).clamp(-1, 1).toConst() as Float,
-      up: up as Vec3
+      altitude: altitude.toConst(),
+      cosSun: up.dot(this.sunDirection).clamp(-1, 1).toConst(),
+      up: up
     }
   }
 }

@@ -12,7 +12,9 @@ export type Vec4 = Node<'vec4'>
 export type Mat3 = Node<'mat3'>
 
 /** A matrix whose columns can be taken. */
-export type Mat4 = Node<'mat4'> & { element(column: number): Vec4 & { element(row: number): Float } }
+export type Mat4 = Node<'mat4'> & {
+  element(column: number): Vec4 & { element(row: number): Float }
+}
 
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {
@@ -20,7 +22,7 @@ export const loop = (name: string, end: Int | number, body: (index: Int) => void
     range: { start: number; end: Int | number; type: string; name: string },
     body: (inputs: Record<string, Int>) => void
   ) => void
-  nodes({ start: 0, end, type: 'int', name }, inputs => body(inputs[name] as Int))
+  nodes({ start: 0, end, type: 'int', name }, inputs => body(inputs[name]))
 }
 
 /** `uniformArray` of four-vectors, whose elements are typed. */

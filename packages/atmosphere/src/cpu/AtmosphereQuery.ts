@@ -32,7 +32,9 @@ export class AtmosphereQuery {
     const up = this.#space.position(position, new Vector3())
     if (!Number.isFinite(up.lengthSq()) || up.lengthSq() === 0) {
       const { x, y, z } = position
-      throw new Error(`Atmosphere: position must be finite and not the centre, got (${x}, ${y}, ${z})`)
+      throw new Error(
+        `Atmosphere: position must be finite and not the centre, got (${x}, ${y}, ${z})`
+      )
     }
     const radius = Math.max(up.length(), this.#parameters.bottomRadius)
     up.normalize()
@@ -49,13 +51,15 @@ export class AtmosphereQuery {
 
   #table(method: string): DiffuseLightData {
     if (this.#data === null) {
-      throw new Error(`Atmosphere: ${method} needs baked tables: await atmosphere.bake(renderer) first`)
+      throw new Error(
+        `Atmosphere: ${method} needs baked tables: await atmosphere.bake(renderer) first`
+      )
     }
     return this.#data
   }
 
   #linearSRGB(perIrradiance: number[]): Triple {
-    const values = perIrradiance.map((value, i) => value * this.#parameters.solarIrradiance[i]!)
+    const values = perIrradiance.map((value, i) => value * this.#parameters.solarIrradiance[i])
     return spectralToLinearSRGB(this.#parameters, values as unknown as Spectrum)
   }
 

@@ -15,7 +15,9 @@ const XYZ_TO_LINEAR_SRGB: readonly Triple[] = [
 
 /** CIE XYZ (D65 white) to linear sRGB, same unit. */
 export function xyzToLinearSRGB(xyz: Readonly<Triple>): Triple {
-  return XYZ_TO_LINEAR_SRGB.map(row => row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]) as Triple
+  return XYZ_TO_LINEAR_SRGB.map(
+    row => row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]
+  ) as Triple
 }
 
 /**
@@ -50,6 +52,6 @@ export function linearSRGBColumns(parameters: AtmosphereParameters, scale: numbe
  */
 export function whiteBalancedColumns(parameters: AtmosphereParameters): Triple[] {
   const columns = linearSRGBColumns(parameters, 1)
-  const white = [0, 1, 2].map(row => columns.reduce((sum, column) => sum + column[row]!, 0))
+  const white = [0, 1, 2].map(row => columns.reduce((sum, column) => sum + column[row], 0))
   return columns.map(column => column.map((value, row) => value / (white[row] || 1)) as Triple)
 }

@@ -62,7 +62,7 @@ export function sampleDiffuseLight(
       corners.reduce((sum, [i, j, weight]) => {
         const storedRow = isFlipped ? rows - 1 - j : j
         const texel = storedRow * columns * DIFFUSE_TILES + tile * columns + i
-        return sum + (weight * values[4 * texel + channel]!) / RADIANCE_SCALE
+        return sum + (weight * values[4 * texel + channel]) / RADIANCE_SCALE
       }, 0)
     )
   )

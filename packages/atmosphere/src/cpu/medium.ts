@@ -14,8 +14,8 @@ export function extinctionAt(p: AtmosphereParameters, altitude: number): number[
   const [molecules, aerosols, absorber] = densities(p, altitude)
   return [0, 1, 2, 3].map(
     i =>
-      p.rayleighScattering[i]! * molecules +
-      p.mieExtinction[i]! * aerosols +
-      p.absorptionExtinction[i]! * absorber
+      p.rayleighScattering[i] * molecules +
+      p.mieExtinction[i] * aerosols +
+      p.absorptionExtinction[i] * absorber
   )
 }

@@ -70,16 +70,16 @@ export function inScatter(
     const sun = sunTransmittance(p, r, muSun)
     const tiles = data && sampleDiffuseLight(data, altitude / thickness, muSun)
     for (let i = 0; i < 4; i++) {
-      depthBefore[i]! += ((t - last) / 6) * (ends[0]![i]! + 4 * ends[1]![i]! + ends[2]![i]!)
-      const byMolecules = p.rayleighScattering[i]! * molecules
-      const byAerosols = p.mieScattering[i]! * aerosols
-      let source = (byMolecules * phases[0]! + byAerosols * phases[1]!) * sun[i]!
+      depthBefore[i] += ((t - last) / 6) * (ends[0][i] + 4 * ends[1][i] + ends[2][i])
+      const byMolecules = p.rayleighScattering[i] * molecules
+      const byAerosols = p.mieScattering[i] * aerosols
+      let source = (byMolecules * phases[0] + byAerosols * phases[1]) * sun[i]
       if (tiles) {
-        const moments = tiles.map(tile => tile[i]!)
+        const moments = tiles.map(tile => tile[i])
         source += byMolecules * applyMoments(moments, [1, 0, 0.1], mu, muSun, cosViewSun)
         source += byAerosols * applyMoments(moments, mie, mu, muSun, cosViewSun)
       }
-      sum[i]! += weight * source * Math.exp(-depthBefore[i]!)
+      sum[i] += weight * source * Math.exp(-depthBefore[i])
     }
     last = t
   }
@@ -95,7 +95,7 @@ export function inScatter(
       falls ? to - (to - from) * (1 - x) ** 2 : from + (to - from) * x ** 2
     for (let piece = 0; piece < PIECES; piece++) {
       const [a, b] = [at(piece / PIECES), at((piece + 1) / PIECES)]
-      RULE.nodes.forEach((node, i) => visit(a + (b - a) * node, (b - a) * RULE.weights[i]!))
+      RULE.nodes.forEach((node, i) => visit(a + (b - a) * node, (b - a) * RULE.weights[i]))
     }
   }
   return sum
@@ -121,7 +121,7 @@ export function skyRadiance(
   const air = inScatter(p, data, inside, distance)
   const depth = opticalDepth(p, radius, cosView, distance)
   const ground = groundRadiance(p, data, (radius * cosSun + distance * cosViewSun) / p.bottomRadius)
-  return air.map((value, i) => value + ground[i]! * Math.exp(-depth[i]!))
+  return air.map((value, i) => value + ground[i] * Math.exp(-depth[i]))
 }
 
 /** Radiance of the Lambertian ground where the sun's zenith cosine is `cosSun` [1/sr]. */
@@ -131,8 +131,8 @@ export function groundRadiance(
   cosSun: number
 ): number[] {
   const direct = sunTransmittance(p, p.bottomRadius, cosSun)
-  const diffuse = sampleDiffuseLight(data, 0, cosSun)[6]!
+  const diffuse = sampleDiffuseLight(data, 0, cosSun)[6]
   return direct.map(
-    (value, i) => (p.groundAlbedo[i]! / Math.PI) * (value * Math.max(cosSun, 0) + diffuse[i]!)
+    (value, i) => (p.groundAlbedo[i] / Math.PI) * (value * Math.max(cosSun, 0) + diffuse[i])
   )
 }

@@ -27,10 +27,10 @@ export function skyIrradiance(
   const part = altitude / (p.topRadius - p.bottomRadius)
   const tiles = sampleDiffuseLight(data, part, cosSun)
   return [0, 1, 2, 3].map(i => {
-    const moments = tiles.map(tile => tile[i]!)
+    const moments = tiles.map(tile => tile[i])
     const isUp = cosNormal >= 0
     const horizontal = isUp ? 1 : -1
-    const exact = moments[isUp ? 6 : 7]!
+    const exact = moments[isUp ? 6 : 7]
     const approximate = applyMoments(moments, COSINE_LOBE, horizontal, cosSun, horizontal * cosSun)
     const here = applyMoments(moments, COSINE_LOBE, cosNormal, cosSun, cosNormalSun)
     return Math.max(here + cosNormal ** 2 * (exact - approximate), 0)

@@ -1,4 +1,5 @@
-import { Matrix3, Matrix4, Vector3 } from 'three'
+import type { Vector3 } from 'three'
+import { Matrix3, Matrix4 } from 'three'
 import type { Ellipsoid } from '@welkin/geo'
 
 /**

@@ -29,8 +29,8 @@ export function opticalDepth(
     RULE.nodes.forEach((node, i) => {
       const t = from + (to - from) * node
       const altitude = Math.sqrt(radius ** 2 + 2 * radius * cosView * t + t ** 2) - p.bottomRadius
-      const weight = RULE.weights[i]! * Math.abs(to - from)
-      extinctionAt(p, Math.max(altitude, 0)).forEach((value, k) => (sum[k]! += value * weight))
+      const weight = RULE.weights[i] * Math.abs(to - from)
+      extinctionAt(p, Math.max(altitude, 0)).forEach((value, k) => (sum[k] += value * weight))
     })
   }
   for (const end of [0, distance]) {

@@ -27,7 +27,7 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
   const limits = rayLimits(air.uniforms, eye, cosView)
   const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
   return {
-    transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp() as never),
+    transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp()),
     inScatter: linearSRGB(air.uniforms, scatteredRadiance(air.uniforms, between, cosViewSun))
   }
 }

@@ -2,7 +2,7 @@ import { float, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../tableSizes'
-import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import { sampleLevel0, type Float, type Vec4 } from '../tsl-types'
 import { diffuseSunCosine, diffuseSunSlope, diffuseSunOrigin } from '../cpu/diffuseLight'
 import type { Moments } from './moments'
 
@@ -13,18 +13,18 @@ type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 /** asinh, from the magnitude: the plain form cancels for negative arguments. */
 export function asinh(x: Float): Float {
   const magnitude = x.abs()
-  return magnitude.add(x.mul(x).add(1).sqrt()).log().mul(x.sign()) as Float
+  return magnitude.add(x.mul(x).add(1).sqrt()).log().mul(x.sign())
 }
 
 /** Position of the sun's cosine among the columns, in [0, 1]. Columns crowd about the horizon. */
 function sunColumn(cosSun: Float): Float {
   const x = cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst()
-  return asinh(x as Float).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp() as Float
+  return asinh(x).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp()
 }
 
 /** Position of an altitude among the rows, in [0, 1]. Rows crowd at the ground. */
 function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float {
-  return altitude.div(thickness).clamp().sqrt() as Float
+  return altitude.div(thickness).clamp().sqrt()
 }
 
 /** A function that reads a tile of the diffuse-light table at an altitude and sun angle. */
@@ -35,11 +35,16 @@ export function diffuseLightReader(
   cosSun: Float
 ): (tile: number) => Vec4 {
   const uv = vec2(
-    sunColumn(cosSun).mul(COLUMNS - 1).add(0.5).div(COLUMNS * DIFFUSE_TILES),
-    altitudeRow(uniforms, altitude).mul(ROWS - 1).add(0.5).div(ROWS)
+    sunColumn(cosSun)
+      .mul(COLUMNS - 1)
+      .add(0.5)
+      .div(COLUMNS * DIFFUSE_TILES),
+    altitudeRow(uniforms, altitude)
+      .mul(ROWS - 1)
+      .add(0.5)
+      .div(ROWS)
   ).toConst()
-  return tile =>
-    sampleLevel0(table, (tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0))) as Vec2)
+  return tile => sampleLevel0(table, tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0)))
 }
 
 /**
@@ -56,7 +61,9 @@ export function diffuseMoments(
   cosSun: Float
 ): Moments<Vec4> {
   const read = diffuseLightReader(uniforms, table, altitude, cosSun)
-  const [m00, m10, m11, m20, m21, m22] = [0, 1, 2, 3, 4, 5].map(tile => read(tile).toConst()) as unknown as SixTiles
+  const [m00, m10, m11, m20, m21, m22] = [0, 1, 2, 3, 4, 5].map(tile =>
+    read(tile).toConst()
+  ) as unknown as SixTiles
   return { m00, m10, m11, m20, m21, m22 }
 }
 
@@ -71,7 +78,5 @@ export function groundIrradiance(
   table: TextureNode,
   cosSun: Float
 ): Vec4 {
-  return diffuseLightReader(uniforms, table, float(0) as Float, cosSun)(6).div(
-    RADIANCE_SCALE
-  ) as Vec4
+  return diffuseLightReader(uniforms, table, float(0), cosSun)(6).div(RADIANCE_SCALE)
 }

@@ -46,7 +46,11 @@ function cell(air: Air, row: Float, column: Float) {
   const { thickness } = air.uniforms
   const rowPosition = row.div(ROWS - 1).toConst()
   const altitude = thickness.mul(rowPosition).mul(rowPosition).max(LOWEST_ALTITUDE)
-  const x = column.div(COLUMNS - 1).div(diffuseSunSlope).add(diffuseSunOrigin).toConst()
+  const x = column
+    .div(COLUMNS - 1)
+    .div(diffuseSunSlope)
+    .add(diffuseSunOrigin)
+    .toConst()
   const sinh = x.exp().sub(x.negate().exp()).mul(0.5)
   const cosSun = sinh.mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
   return {
@@ -61,7 +65,7 @@ function direction(air: Air, altitude: Float, cosSun: Float, number: Int, at: Di
   const elevationIndex = number.div(at.azimuths).toConst()
   const up = elevationIndex.lessThan(at.elevations).toConst()
   const ruleIndex = up.select(elevationIndex, elevationIndex.sub(at.elevations)).add(at.offset)
-  const entry = at.rule.element(ruleIndex as Int).toConst()
+  const entry = at.rule.element(ruleIndex).toConst()
   const azimuthIndex = number.sub(elevationIndex.mul(at.azimuths))
   const azimuth = float(azimuthIndex).add(0.5).div(float(at.azimuths)).mul(Math.PI)
 
@@ -72,7 +76,10 @@ function direction(air: Air, altitude: Float, cosSun: Float, number: Int, at: Di
   const elevation = up.select(fromHorizon, fromHorizon.negate()).sub(dip).toConst()
   const cosElevation = elevation.cos().toConst()
   const spacing = span.mul(x.mul(2 * (1 - EVEN_SPACING)).add(EVEN_SPACING)).mul(entry.y)
-  const solidAngle = spacing.mul(cosElevation).mul(2 * Math.PI).div(float(at.azimuths))
+  const solidAngle = spacing
+    .mul(cosElevation)
+    .mul(2 * Math.PI)
+    .div(float(at.azimuths))
   const cosView = elevation.sin().toConst()
   const towardsSun = cosElevation.mul(azimuth.cos()).toConst()
   const sinSun = cosSun.mul(cosSun).oneMinus().sqrt()
@@ -110,10 +117,13 @@ export function bakeRays(
     If(number.greaterThanEqual(at.elevations.mul(at.azimuths).mul(2)), () => {
       Discard()
     })
-    const cellIndex = texel.y.mul(BAKE_ROWS * COLUMNS).floor().toConst()
+    const cellIndex = texel.y
+      .mul(BAKE_ROWS * COLUMNS)
+      .floor()
+      .toConst()
     const row = cellIndex.add(0.5).div(COLUMNS).floor().toConst()
     const column = cellIndex.sub(row.mul(COLUMNS))
-    const { altitude, cosSun } = cell(air, row.add(float(firstRow)) as Float, column as Float)
+    const { altitude, cosSun } = cell(air, row.add(float(firstRow)), column)
     const towards = direction(air, altitude, cosSun, number, at)
     const ray = { altitude, cosView: towards.cosView, cosSun, cosViewSun: towards.cosViewSun }
 
@@ -126,15 +136,17 @@ export function bakeRays(
       )
       .toConst() as Float
     const end = towards.up.select(thickness, float(0))
-    const way = scattering(air, ray, length, end.sub(altitude) as Float, steps, lights)
-    const radiance = scatteredRadiance(uniforms, way, towards.cosViewSun).mul(RADIANCE_SCALE).toVar()
+    const way = scattering(air, ray, length, end.sub(altitude), steps, lights)
+    const radiance = scatteredRadiance(uniforms, way, towards.cosViewSun)
+      .mul(RADIANCE_SCALE)
+      .toVar()
     If(towards.up.not(), () => {
       const target = pointAlong(air, ray, length)
       const ground = groundRadiance(air, target.cosSun, lights).mul(RADIANCE_SCALE)
       radiance.addAssign(ground.mul(way.depth.negate().exp()))
     })
     return radiance
-  })() as unknown as Vec4
+  })()
 }
 
 /**
@@ -159,16 +171,24 @@ export function reduceRays(
     If(rowInTarget.lessThan(0).or(rowInTarget.greaterThanEqual(BAKE_ROWS)), () => {
       Discard()
     })
-    const x = texel.x.mul(COLUMNS * DIFFUSE_TILES).floor().toConst()
+    const x = texel.x
+      .mul(COLUMNS * DIFFUSE_TILES)
+      .floor()
+      .toConst()
     const tile = x.add(0.5).div(COLUMNS).floor().toConst()
     const column = x.sub(tile.mul(COLUMNS)).toConst()
-    const { altitude, cosSun } = cell(air, row as Float, column as Float)
+    const { altitude, cosSun } = cell(air, row, column)
     const sinSquaredSun = cosSun.mul(cosSun).oneMinus().toConst()
     const inverseSinSun = sinSquaredSun.inverseSqrt().toConst()
-    const y = rowInTarget.mul(COLUMNS).add(column).add(0.5).div(BAKE_ROWS * COLUMNS).toConst()
+    const y = rowInTarget
+      .mul(COLUMNS)
+      .add(column)
+      .add(0.5)
+      .div(BAKE_ROWS * COLUMNS)
+      .toConst()
 
     const sum = vec4(0).toVar()
-    loop('ray', at.elevations.mul(at.azimuths).mul(2) as Int, ray => {
+    loop('ray', at.elevations.mul(at.azimuths).mul(2), ray => {
       const { cosView, towardsSun, cosElevation, solidAngle } = direction(
         air,
         altitude,
@@ -193,14 +213,14 @@ export function reduceRays(
         mu.max(0),
         mu.negate().max(0)
       ]
-      const weight = weights.reduce((chosen, value, i) =>
-        mix(chosen, value, tile.equal(i).select(1, 0)) as never
+      const weight = weights.reduce(
+        (chosen, value, i) => mix(chosen, value, tile.equal(i).select(1, 0)) as never
       )
       const source = vec2(float(ray).add(0.5).div(width), y)
-      sum.addAssign(sampleLevel0(rays, source as Vec2).mul(weight).mul(solidAngle))
+      sum.addAssign(sampleLevel0(rays, source).mul(weight).mul(solidAngle))
     })
     return sum
-  })() as unknown as Vec4
+  })()
 }
 
 /** Largest ratio of two successive orders of scattering that the tail is summed with. */
@@ -221,5 +241,5 @@ export function sumOrders(orders: TextureNode[]): Vec4 {
     const lights = orders.map(order => sampleLevel0(order, texel))
     const tail = lights.at(-1)!.mul(ratio.div(ratio.oneMinus()))
     return lights.reduce((sum, light) => sum.add(light) as Vec4).add(tail)
-  })() as unknown as Vec4
+  })()
 }

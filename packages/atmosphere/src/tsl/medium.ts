@@ -15,7 +15,7 @@ export function densities(uniforms: AtmosphereUniforms, altitude: Float): Vec3 {
     altitude.div(rayleighScaleHeight).negate().exp(),
     altitude.div(mieScaleHeight).negate().exp(),
     altitude.sub(absorptionAltitude).abs().div(absorptionHalfWidth).oneMinus().max(0)
-  ) as Vec3
+  )
 }
 
 /** Extinction coefficient of air with given {@link densities} [1/m]. */
@@ -23,5 +23,5 @@ export function extinction(uniforms: AtmosphereUniforms, density: Vec3): Vec4 {
   return uniforms.rayleighScattering
     .mul(density.x)
     .add(uniforms.mieExtinction.mul(density.y))
-    .add(uniforms.absorptionExtinction.mul(density.z)) as Vec4
+    .add(uniforms.absorptionExtinction.mul(density.z))
 }

@@ -39,11 +39,11 @@ export function momentBasis(
   const along = cosViewSun.sub(cosView.mul(cosSun)).toConst()
   const sinSquares = cosView.mul(cosView).oneMinus().mul(cosSun.mul(cosSun).oneMinus())
   return {
-    m10: cosView.mul(SH1) as Float,
-    m11: along.mul(SH1) as Float,
-    m20: cosView.mul(cosView).mul(3).sub(1).mul(SH20) as Float,
-    m21: cosView.mul(along).mul(SH21) as Float,
-    m22: along.mul(along).mul(2).sub(sinSquares).mul(SH22) as Float
+    m10: cosView.mul(SH1),
+    m11: along.mul(SH1),
+    m20: cosView.mul(cosView).mul(3).sub(1).mul(SH20),
+    m21: cosView.mul(along).mul(SH21),
+    m22: along.mul(along).mul(2).sub(sinSquares).mul(SH22)
   }
 }
 
@@ -64,5 +64,5 @@ export function applyMoments(
     .mul(basis.m20)
     .add(moments.m21.mul(basis.m21))
     .add(moments.m22.mul(basis.m22))
-  return moments.m00.mul(SH0).add(first.mul(weight1)).add(second.mul(weight2)) as Vec4
+  return moments.m00.mul(SH0).add(first.mul(weight1)).add(second.mul(weight2))
 }

@@ -8,7 +8,10 @@ import type { Float } from '../tsl-types'
  * @param cosViewSun - ν, cosine of the scattering angle, in [−1, 1].
  */
 export function rayleighPhase(cosViewSun: Float): Float {
-  return cosViewSun.mul(cosViewSun).add(1).mul(3 / (16 * Math.PI)) as Float
+  return cosViewSun
+    .mul(cosViewSun)
+    .add(1)
+    .mul(3 / (16 * Math.PI))
 }
 
 const cornetteShanks = /*#__PURE__*/ Fn(
@@ -33,5 +36,5 @@ const cornetteShanks = /*#__PURE__*/ Fn(
  * @see Cornette & Shanks 1992. Twin: cpu/phase.ts
  */
 export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Float {
-  return cornetteShanks(cosViewSun, uniforms.mieAsymmetry, uniforms.miePhaseFactor) as Float
+  return cornetteShanks(cosViewSun, uniforms.mieAsymmetry, uniforms.miePhaseFactor)
 }

@@ -78,23 +78,21 @@ function source(
   const point = pointAlong(air, ray, distance)
   const byMolecules = uniforms.rayleighScattering.mul(density.x).toConst()
   const byAerosols = uniforms.mieScattering.mul(density.y).toConst()
-  let molecular: Vec4 = vec4(0) as Vec4
-  let aerosol: Vec4 = vec4(0) as Vec4
+  let molecular: Vec4 = vec4(0)
+  let aerosol: Vec4 = vec4(0)
   if (lights.sun) {
     const sunlight = sunTransmittance(uniforms, air.transmittance, point.altitude, point.cosSun)
       .mul(RADIANCE_SCALE)
       .toConst()
-    molecular = byMolecules.mul(sunlight).mul(rayleighPhase(ray.cosViewSun)) as Vec4
-    aerosol = byAerosols.mul(sunlight) as Vec4
+    molecular = byMolecules.mul(sunlight).mul(rayleighPhase(ray.cosViewSun))
+    aerosol = byAerosols.mul(sunlight)
   }
   if (lights.diffuse && air.diffuse !== null) {
     const moments = diffuseMoments(uniforms, air.diffuse, point.altitude, point.cosSun)
     const basis = momentBasis(point.cosView, point.cosSun, ray.cosViewSun)
     molecular = molecular
       .add(byMolecules.mul(applyMoments(moments, basis, 0, RAYLEIGH_MOMENT_2)))
-      .add(
-        byAerosols.mul(applyMoments(moments, basis, uniforms.mieMoment1, uniforms.mieMoment2))
-      ) as Vec4
+      .add(byAerosols.mul(applyMoments(moments, basis, uniforms.mieMoment1, uniforms.mieMoment2)))
   }
   return { molecular, aerosol }
 }
@@ -117,10 +115,10 @@ export function segmentDepth(air: Air, ray: Ray, start: Float, end: Float) {
   const [first, second] = [NODE_1, NODE_2].map(node => {
     const distance = start.add(half.mul(node)).toConst() as Float
     const altitude = altitudeAlong(ray.altitude, ray.cosView, distance, bottomRadius).max(0)
-    const density = densities(air.uniforms, altitude.toConst() as Float).toConst()
-    return { distance, density, extinction: extinction(air.uniforms, density as never).toConst() }
+    const density = densities(air.uniforms, altitude.toConst()).toConst()
+    return { distance, density, extinction: extinction(air.uniforms, density).toConst() }
   }) as unknown as [NodeOnRay, NodeOnRay]
-  return { half: half as Float, first, second, depth: sumDepth(half as Float, first, second) }
+  return { half: half as Float, first, second, depth: sumDepth(half, first, second) }
 }
 
 interface NodeOnRay {
@@ -130,7 +128,7 @@ interface NodeOnRay {
 }
 
 function sumDepth(half: Float, first: NodeOnRay, second: NodeOnRay): Vec4 {
-  return first.extinction.add(second.extinction).mul(half).toConst() as Vec4
+  return first.extinction.add(second.extinction).mul(half).toConst()
 }
 
 /**
@@ -155,14 +153,14 @@ export function scatterSegment(
       .negate()
       .exp()
       .mul(half)
-      .toConst() as Vec4
+      .toConst()
   const near = source(air, ray, first.distance, first.density, lights)
   const far = source(air, ray, second.distance, second.density, lights)
   const toNear = attenuation(DEPTH_TO_NODE_1)
   const toFar = attenuation(DEPTH_TO_NODE_2)
   return {
-    molecular: near.molecular.mul(toNear).add(far.molecular.mul(toFar)) as Vec4,
-    aerosol: near.aerosol.mul(toNear).add(far.aerosol.mul(toFar)) as Vec4,
+    molecular: near.molecular.mul(toNear).add(far.molecular.mul(toFar)),
+    aerosol: near.aerosol.mul(toNear).add(far.aerosol.mul(toFar)),
     depth
   }
 }
@@ -176,7 +174,7 @@ export function scatterSegment(
 export function stepExponent({ rayleighScaleHeight }: AtmosphereUniforms, rise: Float): Float {
   const exponent = rise.div(rayleighScaleHeight).mul(STEP_GROWTH).clamp(-4, 4)
   // Never 0, where the form above is 0/0.
-  return exponent.abs().max(0.05).mul(exponent.lessThan(0).select(-1, 1)) as Float
+  return exponent.abs().max(0.05).mul(exponent.lessThan(0).select(-1, 1))
 }
 const STEP_GROWTH = 0.3
 
@@ -202,7 +200,9 @@ export function scattering(
 ): Scattered & { depth: Vec4 } {
   const exponent = stepExponent(air.uniforms, rise).toConst()
   const scale = distance.div(exponent.exp().sub(1)).toConst()
-  const inverse = float(1).div(float(steps as number)).toConst()
+  const inverse = float(1)
+    .div(float(steps as number))
+    .toConst()
   const start = float(0).toVar()
   const molecular = vec4(0).toVar()
   const aerosol = vec4(0).toVar()
@@ -210,14 +210,14 @@ export function scattering(
   loop('step', steps, step => {
     const x = float(step).add(1).mul(inverse)
     const end = exponent.mul(x).exp().sub(1).mul(scale).toConst()
-    const segment = scatterSegment(air, ray, start as Float, end as Float, lights)
+    const segment = scatterSegment(air, ray, start, end, lights)
     const through = depth.negate().exp().toConst()
     molecular.addAssign(segment.molecular.mul(through))
     aerosol.addAssign(segment.aerosol.mul(through))
     depth.addAssign(segment.depth)
     start.assign(end)
   })
-  return { molecular: molecular as Vec4, aerosol: aerosol as Vec4, depth: depth as Vec4 }
+  return { molecular: molecular, aerosol: aerosol, depth: depth }
 }
 
 /** Adds both parts with the aerosols' phase function, and takes the table's scale out [1/sr]. */
@@ -228,7 +228,7 @@ export function scatteredRadiance(
 ): Vec4 {
   return scattered.molecular
     .add(scattered.aerosol.mul(miePhase(uniforms, cosViewSun)))
-    .mul(1 / RADIANCE_SCALE) as Vec4
+    .mul(1 / RADIANCE_SCALE)
 }
 
 /**
@@ -243,14 +243,12 @@ export function groundRadiance(
   lights: LightSources = { sun: true, diffuse: true }
 ): Vec4 {
   const { uniforms } = air
-  let irradiance: Vec4 = vec4(0) as Vec4
+  let irradiance: Vec4 = vec4(0)
   if (lights.sun) {
-    irradiance = sunTransmittance(uniforms, air.transmittance, float(0) as Float, cosSun).mul(
-      cosSun.max(0)
-    ) as Vec4
+    irradiance = sunTransmittance(uniforms, air.transmittance, float(0), cosSun).mul(cosSun.max(0))
   }
   if (lights.diffuse && air.diffuse !== null) {
-    irradiance = irradiance.add(groundIrradiance(uniforms, air.diffuse, cosSun)) as Vec4
+    irradiance = irradiance.add(groundIrradiance(uniforms, air.diffuse, cosSun))
   }
-  return irradiance.mul(uniforms.groundAlbedo).mul(1 / Math.PI) as Vec4
+  return irradiance.mul(uniforms.groundAlbedo).mul(1 / Math.PI)
 }

@@ -57,10 +57,10 @@ export function skyBehind(
   const radiance = scatteredRadiance(air.uniforms, between, cosViewSun).toVar()
   If(limits.hitsGround, () => {
     const ray = { altitude: eye.altitude, cosView, cosSun: eye.cosSun, cosViewSun }
-    const ground = pointAlong(air, ray, limits.start.add(limits.length) as Float)
+    const ground = pointAlong(air, ray, limits.start.add(limits.length))
     radiance.addAssign(groundRadiance(air, ground.cosSun).mul(transmittance))
   })
-  return { radiance: radiance as Vec4, transmittance, limits }
+  return { radiance: radiance, transmittance, limits }
 }
 
 /**
@@ -89,7 +89,7 @@ export function sunDisc(
     .oneMinus()
     .div(limbDarkening.div(3).oneMinus())
   const solidAngle = sunAngularRadius.mul(sunAngularRadius).mul(Math.PI)
-  return vec4(profile.mul(coverage).div(solidAngle)) as Vec4
+  return vec4(profile.mul(coverage).div(solidAngle))
 }
 
 /** Brightest output: half-float targets hold up to 65504, and the sun's disc is brighter. */
@@ -97,7 +97,7 @@ const BRIGHTEST = 60_000
 
 /** Angle between a fragment's line of sight and the next one's [rad]. Not for use in branches. */
 export function pixelAngle(rayView: Vec3): Float {
-  return rayView.normalize().fwidth().length().toConst() as Float
+  return rayView.normalize().fwidth().length().toConst()
 }
 
 /**
@@ -116,7 +116,7 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
   const { radiance, transmittance, limits } = skyInDirection(air, volume, eye, cosView, cosViewSun)
   const sky = linearSRGB(uniforms, radiance)
   if (pixel === null) return sky
-  const disc = sunDisc(uniforms, direction, view.sunDirection as unknown as Vec3, pixel)
-  const sun = linearSRGB(uniforms, disc.mul(transmittance) as Vec4)
-  return sky.add(limits.hitsGround.select(vec3(0), sun)).min(BRIGHTEST) as Vec3
+  const disc = sunDisc(uniforms, direction, view.sunDirection, pixel)
+  const sun = linearSRGB(uniforms, disc.mul(transmittance))
+  return sky.add(limits.hitsGround.select(vec3(0), sun)).min(BRIGHTEST)
 }

@@ -38,13 +38,11 @@ export function skyIrradiance(
   const down = read(7).toConst()
   const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
   const lobe = (cosine: Float, cosineSun: Float): Vec4 =>
-    applyMoments(moments, momentBasis(cosine, cosSun, cosineSun), COSINE_1, COSINE_2).mul(
-      Math.PI
-    ) as Vec4
-  const approximate = lobe(horizontal, horizontal.mul(cosSun) as Float)
+    applyMoments(moments, momentBasis(cosine, cosSun, cosineSun), COSINE_1, COSINE_2).mul(Math.PI)
+  const approximate = lobe(horizontal, horizontal.mul(cosSun))
   const missing = facesUp.select(up, down).sub(approximate)
   return lobe(cosNormal, cosNormalSun)
     .add(missing.mul(cosNormal.mul(cosNormal)))
     .max(0)
-    .div(RADIANCE_SCALE) as Vec4
+    .div(RADIANCE_SCALE)
 }

@@ -45,18 +45,15 @@ export function rayLimits(
   const { bottomRadius, thickness } = uniforms
   const radial = bottomRadius.add(eye.altitude).mul(cosView).toConst()
   const ground = groundDiscriminant(eye.altitude, cosView, bottomRadius).toConst() as Float
-  const gap = thickness
-    .sub(eye.altitude)
-    .mul(bottomRadius.mul(2).add(thickness).add(eye.altitude))
+  const gap = thickness.sub(eye.altitude).mul(bottomRadius.mul(2).add(thickness).add(eye.altitude))
   const halfChord = radial.mul(radial).add(gap).max(0).sqrt().toConst()
   const start = radial.negate().sub(halfChord).max(0).toConst()
   const top = halfChord.sub(radial).max(0)
-  const hitsGround =
-    forcedGround ?? (ground.greaterThanEqual(0).and(cosView.lessThan(0)).toConst() as Bool)
+  const hitsGround = forcedGround ?? ground.greaterThanEqual(0).and(cosView.lessThan(0)).toConst()
   const bottom = distanceToGround(eye.altitude, cosView, ground, bottomRadius)
   return {
-    start: start as Float,
-    length: hitsGround.select(bottom, top).sub(start).max(0).toConst() as Float,
+    start: start,
+    length: hitsGround.select(bottom, top).sub(start).max(0).toConst(),
     hitsGround
   }
 }
@@ -73,13 +70,13 @@ function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool): Float {
   const sine = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
   const cosine = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
   const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
-  return sine.div(cosine.add(1).max(1e-6)).div(span).clamp().sqrt() as Float
+  return sine.div(cosine.add(1).max(1e-6)).div(span).clamp().sqrt()
 }
 
 /** Row of a position in a table with that many rows, the lower half below the horizon, in texels. */
 function elevationRow(position: Float, hitsGround: Bool, rows: number): Float {
   const half = rows / 2
-  return position.mul(half - 1).add(hitsGround.select(0.5, half + 0.5)) as Float
+  return position.mul(half - 1).add(hitsGround.select(0.5, half + 0.5))
 }
 
 /** Cosine of the zenith angle of a row, counted in whole texels. */
@@ -90,7 +87,11 @@ export function rowCosine(
 ): { cosView: Float; hitsGround: Bool; position: Float } {
   const half = rows / 2
   const hitsGround = row.lessThan(half).toConst()
-  const position = row.floor().sub(hitsGround.select(0, half)).div(half - 1).toConst()
+  const position = row
+    .floor()
+    .sub(hitsGround.select(0, half))
+    .div(half - 1)
+    .toConst()
   const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
   const tangent = position.mul(position).mul(span).toConst()
   const square = tangent.mul(tangent).toConst()
@@ -101,9 +102,9 @@ export function rowCosine(
     .div(square.add(1))
     .clamp(-1, 1)
   return {
-    cosView: cosView.toConst() as Float,
-    hitsGround: hitsGround as Bool,
-    position: position as Float
+    cosView: cosView.toConst(),
+    hitsGround: hitsGround,
+    position: position
   }
 }
 
@@ -131,7 +132,7 @@ function sunAtFoot(uniforms: AtmosphereUniforms, eye: Eye, cosView: Float, limit
 /** asinh of the sun's cosine, as the diffuse-light table spaces it: fine about the horizon. */
 const spread = (cosSun: Float): Float => {
   const { centre, width } = diffuseSunCosine
-  return asinh(cosSun.sub(centre).div(width) as Float)
+  return asinh(cosSun.sub(centre).div(width))
 }
 
 /**
@@ -160,12 +161,12 @@ function azimuthColumn(
   const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
   If(eye.altitude.greaterThan(uniforms.thickness), () => {
     const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
-    const first = spread(mean.add(swing) as Float).toConst()
-    const last = spread(mean.sub(swing) as Float)
-    const here = spread(mean.add(swing.mul(cosAzimuth)) as Float)
+    const first = spread(mean.add(swing)).toConst()
+    const last = spread(mean.sub(swing))
+    const here = spread(mean.add(swing.mul(cosAzimuth)))
     position.assign(first.sub(here).div(first.sub(last)).clamp())
   })
-  return position.mul(AZIMUTHS - 1).add(0.5) as Float
+  return position.mul(AZIMUTHS - 1).add(0.5)
 }
 
 /** ν of a column, counted in whole texels: the inverse of {@link azimuthColumn}. */
@@ -176,12 +177,15 @@ export function columnCosine(
   column: Float,
   limits: RayLimits
 ): Float {
-  const position = column.floor().div(AZIMUTHS - 1).toConst()
+  const position = column
+    .floor()
+    .div(AZIMUTHS - 1)
+    .toConst()
   const cosAzimuth = position.mul(position).mul(2).oneMinus().toVar()
   If(eye.altitude.greaterThan(uniforms.thickness), () => {
     const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
-    const first = spread(mean.add(swing) as Float).toConst()
-    const last = spread(mean.sub(swing) as Float)
+    const first = spread(mean.add(swing)).toConst()
+    const last = spread(mean.sub(swing))
     const x = mix(first, last, position).toConst()
     const sinh = x.exp().sub(x.negate().exp()).mul(0.5)
     const cosSun = sinh.mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
@@ -193,28 +197,28 @@ export function columnCosine(
     .mul(eye.cosSun.mul(eye.cosSun).oneMinus())
     .max(0)
     .sqrt()
-  return cosView.mul(eye.cosSun).add(sines.mul(cosAzimuth)).clamp(-1, 1).toConst() as Float
+  return cosView.mul(eye.cosSun).add(sines.mul(cosAzimuth)).clamp(-1, 1).toConst()
 }
 
 /** κ and e^κ − 1 of a ray's distances. */
 function spacing(eye: Eye, hitsGround: Bool): { exponent: Float; growth: Float } {
   return {
-    exponent: hitsGround.select(eye.groundExponent, eye.skyExponent).toConst() as Float,
-    growth: hitsGround.select(eye.groundGrowth, eye.skyGrowth).toConst() as Float
+    exponent: hitsGround.select(eye.groundExponent, eye.skyExponent).toConst(),
+    growth: hitsGround.select(eye.groundGrowth, eye.skyGrowth).toConst()
   }
 }
 
 /** Distance along a ray at a position x in [0, 1] among the slices [m]. */
 export function sliceDistance(eye: Eye, limits: RayLimits, position: Float): Float {
   const { exponent, growth } = spacing(eye, limits.hitsGround)
-  return exponent.mul(position).exp().sub(1).div(growth).mul(limits.length) as Float
+  return exponent.mul(position).exp().sub(1).div(growth).mul(limits.length)
 }
 
 /** Position among the slices of a distance, the inverse of {@link sliceDistance}. */
 function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
   const { exponent, growth } = spacing(eye, limits.hitsGround)
   const part = distance.div(limits.length.max(1e-3)).clamp()
-  return part.mul(growth).add(1).log().div(exponent).clamp() as Float
+  return part.mul(growth).add(1).log().div(exponent).clamp()
 }
 
 /**
@@ -235,7 +239,7 @@ export function meanExtinction(
   const row = elevationRow(elevation, hitsGround, DEPTH_ROWS).add(eye.slot.mul(DEPTH_ROWS))
   const column = position.mul(DEPTH_COLUMNS).max(1).sub(0.5)
   const uv = vec2(column.div(DEPTH_COLUMNS), row.div(DEPTH_ROWS * VOLUME_SLOTS))
-  return sampleLevel0(depth, uv as Vec2).mul(1 / EXTINCTION_SCALE) as Vec4
+  return sampleLevel0(depth, uv).mul(1 / EXTINCTION_SCALE)
 }
 
 /** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
@@ -268,10 +272,7 @@ export function sampleVolume(
   const row = elevationRow(elevation, hitsGround, ELEVATIONS)
   const column = azimuthColumn(uniforms, eye, cosView, cosViewSun, limits)
   const inTile = vec2(column, row).toConst() as Vec2
-  const atlas = vec2(
-    1 / (AZIMUTHS * TILE_COLUMNS),
-    1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS)
-  )
+  const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS))
   const fetch = (source: TextureNode, slice: Float): Vec4 => {
     // Half a tile from the edges: a division that rounds down must not land in another row.
     const tileRow = slice.add(0.5).div(TILE_COLUMNS).floor()
@@ -279,35 +280,36 @@ export function sampleVolume(
       slice.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS),
       tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)
     )
-    return sampleLevel0(source, inTile.add(corner).mul(atlas) as Vec2)
+    return sampleLevel0(source, inTile.add(corner).mul(atlas))
   }
   const inAir = distance === null ? length : distance.sub(limits.start).clamp(0, length).toConst()
   const position =
-    distance === null
-      ? (float(1) as Float)
-      : (slicePosition(eye, limits, inAir as Float).toConst() as Float)
+    distance === null ? (float(1) as Float) : (slicePosition(eye, limits, inAir).toConst() as Float)
   const depth = meanExtinction(textures.depth, eye, elevation, hitsGround, position).mul(inAir)
 
   const exists = length.greaterThan(0).select(1, 0)
   if (distance === null) {
     const last = float(DISTANCES - 1) as Float
     return {
-      molecular: fetch(textures.molecular, last).mul(exists) as Vec4,
-      aerosol: fetch(textures.aerosol, last).mul(exists) as Vec4,
-      depth: depth as Vec4
+      molecular: fetch(textures.molecular, last).mul(exists),
+      aerosol: fetch(textures.aerosol, last).mul(exists),
+      depth: depth
     }
   }
   // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
   const grown = position.mul(DISTANCES).min(1).mul(exists).toConst()
   const slice = position.mul(DISTANCES).sub(1).max(0).toConst()
-  const near = slice.floor().min(DISTANCES - 2).toConst() as Float
+  const near = slice
+    .floor()
+    .min(DISTANCES - 2)
+    .toConst() as Float
   const far = near.add(1) as Float
   const part = slice.sub(near)
   const read = (source: TextureNode): Vec4 =>
-    mix(fetch(source, near), fetch(source, far), part).mul(grown) as Vec4
+    mix(fetch(source, near), fetch(source, far), part).mul(grown)
   return {
     molecular: read(textures.molecular),
     aerosol: read(textures.aerosol),
-    depth: depth as Vec4
+    depth: depth
   }
 }

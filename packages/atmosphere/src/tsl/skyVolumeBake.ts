@@ -2,7 +2,7 @@ import { Discard, Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } f
 import type { TextureNode } from 'three/webgpu'
 import type { TwoOutputs } from '../FragmentPass'
 import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
-import { loop, sampleLevel0, type Float, type Int, type Vec2, type Vec4 } from '../tsl-types'
+import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import type { Eye } from './eye'
 import { pointAlong, scatterSegment, segmentDepth, type Air, type Ray } from './scattering'
 import {
@@ -34,14 +34,14 @@ function twoOutputs(body: () => Parts): TwoOutputs {
     second.assign(aerosol)
     return vec4(0)
   })
-  return { color: assign() as never, output: outputStruct(first, second) as never }
+  return { color: assign(), output: outputStruct(first, second) }
 }
 
 /** The same ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   const entry = pointAlong(air, ray, limits.start)
   return {
-    altitude: entry.altitude.min(air.uniforms.thickness).toConst() as Float,
+    altitude: entry.altitude.min(air.uniforms.thickness).toConst(),
     cosView: entry.cosView,
     cosSun: entry.cosSun,
     cosViewSun: ray.cosViewSun
@@ -55,35 +55,41 @@ function withinSlot(eye: Eye): Vec2 {
   If(y.lessThan(0).or(y.greaterThan(1)), () => {
     Discard()
   })
-  return vec2(texel.x, y).toConst() as Vec2
+  return vec2(texel.x, y).toConst()
 }
 
 /** Shader of the table of mean extinction: rows are elevations, columns distances. */
 export function bakeDepth(air: Air, eye: Eye): Vec4 {
   return Fn(() => {
     const texel = withinSlot(eye)
-    const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(DEPTH_ROWS) as Float, DEPTH_ROWS)
+    const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(DEPTH_ROWS), DEPTH_ROWS)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun: cosSun }, limits)
     const start = float(0).toVar()
     const depth = vec4(0).toVar()
     const column = int(texel.x.mul(DEPTH_COLUMNS).floor())
-    loop('segment', column.add(1) as Int, segment => {
+    loop('segment', column.add(1), segment => {
       const position = float(segment).add(1).div(DEPTH_COLUMNS)
-      const end = sliceDistance(eye, limits, position as Float).toConst()
-      depth.addAssign(segmentDepth(air, ray, start as Float, end as Float).depth)
+      const end = sliceDistance(eye, limits, position).toConst()
+      depth.addAssign(segmentDepth(air, ray, start, end).depth)
       start.assign(end)
     })
     return depth.div(start.max(1)).mul(EXTINCTION_SCALE)
-  })() as unknown as Vec4
+  })()
 }
 
 /** Position of a texel in the atlas of slices. */
 function atlasPosition(texel: Vec2) {
   // Half a texel from the edges: a division that rounds down must not land in another tile.
-  const x = texel.x.mul(AZIMUTHS * TILE_COLUMNS).floor().toConst()
-  const y = texel.y.mul(ELEVATIONS * TILE_ROWS).floor().toConst()
+  const x = texel.x
+    .mul(AZIMUTHS * TILE_COLUMNS)
+    .floor()
+    .toConst()
+  const y = texel.y
+    .mul(ELEVATIONS * TILE_ROWS)
+    .floor()
+    .toConst()
   const tileColumn = x.add(0.5).div(AZIMUTHS).floor().toConst()
   const tileRow = y.add(0.5).div(ELEVATIONS).floor().toConst()
   return {
@@ -101,36 +107,32 @@ function atlasPosition(texel: Vec2) {
  */
 export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs {
   return twoOutputs(() => {
-    const { column, row, slice } = atlasPosition(uv() as Vec2)
+    const { column, row, slice } = atlasPosition(uv())
     const { cosView, hitsGround, position } = rowCosine(eye, row, ELEVATIONS)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
     const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, limits)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
-    const start = sliceDistance(eye, limits, slice.div(DISTANCES) as Float).toConst() as Float
-    const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES) as Float).toConst() as Float
+    const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
+    const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES)).toConst() as Float
     const reached = slice.div(DISTANCES) as Float
     const before = meanExtinction(depth, eye, position, hitsGround, reached).mul(start)
     const through = before.negate().exp().toConst()
     const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
     return {
-      molecular: light.molecular.mul(through) as Vec4,
-      aerosol: light.aerosol.mul(through) as Vec4
+      molecular: light.molecular.mul(through),
+      aerosol: light.aerosol.mul(through)
     }
   })
 }
 
 /** Shader that sums the segments up to each slice. */
-export function sumSegments(
-  eye: Eye,
-  molecular: TextureNode,
-  aerosol: TextureNode
-): TwoOutputs {
+export function sumSegments(eye: Eye, molecular: TextureNode, aerosol: TextureNode): TwoOutputs {
   return twoOutputs(() => {
     const { column, row, slice } = atlasPosition(withinSlot(eye))
     const sums = { molecular: vec4(0).toVar(), aerosol: vec4(0).toVar() }
     const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
-    loop('before', int(slice).add(1) as Int, index => {
+    loop('before', int(slice).add(1), index => {
       const before = float(index).toConst()
       const tileRow = before.add(0.5).div(TILE_COLUMNS).floor().toConst()
       const tileColumn = before.sub(tileRow.mul(TILE_COLUMNS))
@@ -139,6 +141,6 @@ export function sumSegments(
       sums.molecular.addAssign(sampleLevel0(molecular, at))
       sums.aerosol.addAssign(sampleLevel0(aerosol, at))
     })
-    return sums as unknown as Parts
+    return sums
   })
 }

@@ -9,12 +9,12 @@ const [WIDTH, HEIGHT] = TRANSMITTANCE_SIZE
 
 /** H, the distance from a point on the ground to the top of the air along its horizon [m]. */
 function horizonChord({ bottomRadius, thickness }: AtmosphereUniforms): Float {
-  return thickness.mul(bottomRadius.mul(2).add(thickness)).sqrt() as Float
+  return thickness.mul(bottomRadius.mul(2).add(thickness)).sqrt()
 }
 
 /** ρ, the distance to the horizon [m]. */
 function horizonDistance({ bottomRadius }: AtmosphereUniforms, altitude: Float): Float {
-  return altitude.mul(bottomRadius.mul(2).add(altitude)).max(0).sqrt() as Float
+  return altitude.mul(bottomRadius.mul(2).add(altitude)).max(0).sqrt()
 }
 
 /**
@@ -40,7 +40,7 @@ export function transmittanceUV(
   return vec2(
     x.mul((WIDTH - 1) / WIDTH).add(0.5 / WIDTH),
     y.mul((HEIGHT - 1) / HEIGHT).add(0.5 / HEIGHT)
-  ) as Vec2
+  )
 }
 
 /**
@@ -54,8 +54,14 @@ export function transmittanceRay(
   uv: Vec2
 ): { altitude: Float; cosView: Float; distance: Float } {
   const { bottomRadius, thickness } = uniforms
-  const x = uv.x.sub(0.5 / WIDTH).mul(WIDTH / (WIDTH - 1)).clamp()
-  const y = uv.y.sub(0.5 / HEIGHT).mul(HEIGHT / (HEIGHT - 1)).clamp()
+  const x = uv.x
+    .sub(0.5 / WIDTH)
+    .mul(WIDTH / (WIDTH - 1))
+    .clamp()
+  const y = uv.y
+    .sub(0.5 / HEIGHT)
+    .mul(HEIGHT / (HEIGHT - 1))
+    .clamp()
   const chord = horizonChord(uniforms).toConst()
   const horizon = chord.mul(y).toConst()
   // ρ² = h (2 r_bottom + h), solved for h without cancellation.
@@ -71,9 +77,9 @@ export function transmittanceRay(
     .div(radius.mul(distance).mul(2).max(1))
     .clamp(-1, 1)
   return {
-    altitude: altitude as Float,
-    cosView: distance.lessThan(1).select(1, cosView) as Float,
-    distance: distance as Float
+    altitude: altitude,
+    cosView: distance.lessThan(1).select(1, cosView),
+    distance: distance
   }
 }
 
@@ -98,6 +104,6 @@ export function sunTransmittance(
   const cosHorizon = horizonDistance(uniforms, altitude).div(radius).negate().toConst()
   const margin = sinHorizon.mul(uniforms.sunAngularRadius)
   const visible = smoothstep(margin.negate(), margin, cosSun.sub(cosHorizon))
-  const uv = transmittanceUV(uniforms, altitude, cosSun.max(cosHorizon) as Float)
-  return sampleLevel0(table, uv).negate().exp().mul(visible) as Vec4
+  const uv = transmittanceUV(uniforms, altitude, cosSun.max(cosHorizon))
+  return sampleLevel0(table, uv).negate().exp().mul(visible)
 }
