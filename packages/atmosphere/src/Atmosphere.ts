@@ -219,7 +219,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   /**
-   * Bakes all tables now and reads back what {@link skyIlluminanceAt} and {@link skyLuminance} need.
+   * Bakes all tables now and reads back what {@link skyIlluminanceAt} and `skyLuminanceAt` need.
    *
    * @param renderer - Initialised.
    */
@@ -228,7 +228,8 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     await this.tables.read()
   }
 
-  #query(): AtmosphereQuery {
+  /** What answers questions about light, as things are now. */
+  query(): AtmosphereQuery {
     const { parameters, space, sunDirection, tables } = this
     return new AtmosphereQuery(parameters, space, sunDirection, tables.data)
   }
@@ -240,7 +241,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @returns Linear sRGB [lx].
    */
   sunIlluminanceAt(position: Vector3): Triple {
-    return this.#query().sunIlluminance(position)
+    return this.query().sunIlluminance(position)
   }
 
   /**
@@ -252,19 +253,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @throws Before the tables were baked and read back: await {@link bake} first.
    */
   skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
-    return this.#query().skyIlluminance(position, normal)
-  }
-
-  /**
-   * Luminance of the sky, or of the model's ground, in a direction; without the sun's disc.
-   *
-   * @param position - World.
-   * @param direction - World, unit length.
-   * @returns Linear sRGB [cd/m²].
-   * @throws Before the tables were baked and read back: await {@link bake} first.
-   */
-  skyLuminance(position: Vector3, direction: Vector3): Triple {
-    return this.#query().skyLuminance(position, direction)
+    return this.query().skyIlluminance(position, normal)
   }
 
   /** Frees all GPU memory. The atmosphere can be used again, from nothing. */

@@ -7,3 +7,5 @@ export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './AerialPerspect
 export { AerialPerspectiveNode, aerialPerspective } from './AerialPerspectiveNode'
 export { SunDirectionalLight } from './SunDirectionalLight'
 export { SkyLightProbe } from './SkyLightProbe'
+export { skyLuminanceAt } from './skyLuminance'
+export type { Triple } from './cpu/color'

@@ -2,19 +2,18 @@ import { Vector3 } from 'three'
 import type { AtmosphereParameters, Spectrum } from '../AtmosphereParameters'
 import { spectralToLinearSRGB, type Triple } from './color'
 import type { DiffuseLightData } from './diffuseLight'
-import { skyRadiance } from './scattering'
 import { skyIrradiance } from './skyIrradiance'
 import type { SphericalSpace } from './spherical'
 import { sunTransmittance } from './transmittance'
 
-const clampCosine = (value: number): number => Math.min(Math.max(value, -1), 1)
+export const clampCosine = (value: number): number => Math.min(Math.max(value, -1), 1)
 
 /** Answers questions about light at places and in directions of a scene, in float64. */
 export class AtmosphereQuery {
-  readonly #parameters: AtmosphereParameters
+  readonly parameters: AtmosphereParameters
   readonly #space: SphericalSpace
   readonly #data: DiffuseLightData | null
-  readonly #sun: Vector3
+  readonly sun: Vector3
 
   constructor(
     parameters: AtmosphereParameters,
@@ -22,13 +21,14 @@ export class AtmosphereQuery {
     sunWorld: Vector3,
     data: DiffuseLightData | null
   ) {
-    this.#parameters = parameters
+    this.parameters = parameters
     this.#space = space
     this.#data = data
-    this.#sun = space.direction(sunWorld, new Vector3())
+    this.sun = space.direction(sunWorld, new Vector3())
   }
 
-  #place(position: Vector3) {
+  /** Where a position [world] is in the mapped space. */
+  place(position: Vector3) {
     const up = this.#space.position(position, new Vector3())
     if (!Number.isFinite(up.lengthSq()) || up.lengthSq() === 0) {
       const { x, y, z } = position
@@ -36,12 +36,13 @@ export class AtmosphereQuery {
         `Atmosphere: position must be finite and not the centre, got (${x}, ${y}, ${z})`
       )
     }
-    const radius = Math.max(up.length(), this.#parameters.bottomRadius)
+    const radius = Math.max(up.length(), this.parameters.bottomRadius)
     up.normalize()
-    return { up, radius, cosSun: clampCosine(up.dot(this.#sun)) }
+    return { up, radius, cosSun: clampCosine(up.dot(this.sun)) }
   }
 
-  #direction(name: string, world: Vector3): Vector3 {
+  /** A direction [world] in the mapped space. */
+  direction(name: string, world: Vector3): Vector3 {
     if (!(world.lengthSq() > 0 && world.lengthSq() < Infinity)) {
       const { x, y, z } = world
       throw new Error(`Atmosphere: ${name} must be finite and not zero, got (${x}, ${y}, ${z})`)
@@ -49,7 +50,8 @@ export class AtmosphereQuery {
     return this.#space.direction(world, new Vector3())
   }
 
-  #table(method: string): DiffuseLightData {
+  /** The diffuse-light table, for a method that needs it. */
+  table(method: string): DiffuseLightData {
     if (this.#data === null) {
       throw new Error(
         `Atmosphere: ${method} needs baked tables: await atmosphere.bake(renderer) first`
@@ -58,38 +60,26 @@ export class AtmosphereQuery {
     return this.#data
   }
 
-  #linearSRGB(perIrradiance: number[]): Triple {
-    const values = perIrradiance.map((value, i) => value * this.#parameters.solarIrradiance[i])
-    return spectralToLinearSRGB(this.#parameters, values as unknown as Spectrum)
+  /** From values per unit of solar irradiance. */
+  linearSRGB(perIrradiance: number[]): Triple {
+    const values = perIrradiance.map((value, i) => value * this.parameters.solarIrradiance[i])
+    return spectralToLinearSRGB(this.parameters, values as unknown as Spectrum)
   }
 
   sunIlluminance(position: Vector3): Triple {
-    const { radius, cosSun } = this.#place(position)
-    return this.#linearSRGB(sunTransmittance(this.#parameters, radius, cosSun))
+    const { radius, cosSun } = this.place(position)
+    return this.linearSRGB(sunTransmittance(this.parameters, radius, cosSun))
   }
 
   skyIlluminance(position: Vector3, normal: Vector3): Triple {
-    const data = this.#table('skyIlluminanceAt')
-    const { up, radius, cosSun } = this.#place(position)
-    const n = this.#direction('normal', normal)
-    const altitude = radius - this.#parameters.bottomRadius
+    const data = this.table('skyIlluminanceAt')
+    const { up, radius, cosSun } = this.place(position)
+    const n = this.direction('normal', normal)
+    const altitude = radius - this.parameters.bottomRadius
     const cosNormal = clampCosine(n.dot(up))
-    const cosNormalSun = clampCosine(n.dot(this.#sun))
-    return this.#linearSRGB(
-      skyIrradiance(this.#parameters, data, altitude, cosNormal, cosSun, cosNormalSun)
+    const cosNormalSun = clampCosine(n.dot(this.sun))
+    return this.linearSRGB(
+      skyIrradiance(this.parameters, data, altitude, cosNormal, cosSun, cosNormalSun)
     )
-  }
-
-  skyLuminance(position: Vector3, direction: Vector3): Triple {
-    const data = this.#table('skyLuminance')
-    const { up, radius, cosSun } = this.#place(position)
-    const v = this.#direction('direction', direction)
-    const ray = {
-      radius,
-      cosView: clampCosine(v.dot(up)),
-      cosSun,
-      cosViewSun: clampCosine(v.dot(this.#sun))
-    }
-    return this.#linearSRGB(skyRadiance(this.#parameters, data, ray))
   }
 }
