@@ -4,10 +4,9 @@ import { vec4 } from 'three/tsl'
 import type { Node, WebGPURenderer } from 'three/webgpu'
 import { eyeScalars } from '../../../packages/atmosphere/src/cpu/eye'
 import { groundIrradiance } from '../../../packages/atmosphere/src/tsl/diffuseLight'
-import { marchedAir } from '../../../packages/atmosphere/src/tsl/marchedAir'
+import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/tsl/marchedAir'
 import { scatteredRadiance } from '../../../packages/atmosphere/src/tsl/scattering'
-import { skyBehind, skyInDirection } from '../../../packages/atmosphere/src/tsl/sky'
-import { rayLimits, sampleVolume } from '../../../packages/atmosphere/src/tsl/skyVolume'
+import { rayLimits, sampleSky, sampleVolume } from '../../../packages/atmosphere/src/tsl/skyVolume'
 import { sunTransmittance } from '../../../packages/atmosphere/src/tsl/transmittance'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/ViewNodes'
@@ -27,10 +26,13 @@ const MARCH_STEPS = 12
 
 function skyRadiance({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes): Vec4 {
   const { cosView, cosViewSun } = ray
-  if (path === 'volume') return skyInDirection(air, volume, eye, cosView, cosViewSun).radiance
-  const limits = rayLimits(air.uniforms, eye, cosView)
-  const between = marchedAir(air, eye, cosView, cosViewSun, limits, null, MARCH_STEPS)
-  return skyBehind(air, eye, cosView, cosViewSun, limits, between).radiance
+  const { uniforms } = air
+  if (path === 'volume') {
+    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun)
+    return scatteredRadiance(uniforms, light, cosViewSun)
+  }
+  const limits = rayLimits(uniforms, eye, cosView)
+  return marchedSky(air, eye, cosView, cosViewSun, limits, MARCH_STEPS)
 }
 
 function airInSegment({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes) {

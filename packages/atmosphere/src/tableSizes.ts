@@ -11,12 +11,15 @@ export const DIFFUSE_SIZE = [96, 16] as const
 export const DIFFUSE_TILES = 8
 
 /** Sky volume: azimuth × elevation × distance. */
-export const VOLUME_SIZE = [32, 96, 24] as const
+export const VOLUME_SIZE = [32, 96, 23] as const
 
 /** Places that volumes are kept for at a time: a scene's camera and its mirror image, say. */
 export const VOLUME_SLOTS = 2
 
-/** How the distances of the sky volume lie in its atlas: columns × rows of tiles. */
+/**
+ * How the distances of the sky volume lie in its atlas: columns × rows of tiles. One tile follows the
+ * last distance: all the air along a ray and the ground behind it.
+ */
 export const VOLUME_TILES = [6, 4] as const
 
 /** Mean extinction along rays: distance × elevation. It costs a row little, and needs many. */

@@ -1,6 +1,7 @@
-import type { Float } from '../tsl-types'
+import { If } from 'three/tsl'
+import type { Float, Vec4 } from '../tsl-types'
 import type { Eye } from './eye'
-import { pointAlong, scattering, type Air } from './scattering'
+import { groundRadiance, pointAlong, scatteredRadiance, scattering, type Air } from './scattering'
 import type { AirBetween, RayLimits } from './skyVolume'
 import { enterAir } from './skyVolumeBake'
 
@@ -28,4 +29,29 @@ export function marchedAir(
   const length = inside.min(limits.length).toConst() as Float
   const end = pointAlong(air, ray, length)
   return scattering(air, ray, length, end.altitude.sub(ray.altitude), steps)
+}
+
+/**
+ * Radiance of all the air along a ray and of the ground behind it by marching, where `sampleSky` reads
+ * the sky volume, for unit irradiance of the sun [1/sr].
+ *
+ * @param limits - Of the same ray.
+ * @param steps - Of the march.
+ */
+export function marchedSky(
+  air: Air,
+  eye: Eye,
+  cosView: Float,
+  cosViewSun: Float,
+  limits: RayLimits,
+  steps: number
+): Vec4 {
+  const between = marchedAir(air, eye, cosView, cosViewSun, limits, null, steps)
+  const radiance = scatteredRadiance(air.uniforms, between, cosViewSun).toVar()
+  If(limits.hitsGround, () => {
+    const ray = { altitude: eye.altitude, cosView, cosSun: eye.cosSun, cosViewSun }
+    const ground = pointAlong(air, ray, limits.start.add(limits.length))
+    radiance.addAssign(groundRadiance(air, ground.cosSun).mul(between.depth.negate().exp()))
+  })
+  return radiance
 }

@@ -1,67 +1,10 @@
-import { If, smoothstep, vec3, vec4 } from 'three/tsl'
+import { If, smoothstep, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
-import type { Eye } from './eye'
-import { groundRadiance, pointAlong, scatteredRadiance, type Air } from './scattering'
-import {
-  rayLimits,
-  sampleVolume,
-  type AirBetween,
-  type RayLimits,
-  type VolumeTextures
-} from './skyVolume'
-
-/** What is seen in a direction when nothing is in the way. */
-export interface Sky {
-  /** Light of sky and ground without the sun's disc, for unit irradiance of the sun [1/sr]. */
-  radiance: Vec4
-  /** Of the air in that direction. */
-  transmittance: Vec4
-  limits: RayLimits
-}
-
-/**
- * Sky, or the model's Lambertian ground, in a direction, from the sky volume.
- *
- * @param cosView - μ, direction against the zenith of the eye.
- * @param cosViewSun - ν, direction against the sun.
- */
-export function skyInDirection(
-  air: Air,
-  volume: VolumeTextures,
-  eye: Eye,
-  cosView: Float,
-  cosViewSun: Float
-): Sky {
-  const limits = rayLimits(air.uniforms, eye, cosView)
-  const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, null)
-  return skyBehind(air, eye, cosView, cosViewSun, limits, between)
-}
-
-/**
- * Light of all the air along a ray, and of the ground where the ray meets it.
- *
- * @param between - Air from the eye to the end of the ray, however it was found.
- */
-export function skyBehind(
-  air: Air,
-  eye: Eye,
-  cosView: Float,
-  cosViewSun: Float,
-  limits: RayLimits,
-  between: AirBetween
-): Sky {
-  const transmittance = between.depth.negate().exp().toConst() as Vec4
-  const radiance = scatteredRadiance(air.uniforms, between, cosViewSun).toVar()
-  If(limits.hitsGround, () => {
-    const ray = { altitude: eye.altitude, cosView, cosSun: eye.cosSun, cosViewSun }
-    const ground = pointAlong(air, ray, limits.start.add(limits.length))
-    radiance.addAssign(groundRadiance(air, ground.cosSun).mul(transmittance))
-  })
-  return { radiance: radiance, transmittance, limits }
-}
+import { scatteredRadiance } from './scattering'
+import { sampleSky } from './skyVolume'
 
 /**
  * Radiance of the sun's disc above the air, for unit irradiance [1/sr].
@@ -113,10 +56,13 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
   const direction = view.toMapped(rayView).normalize().toConst() as Vec3
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
-  const { radiance, transmittance, limits } = skyInDirection(air, volume, eye, cosView, cosViewSun)
-  const sky = linearSRGB(uniforms, radiance)
-  if (pixel === null) return sky
-  const disc = sunDisc(uniforms, direction, view.sunDirection, pixel)
-  const sun = linearSRGB(uniforms, disc.mul(transmittance))
-  return sky.add(limits.hitsGround.select(vec3(0), sun)).min(BRIGHTEST)
+  const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun)
+  const color = linearSRGB(uniforms, scatteredRadiance(uniforms, light, cosViewSun)).toVar()
+  if (pixel === null) return color
+  const reach = uniforms.sunAngularRadius.add(pixel).cos()
+  If(cosViewSun.greaterThan(reach.sub(1e-6)).and(light.hitsGround.not()), () => {
+    const disc = sunDisc(uniforms, direction, view.sunDirection, pixel)
+    color.addAssign(linearSRGB(uniforms, disc.mul(light.transmittance())))
+  })
+  return color.min(BRIGHTEST)
 }

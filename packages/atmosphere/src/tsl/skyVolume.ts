@@ -13,6 +13,9 @@ const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 const [DEPTH_COLUMNS, DEPTH_ROWS] = DEPTH_SIZE
 
+/** Number of the tile that holds all the air along a ray and the ground behind it. */
+export const SKY_TILE = DISTANCES
+
 /** Textures of a sky volume. */
 export interface VolumeTextures {
   /** Light scattered by molecules, and by aerosols more than once. */
@@ -148,8 +151,7 @@ function azimuthColumn(
   uniforms: AtmosphereUniforms,
   eye: Eye,
   cosView: Float,
-  cosViewSun: Float,
-  limits: RayLimits
+  cosViewSun: Float
 ): Float {
   const sines = cosView
     .mul(cosView)
@@ -160,6 +162,7 @@ function azimuthColumn(
   const cosAzimuth = cosViewSun.sub(cosView.mul(eye.cosSun)).div(sines).clamp(-1, 1).toConst()
   const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
   If(eye.altitude.greaterThan(uniforms.thickness), () => {
+    const limits = rayLimits(uniforms, eye, cosView)
     const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
     const first = spread(mean.add(swing)).toConst()
     const last = spread(mean.sub(swing))
@@ -250,13 +253,39 @@ export interface AirBetween extends Scattered {
   depth: Vec4
 }
 
+/** Reads a tile of the atlas in a direction. */
+type TileReader = (source: TextureNode, tile: Float) => Vec4
+
+function tileReader(
+  uniforms: AtmosphereUniforms,
+  eye: Eye,
+  cosView: Float,
+  cosViewSun: Float,
+  elevation: Float,
+  hitsGround: Bool
+): TileReader {
+  const row = elevationRow(elevation, hitsGround, ELEVATIONS)
+  const column = azimuthColumn(uniforms, eye, cosView, cosViewSun)
+  const inTile = vec2(column, row).toConst() as Vec2
+  const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS))
+  return (source, tile) => {
+    // Half a tile from the edges: a division that rounds down must not land in another row.
+    const tileRow = tile.add(0.5).div(TILE_COLUMNS).floor()
+    const corner = vec2(
+      tile.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS),
+      tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)
+    )
+    return sampleLevel0(source, inTile.add(corner).mul(atlas))
+  }
+}
+
 /**
- * Reads the volume.
+ * Reads the air between the eye and a point from the volume.
  *
  * @param cosView - μ, ray against the zenith of the eye.
  * @param cosViewSun - ν, ray against sun.
  * @param limits - Of the same ray.
- * @param distance - From the eye; null for the whole ray [m].
+ * @param distance - From the eye [m].
  */
 export function sampleVolume(
   uniforms: AtmosphereUniforms,
@@ -265,38 +294,16 @@ export function sampleVolume(
   cosView: Float,
   cosViewSun: Float,
   limits: RayLimits,
-  distance: Float | null
+  distance: Float
 ): AirBetween {
   const { hitsGround, length } = limits
   const elevation = elevationPosition(eye, cosView, hitsGround).toConst() as Float
-  const row = elevationRow(elevation, hitsGround, ELEVATIONS)
-  const column = azimuthColumn(uniforms, eye, cosView, cosViewSun, limits)
-  const inTile = vec2(column, row).toConst() as Vec2
-  const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS))
-  const fetch = (source: TextureNode, slice: Float): Vec4 => {
-    // Half a tile from the edges: a division that rounds down must not land in another row.
-    const tileRow = slice.add(0.5).div(TILE_COLUMNS).floor()
-    const corner = vec2(
-      slice.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS),
-      tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)
-    )
-    return sampleLevel0(source, inTile.add(corner).mul(atlas))
-  }
-  const inAir = distance === null ? length : distance.sub(limits.start).clamp(0, length).toConst()
-  const position =
-    distance === null ? (float(1) as Float) : (slicePosition(eye, limits, inAir).toConst() as Float)
+  const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround)
+  const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
+  const position = slicePosition(eye, limits, inAir).toConst() as Float
   const depth = meanExtinction(textures.depth, eye, elevation, hitsGround, position).mul(inAir)
-
-  const exists = length.greaterThan(0).select(1, 0)
-  if (distance === null) {
-    const last = float(DISTANCES - 1) as Float
-    return {
-      molecular: fetch(textures.molecular, last).mul(exists),
-      aerosol: fetch(textures.aerosol, last).mul(exists),
-      depth: depth
-    }
-  }
   // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
+  const exists = length.greaterThan(0).select(1, 0)
   const grown = position.mul(DISTANCES).min(1).mul(exists).toConst()
   const slice = position.mul(DISTANCES).sub(1).max(0).toConst()
   const near = slice
@@ -307,9 +314,37 @@ export function sampleVolume(
   const part = slice.sub(near)
   const read = (source: TextureNode): Vec4 =>
     mix(fetch(source, near), fetch(source, far), part).mul(grown)
+  return { molecular: read(textures.molecular), aerosol: read(textures.aerosol), depth }
+}
+
+/**
+ * Reads the light of all the air in a direction and of the ground behind it from the volume.
+ *
+ * @param cosView - μ, direction against the zenith of the eye.
+ * @param cosViewSun - ν, direction against the sun.
+ * @returns Light, whether the ground is behind, and a function that looks up the air's transmittance.
+ */
+export function sampleSky(
+  uniforms: AtmosphereUniforms,
+  textures: VolumeTextures,
+  eye: Eye,
+  cosView: Float,
+  cosViewSun: Float
+): Scattered & { hitsGround: Bool; transmittance: () => Vec4 } {
+  const discriminant = groundDiscriminant(eye.altitude, cosView, uniforms.bottomRadius)
+  const hitsGround = discriminant.greaterThanEqual(0).and(cosView.lessThan(0)).toConst() as Bool
+  const elevation = elevationPosition(eye, cosView, hitsGround).toConst() as Float
+  const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround)
+  const tile = float(SKY_TILE) as Float
   return {
-    molecular: read(textures.molecular),
-    aerosol: read(textures.aerosol),
-    depth: depth
+    molecular: fetch(textures.molecular, tile),
+    aerosol: fetch(textures.aerosol, tile),
+    hitsGround,
+    transmittance: () => {
+      const { length } = rayLimits(uniforms, eye, cosView, hitsGround)
+      const end = float(1) as Float
+      const depth = meanExtinction(textures.depth, eye, elevation, hitsGround, end).mul(length)
+      return depth.negate().exp()
+    }
   }
 }

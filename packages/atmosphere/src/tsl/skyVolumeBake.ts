@@ -1,12 +1,20 @@
 import { Discard, Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { TwoOutputs } from '../FragmentPass'
-import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
+import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import type { Eye } from './eye'
-import { pointAlong, scatterSegment, segmentDepth, type Air, type Ray } from './scattering'
+import {
+  groundRadiance,
+  pointAlong,
+  scatterSegment,
+  segmentDepth,
+  type Air,
+  type Ray
+} from './scattering'
 import {
   EXTINCTION_SCALE,
+  SKY_TILE,
   columnCosine,
   meanExtinction,
   rayLimits,
@@ -101,7 +109,7 @@ function atlasPosition(texel: Vec2) {
 
 /**
  * Shader that fills the atlas with the light scattered between one slice and the next, as seen from
- * the eye.
+ * the eye; and the last tile with the light of the ground.
  *
  * @param depth - Table of {@link bakeDepth} for the same eye.
  */
@@ -118,11 +126,17 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
     const reached = slice.div(DISTANCES) as Float
     const before = meanExtinction(depth, eye, position, hitsGround, reached).mul(start)
     const through = before.negate().exp().toConst()
-    const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
-    return {
-      molecular: light.molecular.mul(through),
-      aerosol: light.aerosol.mul(through)
-    }
+    const molecular = vec4(0).toVar()
+    const aerosol = vec4(0).toVar()
+    If(slice.lessThan(SKY_TILE), () => {
+      const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
+      molecular.assign(light.molecular.mul(through))
+      aerosol.assign(light.aerosol.mul(through))
+    }).ElseIf(hitsGround, () => {
+      const foot = pointAlong(air, ray, limits.length)
+      molecular.assign(groundRadiance(air, foot.cosSun).mul(through).mul(RADIANCE_SCALE))
+    })
+    return { molecular: molecular, aerosol: aerosol }
   })
 }
 
