@@ -1,6 +1,6 @@
 import type { StorybookConfig } from '@storybook/html-vite'
 import { mergeConfig } from 'vite'
-import { workspaceAliases } from '../vite/workspaceAliases.ts'
+import { sourceAliases } from '../../scripts/aliases.ts'
 import { worldData } from '../vite/worldData.ts'
 
 const config: StorybookConfig = {
@@ -21,7 +21,7 @@ const config: StorybookConfig = {
   viteFinal: viteConfig =>
     mergeConfig(viteConfig, {
       plugins: [worldData()],
-      resolve: { alias: workspaceAliases, dedupe: ['three'] },
+      resolve: { alias: sourceAliases, dedupe: ['three'] },
       // Relative, so that the built Storybook works from any directory of a web server.
       base: './',
       build: { target: 'es2022', chunkSizeWarningLimit: 4000 }

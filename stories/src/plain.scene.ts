@@ -1,4 +1,11 @@
-import { Atmosphere } from '@welkin/atmosphere'
+import {
+  aerialPerspective,
+  aerialPerspectiveFog,
+  Atmosphere,
+  SkyLightProbe,
+  skyBackground,
+  SunDirectionalLight
+} from '@welkin/atmosphere'
 import {
   BoxGeometry,
   CircleGeometry,
@@ -12,7 +19,8 @@ import {
 } from 'three'
 import type { Material } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { Air } from './air'
+import { pass } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
 import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -53,7 +61,7 @@ function populate(scene: Scene): Mesh[] {
   for (let i = 0; i < 5; i++) {
     const roughness = 0.1 + i * 0.2
     const x = (i - 2) * 2
-    const metal = new MeshStandardMaterial({ color: '#d9a441', metalness: 1, roughness })
+    const metal = new MeshStandardMaterial({ color: '#d9a441', metalness: 0.3, roughness })
     const paint = new MeshStandardMaterial({ color: '#a8322a', metalness: 0, roughness })
     meshes.push(
       standing(new Mesh(ball, metal), x, 0.8, -2.5),
@@ -105,9 +113,25 @@ export async function createPlain(
   controls.update()
   const meshes = populate(scene)
 
+  const current = { ...args }
   const atmosphere = new Atmosphere()
-  const air = new Air(renderer, scene, camera, atmosphere, args.path)
-  const { sun } = air
+  atmosphere.place(current)
+  atmosphere.date = dateOf(current.day, current.hour)
+  const sun = new SunDirectionalLight(atmosphere)
+  const sky = new SkyLightProbe(atmosphere)
+  scene.add(sun, sun.target, sky)
+  let pipeline: RenderPipeline | undefined
+  if (args.path === 'forward') {
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+  } else {
+    const scenePass = pass(scene, camera)
+    const color = scenePass.getTextureNode()
+    const depth = scenePass.getTextureNode('depth')
+    pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
+  }
+
   sun.distance = 50
   sun.castShadow = true
   sun.shadow.mapSize.setScalar(2048)
@@ -116,18 +140,24 @@ export async function createPlain(
   sun.shadow.camera.far = 100
   sun.shadow.normalBias = 0.02
 
-  const current = { ...args }
-
   const apply = (): void => {
     atmosphere.place(current)
     atmosphere.date = dateOf(current.day, current.hour)
     renderer.toneMappingExposure = exposureOf(current.exposure)
   }
   apply()
+
+  const draw = (): void => {
+    if (pipeline === undefined) {
+      renderer.render(scene, camera)
+    } else {
+      pipeline.render()
+    }
+  }
   let ready: Promise<void> = Promise.resolve()
   const warmUp = async (): Promise<void> => {
     for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-      air.render()
+      draw()
     }
   }
 
@@ -143,7 +173,7 @@ export async function createPlain(
       if (!current.frame) {
         controls.update()
       }
-      air.render()
+      draw()
     },
     resize(width, height, pixelRatio) {
       renderer.setPixelRatio(pixelRatio)
@@ -157,8 +187,13 @@ export async function createPlain(
       apply()
     },
     dispose() {
-      controls.dispose()
-      air.dispose()
+      if (controls.domElement !== null) {
+        controls.dispose()
+      }
+      sun.dispose()
+      sky.dispose()
+      pipeline?.dispose()
+      atmosphere.dispose()
       for (const { geometry, material } of meshes) {
         geometry.dispose()
         ;(material as Material).dispose()

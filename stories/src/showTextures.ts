@@ -1,8 +1,11 @@
-import { Data3DTexture, Mesh, OrthographicCamera, PlaneGeometry, Scene } from 'three'
+import { Data3DTexture, Mesh, OrthographicCamera, PlaneGeometry, Scene, Vector4 } from 'three'
 import type { Texture } from 'three'
 import { texture, texture3D, uniform, uv, vec3 } from 'three/tsl'
 import { MeshBasicNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
+
+/** A part of a texture: x, y, width, height in [0, 1]. */
+export type Region = readonly [number, number, number, number]
 
 /** A texture to show as a picture. */
 export interface Picture {
@@ -13,6 +16,8 @@ export interface Picture {
   height: number
   /** For a 3D texture: which slice, in [0, 1]. */
   slice?: number
+  /** For a 2D texture: the part to show, x, y, width, height in [0, 1]; default all of it. */
+  region?: Region
   /** Factor before display; what is above 1 after it is white. Default 1. */
   scale?: number
   /** How a texel becomes linear RGB; default its first three channels. */
@@ -23,6 +28,7 @@ interface Shown {
   picture: Picture
   mesh: Mesh<PlaneGeometry, MeshBasicNodeMaterial>
   slice: { value: number }
+  region: { value: Vector4 }
   scale: { value: number }
   label: HTMLElement
 }
@@ -51,6 +57,7 @@ export class TexturePictures {
     this.shown = pictures.map(picture => {
       const slice = uniform(picture.slice ?? 0)
       const scale = uniform(picture.scale ?? 1)
+      const region = uniform(new Vector4(...(picture.region ?? [0, 0, 1, 1])))
       const material = new MeshBasicNodeMaterial({
         depthTest: false,
         depthWrite: false,
@@ -59,7 +66,7 @@ export class TexturePictures {
       const texel =
         picture.texture instanceof Data3DTexture
           ? texture3D(picture.texture, vec3(uv(), slice))
-          : texture(picture.texture, uv())
+          : texture(picture.texture, uv().mul(region.zw).add(region.xy))
       const node = texel as unknown as Node<'vec4'>
       material.colorNode = (picture.color?.(node) ?? node.rgb).mul(scale)
       const mesh = new Mesh(new PlaneGeometry(1, 1), material)
@@ -69,16 +76,20 @@ export class TexturePictures {
       label.textContent = picture.label
       label.style.cssText = 'position:absolute;white-space:nowrap;pointer-events:none'
       canvas.parentElement?.append(label)
-      return { picture, mesh, slice, scale, label }
+      return { picture, mesh, slice, region, scale, label }
     })
   }
 
-  /** Changes the slice or scale of the pictures that a label belongs to. */
-  set(label: string, { slice, scale }: { slice?: number; scale?: number }): void {
-    for (const shown of this.shown) {
-      if (shown.picture.label === label) {
-        shown.slice.value = slice ?? shown.slice.value
-        shown.scale.value = scale ?? shown.scale.value
+  /** Changes the pictures whose labels begin with some words. */
+  set(
+    label: string,
+    { slice, region, scale }: { slice?: number; region?: Region; scale?: number }
+  ): void {
+    for (const shown of this.shown.filter(({ picture }) => picture.label.startsWith(label))) {
+      shown.slice.value = slice ?? shown.slice.value
+      shown.scale.value = scale ?? shown.scale.value
+      if (region !== undefined) {
+        shown.region.value.set(...region)
       }
     }
   }

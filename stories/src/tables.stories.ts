@@ -8,13 +8,48 @@ const meta: Meta<TablesArgs> = {
   title: 'Tables',
   render: mount(createTables),
   argTypes: {
+    turbidity: {
+      name: 'Turbidity',
+      control: { type: 'range', min: 1, max: 10, step: 0.1 },
+      description: '1 is air without aerosols, 2 clear air'
+    },
+    ozone: {
+      name: 'Ozone [DU]',
+      control: { type: 'range', min: 0, max: 600, step: 10 },
+      description: 'Dobson units'
+    },
+    groundAlbedo: {
+      name: 'Ground albedo',
+      control: { type: 'range', min: 0, max: 1, step: 0.01 },
+      description: 'Part of the light that the ground reflects'
+    },
+    altitude: {
+      name: 'Camera altitude [km]',
+      control: { type: 'range', min: 0, max: 400, step: 0.5 },
+      description: 'For the sky volume'
+    },
+    sunElevation: {
+      name: 'Sun elevation [°]',
+      control: { type: 'range', min: -18, max: 90, step: 0.5 },
+      description: 'For the sky volume'
+    },
     exposure: {
       name: 'Exposure [stops]',
       control: { type: 'range', min: -4, max: 20, step: 0.25 }
     },
     ...rendererArgTypes
   },
-  args: { exposure: 0, forceWebGL: false, path: 'forward', frame: false }
+  args: {
+    turbidity: 2,
+    ozone: 300,
+    groundAlbedo: 0.1,
+    altitude: 0.1,
+    sunElevation: 30,
+    exposure: 0,
+    forceWebGL: false,
+    path: 'forward',
+    frame: false
+  }
 }
 
 export default meta
