@@ -6,7 +6,12 @@ import { eyeScalars } from '../../../packages/atmosphere/src/cpu/eye'
 import { groundIrradiance } from '../../../packages/atmosphere/src/tsl/diffuseLight'
 import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/tsl/marchedAir'
 import { scatteredRadiance } from '../../../packages/atmosphere/src/tsl/scattering'
-import { rayLimits, sampleSky, sampleVolume } from '../../../packages/atmosphere/src/tsl/skyVolume'
+import {
+  rayLimits,
+  rayTargets,
+  sampleSky,
+  sampleVolume
+} from '../../../packages/atmosphere/src/tsl/skyVolume'
 import { sunTransmittance } from '../../../packages/atmosphere/src/tsl/transmittance'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/ViewNodes'
@@ -28,8 +33,9 @@ function skyRadiance({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes)
   const { cosView, cosViewSun } = ray
   const { uniforms } = air
   if (path === 'volume') {
-    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun)
-    return scatteredRadiance(uniforms, light, cosViewSun)
+    const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
+    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
+    return scatteredRadiance(uniforms, light, cosViewSun).mul(meetsAir.select(1, 0))
   }
   const limits = rayLimits(uniforms, eye, cosView)
   return marchedSky(air, eye, cosView, cosViewSun, limits, MARCH_STEPS)

@@ -1,10 +1,10 @@
-import { If, smoothstep, vec4 } from 'three/tsl'
+import { If, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
 import { scatteredRadiance } from './scattering'
-import { sampleSky } from './skyVolume'
+import { rayTargets, sampleSky, skyTransmittance } from './skyVolume'
 
 /**
  * Radiance of the sun's disc above the air, for unit irradiance [1/sr].
@@ -56,13 +56,18 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
   const direction = view.toMapped(rayView).normalize().toConst() as Vec3
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
-  const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun)
-  const color = linearSRGB(uniforms, scatteredRadiance(uniforms, light, cosViewSun)).toVar()
+  const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
+  const color = vec3(0).toVar()
+  If(meetsAir, () => {
+    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
+    color.assign(linearSRGB(uniforms, scatteredRadiance(uniforms, light, cosViewSun)))
+  })
   if (pixel === null) return color
-  const reach = uniforms.sunAngularRadius.add(pixel).cos()
-  If(cosViewSun.greaterThan(reach.sub(1e-6)).and(light.hitsGround.not()), () => {
+  const reach = uniforms.sunAngularRadius.add(pixel).cos().sub(1e-6)
+  If(cosViewSun.greaterThan(reach).and(hitsGround.not()), () => {
     const disc = sunDisc(uniforms, direction, view.sunDirection, pixel)
-    color.addAssign(linearSRGB(uniforms, disc.mul(light.transmittance())))
+    const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
+    color.addAssign(linearSRGB(uniforms, disc.mul(through)))
   })
   return color.min(BRIGHTEST)
 }

@@ -5,7 +5,6 @@ import { diffuseSunCosine } from '../cpu/diffuseLight'
 import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { distanceToGround, groundDiscriminant } from './boundary'
-import { asinh } from './diffuseLight'
 import type { Eye } from './eye'
 import type { Scattered } from './scattering'
 
@@ -132,10 +131,14 @@ function sunAtFoot(uniforms: AtmosphereUniforms, eye: Eye, cosView: Float, limit
   }
 }
 
-/** asinh of the sun's cosine, as the diffuse-light table spaces it: fine about the horizon. */
+/**
+ * asinh of the sun's cosine, as the diffuse-light table spaces it: fine about the horizon. The plain
+ * form will do here: its argument stays above −9, where it has five digits left.
+ */
 const spread = (cosSun: Float): Float => {
   const { centre, width } = diffuseSunCosine
-  return asinh(cosSun.sub(centre).div(width))
+  const x = cosSun.sub(centre).div(width).toConst()
+  return x.add(x.mul(x).add(1).sqrt()).log()
 }
 
 /**
@@ -317,34 +320,50 @@ export function sampleVolume(
   return { molecular: read(textures.molecular), aerosol: read(textures.aerosol), depth }
 }
 
+/** Which rays from an eye meet the ground, and which the air at all. */
+export function rayTargets(uniforms: AtmosphereUniforms, eye: Eye, cosView: Float) {
+  const { bottomRadius, thickness } = uniforms
+  const discriminant = groundDiscriminant(eye.altitude, cosView, bottomRadius).toConst()
+  const looksDown = cosView.lessThan(0)
+  const shell = thickness.mul(bottomRadius.mul(2).add(thickness))
+  const isOutside = eye.altitude.greaterThan(thickness)
+  return {
+    hitsGround: discriminant.greaterThanEqual(0).and(looksDown).toConst() as Bool,
+    meetsAir: isOutside.not().or(discriminant.add(shell).greaterThan(0).and(looksDown)) as Bool
+  }
+}
+
 /**
  * Reads the light of all the air in a direction and of the ground behind it from the volume.
  *
- * @param cosView - μ, direction against the zenith of the eye.
+ * @param cosView - μ, direction against the zenith of the eye; it meets the air.
  * @param cosViewSun - ν, direction against the sun.
- * @returns Light, whether the ground is behind, and a function that looks up the air's transmittance.
+ * @param hitsGround - Whether the ground is behind.
  */
 export function sampleSky(
   uniforms: AtmosphereUniforms,
   textures: VolumeTextures,
   eye: Eye,
   cosView: Float,
-  cosViewSun: Float
-): Scattered & { hitsGround: Bool; transmittance: () => Vec4 } {
-  const discriminant = groundDiscriminant(eye.altitude, cosView, uniforms.bottomRadius)
-  const hitsGround = discriminant.greaterThanEqual(0).and(cosView.lessThan(0)).toConst() as Bool
+  cosViewSun: Float,
+  hitsGround: Bool
+): Scattered {
   const elevation = elevationPosition(eye, cosView, hitsGround).toConst() as Float
   const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround)
   const tile = float(SKY_TILE) as Float
-  return {
-    molecular: fetch(textures.molecular, tile),
-    aerosol: fetch(textures.aerosol, tile),
-    hitsGround,
-    transmittance: () => {
-      const { length } = rayLimits(uniforms, eye, cosView, hitsGround)
-      const end = float(1) as Float
-      const depth = meanExtinction(textures.depth, eye, elevation, hitsGround, end).mul(length)
-      return depth.negate().exp()
-    }
-  }
+  return { molecular: fetch(textures.molecular, tile), aerosol: fetch(textures.aerosol, tile) }
+}
+
+/** Transmittance of all the air in a direction; 1 where there is none. */
+export function skyTransmittance(
+  uniforms: AtmosphereUniforms,
+  textures: VolumeTextures,
+  eye: Eye,
+  cosView: Float,
+  hitsGround: Bool
+): Vec4 {
+  const elevation = elevationPosition(eye, cosView, hitsGround)
+  const { length } = rayLimits(uniforms, eye, cosView, hitsGround)
+  const mean = meanExtinction(textures.depth, eye, elevation, hitsGround, float(1))
+  return mean.mul(length).negate().exp()
 }
