@@ -15,6 +15,13 @@ const steps = [
   { id: 'size', title: 'Bundle size' },
   { id: 'gpu', title: 'GPU tests', script: 'test:gpu' },
   { id: 'smoke', title: 'GPU smoke test', script: 'test:gpu', args: ['smoke'], onDemand: true },
+  { id: 'validate', title: 'Reference data', args: ['--check'] },
+  {
+    id: 'march',
+    title: 'Reference march',
+    script: 'validate',
+    args: ['--check', '--path', 'march']
+  },
   { id: 'visual', title: 'Visual regression', script: 'test:visual' },
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer' }
 ]
