@@ -176,18 +176,16 @@ export class AtmosphereParameters {
   /**
    * Sets turbidity and ozone as {@link earth} does, keeping everything else.
    *
-   * @throws If a number is out of its range.
+   * @throws If a number is out of its range; then nothing has changed.
    */
   setEarth({ turbidity, ozone }: { turbidity?: number; ozone?: number }): this {
+    if (turbidity !== undefined) check('turbidity', turbidity, 1, 20)
+    if (ozone !== undefined) check('ozone', ozone, 0, 1000)
     if (turbidity !== undefined) {
-      check('turbidity', turbidity, 1, 20)
       const extinction = CLEAR_AEROSOL_EXTINCTION * (turbidity - 1)
       this.set({ mieScattering: all(0.9 * extinction), mieExtinction: all(extinction) })
     }
-    if (ozone !== undefined) {
-      check('ozone', ozone, 0, 1000)
-      this.set({ absorptionExtinction: earthOzone(ozone) })
-    }
+    if (ozone !== undefined) this.set({ absorptionExtinction: earthOzone(ozone) })
     return this
   }
 

@@ -1,0 +1,143 @@
+import fc from 'fast-check'
+import { describe, expect, it } from 'vitest'
+import { Vector3 } from 'three'
+import { Atmosphere, AtmosphereParameters, skyLuminanceAt } from '@welkin/atmosphere'
+import type { AtmosphereFrame } from '@welkin/atmosphere'
+import { Ellipsoid, sunDirectionECEF } from '@welkin/geo'
+import { number, runs } from './arbitraries'
+
+const degree = Math.PI / 180
+/** Sun over longitude 0 by the almanac's equation of time, on the day of the equinox. */
+const equinoxNoon = new Date('2026-03-20T12:07:30Z')
+
+describe('Atmosphere', () => {
+  it('sees the equinox sun at noon overhead at the equator and due south at 45° north', () => {
+    const atmosphere = new Atmosphere()
+    atmosphere.date = equinoxNoon
+    atmosphere.place({ longitude: 0, latitude: 0 })
+    expect(atmosphere.sunDirection.angleTo(new Vector3(0, 1, 0))).toBeLessThan(0.2 * degree)
+    atmosphere.place({ longitude: 0, latitude: 45 })
+    const south = new Vector3(0, 1, 1).normalize()
+    expect(atmosphere.sunDirection.angleTo(south)).toBeLessThan(0.2 * degree)
+    atmosphere.place({ longitude: 90, latitude: 0 })
+    expect(atmosphere.sunDirection.angleTo(new Vector3(-1, 0, 0))).toBeLessThan(0.2 * degree)
+  })
+
+  it('has one sun in every frame', () => {
+    fc.assert(
+      fc.property(
+        number(-180, 180),
+        number(-89, 89),
+        number(0, 3e10),
+        (longitude, latitude, ms) => {
+          const date = new Date(1.77e12 + Math.floor(ms))
+          const local = new Atmosphere().place({ longitude, latitude })
+          const global = new Atmosphere()
+          global.frame = 'ecef'
+          local.metersPerUnit = 1000
+          local.date = global.date = date
+          const expected = sunDirectionECEF(date)
+          expect(global.sunDirection.angleTo(expected)).toBeLessThan(1e-7)
+          const turned = local.sunDirection.transformDirection(local.worldToECEF)
+          expect(turned.distanceTo(expected)).toBeLessThan(1e-9)
+        }
+      ),
+      { ...runs, numRuns: 60 }
+    )
+  })
+
+  it('puts the origin at the place, in units of its own', () => {
+    const atmosphere = new Atmosphere()
+    atmosphere.metersPerUnit = 1000
+    atmosphere.place({ longitude: 139.77, latitude: 35.68, height: 40 })
+    const up = new Vector3(0, 2, 0).applyMatrix4(atmosphere.worldToECEF)
+    const place = Ellipsoid.WGS84.ecefToGeodetic(up)
+    expect(place.longitude).toBeCloseTo(139.77, 9)
+    expect(place.latitude).toBeCloseTo(35.68, 9)
+    expect(place.height).toBeCloseTo(2040, 4)
+    atmosphere.frame = 'ecef'
+    expect(new Vector3(1, 2, 3).applyMatrix4(atmosphere.worldToECEF).toArray()).toEqual([
+      1e3, 2e3, 3e3
+    ])
+  })
+
+  it('points the sun by angles in both frames', () => {
+    const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 50 })
+    atmosphere.setSunAngles(30, 90)
+    const east = new Vector3(Math.cos(30 * degree), 0.5, 0)
+    expect(atmosphere.sunDirection.distanceTo(east)).toBeLessThan(1e-9)
+    const expected = east.clone().transformDirection(atmosphere.worldToECEF)
+    atmosphere.frame = 'ecef'
+    atmosphere.setSunAngles(30, 90)
+    expect(atmosphere.sunDirection.distanceTo(expected)).toBeLessThan(1e-9)
+    atmosphere.frame = 'local'
+    atmosphere.setSunAngles(0, 0)
+    expect(atmosphere.sunDirection.distanceTo(new Vector3(0, 0, -1))).toBeLessThan(1e-9)
+  })
+
+  it('keeps the sun where it is when the date is taken away', () => {
+    const atmosphere = new Atmosphere().place({ longitude: 7, latitude: 50 })
+    atmosphere.date = equinoxNoon
+    const before = atmosphere.sunDirection
+    atmosphere.date = null
+    expect(atmosphere.sunDirection.distanceTo(before)).toBe(0)
+    atmosphere.date = equinoxNoon
+    atmosphere.sunDirection = new Vector3(0, 5, 0)
+    expect(atmosphere.date).toBeNull()
+    expect(atmosphere.sunDirection.toArray()).toEqual([0, 1, 0])
+  })
+
+  it('gives the same sunlight in every frame and unit', () => {
+    const local = new Atmosphere().place({ longitude: 0, latitude: 45 })
+    const global = new Atmosphere()
+    global.frame = 'ecef'
+    global.metersPerUnit = 1000
+    local.date = global.date = new Date('2026-03-20T17:30:00Z')
+    const here = new Vector3(100, 2000, -300)
+    const there = here.clone().applyMatrix4(local.worldToECEF).divideScalar(1000)
+    const [a, b] = [local.sunIlluminanceAt(here), global.sunIlluminanceAt(there)]
+    a.forEach((value, i) => expect(b[i]! / value).toBeCloseTo(1, 6))
+    expect(a[0]).toBeGreaterThan(a[2])
+  })
+
+  it('has night on the far side and 132 klx above the air', () => {
+    const atmosphere = new Atmosphere()
+    atmosphere.frame = 'ecef'
+    atmosphere.sunDirection = new Vector3(1, 0, 0)
+    const [r, g, b] = atmosphere.sunIlluminanceAt(new Vector3(7e6, 0, 0))
+    expect(0.2126 * r + 0.7152 * g + 0.0722 * b).toBeGreaterThan(129_000)
+    expect(atmosphere.sunIlluminanceAt(new Vector3(-6.38e6, 0, 0))).toEqual([0, 0, 0])
+  })
+
+  it('refuses what makes no sense, by name and value', () => {
+    const atmosphere = new Atmosphere()
+    const wrong: [() => unknown, RegExp][] = [
+      [() => (atmosphere.date = new Date(NaN)), /Atmosphere: date .*Invalid Date/],
+      [() => (atmosphere.date = 'noon' as unknown as Date), /Atmosphere: date .*noon/],
+      [() => (atmosphere.frame = 'eci' as AtmosphereFrame), /Atmosphere: frame .*eci/],
+      [() => (atmosphere.metersPerUnit = 0), /Atmosphere: metersPerUnit .*0/],
+      [() => (atmosphere.metersPerUnit = NaN), /Atmosphere: metersPerUnit .*NaN/],
+      [() => (atmosphere.sunDirection = new Vector3()), /Atmosphere: sunDirection .*\(0, 0, 0\)/],
+      [() => atmosphere.setSunAngles(91, 0), /Atmosphere: elevation .*91/],
+      [() => atmosphere.setSunAngles(0, Infinity), /Atmosphere: azimuth .*Infinity/],
+      [() => atmosphere.place({ longitude: 0, latitude: 91 }), /latitude .*91/],
+      [() => atmosphere.place({ longitude: NaN, latitude: 0 }), /longitude .*NaN/],
+      [() => atmosphere.sunIlluminanceAt(new Vector3(NaN, 0, 0)), /Atmosphere: position .*NaN/],
+      [
+        () => atmosphere.skyIlluminanceAt(new Vector3(), new Vector3(0, 1, 0)),
+        /Atmosphere: skyIlluminanceAt .*bake/
+      ],
+      [
+        () => skyLuminanceAt(atmosphere, new Vector3(), new Vector3(0, 1, 0)),
+        /skyLuminanceAt .*bake/
+      ],
+      [() => new Atmosphere({ parameters: {} as AtmosphereParameters }), /Atmosphere: parameters/],
+      [() => new Atmosphere({ ellipsoid: {} as Ellipsoid }), /Atmosphere: ellipsoid/]
+    ]
+    const before = [...atmosphere.worldToECEF.elements, ...atmosphere.sunDirection.toArray()]
+    for (const [act, message] of wrong) expect(act).toThrow(message)
+    expect([...atmosphere.worldToECEF.elements, ...atmosphere.sunDirection.toArray()]).toEqual(
+      before
+    )
+  })
+})

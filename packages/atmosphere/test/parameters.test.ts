@@ -1,0 +1,83 @@
+import { describe, expect, it } from 'vitest'
+import { AtmosphereParameters } from '@welkin/atmosphere'
+import type { AtmosphereParametersInit, Spectrum } from '@welkin/atmosphere'
+
+const bad: [AtmosphereParametersInit, RegExp][] = [
+  [{ bottomRadius: -1 }, /AtmosphereParameters: bottomRadius .*-1/],
+  [{ topRadius: 6_378_137 }, /AtmosphereParameters: topRadius .*6378137/],
+  [{ topRadius: NaN }, /AtmosphereParameters: topRadius .*NaN/],
+  [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry .*1/],
+  [{ rayleighScaleHeight: 0 }, /AtmosphereParameters: rayleighScaleHeight .*0/],
+  [{ groundAlbedo: [0, 0, 1.5, 0] }, /AtmosphereParameters: groundAlbedo\[2\] .*1\.5/],
+  [
+    { mieExtinction: [0, -1e-6, 0, 0] },
+    /AtmosphereParameters: mieExtinction\[1\] .*-0\.000001|-1e-6/
+  ],
+  [
+    { wavelengths: [1, 2, 3] as unknown as Spectrum },
+    /AtmosphereParameters: wavelengths .*4 values.*3/
+  ],
+  [{ sunAngularRadius: Infinity }, /AtmosphereParameters: sunAngularRadius .*Infinity/],
+  [
+    {
+      spectralToXYZ: [
+        [NaN, 0, 0, 0],
+        [0, 0, 0, 0],
+        [0, 0, 0, 0]
+      ]
+    },
+    /AtmosphereParameters: spectralToXYZ\[0\]\[0\] .*NaN/
+  ]
+]
+
+describe('AtmosphereParameters', () => {
+  it.each(bad)('names class, field and value of %j', (init, message) => {
+    expect(() => new AtmosphereParameters(init)).toThrow(message)
+    const parameters = new AtmosphereParameters()
+    const before = { ...parameters }
+    expect(() => parameters.set({ mieScaleHeight: 2000, ...init })).toThrow(message)
+    expect({ ...parameters }).toEqual(before)
+  })
+
+  it('counts changes', () => {
+    const parameters = new AtmosphereParameters({ mieAsymmetry: 0.7 })
+    expect(parameters.version).toBe(0)
+    parameters.set({ mieAsymmetry: 0.6 })
+    expect(parameters.version).toBe(1)
+    expect(parameters.mieAsymmetry).toBe(0.6)
+  })
+
+  it('copies', () => {
+    const parameters = new AtmosphereParameters({ mieAsymmetry: 0.7 })
+    const copy = parameters.clone()
+    parameters.set({ mieAsymmetry: 0.1 })
+    expect(copy.mieAsymmetry).toBe(0.7)
+    expect(copy.version).toBe(0)
+  })
+
+  it('makes the air of the Earth from turbidity and ozone', () => {
+    const clear = AtmosphereParameters.earth({ turbidity: 1, ozone: 0 })
+    expect(clear.mieExtinction).toEqual([0, 0, 0, 0])
+    expect(clear.mieScattering).toEqual([0, 0, 0, 0])
+    expect(clear.absorptionExtinction).toEqual([0, 0, 0, 0])
+    const usual = new AtmosphereParameters()
+    expect(AtmosphereParameters.earth().mieExtinction).toEqual(usual.mieExtinction)
+    const hazy = AtmosphereParameters.earth({ turbidity: 6, ozone: 600 })
+    hazy.mieExtinction.forEach((v, i) => expect(v / usual.mieExtinction[i]!).toBeCloseTo(5, 9))
+    hazy.absorptionExtinction.forEach((v, i) =>
+      expect(v / usual.absorptionExtinction[i]!).toBeCloseTo(2, 9)
+    )
+    expect(() => AtmosphereParameters.earth({ turbidity: 0.5 })).toThrow(
+      /AtmosphereParameters: turbidity .*0\.5/
+    )
+    expect(() => AtmosphereParameters.earth({ ozone: NaN })).toThrow(
+      /AtmosphereParameters: ozone .*NaN/
+    )
+  })
+
+  it('changes nothing if one of turbidity and ozone is wrong', () => {
+    const parameters = new AtmosphereParameters()
+    expect(() => parameters.setEarth({ turbidity: 5, ozone: -1 })).toThrow(/ozone .*-1/)
+    expect(parameters.mieExtinction).toEqual(new AtmosphereParameters().mieExtinction)
+  })
+})
