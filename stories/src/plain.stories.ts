@@ -44,5 +44,8 @@ export const Afternoon: Story = { tags: ['screenshot'] }
 /** A quarter of an hour before sunset. */
 export const Sunset: Story = { args: { hour: 9.75, exposure: 2 }, tags: ['screenshot'] }
 
-/** Nautical twilight: the sun is 8° down. */
-export const Dusk: Story = { args: { hour: 10.75, exposure: 9 }, tags: ['screenshot'] }
+/** Civil twilight, the sun 5° down: the sky over it is a hundred times as bright as the ground. */
+export const Dusk: Story = { args: { hour: 10.4, exposure: 8 }, tags: ['screenshot'] }
+
+/** The air over the finished picture, as a post effect. */
+export const Post: Story = { args: { path: 'post' }, tags: ['screenshot'] }

@@ -64,12 +64,17 @@ const PARTS = ['molecules', 'aerosols']
 const sliceLabel = (part: string, slice: number): string =>
   `Sky volume: ${part}, slice ${slice + 1} of ${SLICE_COUNT}`
 
+/** Without the outer half of the first and last texel, where filtering mixes in the next tile. */
+function inset([x, y, width, height]: Region, columns: number): Region {
+  return [x + 0.5 / columns, y, width - 1 / columns, height]
+}
+
 function sliceRegion(slice: number, slot: number): Region {
-  const { columns, rows, slots } = VOLUME
+  const { azimuths, columns, rows, slots } = VOLUME
   const row = Math.floor(slice / columns) + slot * rows
   const width = 1 / columns
   const height = 1 / (rows * slots)
-  return [(slice % columns) * width, row * height, width, height]
+  return inset([(slice % columns) * width, row * height, width, height], azimuths * columns)
 }
 
 function pictures(atmosphere: Atmosphere): Picture[] {
@@ -80,7 +85,7 @@ function pictures(atmosphere: Atmosphere): Picture[] {
     texture: diffuseLight.target.texture,
     width: 96,
     height: 48,
-    region: [i / DIFFUSE.length, 0, 1 / DIFFUSE.length, 1] as const,
+    region: inset([i / DIFFUSE.length, 0, 1 / DIFFUSE.length, 1], 96 * DIFFUSE.length),
     color
   }))
   const slices = PARTS.flatMap((part, i) =>
