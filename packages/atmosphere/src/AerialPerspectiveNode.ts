@@ -95,8 +95,8 @@ export class AerialPerspectiveNode extends AtmosphereNode {
       const result = color.rgb.toVar()
       const isSky = isBackgroundDepth(depth).toConst()
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
-      // Derivatives belong outside of branches.
-      const pixel = pixelAngle(ray)
+      // Derivatives belong outside of branches; GLSL does not take that of a constant.
+      const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray)
       If(isSky.not(), () => {
         const at = isLogarithmic
           ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))

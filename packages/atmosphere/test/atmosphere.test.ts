@@ -1,7 +1,7 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
 import { Vector3 } from 'three'
-import { Atmosphere, AtmosphereParameters, skyLuminanceAt } from '@welkin/atmosphere'
+import { Atmosphere, type AtmosphereParameters, skyLuminanceAt } from '@welkin/atmosphere'
 import type { AtmosphereFrame } from '@welkin/atmosphere'
 import { Ellipsoid, sunDirectionECEF } from '@welkin/geo'
 import { number, runs } from './arbitraries'

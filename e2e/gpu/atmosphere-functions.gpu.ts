@@ -1,0 +1,189 @@
+import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
+import { float, vec4 } from 'three/tsl'
+import { AtmosphereUniforms } from '../../packages/atmosphere/src/AtmosphereUniforms'
+import * as boundaryTwin from '../../packages/atmosphere/src/cpu/boundary'
+import {
+  diffuseColumnCosine,
+  sampleDiffuseLight
+} from '../../packages/atmosphere/src/cpu/diffuseLight'
+import * as phaseTwin from '../../packages/atmosphere/src/cpu/phase'
+import { skyIrradiance as skyIrradianceTwin } from '../../packages/atmosphere/src/cpu/skyIrradiance'
+import { solveDiffuseLight } from '../../packages/atmosphere/src/cpu/solveDiffuseLight'
+import { sunTransmittance as sunTransmittanceTwin } from '../../packages/atmosphere/src/cpu/transmittance'
+import {
+  altitudeAlong,
+  distanceToGround,
+  distanceToTop,
+  groundDiscriminant
+} from '../../packages/atmosphere/src/tsl/boundary'
+import { miePhase, rayleighPhase } from '../../packages/atmosphere/src/tsl/phase'
+import { skyIrradiance } from '../../packages/atmosphere/src/tsl/skyIrradiance'
+import { sunTransmittance } from '../../packages/atmosphere/src/tsl/transmittance'
+import type { Float } from '../../packages/atmosphere/src/tsl-types'
+import { viewNodes } from '../../packages/atmosphere/src/ViewNodes'
+import { evaluateOnGpu } from './harness/evaluate'
+import { expectClose, expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+
+const earth = new AtmosphereParameters()
+const bottom = earth.bottomRadius
+const thickness = 60_000
+
+/** Evenly spread numbers in [0, 1), the same in every run. */
+const spread = (i: number, k: number): number =>
+  (i * [0.6180339887, 0.7548776662, 0.5698402911, 0.8191725134][k]!) % 1
+
+const count = 1000
+const table = (row: (i: number) => number[]): number[][] =>
+  Array.from({ length: count }, (_, i) => row(i).map(Math.fround))
+const first = (results: Float32Array): number[] =>
+  Array.from({ length: results.length / 4 }, (_, i) => results[4 * i]!)
+
+gpuTest('finds the top of the air within 2 m', async t => {
+  const inputs = table(i => [thickness * spread(i, 0), 2 * spread(i, 1) - 1])
+  const results = await t.evaluate(inputs, input =>
+    distanceToTop(input.x, input.y, float(bottom), float(thickness))
+  )
+  const expected = inputs.map(([h, mu]) =>
+    boundaryTwin.distanceToTop(bottom + h!, mu!, bottom + thickness)
+  )
+  expectClose(first(results), expected, { absolute: 2, relative: 3e-7 })
+})
+
+gpuTest('finds the ground where float64 does', async t => {
+  const inputs = table(i => {
+    const height = Math.exp(Math.log(2) + spread(i, 0) * Math.log(1e7))
+    const horizon = -Math.sqrt(height * (2 * bottom + height)) / (bottom + height)
+    // Not at the horizon itself, where one digit of the cosine is kilometres.
+    return [height, -1 + (horizon + 1) * 0.99 * spread(i, 1)]
+  })
+  const results = await t.evaluate(inputs, input => {
+    const discriminant = groundDiscriminant(input.x, input.y, float(bottom))
+    return vec4(distanceToGround(input.x, input.y, discriminant, float(bottom)), discriminant, 0, 1)
+  })
+  const expected = inputs.map(([h, mu]) => boundaryTwin.distanceToGround(bottom + h!, mu!, bottom))
+  expectClose(first(results), expected, { absolute: 0.1, relative: 1e-4 })
+  inputs.forEach((_, i) => expectTrue(results[4 * i + 1]! >= 0, `input ${i} meets the ground`))
+})
+
+gpuTest('knows heights along rays within 10 cm + 3e-6 of the way', async t => {
+  const inputs = table(i => [
+    thickness * spread(i, 0),
+    2 * spread(i, 1) - 1,
+    Math.exp(13 * spread(i, 2))
+  ])
+  const results = await t.evaluate(inputs, input =>
+    altitudeAlong(input.x, input.y, input.z, float(bottom))
+  )
+  inputs.forEach(([h, mu, d], i) => {
+    const r = bottom + h!
+    const expected = Math.hypot(r * Math.sqrt(1 - mu! ** 2), r * mu! + d!) - bottom
+    expectClose(results[4 * i]!, expected, { absolute: 0.1 + 3e-6 * (d! + h!) }, `height ${h}`)
+  })
+})
+
+gpuTest('scatters as the phase functions say', async t => {
+  const inputs = table(i => [2 * spread(i, 0) - 1])
+  for (const g of [-0.5, 0, 0.8, 0.9]) {
+    const uniforms = new AtmosphereUniforms()
+    uniforms.update(new AtmosphereParameters({ mieAsymmetry: g }), 1)
+    const results = await t.evaluate(inputs, input =>
+      vec4(rayleighPhase(input.x as Float), miePhase(uniforms, input.x as Float), 0, 1)
+    )
+    inputs.forEach(([nu], i) => {
+      const expected = [phaseTwin.rayleighPhase(nu!), phaseTwin.cornetteShanksPhase(g, nu!)]
+      expectClose(results.subarray(4 * i, 4 * i + 2), expected, { relative: 1e-4 }, `g ${g}`)
+    })
+  }
+})
+
+/** Mean over heights on the sun's disc, which the twin's point of a sun lacks. */
+function discMean(height: number, cosSun: number): number[] {
+  const points = 16
+  const sum = [0, 0, 0, 0]
+  for (let k = 1; k <= points; k++) {
+    const angle = (k * Math.PI) / (points + 1)
+    const weight = (2 * Math.sin(angle) ** 2) / (points + 1)
+    const zenith = Math.acos(cosSun) - earth.sunAngularRadius * Math.cos(angle)
+    const light = sunTransmittanceTwin(earth, bottom + height, Math.cos(zenith))
+    light.forEach((value, i) => (sum[i]! += weight * value))
+  }
+  return sum
+}
+
+gpuTest('reads sunlight within 0.2 % of the sun from the transmittance table', async t => {
+  const renderer = await t.createRenderer()
+  const atmosphere = new Atmosphere({ parameters: earth })
+  await atmosphere.bake(renderer)
+  const { uniforms, transmittance } = viewNodes(atmosphere).air
+  const inputs = table(i => {
+    const height = thickness * spread(i, 0) ** 3
+    const horizon = -Math.acos(bottom / (bottom + height))
+    // A degree off the horizon, where the whole disc is seen.
+    const low = horizon + 0.0175
+    return [height, Math.sin(low + (Math.PI / 2 - low) * spread(i, 1) ** 2)]
+  })
+  const results = await evaluateOnGpu(renderer, inputs, input =>
+    sunTransmittance(uniforms, transmittance, input.x as Float, input.y as Float)
+  )
+  const expected = inputs.flatMap(([h, mu]) => discMean(h!, mu!))
+  expectClose(results, expected, { absolute: 2e-3 })
+  atmosphere.dispose()
+})
+
+gpuTest('gathers sky light on planes as float64 does', async t => {
+  const renderer = await t.createRenderer()
+  const atmosphere = new Atmosphere({ parameters: earth })
+  await atmosphere.bake(renderer)
+  const data = atmosphere.tables.data!
+  const { uniforms, diffuse } = viewNodes(atmosphere).air
+  const inputs = table(i => {
+    const [cosNormal, cosSun] = [2 * spread(i, 0) - 1, 1.2 * spread(i, 1) - 0.2]
+    const across = Math.sqrt((1 - cosNormal ** 2) * (1 - cosSun ** 2))
+    const cosNormalSun = cosNormal * cosSun + across * Math.cos(2 * Math.PI * spread(i, 2))
+    return [thickness * spread(i, 3) ** 2, cosNormal, cosSun, cosNormalSun]
+  })
+  const results = await evaluateOnGpu(renderer, inputs, input =>
+    skyIrradiance(
+      uniforms,
+      diffuse!,
+      input.x as Float,
+      input.y as Float,
+      input.z as Float,
+      input.w as Float
+    )
+  )
+  inputs.forEach(([h, normal, sun, normalSun], i) => {
+    const expected = skyIrradianceTwin(earth, data, h!, normal!, sun!, normalSun!)
+    const all = Math.max(...skyIrradianceTwin(earth, data, h!, 1, sun!, sun!))
+    // Filtering has eight bits between texels.
+    const tolerance = { absolute: 0.01 * all + 1e-6, relative: 0.01 }
+    expectClose(results.subarray(4 * i, 4 * i + 4), expected, tolerance, `input ${i}`)
+  })
+  atmosphere.dispose()
+})
+
+gpuTest('bakes the diffuse light that float64 solves', async t => {
+  const renderer = await t.createRenderer()
+  const atmosphere = new Atmosphere({ parameters: earth })
+  await atmosphere.bake(renderer)
+  const baked = atmosphere.tables.data!
+  const solved = solveDiffuseLight(earth)
+  let worst = 0
+  for (const altitude of [0, 0.05, 0.3, 0.9]) {
+    for (let column = 30; column < 96; column += 5) {
+      const cosSun = diffuseColumnCosine(column)
+      const [got, want] = [baked, solved].map(data => sampleDiffuseLight(data, altitude, cosSun))
+      // Density of light and irradiances; the other moments cross zero.
+      for (const tile of [0, 6, 7]) {
+        got![tile]!.forEach((value, k) => {
+          const expected = want![tile]![k]!
+          worst = Math.max(worst, Math.abs(value - expected) / (expected + 1e-6))
+        })
+      }
+    }
+  }
+  t.note(`worst difference ${(100 * worst).toFixed(2)} %`)
+  expectTrue(worst < 0.03, `worst relative difference is ${worst}`)
+  atmosphere.dispose()
+})

@@ -1,0 +1,96 @@
+import { aerialPerspective, aerialPerspectiveFog, skyBackground } from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
+import { FloatType, RenderTarget, type Camera, type Scene } from 'three'
+import { pass } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { expectTrue } from './expect'
+import { readPicture, type Picture } from './picture'
+
+/** Pseudo-random numbers in [0, 1), the same for the same seed. */
+export function random(seed: number): () => number {
+  let state = seed
+  return () => {
+    state = (state + 0x6d2b79f5) | 0
+    let x = Math.imul(state ^ (state >>> 15), 1 | state)
+    x = (x + Math.imul(x ^ (x >>> 7), 61 | x)) ^ x
+    return ((x ^ (x >>> 14)) >>> 0) / 4294967296
+  }
+}
+
+/** Draws with sky and haze in the scene's own materials. The renderer's canvas sets the size. */
+export async function drawForward(
+  renderer: WebGPURenderer,
+  scene: Scene,
+  camera: Camera,
+  atmosphere: Atmosphere
+): Promise<Picture> {
+  const [background, fog] = [scene.backgroundNode, scene.fogNode]
+  scene.backgroundNode ??= skyBackground(atmosphere)
+  scene.fogNode ??= aerialPerspectiveFog(atmosphere)
+  const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+  Object.assign(scene, { backgroundNode: background, fogNode: fog })
+  return picture
+}
+
+/** A way to draw with sky and haze as a post effect. */
+export function postPath(
+  renderer: WebGPURenderer,
+  scene: Scene,
+  camera: Camera,
+  atmosphere: Atmosphere
+): { draw: () => Promise<Picture>; dispose: () => void } {
+  const scenePass = pass(scene, camera, { samples: 0, type: FloatType } as never)
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputColorTransform = false
+  pipeline.outputNode = aerialPerspective(
+    scenePass.getTextureNode(),
+    scenePass.getTextureNode('depth'),
+    camera,
+    atmosphere
+  )
+  return {
+    draw: () => drawToFloat(renderer, () => pipeline.render()),
+    dispose() {
+      scenePass.dispose()
+      pipeline.dispose()
+    }
+  }
+}
+
+async function drawToFloat(renderer: WebGPURenderer, draw: () => void): Promise<Picture> {
+  const { width, height } = renderer.domElement
+  const target = new RenderTarget(width, height, { type: FloatType })
+  renderer.setRenderTarget(target)
+  draw()
+  renderer.setRenderTarget(null)
+  const picture = await readPicture(renderer, target)
+  target.dispose()
+  return picture
+}
+
+/** Fails if a pixel is not finite or negative. */
+export function expectLight({ width, data }: Picture, label: string): void {
+  data.forEach((value, i) => {
+    const [x, y] = [(i >> 2) % width, Math.floor(i / 4 / width)]
+    const ok = Number.isFinite(value) && value >= 0
+    expectTrue(ok, `${label}: channel ${i % 4} of pixel (${x}, ${y}) is ${value}`)
+  })
+}
+
+/**
+ * Differences between pixels, relative to their brightness, ascending; a thousandth of the brightest
+ * pixel is added to each, below which no eye sees a difference.
+ */
+export function relativeDifferences(a: Picture, b: Picture): number[] {
+  const brightness = ({ data }: Picture, i: number): number =>
+    data[i]! + data[i + 1]! + data[i + 2]!
+  let most = 0
+  for (let i = 0; i < a.data.length; i += 4) most = Math.max(most, Math.min(brightness(a, i), 10))
+  const differences: number[] = []
+  for (let i = 0; i < a.data.length; i += 4) {
+    const apart = [0, 1, 2].map(k => Math.abs(a.data[i + k]! - b.data[i + k]!))
+    const scale = (brightness(a, i) + brightness(b, i)) / 2 + 1e-3 * most + 1e-9
+    differences.push(Math.max(...apart) / scale)
+  }
+  return differences.toSorted((x, y) => x - y)
+}
