@@ -1,10 +1,10 @@
 import { Atmosphere } from '@welkin/atmosphere'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
 import type { DepthKind } from '@welkin/geo'
+import type { MeshLambertMaterial } from 'three'
 import {
   Mesh,
   MeshBasicMaterial,
-  MeshLambertMaterial,
   OrthographicCamera,
   PerspectiveCamera,
   Scene,
@@ -108,7 +108,7 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
         const differences = relativeDifferences(forward, await post.draw())
         post.dispose()
         // The last pixels are the globe's edge, and those next to it.
-        const most = differences[Math.floor(0.99 * differences.length)]!
+        const most = differences[Math.floor(0.99 * differences.length)]
         const kind = isOrthographic ? 'orthographic' : 'perspective'
         t.note(`${kind} ${height}: ${most.toExponential(1)}`)
         expectTrue(most < 0.01, `${kind}, ${height} m: 1 % of pixels differ by more than ${most}`)
@@ -146,7 +146,7 @@ gpuTest('has no seam or jump on the way from 2 m to 20,000 km', async t => {
     const beside = Math.max(steps[i - 1] ?? 0, steps[i + 1] ?? 0)
     expectTrue(
       step < 2 * beside + 0.005,
-      `the step to ${heights[i]!.toFixed(0)} m changes ${step}, those beside it ${beside}`
+      `the step to ${heights[i].toFixed(0)} m changes ${step}, those beside it ${beside}`
     )
   })
   atmosphere.dispose()
@@ -163,10 +163,10 @@ gpuTest('keeps each of two cameras its own sky', async t => {
     return camera
   })
   const draw = (camera: Camera) => drawForward(renderer, scene, camera, atmosphere)
-  const first = await draw(low!)
-  const other = await draw(high!)
-  await draw(higher!)
-  const again = await draw(low!)
+  const first = await draw(low)
+  const other = await draw(high)
+  await draw(higher)
+  const again = await draw(low)
   expectTrue(relativeDifferences(first, again).at(-1)! < 1e-4, 'the first camera sees another sky')
   expectTrue(
     relativeDifferences(first, other).at(-1)! > 0.1,

@@ -19,7 +19,6 @@ import {
 import { miePhase, rayleighPhase } from '../../packages/atmosphere/src/tsl/phase'
 import { skyIrradiance } from '../../packages/atmosphere/src/tsl/skyIrradiance'
 import { sunTransmittance } from '../../packages/atmosphere/src/tsl/transmittance'
-import type { Float } from '../../packages/atmosphere/src/tsl-types'
 import { viewNodes } from '../../packages/atmosphere/src/ViewNodes'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectTrue } from './harness/expect'
@@ -31,13 +30,13 @@ const thickness = 60_000
 
 /** Evenly spread numbers in [0, 1), the same in every run. */
 const spread = (i: number, k: number): number =>
-  (i * [0.6180339887, 0.7548776662, 0.5698402911, 0.8191725134][k]!) % 1
+  (i * [0.6180339887, 0.7548776662, 0.5698402911, 0.8191725134][k]) % 1
 
 const count = 1000
 const table = (row: (i: number) => number[]): number[][] =>
   Array.from({ length: count }, (_, i) => row(i).map(Math.fround))
 const first = (results: Float32Array): number[] =>
-  Array.from({ length: results.length / 4 }, (_, i) => results[4 * i]!)
+  Array.from({ length: results.length / 4 }, (_, i) => results[4 * i])
 
 gpuTest('finds the top of the air within 2 m', async t => {
   const inputs = table(i => [thickness * spread(i, 0), 2 * spread(i, 1) - 1])
@@ -45,7 +44,7 @@ gpuTest('finds the top of the air within 2 m', async t => {
     distanceToTop(input.x, input.y, float(bottom), float(thickness))
   )
   const expected = inputs.map(([h, mu]) =>
-    boundaryTwin.distanceToTop(bottom + h!, mu!, bottom + thickness)
+    boundaryTwin.distanceToTop(bottom + h, mu, bottom + thickness)
   )
   expectClose(first(results), expected, { absolute: 2, relative: 3e-7 })
 })
@@ -61,9 +60,9 @@ gpuTest('finds the ground where float64 does', async t => {
     const discriminant = groundDiscriminant(input.x, input.y, float(bottom))
     return vec4(distanceToGround(input.x, input.y, discriminant, float(bottom)), discriminant, 0, 1)
   })
-  const expected = inputs.map(([h, mu]) => boundaryTwin.distanceToGround(bottom + h!, mu!, bottom))
+  const expected = inputs.map(([h, mu]) => boundaryTwin.distanceToGround(bottom + h, mu, bottom))
   expectClose(first(results), expected, { absolute: 0.1, relative: 1e-4 })
-  inputs.forEach((_, i) => expectTrue(results[4 * i + 1]! >= 0, `input ${i} meets the ground`))
+  inputs.forEach((_, i) => expectTrue(results[4 * i + 1] >= 0, `input ${i} meets the ground`))
 })
 
 gpuTest('knows heights along rays within 10 cm + 3e-6 of the way', async t => {
@@ -76,9 +75,9 @@ gpuTest('knows heights along rays within 10 cm + 3e-6 of the way', async t => {
     altitudeAlong(input.x, input.y, input.z, float(bottom))
   )
   inputs.forEach(([h, mu, d], i) => {
-    const r = bottom + h!
-    const expected = Math.hypot(r * Math.sqrt(1 - mu! ** 2), r * mu! + d!) - bottom
-    expectClose(results[4 * i]!, expected, { absolute: 0.1 + 3e-6 * (d! + h!) }, `height ${h}`)
+    const r = bottom + h
+    const expected = Math.hypot(r * Math.sqrt(1 - mu ** 2), r * mu + d) - bottom
+    expectClose(results[4 * i], expected, { absolute: 0.1 + 3e-6 * (d + h) }, `height ${h}`)
   })
 })
 
@@ -88,10 +87,10 @@ gpuTest('scatters as the phase functions say', async t => {
     const uniforms = new AtmosphereUniforms()
     uniforms.update(new AtmosphereParameters({ mieAsymmetry: g }), 1)
     const results = await t.evaluate(inputs, input =>
-      vec4(rayleighPhase(input.x as Float), miePhase(uniforms, input.x as Float), 0, 1)
+      vec4(rayleighPhase(input.x), miePhase(uniforms, input.x), 0, 1)
     )
     inputs.forEach(([nu], i) => {
-      const expected = [phaseTwin.rayleighPhase(nu!), phaseTwin.cornetteShanksPhase(g, nu!)]
+      const expected = [phaseTwin.rayleighPhase(nu), phaseTwin.cornetteShanksPhase(g, nu)]
       expectClose(results.subarray(4 * i, 4 * i + 2), expected, { relative: 1e-4 }, `g ${g}`)
     })
   }
@@ -106,7 +105,7 @@ function discMean(height: number, cosSun: number): number[] {
     const weight = (2 * Math.sin(angle) ** 2) / (points + 1)
     const zenith = Math.acos(cosSun) - earth.sunAngularRadius * Math.cos(angle)
     const light = sunTransmittanceTwin(earth, bottom + height, Math.cos(zenith))
-    light.forEach((value, i) => (sum[i]! += weight * value))
+    light.forEach((value, i) => (sum[i] += weight * value))
   }
   return sum
 }
@@ -124,9 +123,9 @@ gpuTest('reads sunlight within 0.2 % of the sun from the transmittance table', a
     return [height, Math.sin(low + (Math.PI / 2 - low) * spread(i, 1) ** 2)]
   })
   const results = await evaluateOnGpu(renderer, inputs, input =>
-    sunTransmittance(uniforms, transmittance, input.x as Float, input.y as Float)
+    sunTransmittance(uniforms, transmittance, input.x, input.y)
   )
-  const expected = inputs.flatMap(([h, mu]) => discMean(h!, mu!))
+  const expected = inputs.flatMap(([h, mu]) => discMean(h, mu))
   expectClose(results, expected, { absolute: 2e-3 })
   atmosphere.dispose()
 })
@@ -144,18 +143,11 @@ gpuTest('gathers sky light on planes as float64 does', async t => {
     return [thickness * spread(i, 3) ** 2, cosNormal, cosSun, cosNormalSun]
   })
   const results = await evaluateOnGpu(renderer, inputs, input =>
-    skyIrradiance(
-      uniforms,
-      diffuse!,
-      input.x as Float,
-      input.y as Float,
-      input.z as Float,
-      input.w as Float
-    )
+    skyIrradiance(uniforms, diffuse!, input.x, input.y, input.z, input.w)
   )
   inputs.forEach(([h, normal, sun, normalSun], i) => {
-    const expected = skyIrradianceTwin(earth, data, h!, normal!, sun!, normalSun!)
-    const all = Math.max(...skyIrradianceTwin(earth, data, h!, 1, sun!, sun!))
+    const expected = skyIrradianceTwin(earth, data, h, normal, sun, normalSun)
+    const all = Math.max(...skyIrradianceTwin(earth, data, h, 1, sun, sun))
     // Filtering has eight bits between texels.
     const tolerance = { absolute: 0.01 * all + 1e-6, relative: 0.01 }
     expectClose(results.subarray(4 * i, 4 * i + 4), expected, tolerance, `input ${i}`)
@@ -176,8 +168,8 @@ gpuTest('bakes the diffuse light that float64 solves', async t => {
       const [got, want] = [baked, solved].map(data => sampleDiffuseLight(data, altitude, cosSun))
       // Density of light and irradiances; the other moments cross zero.
       for (const tile of [0, 6, 7]) {
-        got![tile]!.forEach((value, k) => {
-          const expected = want![tile]![k]!
+        got[tile].forEach((value, k) => {
+          const expected = want[tile][k]
           worst = Math.max(worst, Math.abs(value - expected) / (expected + 1e-6))
         })
       }

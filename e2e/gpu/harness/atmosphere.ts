@@ -39,7 +39,7 @@ export function postPath(
   camera: Camera,
   atmosphere: Atmosphere
 ): { draw: () => Promise<Picture>; dispose: () => void } {
-  const scenePass = pass(scene, camera, { samples: 0, type: FloatType } as never)
+  const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false
   pipeline.outputNode = aerialPerspective(
@@ -82,13 +82,12 @@ export function expectLight({ width, data }: Picture, label: string): void {
  * pixel is added to each, below which no eye sees a difference.
  */
 export function relativeDifferences(a: Picture, b: Picture): number[] {
-  const brightness = ({ data }: Picture, i: number): number =>
-    data[i]! + data[i + 1]! + data[i + 2]!
+  const brightness = ({ data }: Picture, i: number): number => data[i] + data[i + 1] + data[i + 2]
   let most = 0
   for (let i = 0; i < a.data.length; i += 4) most = Math.max(most, Math.min(brightness(a, i), 10))
   const differences: number[] = []
   for (let i = 0; i < a.data.length; i += 4) {
-    const apart = [0, 1, 2].map(k => Math.abs(a.data[i + k]! - b.data[i + k]!))
+    const apart = [0, 1, 2].map(k => Math.abs(a.data[i + k] - b.data[i + k]))
     const scale = (brightness(a, i) + brightness(b, i)) / 2 + 1e-3 * most + 1e-9
     differences.push(Math.max(...apart) / scale)
   }

@@ -34,9 +34,10 @@ describe('AtmosphereParameters', () => {
   it.each(bad)('names class, field and value of %j', (init, message) => {
     expect(() => new AtmosphereParameters(init)).toThrow(message)
     const parameters = new AtmosphereParameters()
-    const before = { ...parameters }
+    const before = parameters.clone()
     expect(() => parameters.set({ mieScaleHeight: 2000, ...init })).toThrow(message)
-    expect({ ...parameters }).toEqual(before)
+    before.version = parameters.version
+    expect(parameters).toEqual(before)
   })
 
   it('counts changes', () => {
@@ -63,9 +64,9 @@ describe('AtmosphereParameters', () => {
     const usual = new AtmosphereParameters()
     expect(AtmosphereParameters.earth().mieExtinction).toEqual(usual.mieExtinction)
     const hazy = AtmosphereParameters.earth({ turbidity: 6, ozone: 600 })
-    hazy.mieExtinction.forEach((v, i) => expect(v / usual.mieExtinction[i]!).toBeCloseTo(5, 9))
+    hazy.mieExtinction.forEach((v, i) => expect(v / usual.mieExtinction[i]).toBeCloseTo(5, 9))
     hazy.absorptionExtinction.forEach((v, i) =>
-      expect(v / usual.absorptionExtinction[i]!).toBeCloseTo(2, 9)
+      expect(v / usual.absorptionExtinction[i]).toBeCloseTo(2, 9)
     )
     expect(() => AtmosphereParameters.earth({ turbidity: 0.5 })).toThrow(
       /AtmosphereParameters: turbidity .*0\.5/

@@ -13,8 +13,8 @@ function overSphere(f: (nu: number) => number): number {
   const ends = [-1, -0.99, -0.96, -0.8, 0, 0.8, 0.96, 0.99, 1]
   let sum = 0
   for (let piece = 0; piece + 1 < ends.length; piece++) {
-    const length = ends[piece + 1]! - ends[piece]!
-    nodes.forEach((node, i) => (sum += f(ends[piece]! + length * node) * weights[i]! * length))
+    const length = ends[piece + 1] - ends[piece]
+    nodes.forEach((node, i) => (sum += f(ends[piece] + length * node) * weights[i] * length))
   }
   return 2 * Math.PI * sum
 }
@@ -35,7 +35,7 @@ describe('phase functions', () => {
       fc.property(number(-0.9, 0.9), g => {
         const integrals = legendre.map(p => overSphere(nu => cornetteShanksPhase(g, nu) * p(nu)))
         asymmetryMoments(g).forEach((moment, l) => {
-          expect(Math.abs(moment - integrals[l]!)).toBeLessThan(1e-7)
+          expect(Math.abs(moment - integrals[l])).toBeLessThan(1e-7)
         })
       }),
       runs
@@ -75,7 +75,7 @@ describe('moments', () => {
             y2 * Math.sqrt(3)
           ]
           const expected = [1, a1, a2].reduce(
-            (sum, a, l) => sum + ((a * (2 * l + 1)) / (4 * Math.PI)) * legendre[l]!(nu),
+            (sum, a, l) => sum + ((a * (2 * l + 1)) / (4 * Math.PI)) * legendre[l](nu),
             0
           )
           const actual = applyMoments(moments, [1, a1, a2], cosView, cosSun, nu)
@@ -95,7 +95,7 @@ describe('Gauss–Legendre quadrature', () => {
   it.each([1, 2, 3, 6, 8, 12, 16])('of %i nodes is exact to degree 2n − 1', count => {
     const { nodes, weights } = gaussLegendre(count)
     for (let degree = 0; degree < 2 * count; degree++) {
-      const sum = nodes.reduce((total, node, i) => total + weights[i]! * node ** degree, 0)
+      const sum = nodes.reduce((total, node, i) => total + weights[i] * node ** degree, 0)
       expect(Math.abs(sum - 1 / (degree + 1))).toBeLessThan(1e-13)
     }
     expect(nodes).toEqual(nodes.toSorted((a, b) => a - b))

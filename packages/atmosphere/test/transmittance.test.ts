@@ -25,7 +25,7 @@ describe('transmittance', () => {
             earth.mieExtinction[i] * column(altitude, 60_000, earth.mieScaleHeight) +
             earth.absorptionExtinction[i] * earth.absorptionHalfWidth
           // The tent's kinks cost the quadrature this much of the ozone.
-          expect(Math.abs(depth[i]! / expected - 1)).toBeLessThan(2e-3)
+          expect(Math.abs(depth[i] / expected - 1)).toBeLessThan(2e-3)
         }
       }),
       { ...runs, numRuns: 60 }
@@ -45,8 +45,8 @@ describe('transmittance', () => {
         const far = opticalDepth(earth, there, muThere, length - first)
         const back = opticalDepth(earth, there, -muThere, first)
         for (const i of spectrumIndex) {
-          expect(Math.abs(near[i]! + far[i]! - whole[i]!)).toBeLessThan(2e-3 * whole[i]! + 1e-7)
-          expect(Math.abs(near[i]! - back[i]!)).toBeLessThan(2e-3 * near[i]! + 1e-7)
+          expect(Math.abs(near[i] + far[i] - whole[i])).toBeLessThan(2e-3 * whole[i] + 1e-7)
+          expect(Math.abs(near[i] - back[i])).toBeLessThan(2e-3 * near[i] + 1e-7)
         }
       }),
       { ...runs, numRuns: 60 }
@@ -60,9 +60,9 @@ describe('transmittance', () => {
           sunTransmittance(earth, bottomRadius + altitude, cosSun)
         )
         for (const i of spectrumIndex) {
-          expect(low![i]!).toBeGreaterThanOrEqual(0)
-          expect(high![i]!).toBeLessThanOrEqual(1)
-          expect(low![i]!).toBeLessThanOrEqual(high![i]! * (1 + 2e-3) + 1e-12)
+          expect(low[i]).toBeGreaterThanOrEqual(0)
+          expect(high[i]).toBeLessThanOrEqual(1)
+          expect(low[i]).toBeLessThanOrEqual(high[i] * (1 + 2e-3) + 1e-12)
         }
       }),
       { ...runs, numRuns: 100 }
@@ -91,7 +91,7 @@ describe('transmittance', () => {
       const depth = opticalDepth(air, radius, mu, 1e3 * segment.distance_km)
       return segment.transmittance
         .slice(0, channels)
-        .map((value, i) => Math.abs(Math.exp(-depth[i]!) / value - 1))
+        .map((value, i) => Math.abs(Math.exp(-depth[i]) / value - 1))
     })
     const sorted = errors.toSorted((a, b) => a - b)
     expect(errors.length).toBeGreaterThan(100)
