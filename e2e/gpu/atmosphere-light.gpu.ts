@@ -188,7 +188,7 @@ gpuTest('bakes the same tables step by step', async t => {
 })
 
 gpuTest(
-  'leaves no memory behind in 100 rounds',
+  'leaves no memory behind, round after round',
   async t => {
     const renderer: WebGPURenderer = await t.createRenderer({ width: 8, height: 8 })
     const camera = new PerspectiveCamera(60, 1, 1, 1e6)
@@ -205,7 +205,9 @@ gpuTest(
     round()
     round()
     const before = JSON.stringify(renderer.info.memory)
-    for (let i = 0; i < 100; i++) round()
+    // WebGL takes a second to compile a round's shaders in software.
+    const rounds = t.backend === 'webgpu' ? 100 : 10
+    for (let i = 0; i < rounds; i++) round()
     const after = JSON.stringify(renderer.info.memory)
     expectTrue(after === before, `before ${before}, after ${after}`)
   },

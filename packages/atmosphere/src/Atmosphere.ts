@@ -38,6 +38,8 @@ const _rotation = new Matrix4()
  * node that uses them is first rendered, and again when `parameters` change.
  */
 export class Atmosphere extends EventDispatcher<{ dispose: object }> {
+  /** For type testing. */
+  readonly isAtmosphere = true
   /** What the air is made of. Change it with `parameters.set(…)`. */
   readonly parameters: AtmosphereParameters
   /** The planet's figure. */

@@ -16,10 +16,10 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
    */
   constructor(atmosphere: Atmosphere, camera: Camera | null = null) {
     super('vec4')
-    if (atmosphere === undefined || atmosphere === null) {
-      throw new Error(
-        `${this.constructor.name}: atmosphere must be an Atmosphere, got ${atmosphere}`
-      )
+    if (!atmosphere?.isAtmosphere) {
+      // The static type, not the constructor's name: minifiers keep it.
+      const { type } = new.target as unknown as { type: string }
+      throw new Error(`${type}: atmosphere must be an Atmosphere, got ${String(atmosphere)}`)
     }
     this.atmosphere = atmosphere
     this.view = viewNodes(atmosphere, camera)

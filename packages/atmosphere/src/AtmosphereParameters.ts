@@ -214,8 +214,9 @@ export class AtmosphereParameters {
     check('absorptionHalfWidth', next.absorptionHalfWidth, 1, 1e6)
     checkSpectrum('groundAlbedo', next.groundAlbedo, 0, 1)
     next.spectralToXYZ.forEach((row, i) => checkSpectrum(`spectralToXYZ[${i}]`, row, -1e4, 1e4))
+    const { version } = this
     Object.assign(this, init)
-    this.version++
+    this.version = version + 1
     return this
   }
 

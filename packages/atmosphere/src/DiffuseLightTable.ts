@@ -88,9 +88,14 @@ class Workshop {
     this.#sum.render(renderer, target)
   }
 
+  /** Frees the textures, but not the shaders: the next bake compiles nothing. */
+  release(): void {
+    for (const target of [this.rays, ...this.orders]) target.dispose()
+  }
+
   dispose(): void {
-    const passes = [this.#sunRays, this.#diffuseRays, this.#reduce, this.#sum]
-    for (const owned of [this.rays, ...this.orders, ...passes]) owned.dispose()
+    this.release()
+    for (const owned of [this.#sunRays, this.#diffuseRays, this.#reduce, this.#sum]) owned.dispose()
   }
 }
 
@@ -106,6 +111,7 @@ export class DiffuseLightTable {
   readonly target: RenderTarget = tableTarget('DiffuseLight', COLUMNS * DIFFUSE_TILES, ROWS)
   readonly #uniforms: AtmosphereUniforms
   readonly #transmittance: RenderTarget
+  #workshop: Workshop | null = null
 
   /** @param transmittance - Target of the transmittance table, baked before this one. */
   constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget) {
@@ -118,7 +124,7 @@ export class DiffuseLightTable {
    * stands.
    */
   *bake(renderer: Renderer): Generator<void, void, void> {
-    const workshop = new Workshop(this.#uniforms, this.#transmittance)
+    const workshop = (this.#workshop ??= new Workshop(this.#uniforms, this.#transmittance))
     try {
       for (let order = 0; order < ORDERS; order++) {
         for (let row = 0; row < ROWS; row += BAKE_ROWS) {
@@ -128,12 +134,14 @@ export class DiffuseLightTable {
       }
       workshop.finish(renderer, this.target)
     } finally {
-      workshop.dispose()
+      workshop.release()
     }
   }
 
   /** Frees the table. */
   dispose(): void {
     this.target.dispose()
+    this.#workshop?.dispose()
+    this.#workshop = null
   }
 }

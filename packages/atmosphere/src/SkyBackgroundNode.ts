@@ -40,7 +40,8 @@ function screenRay(): Vec3 {
   const ndc = vec2(screenUV.x, screenUV.y.oneMinus()).mul(2).sub(1)
   // Depth cancels for a perspective camera: only the ratio of x, y to −z counts.
   const perspective = vec3(inverse.mul(vec4(ndc, 0.5, 1)).xyz)
-  const isOrthographic = inverse.element(3).element(3).equal(1)
+  // Not the last element: a perspective camera's is 1 as well if its near plane is at 1.
+  const isOrthographic = inverse.element(2).element(3).equal(0)
   const direction = perspective.mul(perspective.z.lessThan(0).select(1, -1))
   return select(isOrthographic, vec3(0, 0, -1), direction)
 }

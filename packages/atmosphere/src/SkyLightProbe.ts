@@ -21,7 +21,14 @@ export class SkyLightProbe extends LightProbe {
 
   constructor(atmosphere: Atmosphere) {
     super()
+    if (!atmosphere?.isAtmosphere) {
+      throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${String(atmosphere)}`)
+    }
     this.atmosphere = atmosphere
+  }
+
+  override clone(): this {
+    return new SkyLightProbe(this.atmosphere).copy(this) as this
   }
 }
 

@@ -29,9 +29,21 @@ export class SunDirectionalLight extends DirectionalLight {
   /** @param distance - From the target to the light [world units]. */
   constructor(atmosphere: Atmosphere, distance = 1) {
     super()
+    if (!atmosphere?.isAtmosphere) {
+      throw new Error(
+        `SunDirectionalLight: atmosphere must be an Atmosphere, got ${String(atmosphere)}`
+      )
+    }
+    if (!(distance > 0 && distance < Infinity)) {
+      throw new Error(`SunDirectionalLight: distance must be positive, got ${distance}`)
+    }
     this.atmosphere = atmosphere
     this.distance = distance
     this.follow()
+  }
+
+  override clone(): this {
+    return new SunDirectionalLight(this.atmosphere, this.distance).copy(this) as this
   }
 
   /** Moves to where the sun is; rendering does this by itself. */
