@@ -149,7 +149,7 @@ gpuTest('re-bakes for a new parameter without new programs', async t => {
   scene.backgroundNode = skyBackground(atmosphere)
   const camera = new PerspectiveCamera(60, 1, 1, 1e6)
   camera.position.y = 2
-  const before = await drawForward(renderer, scene, camera, atmosphere)
+  const before = await t.render(renderer, scene, camera, small)
   const backend = renderer.backend as unknown as Counted
   let created = 0
   for (const name of ['createProgram', 'createRenderPipeline'] as const) {
@@ -160,7 +160,7 @@ gpuTest('re-bakes for a new parameter without new programs', async t => {
     }
   }
   atmosphere.parameters.setEarth({ turbidity: 10 })
-  const after = await drawForward(renderer, scene, camera, atmosphere)
+  const after = await t.render(renderer, scene, camera, small)
   expectTrue(relativeDifferences(before, after).at(-1)! > 0.05, 'nothing changed')
   t.note(`${created} programs and pipelines created`)
   expectTrue(created === 0, `${created} programs and pipelines were created`)
