@@ -28,7 +28,7 @@ export function gpuTest(
   }
   registeredTests.push({
     backends: ['webgpu', 'webgl'],
-    timeoutSeconds: 60,
+    timeoutSeconds: 180,
     ...options,
     name,
     body

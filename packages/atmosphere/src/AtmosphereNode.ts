@@ -19,7 +19,7 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     if (!atmosphere?.isAtmosphere) {
       // The static type, not the constructor's name: minifiers keep it.
       const { type } = new.target as unknown as { type: string }
-      throw new Error(`${type}: atmosphere must be an Atmosphere, got ${String(atmosphere)}`)
+      throw new Error(`${type}: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
     }
     this.atmosphere = atmosphere
     this.view = viewNodes(atmosphere, camera)

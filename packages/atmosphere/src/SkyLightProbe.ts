@@ -22,7 +22,7 @@ export class SkyLightProbe extends LightProbe {
   constructor(atmosphere: Atmosphere) {
     super()
     if (!atmosphere?.isAtmosphere) {
-      throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${String(atmosphere)}`)
+      throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
     }
     this.atmosphere = atmosphere
   }

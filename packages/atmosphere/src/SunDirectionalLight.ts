@@ -31,7 +31,7 @@ export class SunDirectionalLight extends DirectionalLight {
     super()
     if (!atmosphere?.isAtmosphere) {
       throw new Error(
-        `SunDirectionalLight: atmosphere must be an Atmosphere, got ${String(atmosphere)}`
+        `SunDirectionalLight: atmosphere must be an Atmosphere, got ${typeof atmosphere}`
       )
     }
     if (!(distance > 0 && distance < Infinity)) {
