@@ -8,7 +8,6 @@ import {
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import {
-  FloatType,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
@@ -16,28 +15,17 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   PlaneGeometry,
-  RenderTarget,
   Scene,
   SphereGeometry,
   Vector3
 } from 'three'
 import { pass } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { RenderPipeline } from 'three/webgpu'
+import { drawToFloat, random } from './harness/atmosphere'
 import { gpuTest } from './harness/gpu-test'
-import { readPicture, type Picture } from './harness/picture'
+import type { Picture } from './harness/picture'
 
 const shape = Ellipsoid.WGS84
-
-/** Numbers in [0, 1) that are the same in every run. Mulberry32. */
-function randomNumbers(seed: number): () => number {
-  let state = seed
-  return () => {
-    state = (state + 0x6d2b79f5) | 0
-    let t = Math.imul(state ^ (state >>> 15), 1 | state)
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296
-  }
-}
 
 function globe(atmosphere: Atmosphere): Scene {
   const scene = new Scene()
@@ -48,16 +36,6 @@ function globe(atmosphere: Atmosphere): Scene {
   mesh.scale.copy(shape.radii)
   scene.add(mesh, new SunDirectionalLight(atmosphere), new SkyLightProbe(atmosphere))
   return scene
-}
-
-async function draw(renderer: WebGPURenderer, render: () => void, width: number, height: number) {
-  const target = new RenderTarget(width, height, { type: FloatType })
-  renderer.setRenderTarget(target)
-  render()
-  renderer.setRenderTarget(null)
-  const picture = await readPicture(renderer, target)
-  target.dispose()
-  return picture
 }
 
 function dressed(scene: Scene, atmosphere: Atmosphere): Scene {
@@ -93,22 +71,22 @@ gpuTest(
     )
     const seed = 20260621
     t.note(`seed ${seed}`)
-    const random = randomNumbers(seed)
+    const next = random(seed)
     for (let round = 0; round < 24; round++) {
-      const height = 10 ** (7.8 * random()) - 1
-      const latitude = 180 * random() - 90
-      shape.geodeticToECEF({ longitude: 360 * random() - 180, latitude, height }, camera.position)
-      camera.lookAt(new Vector3(random() - 0.5, random() - 0.5, random() - 0.5).multiplyScalar(1e9))
+      const height = 10 ** (7.8 * next()) - 1
+      const latitude = 180 * next() - 90
+      shape.geodeticToECEF({ longitude: 360 * next() - 180, latitude, height }, camera.position)
+      camera.lookAt(new Vector3(next() - 0.5, next() - 0.5, next() - 0.5).multiplyScalar(1e9))
       camera.near = Math.max(0.5, height * 0.1)
       camera.far = 2e8
       camera.updateProjectionMatrix()
       camera.updateMatrixWorld()
-      atmosphere.date = new Date(Date.UTC(2026, 0, 1) + random() * 3.15e10)
+      atmosphere.date = new Date(Date.UTC(2026, 0, 1) + next() * 3.15e10)
       for (const [path, render] of [
         ['forward', () => renderer.render(forward, camera)],
         ['post', () => pipeline.render()]
       ] as const) {
-        const { data } = await draw(renderer, render, 64, 36)
+        const { data } = await drawToFloat(renderer, render)
         const wrong = data.findIndex(value => !(value >= 0 && value < 1e6))
         if (wrong >= 0) {
           throw new Error(`${path}, round ${round}, height ${height}: ${data[wrong]} at ${wrong}`)
@@ -144,7 +122,7 @@ gpuTest(
       camera.lookAt(direction)
       camera.updateMatrixWorld()
       atmosphere.sunDirection = new Vector3(0.5, 0.5, 0.7)
-      const picture = await draw(renderer, () => renderer.render(scene, camera), width, height)
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
       if (last !== undefined) {
         const before = last.data
         const sum = picture.data.reduce((total, value) => total + value, 0)
@@ -245,7 +223,7 @@ gpuTest('two cameras in a frame each see their own sky', async t => {
     return camera
   })
   const look = async (i: number): Promise<Picture> =>
-    draw(renderer, () => renderer.render(scene, cameras[i]), 64, 36)
+    drawToFloat(renderer, () => renderer.render(scene, cameras[i]))
   const alone = [await look(0), await look(1), await look(2)]
   const again = [await look(0), await look(1), await look(2)]
   alone.forEach((picture, i) => {

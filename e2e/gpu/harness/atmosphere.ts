@@ -57,7 +57,8 @@ export function postPath(
   }
 }
 
-async function drawToFloat(renderer: WebGPURenderer, draw: () => void): Promise<Picture> {
+/** Draws to a float32 target of the canvas's size and reads it back. */
+export async function drawToFloat(renderer: WebGPURenderer, draw: () => void): Promise<Picture> {
   const { width, height } = renderer.domElement
   const target = new RenderTarget(width, height, { type: FloatType })
   renderer.setRenderTarget(target)
