@@ -60,12 +60,17 @@ export class FragmentPass {
     this.#quad.name = name
   }
 
-  /** Draws into the target; the renderer is left as it was. Texels that the shader discards keep. */
-  render(renderer: Renderer, target: RenderTarget): void {
+  /**
+   * Draws into the target; the renderer is left as it was. Texels that the shader discards keep.
+   *
+   * @param slice - Of a 3-D target.
+   * @param level - Of the target's levels of detail.
+   */
+  render(renderer: Renderer, target: RenderTarget, slice = 0, level = 0): void {
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     renderer.autoClear = false
     renderer.setMRT(null)
-    renderer.setRenderTarget(target)
+    renderer.setRenderTarget(target, slice, level)
     this.#quad.render(renderer)
     RendererUtils.restoreRendererState(renderer, state)
   }

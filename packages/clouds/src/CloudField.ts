@@ -1,0 +1,185 @@
+import { Matrix3, Matrix4, Quaternion, Vector3, Vector4 } from 'three'
+import type { Texture } from 'three'
+import { viewNodes } from '@welkin/atmosphere'
+import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
+import { renderGroup, texture, texture3D, uniform } from 'three/tsl'
+import type { Renderer, UniformNode } from 'three/webgpu'
+import { CloudLayers } from './CloudLayers'
+import { CloudNoise, type NoiseName } from './CloudNoise'
+import { latticeRotation, layerTurn } from './lattice'
+import {
+  DETAIL_PERIOD,
+  LAYER_STRIDE,
+  REGION_PERIOD,
+  shapePeriod,
+  standardWeights,
+  WEATHER_PERIOD
+} from './layerUniforms'
+import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
+
+const _position = new Vector3()
+const _foot = new Vector3()
+const _point = new Vector3()
+const _axis = new Vector3()
+const _east = new Vector3()
+const _north = new Vector3()
+const _matrix = new Matrix3()
+const _matrix4 = new Matrix4()
+const _turn = new Quaternion()
+
+const part = (x: number): number => x - Math.floor(x)
+
+/** Options of {@link CloudField}. */
+export interface CloudFieldOptions {
+  /**
+   * Cloud cover of the whole planet: equirectangular, north up, longitude −180° at the left edge; its
+   * red channel is the share of the sky that is covered. Shared, not owned. It should have mipmaps.
+   */
+  worldMap?: Texture | null
+  /** Noise to share between fields; left out, the field makes and owns its own. */
+  noise?: CloudNoise
+}
+
+/**
+ * Where the clouds are, as shaders see it: layers, weather and wind as uniforms, and noise.
+ *
+ * ```ts
+ * const field = new CloudField(atmosphere, new CloudLayers())
+ * field.noise.update(renderer)
+ * field.update(atmosphere.update(renderer, camera), seconds)
+ * ```
+ *
+ * Layers may be changed at any time: `update` copies them into uniforms, and nothing is recompiled.
+ * The wind turns each layer as a rigid shell about the planet's centre, at the given velocity where the
+ * camera is that `update` first saw at a time.
+ */
+export class CloudField {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  readonly layers: CloudLayers
+  readonly noise: CloudNoise
+  /** Place, height and up-vector of the camera: shared with the atmosphere's nodes. */
+  readonly view: ViewNodes
+  /** Radius of the sphere at altitude 0 [m]. */
+  readonly radius: UniformNode<'float', number> = uniform(0).setGroup(renderGroup)
+  /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
+  readonly pixelAngle: UniformNode<'float', number> = uniform(1e-3).setGroup(renderGroup)
+  /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
+  readonly values: Vector4[] = Array.from(
+    { length: CloudLayers.maxLayers * LAYER_STRIDE },
+    () => new Vector4()
+  )
+  readonly array = vec4Array(this.values)
+  readonly textures: Readonly<Record<NoiseName, LevelTexture<Vec3>>>
+  readonly worldMap: LevelTexture<Vec2> | null
+  /** Width of the world map [texels]. */
+  readonly worldMapWidth: number
+  /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
+  readonly axialRatio: number
+  readonly #ownsNoise: boolean
+  readonly #turns: Quaternion[] = Array.from({ length: CloudLayers.maxLayers }, (_, i) =>
+    layerTurn(i)
+  )
+  #seconds: number | null = null
+
+  /** @throws If the atmosphere or the layers are missing. */
+  constructor(
+    atmosphere: Atmosphere,
+    layers: CloudLayers,
+    view: ViewNodes = viewNodes(atmosphere),
+    { worldMap = null, noise }: CloudFieldOptions = {}
+  ) {
+    if (!atmosphere?.isAtmosphere) {
+      throw new Error(`CloudField: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
+    }
+    if (!(layers instanceof CloudLayers)) {
+      throw new Error(`CloudField: layers must be CloudLayers, got ${typeof layers}`)
+    }
+    this.atmosphere = atmosphere
+    this.layers = layers
+    this.view = view
+    this.#ownsNoise = noise === undefined
+    this.noise = noise ?? new CloudNoise()
+    const node = (name: NoiseName): LevelTexture<Vec3> =>
+      texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
+    this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
+    this.worldMap = worldMap === null ? null : (texture(worldMap) as unknown as LevelTexture<Vec2>)
+    this.worldMapWidth = (worldMap?.image as { width?: number } | null)?.width ?? 2048
+    const { x, z } = atmosphere.ellipsoid.radii
+    this.axialRatio = x / z
+  }
+
+  /**
+   * Follows layers, wind and camera: call it before each render of a camera.
+   *
+   * @param view - The camera's view, up to date.
+   * @param seconds - Time, on any clock; the clouds drift by its differences [s].
+   */
+  update(view: AtmosphereView, seconds: number): void {
+    const { bottomRadius } = this.atmosphere.parameters
+    const elapsed = this.#seconds === null ? 0 : seconds - this.#seconds
+    if (Number.isFinite(elapsed)) this.#seconds = seconds
+    this.radius.value = bottomRadius
+    _position.copy(view.up).multiplyScalar(bottomRadius + view.height)
+    _foot.copy(view.up).multiplyScalar(bottomRadius)
+    for (let i = 0; i < this.layers.length; i++) {
+      if (Number.isFinite(elapsed) && elapsed !== 0) this.#drift(i, view.up, elapsed)
+      this.#write(i)
+    }
+    for (let i = this.layers.length; i < CloudLayers.maxLayers; i++) {
+      this.values[i * LAYER_STRIDE].set(0, 0, 0, 0)
+    }
+  }
+
+  /** Turns a layer against its wind: the noise is looked up where the air came from. */
+  #drift(index: number, up: Vector3, elapsed: number): void {
+    const { wind, baseAltitude } = this.layers.at(index).parameters
+    const speed = Math.hypot(wind.east, wind.north)
+    if (speed === 0) return
+    _east.set(-up.y, up.x, 0)
+    // At a pole itself, east is that of longitude 0.
+    if (_east.lengthSq() < 1e-20) _east.set(0, 1, 0)
+    _east.normalize()
+    _north.crossVectors(up, _east)
+    _axis.copy(_north).multiplyScalar(wind.east).addScaledVector(_east, -wind.north)
+    const angle = (speed * elapsed) / (this.atmosphere.parameters.bottomRadius + baseAltitude)
+    _turn.setFromAxisAngle(_axis.divideScalar(speed), -angle)
+    this.#turns[index].multiply(_turn).normalize()
+  }
+
+  /** Copies a layer's parameters, and its anchors for the eye and the point of the ground below it. */
+  #write(index: number): void {
+    const { parameters } = this.layers.at(index)
+    const period = shapePeriod(parameters)
+    const slots = this.values.slice(index * LAYER_STRIDE, (index + 1) * LAYER_STRIDE)
+    const { baseAltitude, topAltitude, coverage, density } = parameters
+    slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
+    const { profileExponent, shapeAmount, detailAmount } = parameters
+    slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / period)
+    slots[2].fromArray(standardWeights(parameters.weatherWeights))
+    const turn = this.#turns[index]
+    const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
+    const anchor = (slot: number, place: Vector3, rotation: Matrix3, length: number): void => {
+      _point.copy(place).applyQuaternion(turn).applyMatrix3(rotation).divideScalar(length)
+      slots[slot].set(part(_point.x), part(_point.y), part(_point.z), slots[slot].w)
+    }
+    for (let row = 0; row < 3; row++) {
+      slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
+    }
+    anchor(8, _position, latticeRotation.shape, period)
+    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD)
+    // The weather is the same all the way up: it is looked up at the foot point.
+    anchor(6, _foot, latticeRotation.weather, WEATHER_PERIOD)
+    anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
+  }
+
+  /** Draws missing noise: `CloudNoise.update`. */
+  bake(renderer: Renderer, slices = Infinity): boolean {
+    return this.noise.update(renderer, slices)
+  }
+
+  /** Frees the noise if it is the field's own. */
+  dispose(): void {
+    if (this.#ownsNoise) this.noise.dispose()
+  }
+}

@@ -1,0 +1,56 @@
+import type { CloudLayerParameters } from './CloudLayer'
+
+/** Vectors that a layer takes in the uniform array of all layers. */
+export const LAYER_STRIDE = 10
+
+/** Period of the weather texture [m]. */
+export const WEATHER_PERIOD = 26_000
+
+/** Period of the same texture where it sets the mean coverage of regions [m]. */
+export const REGION_PERIOD = 410_000
+
+/** Period of the detail texture [m]. */
+export const DETAIL_PERIOD = 330
+
+/** How far turbulence moves the look-up of the detail, in periods for a curl of 1. */
+export const CURL_AMOUNT = 0.25
+
+/** Period of the turbulence, in periods of the detail. */
+export const CURL_PERIOD = 5
+
+/**
+ * Period of the shape texture [m]: heads of a cloud grow with its height. In powers of 2, or else every
+ * change of an altitude would move the noise, which is anchored at the planet's centre.
+ */
+export function shapePeriod({ baseAltitude, topAltitude }: CloudLayerParameters): number {
+  const octave = Math.round(Math.log2((topAltitude - baseAltitude) / 1200) / 2)
+  return 2600 * 2 ** Math.min(Math.max(octave, -2), 2)
+}
+
+/**
+ * Factors of the weather's channels, each uniform in [−½, ½] about its mean, whose sum has the same
+ * variance. All zero when all weights are.
+ */
+export function standardWeights(weights: readonly number[]): [number, number, number, number] {
+  const norm = Math.hypot(...weights) || 1
+  const [a, b, c, d] = weights.map(weight => weight / norm)
+  return [a, b, c, d]
+}
+
+/** Constants of the density function, found by looking at its pictures. */
+export const densityShape = {
+  /** Change of weather noise over which a layer fills from edge to middle. */
+  edgeWidth: 0.5,
+  /** Added to the fill at full coverage, taken at none. */
+  excess: 0.6,
+  /** How far the regions' coverage departs from the layer's. */
+  regionContrast: 0.5,
+  /** The shape carves at least this part of its amount: what is less full is empty for sure. */
+  leastCarving: 0.15,
+  /** Most that detail takes away. */
+  erosion: 0.22,
+  /** Density per fullness left: how sharp edges are. */
+  sharpness: 6,
+  /** Mean density of a cloudy column over the densest. */
+  farFill: 0.6
+} as const

@@ -1,0 +1,90 @@
+/** One sort of noise in a channel: `perlin` or `billow` of tsl/noise.ts. */
+export interface NoiseTerm {
+  readonly kind: 'perlin' | 'billow'
+  /** Cells in a period. */
+  readonly cells: number
+  readonly weight: number
+}
+
+/** How the sum of a channel's terms, scaled to mean 0 and variance 1, becomes a number in [0, 1]. */
+export type NoiseEncoding =
+  /** ½ + 0.18 z, cut off. */
+  | 'normal'
+  /** Φ(z): every value as frequent as any other, so that a threshold of 1 − c covers the share c. */
+  | 'uniform'
+  /** 2 Φ(−|z|): the same for ridges, which are 1 where the sum crosses 0. */
+  | 'ridges'
+
+export interface NoiseChannel {
+  readonly terms: readonly NoiseTerm[]
+  readonly encoding: NoiseEncoding
+  /** How far Perlin noise of `cells` cells shifts the look-up, in periods. */
+  readonly warp?: { readonly cells: number; readonly amount: number }
+}
+
+/** Seeds of a channel's terms start here and count up; those of its warp follow. */
+export const seedOf = (channel: number, term: number): number => 101 * (channel + 1) + 17 * term
+
+/** Mean and standard deviation of the two sorts of noise, over all cell counts. */
+export const noiseStatistics = {
+  perlin: { mean: 0, deviation: 0.285 },
+  billow: { mean: 0.703, deviation: 0.18 }
+} as const
+
+const octaves = (
+  kind: NoiseTerm['kind'],
+  cells: number,
+  count: number,
+  weight: number
+): NoiseTerm[] =>
+  Array.from({ length: count }, (_, i) => ({
+    kind,
+    cells: cells * 2 ** i,
+    weight: weight / 2 ** i
+  }))
+
+/**
+ * What the shape noise holds, 128³ texels: Perlin–Worley (heads on a wavering whole), and finer heads.
+ */
+export const shapeChannels: readonly NoiseChannel[] = [
+  {
+    terms: [...octaves('billow', 4, 3, 1), ...octaves('perlin', 3, 3, 0.4)],
+    encoding: 'normal'
+  },
+  { terms: octaves('billow', 14, 2, 1), encoding: 'normal' }
+]
+
+/** What the detail noise holds in its first channel, 32³ texels. Curl fills the other three. */
+export const detailChannel: NoiseChannel = {
+  terms: octaves('billow', 3, 3, 1),
+  encoding: 'normal'
+}
+
+/** Cells of the potential whose curl stirs the detail. */
+export const CURL_CELLS = 4
+
+/** Encoded curl is ½ + `CURL_SCALE` times the curl of the potential per cell. */
+export const CURL_SCALE = 0.2
+
+/**
+ * What the weather holds, 64³ texels, as many as 512²: cumulus, stratocumulus, cumulonimbus, cirrus.
+ */
+export const weatherChannels: readonly NoiseChannel[] = [
+  {
+    terms: [{ kind: 'billow', cells: 9, weight: 1 }, ...octaves('perlin', 5, 2, 0.6)],
+    encoding: 'uniform'
+  },
+  {
+    terms: [{ kind: 'billow', cells: 7, weight: 1 }, ...octaves('perlin', 6, 2, 0.25)],
+    encoding: 'uniform'
+  },
+  {
+    terms: [{ kind: 'billow', cells: 3, weight: 1 }, ...octaves('perlin', 3, 3, 0.5)],
+    encoding: 'uniform'
+  },
+  {
+    terms: octaves('perlin', 3, 3, 1),
+    encoding: 'ridges',
+    warp: { cells: 4, amount: 0.12 }
+  }
+]

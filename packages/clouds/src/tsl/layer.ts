@@ -1,0 +1,63 @@
+import { int, mat3, vec3 } from 'three/tsl'
+import type { Matrix3 } from 'three'
+import type { CloudField } from '../CloudField'
+import { LAYER_STRIDE } from '../layerUniforms'
+import type { Float, Int, Vec3, Vec4 } from '../tsl-types'
+
+/** A vector turned by a constant rotation. */
+export const rotate = (rotation: Matrix3, v: Vec3): Vec3 => {
+  const [a, b, c, d, e, f, g, h, i] = rotation.elements
+  return mat3(a, b, c, d, e, f, g, h, i).mul(v)
+}
+
+/** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
+export interface LayerNodes {
+  baseAltitude: Float
+  /** 1 / (top − base) [1/m]. */
+  perThickness: Float
+  thickness: Float
+  coverage: Float
+  density: Float
+  profileExponent: Float
+  shapeAmount: Float
+  detailAmount: Float
+  /** [1/m]. */
+  perShapePeriod: Float
+  /** `standardWeights`. */
+  weights: Vec4
+  /** Where the eye and its foot point lie in the periods of the noise, in [0, 1). */
+  weatherAnchor: Vec3
+  regionAnchor: Vec3
+  shapeAnchor: Vec3
+  detailAnchor: Vec3
+  /** Displacements in the mapped space to the frame that drifts with the layer. */
+  turn: (displacement: Vec3) => Vec3
+}
+
+/** Reads a layer; `CloudField` writes what this reads. */
+export function layerAt(field: CloudField, index: Int): LayerNodes {
+  const start = index.mul(int(LAYER_STRIDE)).toConst()
+  const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
+  const extent = read(0).toConst() as Vec4
+  const form = read(1).toConst() as Vec4
+  return {
+    baseAltitude: extent.x,
+    perThickness: extent.y,
+    thickness: extent.y.reciprocal(),
+    coverage: extent.z,
+    density: extent.w,
+    profileExponent: form.x,
+    shapeAmount: form.y,
+    detailAmount: form.z,
+    perShapePeriod: form.w,
+    weights: read(2),
+    weatherAnchor: read(6).xyz,
+    regionAnchor: read(7).xyz,
+    shapeAnchor: read(8).xyz,
+    detailAnchor: read(9).xyz,
+    turn: v => {
+      const [x, y, z] = [3, 4, 5].map(row => read(row).xyz.dot(v))
+      return vec3(x, y, z)
+    }
+  }
+}

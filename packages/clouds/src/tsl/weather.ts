@@ -1,0 +1,94 @@
+import { atan, log2, smoothstep, vec2 } from 'three/tsl'
+import type { CloudField } from '../CloudField'
+import { NOISE_SIZE } from '../CloudNoise'
+import { latticeRotation } from '../lattice'
+import { densityShape, REGION_PERIOD, WEATHER_PERIOD } from '../layerUniforms'
+import type { Float, Vec3 } from '../tsl-types'
+import type { CloudSample } from './density'
+import { rotate, type LayerNodes } from './layer'
+
+/** What the weather says of a place in a layer. */
+export interface CloudWeather {
+  /** How far cloud may fill the layer: below 0 where it is clear, above 1 in the middle of clouds. */
+  fill: Float
+  /** Share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
+  cover: Float
+  /** 0 where samples resolve single clouds, 1 where they see only `cover`. */
+  spread: Float
+}
+
+const { edgeWidth, excess, regionContrast } = densityShape
+
+/**
+ * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
+ * (d − (h − h_c) u_c) R/r, which does not cancel.
+ */
+export function footOffset(field: CloudField, { offset, altitude }: CloudSample): Vec3 {
+  const { up, height } = field.view
+  const rise = altitude.sub(height)
+  const scale = field.radius.div(field.radius.add(altitude))
+  return offset.sub(up.mul(rise)).mul(scale)
+}
+
+/** Share of the sky that clouds cover around a place, from the world map or the large noise. */
+function regionalCover(
+  field: CloudField,
+  layer: LayerNodes,
+  turned: Vec3,
+  { up }: CloudSample,
+  footprint: Float
+): Float {
+  const regional = (): Float => {
+    const place = rotate(latticeRotation.region, turned).div(REGION_PERIOD).add(layer.regionAnchor)
+    const level = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst() as Float
+    return field.textures.weather.sample(place).level(level).z.sub(0.5).mul(regionContrast).add(0.5)
+  }
+  const mapped = (): Float => {
+    const across = up.xy.length().max(1e-6).toConst() as Float
+    const longitude = atan(up.y, up.x.abs().max(1e-9).mul(up.x.lessThan(0).select(-1, 1)))
+    // Geodetic, from the latitude on the sphere.
+    const latitude = atan(up.z.mul(field.axialRatio), across)
+    const uv = vec2(longitude.div(2 * Math.PI), latitude.div(Math.PI)).add(0.5)
+    // Meridians meet at the poles: a texel there is narrower.
+    const texel = field.radius.mul(across).mul((2 * Math.PI) / field.worldMapWidth)
+    const level = log2(footprint.div(texel).max(1))
+    return field.worldMap!.sample(uv).level(level).x
+  }
+  const share = (field.worldMap === null ? regional() : mapped()).clamp(0, 1).toConst() as Float
+  // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
+  const covered = share.mul(layer.coverage).toConst() as Float
+  const clear = share.oneMinus().mul(layer.coverage.oneMinus())
+  return covered.div(covered.add(clear).max(1e-6)).toConst()
+}
+
+/**
+ * Weather of a layer at a place.
+ *
+ * The weather noise u takes every value in [0, 1] equally often, so u > 1 − c holds over the share c of
+ * the sky. Samples too far apart to see single clouds read a blurred u: there the threshold becomes a
+ * ramp, which keeps the mean.
+ *
+ * @param foot - `footOffset` of the sample. Twin: cpu/density.ts
+ */
+export function weatherAt(
+  field: CloudField,
+  layer: LayerNodes,
+  foot: Vec3,
+  sample: CloudSample
+): CloudWeather {
+  const turned = layer.turn(foot).toConst() as Vec3
+  const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
+  const share = regionalCover(field, layer, turned, sample, footprint)
+  const place = rotate(latticeRotation.weather, turned).div(WEATHER_PERIOD).add(layer.weatherAnchor)
+  const level = log2(footprint.mul(NOISE_SIZE.weather / WEATHER_PERIOD).max(1)).toConst() as Float
+  const noise = field.textures.weather.sample(place).level(level)
+  const above = noise.sub(0.5).dot(layer.weights).sub(0.5).add(share).toConst() as Float
+  const spread = smoothstep(0.5, 4.5, level).toConst() as Float
+  const tilt = share.mul(2).sub(1).toConst() as Float
+  const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
+  return {
+    fill: layer.shapeAmount.mul(0.5).add(above.div(edgeWidth)).add(surely).clamp(0, 1.3).toConst(),
+    cover: above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst(),
+    spread
+  }
+}
