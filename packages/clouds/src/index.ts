@@ -2,3 +2,6 @@ export { CloudLayer, type CloudLayerParameters, type CloudWind } from './CloudLa
 export { CloudLayers } from './CloudLayers'
 export { CloudField, type CloudFieldOptions } from './CloudField'
 export { CloudNoise } from './CloudNoise'
+export { cloudPreset, type CloudPresetName } from './presets'
+export { CloudLightTable } from './CloudLightTable'
+export type { CloudPhaseParameters } from './cpu/cloudPhase'

@@ -29,6 +29,12 @@ export interface SourceMoments {
   s22: number
 }
 
+function dot(a: readonly number[], b: readonly number[]): number {
+  let sum = 0
+  for (let i = 0; i < a.length; i++) sum += a[i] * b[i]
+  return sum
+}
+
 /** The light of one Fourier mode in azimuth: its modes in depth, whatever the slab's thickness. */
 class AzimuthMode {
   /** Inverse lengths k of the modes, which go like e^{−kτ} [1]. */
@@ -104,65 +110,56 @@ class AzimuthMode {
   /**
    * A slab of this medium.
    *
-   * @param depth - Its scaled optical thickness, > 0.
+   * @param thickness - Scaled optical thickness, > 0.
+   * @param depths - Where the light is wanted, from its top.
    */
-  slab(depth: number): SlabMode {
+  slab(thickness: number, depths: readonly number[]): SlabMode {
     const rates = this.#rates
-    const count = rates.length
-    const far = rates.map(rate => Math.exp(-rate * depth))
     const range = rates.map((_, i) => i)
+    const far = rates.map(rate => Math.exp(-rate * thickness))
     // Light that comes in at the top, then at the bottom; amplitudes of modes from the top and the bottom.
-    const matrix = [0, 1].flatMap(side =>
-      range.map(i =>
-        [0, 1].flatMap(origin =>
-          range.map(j => {
-            const sign = side === origin ? 1 : -1
-            const value = this.#sum[i][j] + sign * rates[j] * this.#difference[i][j]
-            return (value / 2) * (side === origin ? 1 : far[j])
-          })
+    const solve = factorize(
+      [1, -1].flatMap(side =>
+        range.map(i =>
+          [1, -1].flatMap(origin =>
+            range.map(j => {
+              const light = this.#sum[i][j] + side * origin * rates[j] * this.#difference[i][j]
+              return (light / 2) * (side === origin ? 1 : far[j])
+            })
+          )
         )
       )
     )
-    const solve = factorize(matrix)
-
-    /** Moments c_l at a depth, from amplitudes of both kinds of modes and of a particular solution. */
-    const evaluate = (tau: number, amplitudes: number[], sun?: Particular): number[] => {
-      const beam = sun === undefined ? 0 : Math.exp(-tau * sun.rate)
-      const parts = range.map(j => {
-        const down = amplitudes[j] * Math.exp(-rates[j] * tau)
-        const up = amplitudes[count + j] * Math.exp(-rates[j] * (depth - tau))
-        const even = down + up + (sun === undefined ? 0 : beam * sun.sum[j])
-        const odd = rates[j] * (down - up) + (sun === undefined ? 0 : beam * sun.difference[j])
-        return [even, odd]
-      })
-      return this.#moments.map((row, l) =>
-        row.reduce((total, value, j) => total + value * parts[j][l % 2], 0)
-      )
-    }
+    // Amplitudes to moments, by depth and l − m.
+    const moments = depths.map(depth => {
+      const down = rates.map(rate => Math.exp(-rate * depth))
+      const up = rates.map(rate => Math.exp(-rate * (thickness - depth)))
+      return this.#moments.map((row, l) => [
+        ...row.map((value, j) => value * down[j] * (l % 2 === 0 ? 1 : rates[j])),
+        ...row.map((value, j) => value * up[j] * (l % 2 === 0 ? 1 : -rates[j]))
+      ])
+    })
 
     return {
       fromSun: cosSun => {
-        const sun = this.#particular(cosSun)
-        const end = Math.exp(-depth * sun.rate)
-        const right = [0, 1].flatMap(side =>
+        const { rate, sum, difference } = this.#particular(cosSun)
+        const end = Math.exp(-thickness * rate)
+        const right = [1, -1].flatMap(side =>
           range.map(i => {
-            const sign = side === 0 ? 1 : -1
-            const light = range.reduce(
-              (total, j) =>
-                total +
-                this.#sum[i][j] * sun.sum[j] +
-                sign * this.#difference[i][j] * sun.difference[j],
-              0
-            )
-            return (-light / 2) * (side === 0 ? 1 : end)
+            const light = dot(this.#sum[i], sum) + side * dot(this.#difference[i], difference)
+            return (-light / 2) * (side === 1 ? 1 : end)
           })
         )
         const amplitudes = solve(right)
-        return tau => evaluate(tau, amplitudes, sun)
+        const forced = this.#moments.map((row, l) => dot(row, l % 2 === 0 ? sum : difference))
+        return moments.map((rows, i) => {
+          const beam = Math.exp(-depths[i] * rate)
+          return rows.map((row, l) => dot(row, amplitudes) + beam * forced[l])
+        })
       },
       fromAbove: () => {
         const amplitudes = solve([...range.map(() => 1), ...range.map(() => 0)])
-        return tau => evaluate(tau, amplitudes)
+        return moments.map(rows => rows.map(row => dot(row, amplitudes)))
       }
     }
   }
@@ -201,12 +198,13 @@ interface Particular {
   difference: number[]
 }
 
+/** Moments c_l by depth and l − m. */
 interface SlabMode {
-  fromSun: (cosSun: number) => (tau: number) => number[]
-  fromAbove: () => (tau: number) => number[]
+  fromSun: (cosSun: number) => number[][]
+  fromAbove: () => number[][]
 }
 
-/** Light in a plane-parallel slab. Depths are scaled optical depths from its top. */
+/** Light in a plane-parallel slab, at the depths that were asked for. */
 export interface Slab {
   /**
    * Source of light that was scattered at least once before, for unit irradiance of the sun on a
@@ -214,9 +212,9 @@ export interface Slab {
    *
    * @param cosSun - μ_s, in (0, 1].
    */
-  fromSun: (cosSun: number) => (depth: number) => SourceMoments
+  fromSun: (cosSun: number) => SourceMoments[]
   /** Source of scattered light, all orders, under an isotropic sky of radiance 1 above the slab. */
-  fromAbove: () => (depth: number) => Pick<SourceMoments, 's00' | 's10' | 's20'>
+  fromAbove: () => Pick<SourceMoments, 's00' | 's10' | 's20'>[]
 }
 
 /**
@@ -237,34 +235,31 @@ export class SlabSolver {
     this.#modes = [0, 1, 2].map(m => new AzimuthMode(phase, m, streams))
   }
 
-  /** @param thickness - Scaled optical thickness, > 0. */
-  slab(thickness: number): Slab {
-    const modes = this.#modes.map(mode => mode.slab(thickness))
+  /**
+   * @param thickness - Scaled optical thickness, > 0.
+   * @param depths - Scaled optical depths from its top, in [0, thickness].
+   */
+  slab(thickness: number, depths: readonly number[]): Slab {
+    const modes = this.#modes.map(mode => mode.slab(thickness, depths))
     const [w0, w1, w2] = this.#modes.map(mode => mode.weights)
     return {
       fromSun: cosSun => {
         const [zeroth, first, second] = modes.map(mode => mode.fromSun(cosSun))
-        return depth => {
-          const [c00, c10, c20] = zeroth(depth)
-          const [c11, c21] = first(depth)
-          const [c22] = second(depth)
-          return {
-            s00: w0[0] * c00,
-            s10: w0[1] * c10,
-            s20: w0[2] * c20,
-            s11: w1[0] * Math.SQRT1_2 * c11,
-            s21: w1[1] * Math.sqrt(3 / 2) * c21,
-            s22: w2[0] * Math.sqrt(3 / 8) * c22
-          }
-        }
+        return zeroth.map(([c00, c10, c20], i) => ({
+          s00: w0[0] * c00,
+          s10: w0[1] * c10,
+          s20: w0[2] * c20,
+          s11: w1[0] * Math.SQRT1_2 * first[i][0],
+          s21: w1[1] * Math.sqrt(3 / 2) * first[i][1],
+          s22: w2[0] * Math.sqrt(3 / 8) * second[i][0]
+        }))
       },
-      fromAbove: () => {
-        const field = modes[0].fromAbove()
-        return depth => {
-          const [c00, c10, c20] = field(depth)
-          return { s00: w0[0] * c00, s10: w0[1] * c10, s20: w0[2] * c20 }
-        }
-      }
+      fromAbove: () =>
+        modes[0].fromAbove().map(([c00, c10, c20]) => ({
+          s00: w0[0] * c00,
+          s10: w0[1] * c10,
+          s20: w0[2] * c20
+        }))
     }
   }
 }

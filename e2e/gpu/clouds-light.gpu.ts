@@ -1,0 +1,167 @@
+import { CloudLightTable } from '@welkin/clouds'
+import { float, vec4 } from 'three/tsl'
+import * as twin from '../../packages/clouds/src/cpu/cloudLight'
+import { solveCloudLight } from '../../packages/clouds/src/cpu/cloudLightTable'
+import {
+  aureolePhase,
+  cloudPhase,
+  type CloudPhaseParameters
+} from '../../packages/clouds/src/cpu/cloudPhase'
+import { cloudAmbient, cloudSource } from '../../packages/clouds/src/tsl/cloudLight'
+import { singlePhase } from '../../packages/clouds/src/tsl/cloudPhase'
+import { evaluateOnGpu } from './harness/evaluate'
+import { expectClose, expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+
+/** Evenly spread numbers in [0, 1), the same in every run. */
+const spread = (i: number, k: number): number =>
+  (i * [0.6180339887, 0.7548776662, 0.5698402911, 0.8191725134][k]) % 1
+const rows = (count: number, row: (i: number) => number[]): number[][] =>
+  Array.from({ length: count }, (_, i) => row(i).map(Math.fround))
+const depthAt = (u: number): number => Math.exp(-4 + 9 * u)
+
+const phases: Partial<CloudPhaseParameters>[] = [
+  {},
+  { forwardAsymmetry: 0.85, forwardShare: 1 },
+  { forwardAsymmetry: 0, backwardAsymmetry: 0 }
+]
+
+gpuTest('scatters sunlight like its float64 twin', async t => {
+  const renderer = await t.createRenderer()
+  for (const parameters of phases) {
+    const light = new CloudLightTable(parameters)
+    light.bake()
+    const table = solveCloudLight(light.phase)
+    for (const [layered, cosSun] of [
+      [1, 0.7],
+      [1, 0.03],
+      [1, -0.2],
+      [0, 0.4],
+      [0.5, 0.9]
+    ]) {
+      const inputs = rows(200, i => {
+        const through = depthAt(spread(i, 0))
+        const cosView = 2 * spread(i, 2) - 1
+        const sines = Math.sqrt((1 - cosView ** 2) * (1 - cosSun ** 2))
+        const cosViewSun = cosView * cosSun + sines * Math.cos(2 * Math.PI * spread(i, 3))
+        return [through * spread(i, 1), through, cosView, cosViewSun]
+      })
+      const results = await evaluateOnGpu(renderer, inputs, input =>
+        vec4(
+          cloudSource(light.nodes, {
+            depthToSun: input.x,
+            depthThrough: input.y,
+            depthAcross: input.y.mul(1.3),
+            depthToEye: float(0.3),
+            layered: float(layered),
+            cosSun: float(cosSun),
+            cosView: input.z,
+            cosViewSun: input.w
+          })
+        )
+      )
+      const expected = inputs.map(([depthToSun, depthThrough, cosView, cosViewSun]) =>
+        twin.cloudSource(light.phase, table, {
+          depthToSun,
+          depthThrough,
+          depthAcross: 1.3 * depthThrough,
+          depthToEye: 0.3,
+          layered,
+          cosSun,
+          cosView,
+          cosViewSun
+        })
+      )
+      // Texels are half floats, and filtered at their positions' 1/256.
+      const found = inputs.map((_, i) => results[4 * i])
+      expectClose(found, expected, { absolute: 3e-4, relative: 0.01 }, `${layered} ${cosSun}`)
+    }
+    light.dispose()
+  }
+})
+
+gpuTest('has the phase function of its float64 twin, in the aureole too', async t => {
+  const renderer = await t.createRenderer()
+  const light = new CloudLightTable({ forwardAsymmetry: 0.9 })
+  const inputs = rows(300, i => [1 - (i / 300) ** 3 * 2, depthAt(spread(i, 0))])
+  const results = await evaluateOnGpu(renderer, inputs, input =>
+    vec4(singlePhase(light.nodes, input.x, input.y))
+  )
+  const expected = inputs.map(([cosine, depth]) => {
+    const exact = cloudPhase(light.phase, cosine)
+    const towards = Math.min(Math.max(10 * cosine - 9, 0), 1)
+    return exact + (aureolePhase(light.phase, cosine, depth) - exact) * towards
+  })
+  expectClose(
+    inputs.map((_, i) => results[4 * i]),
+    expected,
+    { absolute: 1e-5, relative: 2e-3 }
+  )
+  light.dispose()
+})
+
+gpuTest('scatters light of sky and ground like its float64 twin', async t => {
+  const renderer = await t.createRenderer()
+  const light = new CloudLightTable()
+  light.bake()
+  const table = solveCloudLight(light.phase)
+  const inputs = rows(300, i => [
+    depthAt(spread(i, 0)) * spread(i, 3),
+    depthAt(spread(i, 1)),
+    2 * spread(i, 2) - 1,
+    i % 2
+  ])
+  const results = await evaluateOnGpu(renderer, inputs, input =>
+    cloudAmbient(
+      light.nodes,
+      { depthAbove: input.x, depthBelow: input.y, cosView: input.z, layered: input.w },
+      vec4(1, 0, 1, 0),
+      vec4(0, 1, 1, 0)
+    )
+  )
+  const expected = inputs.flatMap(([depthAbove, depthBelow, cosView, layered]) => {
+    const sample = { depthAbove, depthBelow, cosView, layered }
+    const { sky, ground } = twin.cloudAmbient(table, sample)
+    return [sky, ground, sky + ground, 0]
+  })
+  expectClose(Array.from(results), expected, { absolute: 3e-3 })
+  light.dispose()
+})
+
+gpuTest('gives no NaN at the ends of its domain', async t => {
+  const renderer = await t.createRenderer()
+  const light = new CloudLightTable()
+  light.bake()
+  const ends = [0, 1e-8, 1, 1e6]
+  const inputs = ends.flatMap(toSun =>
+    ends.flatMap(through => [-1, 0, 1].map(cosView => [toSun, through, cosView, cosView]))
+  )
+  for (const layered of [0, 1]) {
+    for (const cosSun of [-1, 0, 1]) {
+      const results = await evaluateOnGpu(renderer, inputs, input => {
+        const sample = { layered: float(layered), cosView: input.z }
+        const ambient = cloudAmbient(
+          light.nodes,
+          { ...sample, depthAbove: input.x, depthBelow: input.y },
+          vec4(1),
+          vec4(1)
+        )
+        const source = cloudSource(light.nodes, {
+          ...sample,
+          depthToSun: input.x,
+          depthThrough: input.y,
+          depthAcross: input.y,
+          depthToEye: input.x,
+          cosSun: float(cosSun),
+          cosViewSun: input.w
+        })
+        return vec4(source, ambient.x, 0, 0)
+      })
+      expectTrue(
+        results.every(value => Number.isFinite(value) && value >= 0 && value < 100),
+        'finite and positive'
+      )
+    }
+  }
+  light.dispose()
+})
