@@ -22,3 +22,15 @@ export const bandGoals: Record<string, Partial<Record<BandName, Goal>>> = {
 export const irradianceGoal = { sunZenith: 93, max: 0.01 }
 
 export const colorGoal = { mean: 0.3, p95: 0.8 }
+
+export interface CloudGoal {
+  median?: number
+  p90?: number
+  p95?: number
+}
+
+/** Of radiances out of homogeneous clouds, per shape. */
+export const cloudGoals: Record<'slab' | 'sphere', CloudGoal> = {
+  slab: { median: 0.03, p95: 0.15 },
+  sphere: { median: 0.2, p90: 0.6 }
+}

@@ -47,10 +47,10 @@ export interface ColorSample extends Angles {
   XYZ: [number, number, number]
 }
 
-type Json = Record<string, unknown>
+export type Json = Record<string, unknown>
 
 /** An input file, with errors that say where it is wrong. */
-class Reader {
+export class Reader {
   constructor(
     readonly file: string,
     readonly where = ''
@@ -99,7 +99,8 @@ function show(value: unknown): string {
   return value === undefined ? 'nothing' : JSON.stringify(value).slice(0, 60)
 }
 
-function readJson(file: string): { reader: Reader; content: Json } {
+/** Reads a JSON file that holds an object. */
+export function readJson(file: string): { reader: Reader; content: Json } {
   let text: string
   try {
     text = readFileSync(file, 'utf8')

@@ -2,6 +2,7 @@ import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
 import type { Backend } from '../gpu/harness/gpu-test'
+import { printClouds, validateClouds } from './clouds'
 import { evaluateInBrowser } from './evaluate'
 import { colorRequest, compareColors, compareSky, compareSun, skyRequest } from './figures'
 import type { ColorFigures, SkyComparisons } from './figures'
@@ -14,6 +15,7 @@ const usage = `npm run validate -- [options]
 
   --sky FILE                 spectral radiances, by default e2e/reference/sky.json
   --spectral FILE            sky colours, by default e2e/reference/spectral_sky.json
+  --clouds FILE              clouds of simple shapes, by default e2e/reference/cloud_slab.json
   --backend webgpu|webgl     by default webgpu
   --path volume|march        how the air along a ray is found, by default volume
   --json                     print JSON alone
@@ -37,6 +39,7 @@ async function main(): Promise<void> {
     options: {
       sky: { type: 'string' },
       spectral: { type: 'string' },
+      clouds: { type: 'string' },
       backend: { type: 'string', default: 'webgpu' },
       path: { type: 'string', default: 'volume' },
       json: { type: 'boolean', default: false },
@@ -68,6 +71,10 @@ async function main(): Promise<void> {
   ]
   const results = await evaluateInBrowser(requests)
 
+  const cloudsFile = input(values.clouds, 'cloud_slab.json')
+  const clouds =
+    cloudsFile === undefined ? undefined : await validateClouds(cloudsFile, where.backend)
+
   let quantities: SkyComparisons = {}
   let spectral: ColorFigures | undefined
   let sun: Comparison[] = []
@@ -81,7 +88,11 @@ async function main(): Promise<void> {
     Object.entries(quantities).map(([name, list]) => [name, bandStatistics(list)])
   )
   if (values.json) {
-    const all = spectral === undefined ? statistics : { ...statistics, spectral }
+    const all = {
+      ...statistics,
+      ...(spectral === undefined ? {} : { spectral }),
+      ...(clouds === undefined ? {} : { clouds })
+    }
     print(JSON.stringify(all, null, 2))
     return
   }
@@ -89,6 +100,7 @@ async function main(): Promise<void> {
   let missed = printQuantities(quantities, statistics)
   printSun(sun)
   if (spectral !== undefined) missed += printColors(spectral)
+  if (clouds !== undefined) missed += printClouds(clouds)
   for (const [name, list] of Object.entries(quantities)) printWorst(name, list, +values.worst)
   console.log(missed === 0 ? '\nAll goals are met.' : `\nGoals missed: ${missed}.`)
   if (values.check && missed > 0) process.exitCode = 1

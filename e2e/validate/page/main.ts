@@ -19,6 +19,7 @@ import { createContext } from '../../gpu/harness/context'
 import { evaluateOnGpu } from '../../gpu/harness/evaluate'
 import type { EvaluationRequest, EvaluationResult, EyePlace, Path, RayRequest } from '../request'
 import { RayBatch, type RayNodes } from './RayBatch'
+import './clouds'
 
 declare global {
   interface Window {

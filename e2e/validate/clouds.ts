@@ -1,0 +1,110 @@
+import { fileURLToPath } from 'node:url'
+import type { Backend } from '../gpu/harness/gpu-test'
+import { launchChromium } from '../harness/browser'
+import { bundlePage } from '../harness/bundle'
+import { serveStatic } from '../harness/serve'
+import { readCloudReference, type CloudCase } from './cloud-reference'
+import { cloudGoals, type CloudGoal } from './goals'
+import type { CloudRequest } from './page/clouds'
+import { quantile } from './score'
+
+/** References below this part of the sun's irradiance are left out. */
+const NEGLIGIBLE = 1e-7
+
+/** Exits nearer to a slab's horizon than this are reported, but not scored [°]. */
+const LARGEST_EXIT = 75
+
+/** Relative errors of cases; fractions. */
+export interface CloudStatistics {
+  n: number
+  median: number
+  p90: number
+  p95: number
+}
+
+export type CloudResult = Omit<CloudCase, 'input'> & { model: number; error: number }
+
+export interface CloudFigures {
+  slab: CloudStatistics
+  sphere: CloudStatistics
+  cases: CloudResult[]
+}
+
+function statistics(cases: readonly CloudResult[]): CloudStatistics {
+  const errors = cases.map(({ error }) => Math.abs(error))
+  const part = (share: number): number => (errors.length === 0 ? NaN : quantile(errors, share))
+  return { n: errors.length, median: part(0.5), p90: part(0.9), p95: part(0.95) }
+}
+
+const isScored = ({ exitZenith }: CloudResult): boolean => exitZenith <= LARGEST_EXIT
+
+/** Marches the clouds of a file through the lighting code on the GPU. */
+export async function validateClouds(file: string, backend: Backend): Promise<CloudFigures> {
+  const { phases, cases } = readCloudReference(file)
+  const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {})
+  const server = await serveStatic([{ path: '/', folder }])
+  const browser = await launchChromium()
+  let radiances: number[]
+  try {
+    const page = await browser.newPage()
+    await page.goto(`${server.origin}/index.html`)
+    await page.waitForFunction(() => 'welkinClouds' in window)
+    const request: CloudRequest = {
+      backend,
+      phases,
+      rays: cases.map(({ shape, phase, input }) => ({ shape, phase, input }))
+    }
+    radiances = await page.evaluate(asked => window.welkinClouds(asked), request)
+  } finally {
+    await browser.close()
+    await server.close()
+  }
+  const results = cases.flatMap(({ input: _, ...rest }, i) => {
+    if (!(rest.reference >= NEGLIGIBLE)) return []
+    const error = (radiances[i] - rest.reference) / rest.reference
+    if (!Number.isFinite(error)) throw new Error(`clouds: the model gave ${radiances[i]}`)
+    return [{ ...rest, model: radiances[i], error }]
+  })
+  const of = (shape: string): CloudStatistics =>
+    statistics(results.filter(result => result.shape === shape && isScored(result)))
+  return { slab: of('slab'), sphere: of('sphere'), cases: results }
+}
+
+const percent = (value: number): string => `${(100 * value).toFixed(1)} %`.padStart(9)
+
+/** Prints the scores of slabs and spheres; answers with the number of goals missed. */
+export function printClouds(figures: CloudFigures): number {
+  let missed = 0
+  for (const shape of ['slab', 'sphere'] as const) {
+    const goal: CloudGoal = cloudGoals[shape]
+    const scored = figures.cases.filter(result => result.shape === shape && isScored(result))
+    const row = (name: string, { n, median, p90, p95 }: CloudStatistics): string =>
+      `  ${name.padEnd(34)}${String(n).padStart(5)}${[median, p90, p95].map(percent).join('')}`
+    console.log(
+      shape === 'slab'
+        ? `Radiance of cloud slabs, exits to ${LARGEST_EXIT}°`
+        : '\nRadiance of spheres of cloud'
+    )
+    console.log(`  ${''.padEnd(34)}    n   median      p90      p95`)
+    console.log(row('all', figures[shape]))
+    const by = (name: string, key: (result: CloudResult) => string | number): void => {
+      const values = [...new Set(scored.map(key))]
+      for (const value of values.toSorted((a, b) => (a < b ? -1 : 1))) {
+        const some = scored.filter(result => key(result) === value)
+        console.log(row(`${name} ${value}`, statistics(some)))
+      }
+    }
+    by(shape === 'slab' ? 'thickness' : 'diameter', ({ tau }) => tau)
+    by('phase', ({ phase }) => phase)
+    by(shape === 'slab' ? 'sun zenith' : 'angle from sun', ({ sunAngle }) => sunAngle)
+    for (const key of ['median', 'p90', 'p95'] as const) {
+      const limit = goal[key]
+      if (limit === undefined) continue
+      const met = figures[shape][key] <= limit
+      if (!met) missed++
+      console.log(`  goal: ${key} ≤ ${percent(limit).trim()} ${met ? '✓' : '✗'}`)
+    }
+  }
+  console.log()
+  return missed
+}
