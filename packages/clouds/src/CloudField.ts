@@ -1,28 +1,26 @@
-import { Matrix3, Matrix4, Quaternion, Vector3, Vector4 } from 'three'
+import { Matrix3, Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
 import type { Texture } from 'three'
 import { viewNodes } from '@welkin/atmosphere'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
 import { renderGroup, texture, texture3D, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { CloudLayers } from './CloudLayers'
-import { CloudNoise, type NoiseName } from './CloudNoise'
+import { CloudNoise } from './CloudNoise'
+import type { NoiseName } from './noiseSizes'
 import { latticeRotation, layerTurn } from './lattice'
 import {
   DETAIL_PERIOD,
   LAYER_STRIDE,
   REGION_PERIOD,
-  shapePeriod,
-  standardWeights,
-  WEATHER_PERIOD
+  layerPeriods,
+  standardWeights
 } from './layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
+import { windTurn } from './wind'
 
 const _position = new Vector3()
 const _foot = new Vector3()
 const _point = new Vector3()
-const _axis = new Vector3()
-const _east = new Vector3()
-const _north = new Vector3()
 const _matrix = new Matrix3()
 const _matrix4 = new Matrix4()
 const _turn = new Quaternion()
@@ -33,7 +31,8 @@ const part = (x: number): number => x - Math.floor(x)
 export interface CloudFieldOptions {
   /**
    * Cloud cover of the whole planet: equirectangular, north up, longitude −180° at the left edge; its
-   * red channel is the share of the sky that is covered. Shared, not owned. It should have mipmaps.
+   * red channel is the share of the sky that is covered. It repeats in S. Shared, not owned. It should
+   * have mipmaps.
    */
   worldMap?: Texture | null
   /** Noise to share between fields; left out, the field makes and owns its own. */
@@ -77,12 +76,16 @@ export class CloudField {
   /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
   readonly axialRatio: number
   readonly #ownsNoise: boolean
-  readonly #turns: Quaternion[] = Array.from({ length: CloudLayers.maxLayers }, (_, i) =>
+  /** How each layer's noise is turned about the planet's centre: the wind's work. */
+  readonly turns: readonly Quaternion[] = Array.from({ length: CloudLayers.maxLayers }, (_, i) =>
     layerTurn(i)
   )
   #seconds: number | null = null
 
-  /** @throws If the atmosphere or the layers are missing. */
+  /**
+   * @param view - Nodes of the camera that samples are seen from.
+   * @throws If the atmosphere or the layers are missing, or the map does not repeat.
+   */
   constructor(
     atmosphere: Atmosphere,
     layers: CloudLayers,
@@ -94,6 +97,9 @@ export class CloudField {
     }
     if (!(layers instanceof CloudLayers)) {
       throw new Error(`CloudField: layers must be CloudLayers, got ${typeof layers}`)
+    }
+    if (worldMap !== null && worldMap.wrapS !== RepeatWrapping) {
+      throw new Error(`CloudField: worldMap.wrapS must be RepeatWrapping, got ${worldMap.wrapS}`)
     }
     this.atmosphere = atmosphere
     this.layers = layers
@@ -134,30 +140,21 @@ export class CloudField {
   /** Turns a layer against its wind: the noise is looked up where the air came from. */
   #drift(index: number, up: Vector3, elapsed: number): void {
     const { wind, baseAltitude } = this.layers.at(index).parameters
-    const speed = Math.hypot(wind.east, wind.north)
-    if (speed === 0) return
-    _east.set(-up.y, up.x, 0)
-    // At a pole itself, east is that of longitude 0.
-    if (_east.lengthSq() < 1e-20) _east.set(0, 1, 0)
-    _east.normalize()
-    _north.crossVectors(up, _east)
-    _axis.copy(_north).multiplyScalar(wind.east).addScaledVector(_east, -wind.north)
-    const angle = (speed * elapsed) / (this.atmosphere.parameters.bottomRadius + baseAltitude)
-    _turn.setFromAxisAngle(_axis.divideScalar(speed), -angle)
-    this.#turns[index].multiply(_turn).normalize()
+    const radius = this.atmosphere.parameters.bottomRadius + baseAltitude
+    this.turns[index].multiply(windTurn(wind, up, elapsed, radius, _turn)).normalize()
   }
 
   /** Copies a layer's parameters, and its anchors for the eye and the point of the ground below it. */
   #write(index: number): void {
     const { parameters } = this.layers.at(index)
-    const period = shapePeriod(parameters)
+    const periods = layerPeriods(parameters)
     const slots = this.values.slice(index * LAYER_STRIDE, (index + 1) * LAYER_STRIDE)
     const { baseAltitude, topAltitude, coverage, density } = parameters
     slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
     const { profileExponent, shapeAmount, detailAmount } = parameters
-    slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / period)
+    slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
     slots[2].fromArray(standardWeights(parameters.weatherWeights))
-    const turn = this.#turns[index]
+    const turn = this.turns[index]
     const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
     const anchor = (slot: number, place: Vector3, rotation: Matrix3, length: number): void => {
       _point.copy(place).applyQuaternion(turn).applyMatrix3(rotation).divideScalar(length)
@@ -166,10 +163,11 @@ export class CloudField {
     for (let row = 0; row < 3; row++) {
       slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
     }
-    anchor(8, _position, latticeRotation.shape, period)
+    anchor(8, _position, latticeRotation.shape, periods.shape)
     anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD)
     // The weather is the same all the way up: it is looked up at the foot point.
-    anchor(6, _foot, latticeRotation.weather, WEATHER_PERIOD)
+    anchor(6, _foot, latticeRotation.weather, periods.weather)
+    slots[6].w = 1 / periods.weather
     anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
   }
 

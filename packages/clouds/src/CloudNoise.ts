@@ -11,14 +11,10 @@ import type { Data3DTexture, PixelFormat } from 'three'
 import { FragmentPass } from '@welkin/atmosphere'
 import { Fn, float, texture3D, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
+import { NOISE_SIZE } from './noiseSizes'
 import { detailChannel, shapeChannels, weatherChannels } from './noiseRecipes'
 import { channelNoise, curlNoise } from './tsl/noiseChannels'
 import type { LevelTexture, Vec3, Vec4 } from './tsl-types'
-
-/** Texels along an edge of the three textures. */
-export const NOISE_SIZE = { shape: 128, detail: 32, weather: 64 } as const
-
-export type NoiseName = keyof typeof NOISE_SIZE
 
 function noiseTarget(name: string, size: number, format: PixelFormat, mips: boolean) {
   const target = new RenderTarget3D(size, size, size, {

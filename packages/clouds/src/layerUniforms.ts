@@ -3,11 +3,20 @@ import type { CloudLayerParameters } from './CloudLayer'
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 10
 
-/** Period of the weather texture [m]. */
-export const WEATHER_PERIOD = 26_000
+/** Period of the weather texture for a layer 1200 m thick [m]. */
+const WEATHER_PERIOD = 15_000
+
+/** Period of the shape texture for such a layer [m]. */
+const SHAPE_PERIOD = 2600
 
 /** Period of the same texture where it sets the mean coverage of regions [m]. */
 export const REGION_PERIOD = 410_000
+
+/**
+ * How far the regions shift the look-up of the weather [m]: enough for its repetitions to fall out of
+ * step, over distances that do not distort it.
+ */
+export const WEATHER_WARP = 5000
 
 /** Period of the detail texture [m]. */
 export const DETAIL_PERIOD = 330
@@ -19,12 +28,18 @@ export const CURL_AMOUNT = 0.25
 export const CURL_PERIOD = 5
 
 /**
- * Period of the shape texture [m]: heads of a cloud grow with its height. In powers of 2, or else every
- * change of an altitude would move the noise, which is anchored at the planet's centre.
+ * Periods of a layer's weather and shape noise [m]: tall clouds are broad and have large heads. In
+ * powers of 2, or else every change of an altitude would move the noise, which is anchored at the
+ * planet's centre.
  */
-export function shapePeriod({ baseAltitude, topAltitude }: CloudLayerParameters): number {
-  const octave = Math.round(Math.log2((topAltitude - baseAltitude) / 1200) / 2)
-  return 2600 * 2 ** Math.min(Math.max(octave, -2), 2)
+export function layerPeriods({ baseAltitude, topAltitude }: CloudLayerParameters): {
+  weather: number
+  shape: number
+} {
+  const octaves = Math.log2((topAltitude - baseAltitude) / 1200)
+  const scale = (share: number): number =>
+    2 ** Math.min(Math.max(Math.round(share * octaves), -2), 2)
+  return { weather: WEATHER_PERIOD * scale(0.7), shape: SHAPE_PERIOD * scale(0.5) }
 }
 
 /**
@@ -41,6 +56,8 @@ export function standardWeights(weights: readonly number[]): [number, number, nu
 export const densityShape = {
   /** Change of weather noise over which a layer fills from edge to middle. */
   edgeWidth: 0.5,
+  /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
+  meanEdge: 0.27,
   /** Added to the fill at full coverage, taken at none. */
   excess: 0.6,
   /** How far the regions' coverage departs from the layer's. */
@@ -49,8 +66,9 @@ export const densityShape = {
   leastCarving: 0.15,
   /** Most that detail takes away. */
   erosion: 0.22,
-  /** Density per fullness left: how sharp edges are. */
-  sharpness: 6,
+  /** Density per fullness left, of smooth layers and of carved ones: how sharp edges are. */
+  smoothSharpness: 1.5,
+  carvedSharpness: 6,
   /** Mean density of a cloudy column over the densest. */
   farFill: 0.6
 } as const

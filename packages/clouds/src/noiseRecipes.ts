@@ -1,8 +1,14 @@
+/** Cells in a period: the same along all axes, or one number for each. */
+export type Cells = number | readonly [number, number, number]
+
+export const cellsOf = (cells: Cells): readonly [number, number, number] =>
+  typeof cells === 'number' ? [cells, cells, cells] : cells
+
 /** One sort of noise in a channel: `perlin` or `billow` of tsl/noise.ts. */
 export interface NoiseTerm {
   readonly kind: 'perlin' | 'billow'
-  /** Cells in a period. */
-  readonly cells: number
+  /** Cells in a period, of all axes or each. */
+  readonly cells: Cells
   readonly weight: number
 }
 
@@ -12,8 +18,6 @@ export type NoiseEncoding =
   | 'normal'
   /** Φ(z): every value as frequent as any other, so that a threshold of 1 − c covers the share c. */
   | 'uniform'
-  /** 2 Φ(−|z|): the same for ridges, which are 1 where the sum crosses 0. */
-  | 'ridges'
 
 export interface NoiseChannel {
   readonly terms: readonly NoiseTerm[]
@@ -33,13 +37,13 @@ export const noiseStatistics = {
 
 const octaves = (
   kind: NoiseTerm['kind'],
-  cells: number,
+  cells: Cells,
   count: number,
   weight: number
 ): NoiseTerm[] =>
   Array.from({ length: count }, (_, i) => ({
     kind,
-    cells: cells * 2 ** i,
+    cells: cellsOf(cells).map(n => n * 2 ** i) as [number, number, number],
     weight: weight / 2 ** i
   }))
 
@@ -83,8 +87,9 @@ export const weatherChannels: readonly NoiseChannel[] = [
     encoding: 'uniform'
   },
   {
-    terms: octaves('perlin', 3, 3, 1),
-    encoding: 'ridges',
-    warp: { cells: 4, amount: 0.12 }
+    // Sheets, which the ground cuts in streaks wherever they do not lie flat.
+    terms: [...octaves('perlin', [2, 3, 9], 2, 1), ...octaves('perlin', [5, 5, 24], 1, 0.6)],
+    encoding: 'uniform',
+    warp: { cells: 3, amount: 0.1 }
   }
 ]

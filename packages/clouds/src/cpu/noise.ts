@@ -1,5 +1,12 @@
 import { Vector3 } from 'three'
-import { CURL_CELLS, CURL_SCALE, noiseStatistics, seedOf, type NoiseChannel } from '../noiseRecipes'
+import {
+  cellsOf,
+  CURL_CELLS,
+  CURL_SCALE,
+  noiseStatistics,
+  seedOf,
+  type NoiseChannel
+} from '../noiseRecipes'
 
 /** Three numbers: coordinates, or channels of a texture. */
 export type Vec3Array = readonly [number, number, number]
@@ -33,14 +40,14 @@ const wrap = (i: number, cells: number): number => ((i % cells) + cells) % cells
 const _hash = new Vector3()
 
 /** Float64 twin of `perlin`: gradient noise of period 1 in each coordinate, about [−1, 1]. */
-export function perlin(p: Vec3Array, cells: number, seed: number): number {
-  const base = p.map(x => Math.floor(x * cells))
-  const part = p.map((x, axis) => x * cells - base[axis])
+export function perlin(p: Vec3Array, cells: Vec3Array, seed: number): number {
+  const base = p.map((x, axis) => Math.floor(x * cells[axis]))
+  const part = p.map((x, axis) => x * cells[axis] - base[axis])
   const fade = part.map(t => t ** 3 * (10 + t * (6 * t - 15)))
   let sum = 0
   for (let corner = 0; corner < 8; corner++) {
     const offset = [corner & 1, (corner >> 1) & 1, corner >> 2]
-    const [i, j, k] = offset.map((o, axis) => wrap(base[axis] + o, cells))
+    const [i, j, k] = offset.map((o, axis) => wrap(base[axis] + o, cells[axis]))
     const gradient = hashCell(i, j, k + seed, _hash).toArray()
     let height = 0
     let weight = 1
@@ -57,16 +64,16 @@ export function perlin(p: Vec3Array, cells: number, seed: number): number {
  * Float64 twin of `billow`: 1 − F₁², with F₁ the distance to the nearest of the points scattered one
  * in each cell: round heads that meet in sharp creases. Period 1, in [0, 1].
  */
-export function billow(p: Vec3Array, cells: number, seed: number): number {
-  const base = p.map(x => Math.floor(x * cells))
+export function billow(p: Vec3Array, cells: Vec3Array, seed: number): number {
+  const base = p.map((x, axis) => Math.floor(x * cells[axis]))
   let nearest = 1
   for (let n = 0; n < 27; n++) {
     const cell = [n % 3, Math.floor(n / 3) % 3, Math.floor(n / 9)].map((o, a) => base[a] + o - 1)
-    const [i, j, k] = cell.map(c => wrap(c, cells))
+    const [i, j, k] = cell.map((c, axis) => wrap(c, cells[axis]))
     const point = hashCell(i, j, k + seed, _hash).toArray()
     let square = 0
     for (let axis = 0; axis < 3; axis++) {
-      square += (cell[axis] + point[axis] - p[axis] * cells) ** 2
+      square += (cell[axis] + point[axis] - p[axis] * cells[axis]) ** 2
     }
     nearest = Math.min(nearest, square)
   }
@@ -84,22 +91,23 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3Array)
   if (channel.warp !== undefined) {
     const { cells, amount } = channel.warp
     for (let axis = 0; axis < 3; axis++) {
-      place[axis] += amount * perlin(p, cells, seedOf(index, channel.terms.length + axis))
+      place[axis] += amount * perlin(p, cellsOf(cells), seedOf(index, channel.terms.length + axis))
     }
   }
   let sum = 0
   let variance = 0
   channel.terms.forEach(({ kind, cells, weight }, i) => {
     const { mean, deviation } = noiseStatistics[kind]
-    sum += weight * (terms[kind](place, cells, seedOf(index, i)) - mean)
+    sum += weight * (terms[kind](place, cellsOf(cells), seedOf(index, i)) - mean)
     variance += (weight * deviation) ** 2
   })
   const z = sum / Math.sqrt(variance)
   if (channel.encoding === 'normal') return Math.min(Math.max(0.5 + 0.18 * z, 0), 1)
-  return channel.encoding === 'uniform' ? cumulative(z) : 2 * cumulative(-Math.abs(z))
+  return cumulative(z)
 }
 
-const potential = (p: Vec3Array, axis: number): number => perlin(p, CURL_CELLS, 3001 + 17 * axis)
+const potential = (p: Vec3Array, axis: number): number =>
+  perlin(p, cellsOf(CURL_CELLS), 3001 + 17 * axis)
 
 /** Float64 twin of `curlNoise`: a field without divergence, encoded in [0, 1]. */
 export function curlNoise(p: Vec3Array): Vec3Array {

@@ -1,6 +1,6 @@
 import { If, float, int, log2, smoothstep } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { NOISE_SIZE } from '../CloudNoise'
+import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import { CURL_AMOUNT, CURL_PERIOD, densityShape, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
@@ -20,12 +20,18 @@ export interface CloudSample {
   distance: Float
 }
 
-const { erosion, farFill, leastCarving, sharpness } = densityShape
+const { carvedSharpness, erosion, farFill, leastCarving, smoothSharpness } = densityShape
 
 /** 1 − (2 ĥ^t − 1)²: how much of a layer's air cloud may fill at a height. */
 function heightProfile(layer: LayerNodes, height: Float): Float {
   const x = height.clamp(1e-4, 1).pow(layer.profileExponent).mul(2).sub(1)
   return x.mul(x).oneMinus().toConst()
+}
+
+/** How fast density grows from the edge of a cloud inwards. */
+function sharpnessOf({ shapeAmount }: LayerNodes): Float {
+  const carved = shapeAmount.mul(shapeAmount)
+  return carved.mul(carvedSharpness - smoothSharpness).add(smoothSharpness)
 }
 
 /** Size of a texel below which its level 0 is read. */
@@ -54,7 +60,7 @@ function carving(
   const most = layer.detailAmount.mul(erosion).toConst() as Float
   if (!detail) return left.sub(most.mul(0.5))
   // Deep inside, the most that detail takes away changes nothing.
-  If(left.greaterThan(0).and(left.lessThan(most.add(1 / sharpness))), () => {
+  If(left.greaterThan(0).and(left.lessThan(most.add(sharpnessOf(layer).reciprocal()))), () => {
     const fine = rotate(latticeRotation.detail, turned)
       .div(DETAIL_PERIOD)
       .add(layer.detailAnchor)
@@ -74,7 +80,8 @@ function carving(
 export function spreadDensity(layer: LayerNodes, weather: CloudWeather): Float {
   const depth = layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst() as Float
   const blocked = weather.cover.mul(depth.negate().exp().oneMinus())
-  return blocked.oneMinus().log().negate().div(depth)
+  // Of thick clouds nothing comes through, in float32.
+  return blocked.oneMinus().max(1e-30).log().negate().div(depth)
 }
 
 /** Calls back for each layer whose altitudes include the sample's. */
@@ -112,7 +119,7 @@ export function cloudExtinction(field: CloudField, sample: CloudSample, detail: 
     const near = float(0).toVar()
     If(filled.greaterThan(layer.shapeAmount.mul(leastCarving)), () => {
       const left = carving(field, layer, sample, height, filled, detail)
-      near.assign(left.mul(sharpness).clamp(0, 1))
+      near.assign(left.mul(sharpnessOf(layer)).clamp(0, 1))
     })
     const far = spreadDensity(layer, weather).mul(profile)
     sum.addAssign(layer.density.mul(weather.spread.mix(near, far)))
@@ -130,7 +137,7 @@ export function cloudBound(field: CloudField, sample: CloudSample): Float {
   const most = float(0).toVar()
   eachLayer(field, sample, (layer, weather, height) => {
     const filled = weather.fill.mul(heightProfile(layer, height))
-    const near = filled.sub(layer.shapeAmount.mul(leastCarving)).mul(sharpness).clamp(0, 1)
+    const near = filled.sub(layer.shapeAmount.mul(leastCarving)).mul(sharpnessOf(layer)).clamp(0, 1)
     const far = weather.spread.greaterThan(0).select(weather.cover, float(0))
     most.assign(most.max(near).max(far))
   })

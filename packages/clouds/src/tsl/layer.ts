@@ -1,4 +1,4 @@
-import { int, mat3, vec3 } from 'three/tsl'
+import { int, vec3 } from 'three/tsl'
 import type { Matrix3 } from 'three'
 import type { CloudField } from '../CloudField'
 import { LAYER_STRIDE } from '../layerUniforms'
@@ -6,8 +6,10 @@ import type { Float, Int, Vec3, Vec4 } from '../tsl-types'
 
 /** A vector turned by a constant rotation. */
 export const rotate = (rotation: Matrix3, v: Vec3): Vec3 => {
-  const [a, b, c, d, e, f, g, h, i] = rotation.elements
-  return mat3(a, b, c, d, e, f, g, h, i).mul(v)
+  const e = rotation.elements
+  // Three builds constant matrices row by row, variable ones column by column.
+  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 3], e[row + 6]).dot(v))
+  return vec3(x, y, z)
 }
 
 /** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
@@ -23,6 +25,8 @@ export interface LayerNodes {
   detailAmount: Float
   /** [1/m]. */
   perShapePeriod: Float
+  /** [1/m]. */
+  perWeatherPeriod: Float
   /** `standardWeights`. */
   weights: Vec4
   /** Where the eye and its foot point lie in the periods of the noise, in [0, 1). */
@@ -40,6 +44,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const extent = read(0).toConst() as Vec4
   const form = read(1).toConst() as Vec4
+  const weather = read(6).toConst() as Vec4
   return {
     baseAltitude: extent.x,
     perThickness: extent.y,
@@ -51,7 +56,8 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     detailAmount: form.z,
     perShapePeriod: form.w,
     weights: read(2),
-    weatherAnchor: read(6).xyz,
+    perWeatherPeriod: weather.w,
+    weatherAnchor: weather.xyz,
     regionAnchor: read(7).xyz,
     shapeAnchor: read(8).xyz,
     detailAnchor: read(9).xyz,

@@ -39,7 +39,7 @@ export const hashCell = /*#__PURE__*/ Fn(
 ) as unknown as (cell: UVec3) => Vec3
 
 /** The cell of a lattice that repeats after `cells`, and of a seed. `corner` is whole, ≥ −cells. */
-const cellAt = (corner: Vec3, cells: Float, seed: Float): UVec3 => {
+const cellAt = (corner: Vec3, cells: Vec3, seed: Float): UVec3 => {
   // + ½: the division is not exact on every GPU.
   const turns = floor(corner.add(0.5).div(cells))
   const wrapped = corner.sub(turns.mul(cells))
@@ -54,12 +54,12 @@ const offsetOf = (index: Int, base: number): Vec3 =>
  * Gradient noise of period 1 in each coordinate, about [−1, 1].
  *
  * @param p - Any place, in [−1, 2] for full precision.
- * @param cells - Cells in a period, whole.
+ * @param cells - Cells in a period along each axis, whole.
  * @param seed - Whole, below 2¹⁶.
  * @see Perlin 2002, "Improving noise". Twin: cpu/noise.ts
  */
 export const perlin = /*#__PURE__*/ Fn(
-  ([p, cells, seed]: [Vec3, Float, Float]) => {
+  ([p, cells, seed]: [Vec3, Vec3, Float]) => {
     const base = p.mul(cells).floor().toConst('base')
     const part = p.mul(cells).sub(base).toConst('part')
     const fade = part
@@ -79,8 +79,8 @@ export const perlin = /*#__PURE__*/ Fn(
     })
     return sum.mul(1.5)
   },
-  layout('welkinPerlin', 'float', { p: 'vec3', cells: 'float', seed: 'float' })
-) as unknown as (p: Vec3, cells: Float, seed: Float) => Float
+  layout('welkinPerlin', 'float', { p: 'vec3', cells: 'vec3', seed: 'float' })
+) as unknown as (p: Vec3, cells: Vec3, seed: Float) => Float
 
 /**
  * 1 − F₁², with F₁ the distance to the nearest of the points scattered one in each cell: round heads
@@ -89,7 +89,7 @@ export const perlin = /*#__PURE__*/ Fn(
  * @see Worley 1996, "A cellular texture basis function". Twin: cpu/noise.ts
  */
 export const billow = /*#__PURE__*/ Fn(
-  ([p, cells, seed]: [Vec3, Float, Float]) => {
+  ([p, cells, seed]: [Vec3, Vec3, Float]) => {
     const base = p.mul(cells).floor().toConst('base')
     const part = p.mul(cells).sub(base).toConst('part')
     const nearest = float(1).toVar('nearest')
@@ -101,5 +101,5 @@ export const billow = /*#__PURE__*/ Fn(
     })
     return nearest.oneMinus()
   },
-  layout('welkinBillow', 'float', { p: 'vec3', cells: 'float', seed: 'float' })
-) as unknown as (p: Vec3, cells: Float, seed: Float) => Float
+  layout('welkinBillow', 'float', { p: 'vec3', cells: 'vec3', seed: 'float' })
+) as unknown as (p: Vec3, cells: Vec3, seed: Float) => Float

@@ -1,5 +1,12 @@
 import { float, vec3 } from 'three/tsl'
-import { CURL_CELLS, CURL_SCALE, noiseStatistics, seedOf, type NoiseChannel } from '../noiseRecipes'
+import {
+  cellsOf,
+  CURL_CELLS,
+  CURL_SCALE,
+  noiseStatistics,
+  seedOf,
+  type NoiseChannel
+} from '../noiseRecipes'
 import type { Float, Vec3 } from '../tsl-types'
 import { billow, perlin } from './noise'
 
@@ -20,7 +27,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   let place = p
   if (warp !== undefined) {
     const shift = (axis: number): Float =>
-      perlin(p, float(warp.cells), float(seedOf(index, parts.length + axis)))
+      perlin(p, vec3(...cellsOf(warp.cells)), float(seedOf(index, parts.length + axis)))
     place = p.add(vec3(shift(0), shift(1), shift(2)).mul(warp.amount)).toConst()
   }
   let variance = 0
@@ -28,12 +35,12 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   parts.forEach(({ kind, cells, weight }, i) => {
     const { mean, deviation } = noiseStatistics[kind]
     variance += (weight * deviation) ** 2
-    const noise = terms[kind](place, float(cells), float(seedOf(index, i)))
+    const noise = terms[kind](place, vec3(...cellsOf(cells)), float(seedOf(index, i)))
     sum = sum.add(noise.sub(mean).mul(weight))
   })
   const z = sum.div(Math.sqrt(variance)).toConst() as Float
   if (encoding === 'normal') return z.mul(0.18).add(0.5).clamp(0, 1)
-  return encoding === 'uniform' ? cumulative(z) : cumulative(z.abs().negate()).mul(2)
+  return cumulative(z)
 }
 
 /**
@@ -46,8 +53,7 @@ export function curlNoise(p: Vec3): Vec3 {
   const step = 0.02 / CURL_CELLS
   const axes = [vec3(step, 0, 0), vec3(0, step, 0), vec3(0, 0, step)]
   const slope = (component: number, axis: number): Float => {
-    const at = (place: Vec3): Float =>
-      perlin(place, float(CURL_CELLS), float(3001 + 17 * component))
+    const at = (place: Vec3): Float => perlin(place, vec3(CURL_CELLS), float(3001 + 17 * component))
     return at(p.add(axes[axis]))
       .sub(at(p.sub(axes[axis])))
       .div(0.04)

@@ -1,8 +1,8 @@
 import { atan, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { NOISE_SIZE } from '../CloudNoise'
+import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
-import { densityShape, REGION_PERIOD, WEATHER_PERIOD } from '../layerUniforms'
+import { densityShape, REGION_PERIOD, WEATHER_WARP } from '../layerUniforms'
 import type { Float, Vec3 } from '../tsl-types'
 import type { CloudSample } from './density'
 import { rotate, type LayerNodes } from './layer'
@@ -17,7 +17,7 @@ export interface CloudWeather {
   spread: Float
 }
 
-const { edgeWidth, excess, regionContrast } = densityShape
+const { edgeWidth, excess, meanEdge, regionContrast } = densityShape
 
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
@@ -34,15 +34,10 @@ export function footOffset(field: CloudField, { offset, altitude }: CloudSample)
 function regionalCover(
   field: CloudField,
   layer: LayerNodes,
-  turned: Vec3,
+  region: Vec3,
   { up }: CloudSample,
   footprint: Float
 ): Float {
-  const regional = (): Float => {
-    const place = rotate(latticeRotation.region, turned).div(REGION_PERIOD).add(layer.regionAnchor)
-    const level = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst() as Float
-    return field.textures.weather.sample(place).level(level).z.sub(0.5).mul(regionContrast).add(0.5)
-  }
   const mapped = (): Float => {
     const across = up.xy.length().max(1e-6).toConst() as Float
     const longitude = atan(up.y, up.x.abs().max(1e-9).mul(up.x.lessThan(0).select(-1, 1)))
@@ -54,7 +49,9 @@ function regionalCover(
     const level = log2(footprint.div(texel).max(1))
     return field.worldMap!.sample(uv).level(level).x
   }
-  const share = (field.worldMap === null ? regional() : mapped()).clamp(0, 1).toConst() as Float
+  const share = (field.worldMap === null ? region.z.mul(regionContrast).add(0.5) : mapped())
+    .clamp(0, 1)
+    .toConst() as Float
   // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
   const covered = share.mul(layer.coverage).toConst() as Float
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
@@ -78,16 +75,35 @@ export function weatherAt(
 ): CloudWeather {
   const turned = layer.turn(foot).toConst() as Vec3
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
-  const share = regionalCover(field, layer, turned, sample, footprint)
-  const place = rotate(latticeRotation.weather, turned).div(WEATHER_PERIOD).add(layer.weatherAnchor)
-  const level = log2(footprint.mul(NOISE_SIZE.weather / WEATHER_PERIOD).max(1)).toConst() as Float
+  const regionPlace = rotate(latticeRotation.region, turned)
+    .div(REGION_PERIOD)
+    .add(layer.regionAnchor)
+  const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1))
+  const region = field.textures.weather
+    .sample(regionPlace)
+    .level(regionLevel)
+    .xyz.sub(0.5)
+    .toConst() as Vec3
+  const share = regionalCover(field, layer, region, sample, footprint)
+  const place = rotate(latticeRotation.weather, turned)
+    .add(region.mul(WEATHER_WARP))
+    .mul(layer.perWeatherPeriod)
+    .add(layer.weatherAnchor)
+  const level = log2(
+    footprint.mul(layer.perWeatherPeriod).mul(NOISE_SIZE.weather).max(1)
+  ).toConst() as Float
   const noise = field.textures.weather.sample(place).level(level)
   const above = noise.sub(0.5).dot(layer.weights).sub(0.5).add(share).toConst() as Float
   const spread = smoothstep(0.5, 4.5, level).toConst() as Float
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
   return {
-    fill: layer.shapeAmount.mul(0.5).add(above.div(edgeWidth)).add(surely).clamp(0, 1.3).toConst(),
+    fill: layer.shapeAmount
+      .mul(meanEdge)
+      .add(above.div(edgeWidth))
+      .add(surely)
+      .clamp(0, 1.3)
+      .toConst(),
     cover: above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst(),
     spread
   }

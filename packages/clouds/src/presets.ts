@@ -1,0 +1,118 @@
+import type { CloudLayerParameters } from './CloudLayer'
+import { CloudLayers } from './CloudLayers'
+
+type Layers = readonly Partial<CloudLayerParameters>[]
+
+const cumulus: Partial<CloudLayerParameters> = {
+  baseAltitude: 1000,
+  topAltitude: 2000,
+  coverage: 0.3,
+  density: 0.05,
+  profileExponent: 0.4,
+  shapeAmount: 1,
+  detailAmount: 0.7,
+  weatherWeights: [1, 0, 0, 0],
+  wind: { east: 7, north: 2 }
+}
+
+const cirrus: Partial<CloudLayerParameters> = {
+  baseAltitude: 8500,
+  topAltitude: 9600,
+  coverage: 0.45,
+  density: 0.0012,
+  profileExponent: 1,
+  shapeAmount: 0.3,
+  detailAmount: 0.3,
+  weatherWeights: [0, 0, 0, 1],
+  wind: { east: 28, north: -8 },
+  shadow: false
+}
+
+/** Names of {@link cloudPreset}. */
+export type CloudPresetName =
+  | 'fairWeather'
+  | 'stratocumulus'
+  | 'overcast'
+  | 'cumulonimbus'
+  | 'cirrus'
+  | 'mixed'
+
+const presets: Readonly<Record<CloudPresetName, Layers>> = {
+  fairWeather: [cumulus],
+  stratocumulus: [
+    {
+      baseAltitude: 800,
+      topAltitude: 1400,
+      coverage: 0.8,
+      density: 0.04,
+      profileExponent: 0.6,
+      shapeAmount: 0.8,
+      detailAmount: 0.5,
+      weatherWeights: [0, 1, 0, 0],
+      wind: { east: 9, north: 4 }
+    }
+  ],
+  overcast: [
+    {
+      baseAltitude: 600,
+      topAltitude: 1500,
+      coverage: 1,
+      density: 0.02,
+      profileExponent: 0.7,
+      shapeAmount: 0.7,
+      detailAmount: 0.4,
+      weatherWeights: [0, 1, 0, 0],
+      wind: { east: 10, north: 5 }
+    }
+  ],
+  cumulonimbus: [
+    {
+      baseAltitude: 700,
+      topAltitude: 11_000,
+      coverage: 0.18,
+      density: 0.06,
+      profileExponent: 0.45,
+      shapeAmount: 0.9,
+      detailAmount: 0.5,
+      weatherWeights: [0, 0, 1, 0],
+      wind: { east: 12, north: 3 }
+    },
+    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.3 }
+  ],
+  cirrus: [cirrus],
+  mixed: [
+    cumulus,
+    {
+      baseAltitude: 3600,
+      topAltitude: 4100,
+      coverage: 0.35,
+      density: 0.008,
+      profileExponent: 0.8,
+      shapeAmount: 1,
+      detailAmount: 0.6,
+      weatherWeights: [0.4, 0, 0, 1],
+      wind: { east: 16, north: -3 }
+    },
+    cirrus
+  ]
+}
+
+/**
+ * Layers for a well-known sky, to be changed as one likes.
+ *
+ * - `fairWeather`: scattered cumulus
+ * - `stratocumulus`: a deck with gaps
+ * - `overcast`: a closed grey sky
+ * - `cumulonimbus`: towers up to 11 km among small cumulus
+ * - `cirrus`: thin, fibrous, high
+ * - `mixed`: cumulus, altocumulus and cirrus above each other
+ *
+ * @throws If there is no preset of this name.
+ */
+export function cloudPreset(name: CloudPresetName): CloudLayers {
+  if (!Object.hasOwn(presets, name)) {
+    const names = Object.keys(presets).join(', ')
+    throw new Error(`cloudPreset: name must be one of ${names}, got ${name}`)
+  }
+  return new CloudLayers(presets[name])
+}
