@@ -22,7 +22,7 @@ export interface CloudStatistics {
   p95: number
 }
 
-export type CloudResult = Omit<CloudCase, 'input'> & { model: number; error: number }
+export type CloudResult = CloudCase & { model: number; error: number }
 
 export interface CloudFigures {
   slab: CloudStatistics
@@ -59,11 +59,11 @@ export async function validateClouds(file: string, backend: Backend): Promise<Cl
     await browser.close()
     await server.close()
   }
-  const results = cases.flatMap(({ input: _, ...rest }, i) => {
-    if (!(rest.reference >= NEGLIGIBLE)) return []
-    const error = (radiances[i] - rest.reference) / rest.reference
+  const results = cases.flatMap((item, i) => {
+    if (!(item.reference >= NEGLIGIBLE)) return []
+    const error = (radiances[i] - item.reference) / item.reference
     if (!Number.isFinite(error)) throw new Error(`clouds: the model gave ${radiances[i]}`)
-    return [{ ...rest, model: radiances[i], error }]
+    return [{ ...item, model: radiances[i], error }]
   })
   const of = (shape: string): CloudStatistics =>
     statistics(results.filter(result => result.shape === shape && isScored(result)))

@@ -8,16 +8,16 @@
  * weighted by the light), where slabs alone are off by factors of 2 to 10.
  */
 export const leakCoefficients = {
-  constant: 0.496,
-  part: 0.207,
-  depth: -0.384,
-  chord: -2.636,
-  part2: -0.159,
-  depth2: -0.026,
-  chord2: 0.945,
-  partDepth: -0.53,
-  partChord: 0.062,
-  depthChord: 0.806
+  constant: 0.4876,
+  part: 0.2232,
+  depth: -0.373,
+  chord: -2.6435,
+  part2: -0.1733,
+  depth2: -0.0288,
+  chord2: 0.9428,
+  partDepth: -0.5389,
+  partChord: 0.0721,
+  depthChord: 0.8093
 } as const
 
 /** Largest scaled optical diameter that the fit knows; beyond it the leak stays as it is there. */
