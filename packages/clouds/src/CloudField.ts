@@ -9,11 +9,13 @@ import { CloudNoise } from './CloudNoise'
 import type { NoiseName } from './noiseSizes'
 import { latticeRotation, layerTurn } from './lattice'
 import {
+  CURL_PERIOD,
   DETAIL_PERIOD,
   LAYER_STRIDE,
   REGION_PERIOD,
   layerPeriods,
-  standardWeights
+  standardWeights,
+  WEATHER_AGAIN
 } from './layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
 import { windTurn } from './wind'
@@ -24,8 +26,6 @@ const _point = new Vector3()
 const _matrix = new Matrix3()
 const _matrix4 = new Matrix4()
 const _turn = new Quaternion()
-
-const part = (x: number): number => x - Math.floor(x)
 
 /** Options of {@link CloudField}. */
 export interface CloudFieldOptions {
@@ -156,18 +156,31 @@ export class CloudField {
     slots[2].fromArray(standardWeights(parameters.weatherWeights))
     const turn = this.turns[index]
     const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
-    const anchor = (slot: number, place: Vector3, rotation: Matrix3, length: number): void => {
-      _point.copy(place).applyQuaternion(turn).applyMatrix3(rotation).divideScalar(length)
-      slots[slot].set(part(_point.x), part(_point.y), part(_point.z), slots[slot].w)
+    const anchor = (
+      slot: number,
+      place: Vector3,
+      rotation: Matrix3,
+      length: number,
+      periods = 1
+    ): void => {
+      _point
+        .copy(place)
+        .applyQuaternion(turn)
+        .applyMatrix3(rotation)
+        .divideScalar(length * periods)
+      const [x, y, z] = _point.toArray().map(v => periods * (v - Math.floor(v)))
+      slots[slot].set(x, y, z, slots[slot].w)
     }
     for (let row = 0; row < 3; row++) {
       slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
     }
     anchor(8, _position, latticeRotation.shape, periods.shape)
-    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD)
+    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD)
     // The weather is the same all the way up: it is looked up at the foot point.
     anchor(6, _foot, latticeRotation.weather, periods.weather)
     slots[6].w = 1 / periods.weather
+    const again = periods.weather * WEATHER_AGAIN.period
+    anchor(10, _foot, latticeRotation.weatherAgain, again)
     anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
   }
 

@@ -19,6 +19,7 @@ const matrix = (n: number): Matrix3 =>
  */
 export const latticeRotation = {
   weather: /*#__PURE__*/ matrix(0),
+  weatherAgain: /*#__PURE__*/ matrix(4),
   region: /*#__PURE__*/ matrix(1),
   shape: /*#__PURE__*/ matrix(2),
   detail: /*#__PURE__*/ matrix(3)

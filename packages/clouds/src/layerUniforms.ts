@@ -1,7 +1,7 @@
 import type { CloudLayerParameters } from './CloudLayer'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
-export const LAYER_STRIDE = 10
+export const LAYER_STRIDE = 11
 
 /** Period of the weather texture for a layer 1200 m thick [m]. */
 const WEATHER_PERIOD = 15_000
@@ -16,7 +16,16 @@ export const REGION_PERIOD = 410_000
  * How far the regions shift the look-up of the weather [m]: enough for its repetitions to fall out of
  * step, over distances that do not distort it.
  */
-export const WEATHER_WARP = 5000
+export const WEATHER_WARP = 8000
+
+/**
+ * The weather is looked up twice, in lattices without a common period: what one repeats, the other
+ * does not. Period of the second in those of the first, and its weight.
+ */
+export const WEATHER_AGAIN = { period: Math.sqrt(3), weight: 0.75 } as const
+
+/** How far the second look-up of the weather shifts those of shape and detail [m]. */
+export const SHAPE_WARP = 600
 
 /** Period of the detail texture [m]. */
 export const DETAIL_PERIOD = 330
@@ -43,11 +52,12 @@ export function layerPeriods({ baseAltitude, topAltitude }: CloudLayerParameters
 }
 
 /**
- * Factors of the weather's channels, each uniform in [−½, ½] about its mean, whose sum has the same
- * variance. All zero when all weights are.
+ * Factors of the weather's channels, each uniform in [−½, ½] about its mean: the sum over both look-ups
+ * has variance 1. All zero when all weights are.
  */
 export function standardWeights(weights: readonly number[]): [number, number, number, number] {
-  const norm = Math.hypot(...weights) || 1
+  const norm =
+    (Math.hypot(...weights) || 1) * Math.hypot(1, WEATHER_AGAIN.weight) * Math.sqrt(1 / 12)
   const [a, b, c, d] = weights.map(weight => weight / norm)
   return [a, b, c, d]
 }
@@ -57,7 +67,7 @@ export const densityShape = {
   /** Change of weather noise over which a layer fills from edge to middle. */
   edgeWidth: 0.5,
   /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
-  meanEdge: 0.27,
+  meanEdge: 0.44,
   /** Added to the fill at full coverage, taken at none. */
   excess: 0.6,
   /** How far the regions' coverage departs from the layer's. */

@@ -1,4 +1,4 @@
-import type { Quaternion} from 'three';
+import type { Quaternion } from 'three'
 import { Vector3 } from 'three'
 import type { CloudWind } from './CloudLayer'
 

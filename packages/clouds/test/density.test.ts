@@ -6,7 +6,7 @@ import { cloudPreset, type CloudPresetName } from '../src/index'
 import { cloudExtinction, weatherAt, type CloudState } from '../src/cpu/density'
 import { NoiseTextures } from '../src/cpu/noiseTextures'
 import { layerTurn } from '../src/lattice'
-import { layerPeriods, standardWeights } from '../src/layerUniforms'
+import { layerPeriods, standardWeights, WEATHER_AGAIN } from '../src/layerUniforms'
 import { windTurn } from '../src/wind'
 
 const noise = new NoiseTextures()
@@ -119,7 +119,10 @@ describe('windTurn', () => {
 
 describe('layer uniforms', () => {
   it('keep the variance of the weather, whatever the weights', () => {
-    expect(Math.hypot(...standardWeights([0.2, 0.9, 0, 0.4]))).toBeCloseTo(1)
+    const one = Math.hypot(...standardWeights([0.2, 0, 0, 0]))
+    expect(Math.hypot(...standardWeights([0.2, 0.9, 0, 0.4]))).toBeCloseTo(one)
+    const variance = (one ** 2 * (1 + WEATHER_AGAIN.weight ** 2)) / 12
+    expect(variance).toBeCloseTo(1)
     expect(standardWeights([0, 0, 0, 0])).toEqual([0, 0, 0, 0])
   })
 

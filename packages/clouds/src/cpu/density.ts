@@ -1,4 +1,4 @@
-import type { Matrix3, Quaternion, Vector3 } from 'three'
+import { Vector3, type Matrix3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../CloudLayer'
 import { latticeRotation } from '../lattice'
 import {
@@ -8,7 +8,9 @@ import {
   DETAIL_PERIOD,
   layerPeriods,
   REGION_PERIOD,
+  SHAPE_WARP,
   standardWeights,
+  WEATHER_AGAIN,
   WEATHER_WARP
 } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
@@ -35,6 +37,8 @@ export interface CloudWeather {
   readonly fill: number
   readonly cover: number
   readonly spread: number
+  readonly shapeWarp: Vector3
+  readonly detailWarp: Vector3
 }
 
 const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
@@ -52,9 +56,11 @@ function placeIn(
   position: Vector3,
   turn: Quaternion,
   rotation: Matrix3,
-  period: number
+  period: number,
+  warp = new Vector3()
 ): Vec3Array {
-  const p = position.clone().applyQuaternion(turn).applyMatrix3(rotation).divideScalar(period)
+  const p = position.clone().applyQuaternion(turn).add(warp)
+  p.applyMatrix3(rotation).divideScalar(period)
   return [p.x, p.y, p.z]
 }
 
@@ -92,12 +98,27 @@ export function weatherAt(
 
   const period = layerPeriods(layer).weather
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
-  const [x, y, z] = placeIn(foot, turn, latticeRotation.weather, period).map(
-    (coordinate, axis) => coordinate + (WEATHER_WARP * region[axis]) / period
-  )
   const weights = standardWeights(layer.weatherWeights)
-  const channels = noise.sample('weather', [x, y, z], level)
-  const u = 0.5 + channels.reduce((sum, value, i) => sum + (value - 0.5) * weights[i], 0)
+  const lookUp = (rotation: Matrix3, length: number, levelThere: number): number[] => {
+    const [x, y, z] = placeIn(foot, turn, rotation, length).map(
+      (coordinate, axis) => coordinate + (WEATHER_WARP * region[axis]) / length
+    )
+    return noise.sample('weather', [x, y, z], levelThere).map(value => value - 0.5)
+  }
+  const again = period * WEATHER_AGAIN.period
+  const first = lookUp(latticeRotation.weather, period, level)
+  const second = lookUp(
+    latticeRotation.weatherAgain,
+    again,
+    level - Math.log2(WEATHER_AGAIN.period)
+  )
+  const z = weights.reduce(
+    (sum, weight, i) => sum + weight * (first[i] + WEATHER_AGAIN.weight * second[i]),
+    0
+  )
+  const detailWarp = new Vector3(second[0], second[1], second[2]).multiplyScalar(SHAPE_WARP)
+  const shapeWarp = new Vector3(region[0], region[1], region[2]).multiplyScalar(WEATHER_WARP)
+  const u = 1 / (1 + Math.exp(-1.702 * z))
   const above = u - (1 - c)
   const spread = smoothstep(0.5, 4.5, level)
   const { edgeWidth, excess, meanEdge } = densityShape
@@ -105,7 +126,9 @@ export function weatherAt(
   return {
     fill: clamp(meanEdge * layer.shapeAmount + above / edgeWidth + surely, 0, 1.3),
     cover: clamp(0.5 + above / Math.max(spread, 0.02), 0, 1),
-    spread
+    spread,
+    shapeWarp: shapeWarp.add(detailWarp),
+    detailWarp
   }
 }
 
@@ -114,6 +137,7 @@ function carved(
   state: CloudState,
   noise: NoiseTextures,
   index: number,
+  weather: CloudWeather,
   position: Vector3,
   distance: number,
   height: number,
@@ -124,13 +148,13 @@ function carved(
   const turn = state.turns[index]
   const footprint = distance * state.pixelAngle
   const period = layerPeriods(layer).shape
-  const place = placeIn(position, turn, latticeRotation.shape, period)
+  const place = placeIn(position, turn, latticeRotation.shape, period, weather.shapeWarp)
   const [whole, finer] = noise.sample('shape', place, levelOf(footprint, period / NOISE_SIZE.shape))
   const heads = whole + 0.3 * (finer - 0.5)
   const left = filled - layer.shapeAmount * Math.max(1 - heads, densityShape.leastCarving)
   const most = layer.detailAmount * densityShape.erosion
   if (!detail) return left - most / 2
-  const fine = placeIn(position, turn, latticeRotation.detail, DETAIL_PERIOD)
+  const fine = placeIn(position, turn, latticeRotation.detail, DETAIL_PERIOD, weather.detailWarp)
   const level = levelOf(footprint, DETAIL_PERIOD / NOISE_SIZE.detail)
   const [x, y, z] = fine.map(v => v / CURL_PERIOD)
   const curl = noise.sample('detail', [x, y, z], level).slice(1)
@@ -161,9 +185,20 @@ export function cloudExtinction(
     const { baseAltitude, topAltitude, density, shapeAmount } = layer
     const height = (altitude - baseAltitude) / (topAltitude - baseAltitude)
     if (height <= 0 || height >= 1 || layer.coverage === 0) return
-    const { fill, cover, spread } = weatherAt(state, noise, index, position, distance)
+    const weather = weatherAt(state, noise, index, position, distance)
+    const { fill, cover, spread } = weather
     const profile = 1 - (2 * Math.max(height, 1e-4) ** layer.profileExponent - 1) ** 2
-    const left = carved(state, noise, index, position, distance, height, fill * profile, detail)
+    const left = carved(
+      state,
+      noise,
+      index,
+      weather,
+      position,
+      distance,
+      height,
+      fill * profile,
+      detail
+    )
     const sharpness = smoothSharpness + (carvedSharpness - smoothSharpness) * shapeAmount ** 2
     const depth = Math.max(density * (topAltitude - baseAltitude) * farFill, 1e-4)
     const far = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30)) / depth

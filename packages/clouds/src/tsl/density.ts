@@ -42,6 +42,7 @@ const levelOf = (footprint: Float, texel: Float | number): Float =>
 function carving(
   field: CloudField,
   layer: LayerNodes,
+  weather: CloudWeather,
   sample: CloudSample,
   height: Float,
   filled: Float,
@@ -50,7 +51,9 @@ function carving(
   const { shape, detail: frayed } = field.textures
   const turned = layer.turn(sample.offset).toConst()
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
-  const place = rotate(latticeRotation.shape, turned).mul(layer.perShapePeriod)
+  const place = rotate(latticeRotation.shape, turned.add(weather.shapeWarp)).mul(
+    layer.perShapePeriod
+  )
   const level = levelOf(footprint, float(1 / NOISE_SIZE.shape).div(layer.perShapePeriod))
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x.add(noise.y.sub(0.5).mul(0.3))
@@ -61,7 +64,7 @@ function carving(
   if (!detail) return left.sub(most.mul(0.5))
   // Deep inside, the most that detail takes away changes nothing.
   If(left.greaterThan(0).and(left.lessThan(most.add(sharpnessOf(layer).reciprocal()))), () => {
-    const fine = rotate(latticeRotation.detail, turned)
+    const fine = rotate(latticeRotation.detail, turned.add(weather.detailWarp))
       .div(DETAIL_PERIOD)
       .add(layer.detailAnchor)
       .toConst()
@@ -118,7 +121,7 @@ export function cloudExtinction(field: CloudField, sample: CloudSample, detail: 
     const filled = weather.fill.mul(profile).toConst() as Float
     const near = float(0).toVar()
     If(filled.greaterThan(layer.shapeAmount.mul(leastCarving)), () => {
-      const left = carving(field, layer, sample, height, filled, detail)
+      const left = carving(field, layer, weather, sample, height, filled, detail)
       near.assign(left.mul(sharpnessOf(layer)).clamp(0, 1))
     })
     const far = spreadDensity(layer, weather).mul(profile)

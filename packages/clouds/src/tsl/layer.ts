@@ -29,8 +29,12 @@ export interface LayerNodes {
   perWeatherPeriod: Float
   /** `standardWeights`. */
   weights: Vec4
-  /** Where the eye and its foot point lie in the periods of the noise, in [0, 1). */
+  /**
+   * Where the eye and its foot point lie in the periods of the noise, in [0, 1); for detail in
+   * [0, `CURL_PERIOD`), since the turbulence has that period.
+   */
   weatherAnchor: Vec3
+  weatherAgainAnchor: Vec3
   regionAnchor: Vec3
   shapeAnchor: Vec3
   detailAnchor: Vec3
@@ -58,6 +62,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     weights: read(2),
     perWeatherPeriod: weather.w,
     weatherAnchor: weather.xyz,
+    weatherAgainAnchor: read(10).xyz,
     regionAnchor: read(7).xyz,
     shapeAnchor: read(8).xyz,
     detailAnchor: read(9).xyz,

@@ -2,8 +2,14 @@ import { atan, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
-import { densityShape, REGION_PERIOD, WEATHER_WARP } from '../layerUniforms'
-import type { Float, Vec3 } from '../tsl-types'
+import {
+  densityShape,
+  REGION_PERIOD,
+  SHAPE_WARP,
+  WEATHER_AGAIN,
+  WEATHER_WARP
+} from '../layerUniforms'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { CloudSample } from './density'
 import { rotate, type LayerNodes } from './layer'
 
@@ -15,6 +21,12 @@ export interface CloudWeather {
   cover: Float
   /** 0 where samples resolve single clouds, 1 where they see only `cover`. */
   spread: Float
+  /**
+   * Shifts of the look-ups of shape and detail, in the layer's frame [m]: they too would repeat. Detail
+   * is too fine for the steps of a filter that spreads kilometres.
+   */
+  shapeWarp: Vec3
+  detailWarp: Vec3
 }
 
 const { edgeWidth, excess, meanEdge, regionContrast } = densityShape
@@ -85,15 +97,28 @@ export function weatherAt(
     .xyz.sub(0.5)
     .toConst() as Vec3
   const share = regionalCover(field, layer, region, sample, footprint)
-  const place = rotate(latticeRotation.weather, turned)
-    .add(region.mul(WEATHER_WARP))
-    .mul(layer.perWeatherPeriod)
-    .add(layer.weatherAnchor)
-  const level = log2(
-    footprint.mul(layer.perWeatherPeriod).mul(NOISE_SIZE.weather).max(1)
-  ).toConst() as Float
-  const noise = field.textures.weather.sample(place).level(level)
-  const above = noise.sub(0.5).dot(layer.weights).sub(0.5).add(share).toConst() as Float
+  const warp = region.mul(WEATHER_WARP).toConst() as Vec3
+  const scale = layer.perWeatherPeriod
+  const level = log2(footprint.mul(scale).mul(NOISE_SIZE.weather).max(1)).toConst() as Float
+  const first = rotate(latticeRotation.weather, turned).add(warp).mul(scale)
+  const second = rotate(latticeRotation.weatherAgain, turned)
+    .add(warp)
+    .mul(scale.div(WEATHER_AGAIN.period))
+  const noise = field.textures.weather
+    .sample(first.add(layer.weatherAnchor))
+    .level(level)
+    .sub(0.5)
+    .toConst() as Vec4
+  const again = field.textures.weather
+    .sample(second.add(layer.weatherAgainAnchor))
+    .level(level.sub(Math.log2(WEATHER_AGAIN.period)).max(0))
+    .sub(0.5)
+    .toConst() as Vec4
+  const detailWarp = again.xyz.mul(SHAPE_WARP).toConst() as Vec3
+  const z = noise.add(again.mul(WEATHER_AGAIN.weight)).dot(layer.weights)
+  // Φ(z): as often as not near 0 and 1.
+  const u = z.mul(-1.702).exp().add(1).reciprocal()
+  const above = u.sub(1).add(share).toConst() as Float
   const spread = smoothstep(0.5, 4.5, level).toConst() as Float
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
@@ -105,6 +130,8 @@ export function weatherAt(
       .clamp(0, 1.3)
       .toConst(),
     cover: above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst(),
-    spread
+    spread,
+    shapeWarp: warp.add(detailWarp).toConst() as Vec3,
+    detailWarp
   }
 }

@@ -1,0 +1,408 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { CloudField, CloudLayers, cloudPreset } from '@welkin/clouds'
+import {
+  DataTexture,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  PerspectiveCamera,
+  RepeatWrapping,
+  Vector3
+} from 'three'
+import { float, texture3D, vec4 } from 'three/tsl'
+import type { Node, NodeFrame, WebGPURenderer } from 'three/webgpu'
+import {
+  cloudExtinction as extinctionTwin,
+  type CloudState
+} from '../../packages/clouds/src/cpu/density'
+import { NoiseTextures } from '../../packages/clouds/src/cpu/noiseTextures'
+import { NOISE_SIZE, type NoiseName } from '../../packages/clouds/src/noiseSizes'
+import { cloudBound, cloudColumn, cloudExtinction } from '../../packages/clouds/src/tsl/density'
+import { random } from './harness/atmosphere'
+import { CloudColumns, powerSpectrum } from './harness/cloud-columns'
+import type { GpuContext } from './harness/context'
+import { evaluateOnGpu } from './harness/evaluate'
+import { expectClose, expectFinite, expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+
+const twin = new NoiseTextures()
+const mean = (values: ArrayLike<number>): number =>
+  Array.from(values).reduce((a, b) => a + b, 0) / values.length
+const names = Object.keys(NOISE_SIZE) as NoiseName[]
+
+type Place = { longitude: number; latitude: number; height?: number }
+
+interface Scene {
+  renderer: WebGPURenderer
+  field: CloudField
+  /** The camera from the planet's centre, in the mapped space. */
+  eye: Vector3
+  update: (seconds?: number) => void
+  extinction: (offset: Node<'vec3'>, distance: Node<'float'>, detail: boolean) => Node<'float'>
+  state: () => CloudState
+  dispose: () => void
+}
+
+/** Baked clouds, seen from a place. */
+async function cloudScene(t: GpuContext, layers: CloudLayers, place: Place): Promise<Scene> {
+  const renderer = await t.createRenderer()
+  const atmosphere = new Atmosphere().place(place)
+  const camera = new PerspectiveCamera()
+  camera.updateMatrixWorld()
+  const field = new CloudField(atmosphere, layers)
+  field.bake(renderer)
+  const eye = new Vector3()
+  const update = (seconds = 0): void => {
+    const view = atmosphere.update(renderer, camera)
+    field.view.update({ renderer, camera } as unknown as NodeFrame)
+    field.update(view, seconds)
+    eye.copy(view.up).multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
+  }
+  update()
+  return {
+    renderer,
+    field,
+    eye,
+    update,
+    extinction(offset, distance, detail) {
+      const { altitude, up } = field.view.place(offset)
+      return cloudExtinction(field, { offset, altitude, up, distance }, detail)
+    },
+    state: () => ({
+      layers: [...layers].map(layer => layer.parameters),
+      turns: field.turns,
+      bottomRadius: atmosphere.parameters.bottomRadius,
+      pixelAngle: field.pixelAngle.value
+    }),
+    dispose() {
+      field.dispose()
+      atmosphere.dispose()
+    }
+  }
+}
+
+/** A cover that is smooth on the sphere, as an equirectangular picture. */
+function worldMap(): DataTexture {
+  const [width, height] = [512, 256]
+  const bytes = new Uint8Array(4 * width * height)
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const longitude = ((x + 0.5) / width - 0.5) * 2 * Math.PI
+      const latitude = ((y + 0.5) / height - 0.5) * Math.PI
+      const across = Math.cos(latitude)
+      const wave = Math.sin(3 * across * Math.cos(longitude) + 2 * across * Math.sin(longitude) + 1)
+      bytes[4 * (y * width + x)] = 255 * (0.5 + 0.4 * wave)
+    }
+  }
+  const map = new DataTexture(bytes, width, height)
+  map.minFilter = LinearMipmapLinearFilter
+  map.magFilter = LinearFilter
+  map.generateMipmaps = true
+  map.wrapS = RepeatWrapping
+  map.needsUpdate = true
+  return map
+}
+
+/** Offsets from an eye to points at random altitudes, up to a horizontal distance away. */
+function offsets(
+  eye: Vector3,
+  count: number,
+  reach: number,
+  seed: number,
+  altitude = (share: number): number => 12_000 * share ** 2
+): number[][] {
+  const draw = random(seed)
+  const up = eye.clone().normalize()
+  const side = new Vector3(up.y, up.z, up.x).cross(up).normalize()
+  const other = side.clone().cross(up)
+  const ground = eye.length()
+  return Array.from({ length: count }, () => {
+    const angle = 2 * Math.PI * draw()
+    const away = reach * Math.sqrt(draw())
+    const point = eye
+      .clone()
+      .addScaledVector(side, away * Math.cos(angle))
+      .addScaledVector(other, away * Math.sin(angle))
+      .setLength(ground + altitude(draw()))
+      .sub(eye)
+    return [...point.toArray(), point.length()].map(Math.fround)
+  })
+}
+
+gpuTest('bakes the noise that float64 computes, levels of detail and all', async t => {
+  const renderer = await t.createRenderer()
+  const field = new CloudField(new Atmosphere(), new CloudLayers())
+  const start = performance.now()
+  field.bake(renderer)
+  t.note(`${(performance.now() - start).toFixed(0)} ms to submit, ${field.noise.bytes} bytes`)
+  const draw = random(1)
+  for (const name of names) {
+    const source = texture3D(field.noise[name].target.texture)
+    for (const level of [0, 1, 2.5]) {
+      // Beyond the period, too: it repeats.
+      const inputs = Array.from({ length: level === 0 ? 60 : 6 }, () =>
+        [4, 4, 4].map(range => Math.fround(range * draw() - 1))
+      )
+      const results = await evaluateOnGpu(renderer, inputs, input =>
+        vec4(
+          (source.sample(input.xyz) as unknown as { level: (n: Node) => Node<'vec4'> }).level(
+            float(level)
+          )
+        )
+      )
+      inputs.forEach(([x, y, z], i) => {
+        const expected = twin.sample(name, [x, y, z], level)
+        const got = results.subarray(4 * i, 4 * i + expected.length)
+        expectClose(got, expected, { absolute: 0.012 }, `${name} level ${level}`)
+      })
+    }
+  }
+  field.dispose()
+})
+
+const places: [string, Place][] = [
+  ['in Europe', { longitude: 20, latitude: 45 }],
+  ['at the date line', { longitude: 180, latitude: -17 }],
+  ['at the pole', { longitude: 0, latitude: 90 }]
+]
+
+for (const [where, place] of places) {
+  gpuTest(`puts clouds where float64 does ${where}`, async t => {
+    const layers = cloudPreset('mixed')
+    for (const layer of layers) layer.set({ coverage: 0.7 })
+    const scene = await cloudScene(t, layers, place)
+    scene.update(7200)
+    let cloudy = 0
+    for (const detail of [false, true]) {
+      // In one of the layers each.
+      const inputs = offsets(scene.eye, 60, 20_000, 7, share => {
+        const { baseAltitude, topAltitude } = layers.at(Math.floor(3 * share)).parameters
+        return baseAltitude + (topAltitude - baseAltitude) * ((3 * share) % 1)
+      })
+      const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+        scene.extinction(input.xyz, input.w, detail)
+      )
+      const state = scene.state()
+      const differences = inputs.map(([x, y, z, distance], i) => {
+        const position = scene.eye.clone().add(new Vector3(x, y, z))
+        const expected = extinctionTwin(state, twin, position, distance, detail)
+        if (expected > 0) cloudy++
+        return Math.abs(results[4 * i] - expected) / 0.05
+      })
+      const worst = differences.toSorted((a, b) => b - a)
+      t.note(
+        `detail ${detail}: worst ${worst
+          .slice(0, 3)
+          .map(x => x.toFixed(4))
+          .join(' ')}`
+      )
+      // A byte of the noise is 0.03 of the density at a sharp edge.
+      expectTrue(worst[0] < 0.06, `worst difference ${worst[0]} of full density`)
+    }
+    expectTrue(cloudy > 30, `${cloudy} cloudy points`)
+    scene.dispose()
+  })
+}
+
+gpuTest('bounds the density from above, in every preset', async t => {
+  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
+    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+    const inputs = offsets(scene.eye, 4096, 300_000, 3)
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const { altitude, up } = scene.field.view.place(offset)
+      const sample = { offset, altitude, up, distance: input.w }
+      const column = cloudColumn(scene.field, sample)
+      return vec4(
+        cloudBound(scene.field, sample),
+        cloudExtinction(scene.field, sample, true),
+        column,
+        1
+      )
+    })
+    let [clear, empty] = [0, 0]
+    inputs.forEach((_, i) => {
+      const [bound, extinction, column] = results.subarray(4 * i, 4 * i + 3)
+      expectTrue(bound > 0 || extinction === 0, `${name}: ${extinction} where the bound is 0`)
+      expectTrue(column >= 0 && column < 1000, `${name}: column of ${column}`)
+      if (bound === 0) clear++
+      if (extinction === 0) empty++
+    })
+    t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
+    scene.dispose()
+  }
+})
+
+gpuTest('follows a layer without compiling', async t => {
+  const layers = new CloudLayers()
+  const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+  const columns = new CloudColumns(scene.field, 64, 20_000, 8)
+  const before = mean((await columns.draw(scene.renderer)).depth)
+  layers.at(0).set({ coverage: 0.9 })
+  scene.update()
+  const after = mean((await columns.draw(scene.renderer)).depth)
+  expectTrue(after > 2 * before, `mean depth ${before} then ${after}`)
+  expectTrue(columns.builds === 1, `${columns.builds} builds of the shader`)
+  columns.dispose()
+  scene.dispose()
+})
+
+gpuTest('covers the share of the sky that a layer asks for', async t => {
+  const layers = cloudPreset('fairWeather')
+  const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+  // As wide as several regions of more and less cloud.
+  const columns = new CloudColumns(scene.field, 256, 1_600_000, 12)
+  const [weather, other] = [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0]
+  ] as [number, number, number, number][]
+  const misses: string[] = []
+  for (const weatherWeights of [weather, other]) {
+    for (const coverage of [0, 0.2, 0.5, 0.8, 1]) {
+      layers.at(0).set({ coverage, weatherWeights })
+      scene.update()
+      const { depth } = await columns.draw(scene.renderer)
+      const covered = depth.filter(x => x > 0.7).length / depth.length
+      t.note(`${coverage} covers ${covered.toFixed(3)}`)
+      if (Math.abs(covered - coverage) > 0.08) misses.push(`${coverage} covers ${covered}`)
+    }
+  }
+  expectTrue(misses.length === 0, misses.join(', '))
+  columns.dispose()
+  scene.dispose()
+})
+
+gpuTest('shows no lattice in an overcast sky from below', async t => {
+  const size = 128
+  for (const place of places.map(([, p]) => p)) {
+    const layers = new CloudLayers([
+      { coverage: 0.95, density: 0.004, weatherWeights: [0, 1, 0, 0] }
+    ])
+    const scene = await cloudScene(t, layers, place)
+    // Wider than the noise's periods by far.
+    const columns = new CloudColumns(scene.field, size, 90_000, 16)
+    const { light } = await columns.draw(scene.renderer)
+    const power = powerSpectrum(light, size)
+    const wave = (i: number): [number, number] => {
+      const [x, y] = [i % size, Math.floor(i / size)]
+      return [x > size / 2 ? x - size : x, y > size / 2 ? y - size : y]
+    }
+    const rings: number[][] = Array.from({ length: size }, () => [])
+    power.forEach((p, i) => rings[Math.round(Math.hypot(...wave(i)))].push(p))
+    let worst = 0
+    let worstWave = ''
+    power.forEach((p, i) => {
+      const radius = Math.round(Math.hypot(...wave(i)))
+      if (radius < 4 || radius > size / 2) return
+      const ratio = p / mean(rings[radius])
+      if (ratio > worst) [worst, worstWave] = [ratio, wave(i).join(', ')]
+    })
+    t.note(`highest peak ${worst.toFixed(1)} times the mean of its ring, at ${worstWave}`)
+    // Noise without a lattice: the highest of 6,000 powers, exponentially distributed, is about 9.
+    expectTrue(worst < 18, `a peak of ${worst} times the noise floor at ${worstWave}`)
+    columns.dispose()
+    scene.dispose()
+  }
+})
+
+gpuTest('has no seam in a world map', async t => {
+  const renderer = await t.createRenderer()
+  const map = worldMap()
+  const atmosphere = new Atmosphere()
+  atmosphere.frame = 'ecef'
+  const layers = new CloudLayers([{ coverage: 0.5, baseAltitude: 0, topAltitude: 1500 }])
+  const field = new CloudField(atmosphere, layers, undefined, { worldMap: map })
+  field.bake(renderer)
+  const camera = new PerspectiveCamera()
+  const seams: [string, (s: number) => [number, number]][] = [
+    ['180° meridian', s => [180 + 0.2 * s, 30]],
+    ['north pole', s => [s < 0 ? 10 : 190, 90 - 0.1 * Math.abs(s)]],
+    ['south pole', s => [s < 0 ? -70 : 110, -90 + 0.1 * Math.abs(s)]]
+  ]
+  for (const [name, at] of seams) {
+    const points = Array.from({ length: 101 }, (_, i) => {
+      const [longitude, latitude] = at((i - 50) / 50)
+      return atmosphere.ellipsoid.geodeticToECEF({
+        longitude: ((longitude + 180) % 360) - 180,
+        latitude,
+        height: 700
+      })
+    })
+    // From orbit, where only the map is seen.
+    camera.position.copy(points[50]).multiplyScalar(3)
+    camera.updateMatrixWorld()
+    const view = atmosphere.update(renderer, camera)
+    field.view.update({ renderer, camera } as unknown as NodeFrame)
+    field.update(view, 0)
+    field.pixelAngle.value = 0.002
+    const eye = view.up.clone().multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
+    const inputs = points.map(point => {
+      const offset = atmosphere.space.position(point, new Vector3()).sub(eye)
+      return [...offset.toArray(), offset.length()].map(Math.fround)
+    })
+    const results = await evaluateOnGpu(renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const { altitude, up } = field.view.place(offset)
+      return cloudColumn(field, { offset, altitude, up, distance: input.w })
+    })
+    const depths = inputs.map((_, i) => results[4 * i])
+    expectFinite(depths)
+    const steps = depths.slice(1).map((depth, i) => Math.abs(depth - depths[i]) / mean(depths))
+    t.note(
+      `${name}: depth ${mean(depths).toFixed(2)}, largest step ${Math.max(...steps).toFixed(4)}`
+    )
+    expectTrue(mean(depths) > 0.05, `${name}: mean depth ${mean(depths)}`)
+    expectTrue(Math.max(...steps) < 0.05, `${name}: a step of ${Math.max(...steps)}`)
+  }
+  field.dispose()
+  atmosphere.dispose()
+  map.dispose()
+})
+
+gpuTest('gives numbers for any parameters', async t => {
+  const draw = random(11)
+  const pick = (...values: number[]): number => values[Math.floor(draw() * values.length)]
+  const layers = new CloudLayers([{}, {}, {}, {}])
+  const scene = await cloudScene(t, layers, { longitude: -75, latitude: -60, height: 3000 })
+  const inputs = [
+    ...offsets(scene.eye, 400, 50_000, 5),
+    ...offsets(scene.eye, 100, 3_000_000, 6),
+    [0, 0, 0, 0],
+    [0, 0, 0, 1e9],
+    [scene.eye.x, scene.eye.y, scene.eye.z, 1e7],
+    [-scene.eye.x, -scene.eye.y, -scene.eye.z, 1e7]
+  ]
+  for (let round = 0; round < 12; round++) {
+    for (const layer of layers) {
+      const baseAltitude = pick(0, 500, 29_999)
+      layer.set({
+        baseAltitude,
+        topAltitude: pick(baseAltitude + 1e-3, baseAltitude + 1, 30_000),
+        coverage: pick(0, 1e-6, 0.5, 1),
+        density: pick(0, 1e-9, 0.05, 1),
+        profileExponent: pick(1e-9, 0.01, 1, 8),
+        shapeAmount: pick(0, 0.5, 1),
+        detailAmount: pick(0, 1),
+        weatherWeights: [pick(0, 1), pick(0, 1e-9), pick(0, 1), pick(0, 1)],
+        wind: { east: pick(0, 1e6), north: pick(0, -1e9) }
+      })
+    }
+    scene.update(pick(0, 1, 1e12))
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const { altitude, up } = scene.field.view.place(offset)
+      const sample = { offset, altitude, up, distance: input.w }
+      return vec4(
+        cloudExtinction(scene.field, sample, true),
+        cloudBound(scene.field, sample),
+        cloudColumn(scene.field, sample),
+        1
+      )
+    })
+    expectFinite(results, `round ${round}`)
+    expectTrue(
+      results.every(x => x >= 0),
+      `round ${round}: a negative extinction`
+    )
+  }
+  scene.dispose()
+})

@@ -1,0 +1,108 @@
+import { FloatType, RenderTarget } from 'three'
+import { exp, float, Fn, Loop, screenCoordinate, vec3 } from 'three/tsl'
+import { NodeMaterial, QuadMesh, type Node, type WebGPURenderer } from 'three/webgpu'
+import type { CloudField } from '@welkin/clouds'
+import { cloudExtinction } from '../../../packages/clouds/src/tsl/density'
+import { readPicture } from './picture'
+
+/** A square picture of the sky straight up, as light that comes through: no perspective. */
+export class CloudColumns {
+  readonly #material = new NodeMaterial()
+  readonly #quad: QuadMesh
+  /** How often the shader was built. */
+  builds = 0
+
+  /**
+   * @param size - Pixels along an edge.
+   * @param width - Of the square that is seen [m].
+   * @param steps - Samples in a column.
+   */
+  constructor(
+    readonly field: CloudField,
+    readonly size: number,
+    width: number,
+    steps: number
+  ) {
+    const layers = [...field.layers].map(layer => layer.parameters)
+    const base = Math.min(...layers.map(layer => layer.baseAltitude))
+    const top = Math.max(...layers.map(layer => layer.topAltitude))
+    const setup = this.#material.setup.bind(this.#material)
+    this.#material.setup = builder => {
+      this.builds++
+      setup(builder)
+    }
+    this.#material.fragmentNode = Fn(() => {
+      const { up } = field.view
+      const side = up.yzx.cross(up).normalize().toConst()
+      const place = screenCoordinate.xy.div(size).sub(0.5).mul(width).toConst()
+      const level = side.mul(place.x).add(side.cross(up).mul(place.y)).toConst()
+      const depth = float(0).toVar()
+      Loop(steps, ({ i }) => {
+        const height = float(i as never)
+          .add(0.5)
+          .div(steps)
+          .mul(top - base)
+          .add(base)
+          .toConst()
+        // Down to the sphere, without cancellation.
+        const radius = field.radius.add(height).toConst()
+        const square = level.dot(level).toConst()
+        const drop = square.div(radius.mul(radius).sub(square).sqrt().add(radius))
+        const offset = level.add(up.mul(height.sub(drop))).toConst() as unknown as Node<'vec3'>
+        const { altitude, up: zenith } = field.view.place(offset)
+        const sample = { offset, altitude, up: zenith, distance: float(2000) as Node<'float'> }
+        depth.addAssign(cloudExtinction(field, sample, false).mul((top - base) / steps))
+      })
+      return vec3(exp(depth.negate()), depth, 0)
+    })() as never
+    this.#quad = new QuadMesh(this.#material)
+  }
+
+  /** Pixels of `[transmittance, optical depth]`, channel by channel. */
+  async draw(renderer: WebGPURenderer): Promise<{ light: number[]; depth: number[] }> {
+    const target = new RenderTarget(this.size, this.size, { type: FloatType, depthBuffer: false })
+    renderer.setRenderTarget(target)
+    this.#quad.render(renderer)
+    renderer.setRenderTarget(null)
+    const { data } = await readPicture(renderer, target)
+    target.dispose()
+    const channel = (c: number): number[] =>
+      Array.from({ length: this.size ** 2 }, (_, i) => data[4 * i + c])
+    return { light: channel(0), depth: channel(1) }
+  }
+
+  dispose(): void {
+    this.#material.dispose()
+  }
+}
+
+/** Power at each pair of frequencies of a square picture with a power of two of pixels an edge. */
+export function powerSpectrum(picture: readonly number[], size: number): number[] {
+  const mean = picture.reduce((a, b) => a + b) / picture.length
+  const window = (i: number): number => Math.sin((Math.PI * (i + 0.5)) / size) ** 2
+  const real = picture.map((v, i) => (v - mean) * window(i % size) * window(Math.floor(i / size)))
+  const imaginary = real.map(() => 0)
+  const line = (start: number, stride: number): void => {
+    const re: number[] = []
+    const im: number[] = []
+    for (let k = 0; k < size; k++) {
+      let [a, b] = [0, 0]
+      for (let n = 0; n < size; n++) {
+        const angle = (-2 * Math.PI * ((k * n) % size)) / size
+        const [c, s] = [Math.cos(angle), Math.sin(angle)]
+        const [x, y] = [real[start + n * stride], imaginary[start + n * stride]]
+        a += x * c - y * s
+        b += x * s + y * c
+      }
+      re.push(a)
+      im.push(b)
+    }
+    for (let k = 0; k < size; k++) {
+      real[start + k * stride] = re[k]
+      imaginary[start + k * stride] = im[k]
+    }
+  }
+  for (let row = 0; row < size; row++) line(row * size, 1)
+  for (let column = 0; column < size; column++) line(column, size)
+  return real.map((x, i) => x * x + imaginary[i] ** 2)
+}
