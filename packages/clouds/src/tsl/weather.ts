@@ -131,7 +131,7 @@ export function weatherAt(
       .toConst(),
     cover: above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst(),
     spread,
-    shapeWarp: warp.add(detailWarp).toConst() as Vec3,
+    shapeWarp: warp.add(detailWarp).toConst(),
     detailWarp
   }
 }
