@@ -18,8 +18,16 @@ export interface AerialPerspective {
  * @param displacementView - From the camera to the point, in view space [world units].
  */
 export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
+  return airTo(view, view.toMapped(displacementView).toConst())
+}
+
+/**
+ * Air between the camera and a point, from the sky volume.
+ *
+ * @param offset - From the camera to the point, in the mapped space [m].
+ */
+export function airTo(view: ViewNodes, offset: Vec3): AerialPerspective {
   const { air, volume, eye } = view
-  const offset = view.toMapped(displacementView).toConst()
   const distance = offset.length().max(1e-3).toConst() as Float
   const direction = offset.div(distance).toConst()
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float

@@ -46,3 +46,21 @@ export function skyIrradiance(
     .max(0)
     .div(RADIANCE_SCALE)
 }
+
+/**
+ * Diffuse irradiance on horizontal planes, for unit irradiance of the sun.
+ *
+ * @param table - Diffuse-light table.
+ * @param altitude - In [0, thickness] [m].
+ * @param cosSun - μ_s.
+ * @returns On a plane that faces up, and on one that faces down.
+ */
+export function horizontalIrradiance(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosSun: Float
+): { up: Vec4; down: Vec4 } {
+  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  return { up: read(6).div(RADIANCE_SCALE), down: read(7).div(RADIANCE_SCALE) }
+}
