@@ -43,7 +43,7 @@ export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQ
   if (typeof quality === 'string') {
     if (Object.hasOwn(cloudQualities, quality)) return cloudQualities[quality]
     const names = Object.keys(cloudQualities).join(', ')
-    throw new Error(`CloudsNode: quality must be one of ${names}, got ${String(quality)}`)
+    throw new Error(`CloudsNode: quality must be one of ${names}, got ${quality}`)
   }
   for (const [name, [lowest, highest]] of Object.entries(ranges)) {
     const value: unknown = quality?.[name as keyof CloudQuality]
