@@ -20,6 +20,12 @@ const PROBE_WIDTH = 0.25
 /** A sun lower than this does not make its rays any longer. */
 const LOWEST_COSINE = 0.12
 
+/** Least number of steps through a layer that is thinner than a few samples are wide. */
+const LEAST_STEPS = 4
+
+/** Part of a ray's light over which the light at one sample may stand for its successors. */
+const SHARED_LIGHT = 0.02
+
 /** Transmittance at which a march ends. */
 const OPAQUE = 0.005
 
@@ -168,6 +174,9 @@ export function marchClouds(
   const last = end.min(groundDistance(field, cosView)).toConst() as Float
   const radiance = vec4(0).toVar()
   const transmittance = float(1).toVar()
+  const source = vec4(0).toVar()
+  /** Part of the ray's light since the source was last computed; at first, it never was. */
+  const sinceLit = float(1).toVar()
   const weightedDistance = float(0).toVar()
   const steps = float(0).toVar()
   const position = float(0).toVar()
@@ -190,7 +199,11 @@ export function marchClouds(
     If(extinction.greaterThan(1e-7), () => {
       const through = extinction.mul(light.depthScale).mul(length).negate().exp().toConst()
       const seen = transmittance.mul(through.oneMinus()).toConst() as Float
-      const source = sourceAt(field, light, quality, sample, direction, transmittance)
+      sinceLit.addAssign(seen)
+      If(sinceLit.greaterThan(SHARED_LIGHT), () => {
+        source.assign(sourceAt(field, light, quality, sample, direction, transmittance))
+        sinceLit.assign(0)
+      })
       radiance.addAssign(source.mul(seen))
       weightedDistance.addAssign(sample.distance.mul(seen))
       transmittance.mulAssign(through)
@@ -211,7 +224,14 @@ export function marchClouds(
       shell.assign(next)
       const { altitude } = view.place(direction.mul(position.add(next).mul(0.5)))
       const { base, top } = surroundings(field, altitude)
-      longest.assign(next.sub(position).div(quality.layerSteps).max(1))
+      const span = next.sub(position).toConst()
+      const footprint = position.mul(field.pixelAngle)
+      longest.assign(
+        span
+          .div(quality.layerSteps)
+          .max(footprint.min(span.div(LEAST_STEPS)))
+          .max(1)
+      )
       pending.assign(int(0))
       If(base.greaterThan(top), () => {
         position.assign(next)
