@@ -1,0 +1,103 @@
+import { aerialPerspective, Atmosphere } from '@welkin/atmosphere'
+import { cloudPreset, clouds } from '@welkin/clouds'
+import type { CloudPresetName, CloudQualityName, CloudsNode } from '@welkin/clouds'
+import { MathUtils, PerspectiveCamera, Scene } from 'three'
+import { pass } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { createRenderer, dateOf, exposureOf } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface CloudsArgs extends RendererArgs {
+  /** [degrees] */
+  longitude: number
+  /** [degrees] */
+  latitude: number
+  /** Of the camera above the ellipsoid [m]. */
+  altitude: number
+  /** Direction of view, from north, clockwise [degrees]. */
+  heading: number
+  /** Direction of view above the horizontal [degrees]. */
+  pitch: number
+  /** A moment of the day [ms since 1970]. */
+  day: number
+  /** Hour of that day, UTC [h]. */
+  hour: number
+  /** [stops], 0 for daylight. */
+  exposure: number
+  preset: CloudPresetName
+  /** Of the lowest layer, in [0, 1]; −1 for the preset's. */
+  coverage: number
+  quality: CloudQualityName
+}
+
+/** Time of a reproducible frame [s]. */
+const STILL = 0
+
+export async function createClouds(
+  canvas: HTMLCanvasElement,
+  args: CloudsArgs
+): Promise<SceneHandle<CloudsArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(60, 1, 1, 1e9)
+  const atmosphere = new Atmosphere()
+  const scenePass = pass(scene, camera, { samples: 0 })
+  const depth = scenePass.getTextureNode('depth')
+  const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
+  const current = { ...args }
+  const pipeline = new RenderPipeline(renderer)
+  let node: CloudsNode | undefined
+
+  /** A node's layers are its own: another preset takes another node. */
+  const choose = (): void => {
+    node?.dispose()
+    const { preset, quality } = current
+    node = clouds(air, depth, camera, atmosphere, cloudPreset(preset), { quality })
+    pipeline.outputNode = node
+    pipeline.needsUpdate = true
+  }
+  const apply = (): void => {
+    atmosphere.place(current)
+    atmosphere.date = dateOf(current.day, current.hour)
+    renderer.toneMappingExposure = exposureOf(current.exposure)
+    camera.position.set(0, current.altitude, 0)
+    const [pitch, heading] = [current.pitch, current.heading].map(MathUtils.degToRad)
+    camera.rotation.set(pitch, -heading, 0, 'YXZ')
+    camera.updateMatrixWorld()
+    if (node === undefined) return
+    node.quality = current.quality
+    node.time = current.frame ? STILL : null
+    const { coverage } = cloudPreset(current.preset).at(0).parameters
+    node.field.layers.at(0).set({ coverage: current.coverage < 0 ? coverage : current.coverage })
+  }
+  choose()
+  apply()
+
+  return {
+    renderer,
+    scene,
+    camera,
+    ready: Promise.resolve(),
+    progress: 1,
+    render: () => pipeline.render(),
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      camera.updateProjectionMatrix()
+    },
+    update(changes) {
+      const { preset } = current
+      Object.assign(current, changes)
+      if (current.preset !== preset) choose()
+      apply()
+    },
+    dispose() {
+      pipeline.dispose()
+      node?.dispose()
+      scenePass.dispose()
+      atmosphere.dispose()
+      void renderer.dispose()
+    }
+  }
+}
