@@ -1,0 +1,33 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { OrthographicCamera, PerspectiveCamera } from 'three'
+import { float, vec4 } from 'three/tsl'
+import { describe, expect, test } from 'vitest'
+import { cloudQualities, CloudLayers, clouds } from '../src'
+
+const atmosphere = new Atmosphere()
+const [color, depth, camera] = [vec4(0), float(0), new PerspectiveCamera()]
+const make = (options = {}) => clouds(color, depth, camera, atmosphere, new CloudLayers(), options)
+
+describe('CloudsNode', () => {
+  test('refuses what is missing or of the wrong kind', () => {
+    const layers = new CloudLayers()
+    expect(() => clouds(color, depth, camera, null as never, layers)).toThrow(/atmosphere/)
+    expect(() => clouds(color, null as never, camera, atmosphere, layers)).toThrow(/depthNode/)
+    expect(() => clouds(color, depth, camera, atmosphere, [] as never)).toThrow(/layers/)
+    expect(() => clouds(color, depth, new OrthographicCamera(), atmosphere, layers)).toThrow(
+      'CloudsNode: camera must be a PerspectiveCamera, got OrthographicCamera'
+    )
+  })
+
+  test('knows qualities by name or number, and keeps the last valid one', () => {
+    const node = make({ quality: 'low' })
+    expect(node.quality).toBe(cloudQualities.low)
+    expect(() => (node.quality = 'best' as never)).toThrow(/one of low, medium, high, ultra/)
+    const wrong = { ...cloudQualities.high, steps: NaN }
+    expect(() => (node.quality = wrong)).toThrow(/quality\.steps must be a number in \[1, 1024\]/)
+    expect(node.quality).toBe(cloudQualities.low)
+    node.quality = { ...cloudQualities.high, steps: 20 }
+    expect(node.quality).toEqual({ ...cloudQualities.high, steps: 20 })
+    node.dispose()
+  })
+})
