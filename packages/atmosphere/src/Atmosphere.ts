@@ -6,6 +6,8 @@ import type { GeodeticLike } from '@welkin/geo'
 import { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereView } from './AtmosphereView'
+import { LightSource } from './LightSource'
+import type { SkyLayer } from './SkyLayer'
 import { AtmosphereQuery } from './cpu/AtmosphereQuery'
 import { SphericalSpace } from './cpu/spherical'
 import type { Triple } from './cpu/color'
@@ -64,7 +66,13 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   readonly #sunWorld = new Vector3(1, Math.SQRT2, 1).normalize()
   /** What is kept on the GPU. */
   readonly tables = new AtmosphereTables()
-  readonly #views = new WeakMap<Camera, AtmosphereView>()
+  /** The sun as a source of light; its `irradiance` dims in an eclipse. */
+  readonly sun = new LightSource(
+    (atmosphere, target) => target.copy(atmosphere.sunDirection),
+    this.tables.volumes
+  )
+  readonly #layers: SkyLayer[] = []
+  readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()
   readonly #space = new SphericalSpace()
 
   /** @throws If an option is of the wrong kind. */
@@ -206,18 +214,37 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * call it yourself to choose when the work is done.
    *
    * @param camera - Its `matrixWorld` must be up to date.
+   * @param source - Whose light it is.
    */
-  update(renderer: Renderer, camera: Camera): AtmosphereView {
+  update(renderer: Renderer, camera: Camera, source: LightSource = this.sun): AtmosphereView {
     this.tables.update(renderer, this.parameters, this.luminanceScale, this.bakeStepsPerFrame)
-    let view = this.#views.get(camera)
-    if (view === undefined) this.#views.set(camera, (view = new AtmosphereView(this, camera)))
+    let views = this.#views.get(source)
+    if (views === undefined) this.#views.set(source, (views = new WeakMap()))
+    let view = views.get(camera)
+    if (view === undefined) views.set(camera, (view = new AtmosphereView(this, camera, source)))
     view.update(renderer)
     return view
   }
 
   /** A camera's view as {@link update} last left it. */
-  viewOf(camera: Camera): AtmosphereView | undefined {
-    return this.#views.get(camera)
+  viewOf(camera: Camera, source: LightSource = this.sun): AtmosphereView | undefined {
+    return this.#views.get(source)?.get(camera)
+  }
+
+  /** What is in the sky besides air and sun, from far to near. */
+  get layers(): readonly SkyLayer[] {
+    return this.#layers
+  }
+
+  /**
+   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near, and
+   * all of it before the first render.
+   *
+   * @returns This atmosphere.
+   */
+  add(...layers: SkyLayer[]): this {
+    this.#layers.push(...layers)
+    return this
   }
 
   /**
@@ -261,6 +288,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** Frees all GPU memory. The atmosphere can be used again, from nothing. */
   dispose(): void {
     this.tables.dispose()
+    for (const layer of this.#layers) layer.dispose?.()
     this.dispatchEvent({ type: 'dispose' })
   }
 }

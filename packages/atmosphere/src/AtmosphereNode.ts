@@ -27,12 +27,21 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     this.updateType = NodeUpdateType.RENDER
   }
 
+  // Layers are part of the shader.
+  override customCacheKey(): number {
+    return this.atmosphere.layers.length
+  }
+
   override updateBefore(frame: NodeFrame): undefined {
-    this.view.prepare(frame)
+    const view = this.view.prepare(frame)
+    if (view === undefined) return
+    for (const layer of this.atmosphere.layers) layer.prepare?.(frame.renderer!, view)
   }
 
   // Apart from updateBefore, where a nested render (a mirror's) may still set another camera's values.
   override update(frame: NodeFrame): undefined {
-    this.view.update(frame)
+    const view = this.view.update(frame)
+    if (view === undefined) return
+    for (const layer of this.atmosphere.layers) layer.update?.(view)
   }
 }

@@ -3,6 +3,7 @@ import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import { eyeScalars } from './cpu/eye'
+import type { LightSource } from './LightSource'
 import type { EyeScalars } from './tsl/eye'
 
 const _position = new Vector3()
@@ -13,35 +14,38 @@ export class AtmosphereView {
   height = 0
   /** Zenith, unit length. */
   readonly up = new Vector3()
-  /** Direction to the sun, unit length. */
+  /** Direction to the source of light, unit length. */
   readonly sunDirection = new Vector3()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = new Matrix3()
   eye: EyeScalars<number> | null = null
   /** Number of its volume in the atlas. */
   slot = 0
-  readonly #atmosphere: Atmosphere
-  readonly #camera: Camera
+  readonly atmosphere: Atmosphere
+  readonly camera: Camera
+  readonly source: LightSource
 
-  constructor(atmosphere: Atmosphere, camera: Camera) {
-    this.#atmosphere = atmosphere
-    this.#camera = camera
+  constructor(atmosphere: Atmosphere, camera: Camera, source: LightSource) {
+    this.atmosphere = atmosphere
+    this.camera = camera
+    this.source = source
   }
 
   /** Follows the camera, and sees that there is a sky volume for it. */
   update(renderer: Renderer): void {
-    const { space, parameters, sunDirection, tables } = this.#atmosphere
-    const { matrixWorld } = this.#camera
+    const { space, parameters, tables } = this.atmosphere
+    const { matrixWorld } = this.camera
     space.position(_position.setFromMatrixPosition(matrixWorld), this.up)
     const radius = this.up.length()
     this.height = radius - parameters.bottomRadius
     // At the very centre any direction is up.
     if (radius > 0) this.up.divideScalar(radius)
     else this.up.set(0, 0, 1)
-    space.direction(sunDirection, this.sunDirection)
+    this.source.direction(this.atmosphere, _position)
+    space.direction(_position, this.sunDirection)
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
     this.eye = eyeScalars(parameters, this.height, cosSun)
-    this.slot = tables.volumes.volumeFor(renderer, this.eye, tables.version).slot
+    this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot
   }
 }

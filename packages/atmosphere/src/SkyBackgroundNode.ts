@@ -23,7 +23,7 @@ export class SkyBackgroundNode extends AtmosphereNode {
   showSun = true
 
   override customCacheKey(): number {
-    return this.showSun ? 1 : 0
+    return 2 * super.customCacheKey() + (this.showSun ? 1 : 0)
   }
 
   override setup(_builder: NodeBuilder): Node {

@@ -70,7 +70,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
         cosSun,
         normal.dot(this.#view.sunDirection)
       )
-      return linearSRGB(air.uniforms, received).mul(
+      return linearSRGB(air.uniforms, received.mul(this.#view.source.irradiance)).mul(
         (this as unknown as { colorNode: Vec3 }).colorNode
       )
     })()

@@ -80,7 +80,7 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
       const offset = this.#view.toMapped(positionView).toConst()
       const { altitude, cosSun } = this.#view.place(offset)
       const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
-      return linearSRGB(uniforms, sunlight).mul(tint)
+      return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
     })()
   }
 

@@ -3,6 +3,8 @@ import type { Camera } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { NodeFrame, UniformNode } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import type { AtmosphereView } from './AtmosphereView'
+import type { LightSource } from './LightSource'
 import { EyeUniforms } from './SkyVolumes'
 import type { Air } from './tsl/scattering'
 import type { VolumeTextures } from './tsl/skyVolume'
@@ -10,9 +12,10 @@ import type { Float, Mat3, Vec3 } from './tsl-types'
 
 const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
 
-/** An atmosphere as seen from a camera: the uniforms and textures that shaders of a view share. */
+/** An atmosphere as seen from a camera in the light of one source: the uniforms and textures that shaders of a view share. */
 export class ViewNodes {
   readonly atmosphere: Atmosphere
+  readonly source: LightSource
   readonly air: Air
   readonly volume: VolumeTextures
   readonly eye = new EyeUniforms()
@@ -20,17 +23,19 @@ export class ViewNodes {
   readonly height = uniform(0).setGroup(renderGroup)
   /** Zenith at the camera, in the mapped space. */
   readonly up = vector()
-  /** Direction to the sun, in the mapped space. */
+  /** Direction to the source, in the mapped space. */
   readonly sunDirection = vector()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
   readonly #camera: Camera | null
 
   /** @param camera - The camera; null for whichever renders. */
-  constructor(atmosphere: Atmosphere, camera: Camera | null) {
-    const { uniforms, transmittance, diffuseLight, volumes } = atmosphere.tables
+  constructor(atmosphere: Atmosphere, camera: Camera | null, source: LightSource) {
+    const { uniforms, transmittance, diffuseLight } = atmosphere.tables
+    const { volumes } = source
     const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     this.atmosphere = atmosphere
+    this.source = source
     this.#camera = camera
     this.air = {
       uniforms,
@@ -45,23 +50,23 @@ export class ViewNodes {
   }
 
   /** Bakes what the camera that renders needs. To be called before a render starts. */
-  prepare(frame: NodeFrame): void {
+  prepare(frame: NodeFrame): AtmosphereView | undefined {
     const camera = this.#camera ?? frame.camera
-    if (frame.renderer !== null && camera !== null) {
-      this.atmosphere.update(frame.renderer, camera)
-    }
+    if (frame.renderer === null || camera === null) return undefined
+    return this.atmosphere.update(frame.renderer, camera, this.source)
   }
 
   /** Sets the uniforms for the camera that renders. */
-  update(frame: NodeFrame): void {
+  update(frame: NodeFrame): AtmosphereView | undefined {
     const camera = this.#camera ?? frame.camera
-    const view = camera === null ? undefined : this.atmosphere.viewOf(camera)
-    if (view === undefined || view.eye === null) return
+    const view = camera === null ? undefined : this.atmosphere.viewOf(camera, this.source)
+    if (view === undefined || view.eye === null) return undefined
     this.eye.set(view.eye, view.slot)
     this.height.value = view.height
     this.up.value.copy(view.up)
     this.sunDirection.value.copy(view.sunDirection)
     this.viewToMapped.value.copy(view.viewToMapped)
+    return view
   }
 
   /** A displacement in view space [world units] in the mapped space [m]. */
@@ -89,14 +94,18 @@ export class ViewNodes {
   }
 }
 
-const shared = new WeakMap<Atmosphere, WeakMap<object, ViewNodes>>()
+const shared = new WeakMap<LightSource, WeakMap<object, ViewNodes>>()
 
-/** The nodes of an atmosphere for a camera, made once. */
-export function viewNodes(atmosphere: Atmosphere, camera: Camera | null = null): ViewNodes {
+/** The nodes of an atmosphere for a camera and a source of light, made once. */
+export function viewNodes(
+  atmosphere: Atmosphere,
+  camera: Camera | null = null,
+  source: LightSource = atmosphere.sun
+): ViewNodes {
   const key = camera ?? atmosphere
-  let views = shared.get(atmosphere)
-  if (views === undefined) shared.set(atmosphere, (views = new WeakMap()))
+  let views = shared.get(source)
+  if (views === undefined) shared.set(source, (views = new WeakMap()))
   let view = views.get(key)
-  if (view === undefined) views.set(key, (view = new ViewNodes(atmosphere, camera)))
+  if (view === undefined) views.set(key, (view = new ViewNodes(atmosphere, camera, source)))
   return view
 }

@@ -5,6 +5,8 @@ export type { AtmosphereParametersInit, SpectralMatrix, Spectrum } from './Atmos
 export { SkyBackgroundNode, skyBackground } from './SkyBackgroundNode'
 export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './AerialPerspectiveFogNode'
 export { AerialPerspectiveNode, aerialPerspective } from './AerialPerspectiveNode'
+export { LightSource } from './LightSource'
+export type { SkyLayer, SkyRay } from './SkyLayer'
 export { SunDirectionalLight } from './SunDirectionalLight'
 export { SkyLightProbe } from './SkyLightProbe'
 export { skyLuminanceAt } from './skyLuminance'

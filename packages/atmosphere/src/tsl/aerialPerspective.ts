@@ -1,4 +1,4 @@
-import type { Float, Vec3 } from '../tsl-types'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB, transmittanceRGB } from './color'
 import { scatteredRadiance } from './scattering'
@@ -26,8 +26,15 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const limits = rayLimits(air.uniforms, eye, cosView)
   const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
+  const light = view.atmosphere.layers.reduce<Vec4>(
+    (sum, layer) => {
+      const haze = layer.haze?.(view, displacementView)
+      return haze === undefined ? sum : sum.add(haze)
+    },
+    scatteredRadiance(air.uniforms, between, cosViewSun).mul(view.source.irradiance)
+  )
   return {
     transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp()),
-    inScatter: linearSRGB(air.uniforms, scatteredRadiance(air.uniforms, between, cosViewSun))
+    inScatter: linearSRGB(air.uniforms, light)
   }
 }

@@ -1,6 +1,7 @@
-import { If, smoothstep, vec3, vec4 } from 'three/tsl'
+import { If, float, smoothstep, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { SkyLayer, SkyRay } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
 import { scatteredRadiance } from './scattering'
@@ -43,31 +44,51 @@ export function pixelAngle(rayView: Vec3): Float {
   return rayView.normalize().fwidth().length().toConst()
 }
 
+/** Light from beyond the air: the sun's disc, and the layers' in front of it [1/sr]. */
+function lightBeyond(ray: SkyRay, reach: Float, layers: readonly SkyLayer[]): Vec4 {
+  const { view, direction, cosViewSun, pixel } = ray
+  const sun = vec4(0).toVar()
+  If(cosViewSun.greaterThan(reach), () => {
+    sun.assign(sunDisc(view.air.uniforms, direction, view.sunDirection, pixel))
+  })
+  return layers.reduce<Vec4>((light, layer) => layer.beyond?.(ray, light) ?? light, sun)
+}
+
 /**
- * Sky, ground and sun in a direction of view.
+ * Sky, ground, sun and the atmosphere's layers in a direction of view.
  *
  * @param rayView - Direction in view space, any length.
- * @param pixel - {@link pixelAngle} of it; null to leave the sun's disc out.
+ * @param pixel - {@link pixelAngle} of it; null to leave out what is beyond the air: sun, moon, stars.
  * @returns Linear sRGB × `luminanceScale`.
  */
 export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): Vec3 {
   const { air, volume, eye } = view
+  const { layers } = view.atmosphere
   const { uniforms } = air
   const direction = view.toMapped(rayView).normalize().toConst() as Vec3
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
-  const color = vec3(0).toVar()
+  const radiance = vec4(0).toVar()
   If(meetsAir, () => {
     const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
-    color.assign(linearSRGB(uniforms, scatteredRadiance(uniforms, light, cosViewSun)))
+    radiance.assign(scatteredRadiance(uniforms, light, cosViewSun).mul(view.source.irradiance))
   })
-  if (pixel === null) return color
-  const reach = uniforms.sunAngularRadius.add(pixel).cos().sub(1e-6)
-  If(cosViewSun.greaterThan(reach).and(hitsGround.not()), () => {
-    const disc = sunDisc(uniforms, direction, view.sunDirection, pixel)
-    const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
-    color.addAssign(linearSRGB(uniforms, disc.mul(through)))
-  })
-  return color.min(BRIGHTEST)
+  const angles = { direction, cosView, cosViewSun, hitsGround, meetsAir }
+  const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0) }
+  for (const layer of layers) {
+    if (layer.glow !== undefined) radiance.addAssign(layer.glow(ray))
+  }
+  if (pixel !== null) {
+    const reach = uniforms.sunAngularRadius.add(pixel).cos().sub(1e-6).toConst() as Float
+    const isSomewhere = layers.some(layer => layer.beyond !== undefined)
+    const isThere = isSomewhere
+      ? hitsGround.not()
+      : cosViewSun.greaterThan(reach).and(hitsGround.not())
+    If(isThere, () => {
+      const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
+      radiance.addAssign(lightBeyond(ray, reach, layers).mul(through))
+    })
+  }
+  return linearSRGB(uniforms, radiance).min(BRIGHTEST)
 }

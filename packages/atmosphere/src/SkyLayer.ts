@@ -1,0 +1,50 @@
+import type { Renderer } from 'three/webgpu'
+import type { AtmosphereView } from './AtmosphereView'
+import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+
+/** A line of sight into the sky, as shader nodes. */
+export interface SkyRay {
+  readonly view: ViewNodes
+  /** Unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** Against the zenith of the eye. */
+  readonly cosView: Float
+  /** Against the sun. */
+  readonly cosViewSun: Float
+  /** Whether the planet is in the way. */
+  readonly hitsGround: Bool
+  /** Whether there is air in this direction. */
+  readonly meetsAir: Bool
+  /** Angle that a pixel covers [rad]. */
+  readonly pixel: Float
+}
+
+/**
+ * Something in the sky besides air and sun: moon, stars, airglow. `atmosphere.add(layer)` shows it in
+ * every node that draws this atmosphere's sky and haze.
+ *
+ * All light is radiance over `solarIrradiance` at the four wavelengths [1/sr], as sunlight that a white
+ * plane reflects is.
+ */
+export interface SkyLayer {
+  /** Bakes what the layer needs. Called before a render. */
+  prepare?(renderer: Renderer, view: AtmosphereView): void
+  /** Sets uniforms for the camera that renders. */
+  update?(view: AtmosphereView): void
+  /**
+   * Light from beyond the air, given what is farther; the air dims what is returned.
+   * Called inside a branch in which the ray does not hit the ground: no derivatives.
+   */
+  beyond?(ray: SkyRay, farther: Vec4): Vec4
+  /** Light that the air itself sends from this direction, all of the way. */
+  glow?(ray: SkyRay): Vec4
+  /**
+   * Light that the air adds between the eye and a point.
+   *
+   * @param displacementView - From the camera to the point, in view space [world units].
+   */
+  haze?(view: ViewNodes, displacementView: Vec3): Vec4
+  /** Frees GPU memory. */
+  dispose?(): void
+}
