@@ -33,8 +33,8 @@ export interface AtmosphereParametersInit {
   mieExtinction?: Spectrum
   /** Height over which aerosols thin out by a factor e [m]. */
   mieScaleHeight?: number
-  /** Asymmetry g of the aerosols' Cornette–Shanks phase function, in (−1, 1). */
-  mieAsymmetry?: number
+  /** Asymmetry g of the aerosols' Cornette–Shanks phase function, in (−1, 1); one, or per wavelength. */
+  mieAsymmetry?: number | Spectrum
   /** Absorption by the tent-shaped layer where it is densest [1/m]. */
   absorptionExtinction?: Spectrum
   /** Altitude at which that layer is densest [m]. */
@@ -68,6 +68,11 @@ const OZONE_CROSS_SECTION: Spectrum = [1.582e-26, 2.139e-25, 4.266e-25, 3.215e-2
 const CLEAR_AEROSOL_EXTINCTION = 5.328e-3 / 1200
 
 const all = (value: number): Spectrum => [value, value, value, value]
+
+/** Four numbers from one that stands for all, or from four. */
+export const spectrumOf = (value: number | Spectrum): Spectrum =>
+  typeof value === 'number' ? all(value) : value
+
 const map = (values: Spectrum, f: (value: number) => number): Spectrum => [
   f(values[0]),
   f(values[1]),
@@ -145,7 +150,7 @@ export class AtmosphereParameters {
   readonly mieScattering!: Spectrum
   readonly mieExtinction!: Spectrum
   readonly mieScaleHeight!: number
-  readonly mieAsymmetry!: number
+  readonly mieAsymmetry!: number | Spectrum
   readonly absorptionExtinction!: Spectrum
   readonly absorptionAltitude!: number
   readonly absorptionHalfWidth!: number
@@ -208,7 +213,7 @@ export class AtmosphereParameters {
     checkSpectrum('mieScattering', next.mieScattering, 0, 1)
     checkSpectrum('mieExtinction', next.mieExtinction, 0, 1)
     check('mieScaleHeight', next.mieScaleHeight, 1, 1e6)
-    check('mieAsymmetry', next.mieAsymmetry, -0.99, 0.99)
+    checkSpectrum('mieAsymmetry', spectrumOf(next.mieAsymmetry), -0.99, 0.99)
     checkSpectrum('absorptionExtinction', next.absorptionExtinction, 0, 1)
     check('absorptionAltitude', next.absorptionAltitude, -1e6, 1e6)
     check('absorptionHalfWidth', next.absorptionHalfWidth, 1, 1e6)

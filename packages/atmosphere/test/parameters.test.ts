@@ -6,7 +6,7 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
   [{ bottomRadius: -1 }, /AtmosphereParameters: bottomRadius .*-1/],
   [{ topRadius: 6_378_137 }, /AtmosphereParameters: topRadius .*6378137/],
   [{ topRadius: NaN }, /AtmosphereParameters: topRadius .*NaN/],
-  [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry .*1/],
+  [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry.* got 1/],
   [{ rayleighScaleHeight: 0 }, /AtmosphereParameters: rayleighScaleHeight .*0/],
   [{ groundAlbedo: [0, 0, 1.5, 0] }, /AtmosphereParameters: groundAlbedo\[2\] .*1\.5/],
   [

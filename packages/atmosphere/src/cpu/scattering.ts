@@ -1,4 +1,4 @@
-import type { AtmosphereParameters } from '../AtmosphereParameters'
+import { spectrumOf, type AtmosphereParameters } from '../AtmosphereParameters'
 import { distanceToGround, distanceToTop, hitsGround } from './boundary'
 import { sampleDiffuseLight, type DiffuseLightData } from './diffuseLight'
 import { densities, extinctionAt } from './medium'
@@ -51,8 +51,10 @@ export function inScatter(
   distance: number
 ): number[] {
   const { radius, cosView, cosSun, cosViewSun } = ray
-  const phases = [rayleighPhase(cosViewSun), cornetteShanksPhase(p.mieAsymmetry, cosViewSun)]
-  const mie = asymmetryMoments(p.mieAsymmetry)
+  const asymmetries = spectrumOf(p.mieAsymmetry)
+  const molecularPhase = rayleighPhase(cosViewSun)
+  const aerosolPhases = asymmetries.map(g => cornetteShanksPhase(g, cosViewSun))
+  const mie = asymmetries.map(asymmetryMoments)
   const sum = [0, 0, 0, 0]
   const thickness = p.topRadius - p.bottomRadius
   const depthBefore = [0, 0, 0, 0]
@@ -73,11 +75,11 @@ export function inScatter(
       depthBefore[i] += ((t - last) / 6) * (ends[0][i] + 4 * ends[1][i] + ends[2][i])
       const byMolecules = p.rayleighScattering[i] * molecules
       const byAerosols = p.mieScattering[i] * aerosols
-      let source = (byMolecules * phases[0] + byAerosols * phases[1]) * sun[i]
+      let source = (byMolecules * molecularPhase + byAerosols * aerosolPhases[i]) * sun[i]
       if (tiles) {
         const moments = tiles.map(tile => tile[i])
         source += byMolecules * applyMoments(moments, [1, 0, 0.1], mu, muSun, cosViewSun)
-        source += byAerosols * applyMoments(moments, mie, mu, muSun, cosViewSun)
+        source += byAerosols * applyMoments(moments, mie[i], mu, muSun, cosViewSun)
       }
       sum[i] += weight * source * Math.exp(-depthBefore[i])
     }
