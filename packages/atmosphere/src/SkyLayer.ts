@@ -28,6 +28,8 @@ export interface SkyRay {
  * plane reflects is.
  */
 export interface SkyLayer {
+  /** Whether {@link beyond} only adds light and hides nothing. */
+  readonly isAdditive?: boolean
   /** Bakes what the layer needs. Called before a render. */
   prepare?(renderer: Renderer, view: AtmosphereView): void
   /** Sets uniforms for the camera that renders. */
@@ -37,6 +39,11 @@ export interface SkyLayer {
    * Called inside a branch in which the ray does not hit the ground: no derivatives.
    */
   beyond?(ray: SkyRay, farther: Vec4): Vec4
+  /**
+   * Sunlight from the whole way to the ground and the ground itself, given the model's of even albedo;
+   * for rays that do not hit the ground what is given. Before `glow`; no derivatives.
+   */
+  ground?(ray: SkyRay, model: Vec4): Vec4
   /** Light that the air itself sends from this direction, all of the way. */
   glow?(ray: SkyRay): Vec4
   /**

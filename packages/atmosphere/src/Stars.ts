@@ -36,6 +36,7 @@ export interface StarsOptions {
 export class Stars implements SkyLayer {
   /** For type testing. */
   readonly isStars = true
+  readonly isAdditive = true
   /** What is drawn. */
   readonly catalogue: readonly Star[]
   /** Whether `starsOverlay` draws them and the sky does not. */

@@ -1,0 +1,122 @@
+import { Vector4 } from 'three'
+import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import type { Spectrum } from './AtmosphereParameters'
+import type { AtmosphereView } from './AtmosphereView'
+import type { SkyLayer, SkyRay } from './SkyLayer'
+import { ofLuminance } from './stars/starColor'
+import { glowGains } from './tsl/airglow'
+import type { Float, Vec3, Vec4 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+
+/** Options of {@link Airglow}. */
+export interface AirglowOptions {
+  /** Luminance straight through the layer, ≥ 0 [cd/m²]. */
+  luminance?: number
+  /** Altitude of the layer's middle, in [1, 1e7] [m]. */
+  altitude?: number
+  /** Standard deviation of its emission over altitude, in [1, 1e6] [m]. */
+  width?: number
+  /** Spectral radiance at the four wavelengths, of which only the ratios count. */
+  spectrum?: Spectrum
+}
+
+/** The green line of oxygen at 557.7 nm, the sodium lines at 589 nm, and a continuum. */
+const GREENISH: Spectrum = [0.7, 1, 1.12, 0.72]
+
+/**
+ * Irradiance of a level plane over π times the radiance straight through the layer, with no air:
+ * 2 (1 − √(1 − a))/a, a = (R/(R + 96 km))² of the Earth.
+ */
+const DOME = 1.71
+
+/**
+ * Airglow: the upper air's own light. From the ground a faint even light that brightens towards the
+ * horizon; from orbit a thin greenish line above the limb.
+ *
+ * ```ts
+ * atmosphere.add(milkyWay(), stars(), airglow())
+ * ```
+ *
+ * A Gaussian layer at 96 km with a standard deviation of 4 km. By default 1e-4 cd/m² at the zenith
+ * (22.6 magnitudes per square second of arc), as in years of a quiet sun; together with stars and the
+ * Milky Way's faint light a moonless sky has about 22. The air below dims the layer; that it also
+ * scatters its light is left out. Add it last: it is nearer than anything else in the sky.
+ */
+export class Airglow implements SkyLayer {
+  readonly isAdditive = true
+  /** Luminance straight through the layer [cd/m²]. */
+  readonly luminance: number
+  readonly #spectrum: Spectrum
+  readonly #altitude
+  readonly #width
+  /** Radiance straight through the layer, over `solarIrradiance`. */
+  readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
+  /** Multiplies the physical brightness, ≥ 0. */
+  intensity = 1
+
+  /** @throws If an option is out of range. */
+  constructor({
+    luminance = 1e-4,
+    altitude = 96_000,
+    width = 4000,
+    spectrum = GREENISH
+  }: AirglowOptions = {}) {
+    check('luminance', luminance, 0, 1e9)
+    check('altitude', altitude, 1, 1e7)
+    check('width', width, 1, 1e6)
+    if (spectrum.length !== 4) {
+      throw new Error(`Airglow: spectrum must have 4 values, got ${spectrum.length}`)
+    }
+    spectrum.forEach((value, i) => check(`spectrum[${i}]`, value, 0, 1e9))
+    this.luminance = luminance
+    this.#spectrum = spectrum
+    this.#altitude = uniform(altitude).setGroup(renderGroup)
+    this.#width = uniform(width).setGroup(renderGroup)
+  }
+
+  update({ atmosphere: { parameters } }: AtmosphereView): void {
+    const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
+    const luminance = this.luminance * Math.max(this.intensity, 0)
+    this.#radiance.value.fromArray(ofLuminance(parameters, values, luminance))
+  }
+
+  #gains(view: ViewNodes, cosView: Float, distance: Float | null): { down: Float; up: Float } {
+    const layer = { altitude: this.#altitude as Float, width: this.#width as Float }
+    const { bottomRadius } = view.air.uniforms
+    return glowGains(layer, view.height, cosView, bottomRadius, distance)
+  }
+
+  /** The layer beyond the air below it. */
+  beyond({ view, cosView }: SkyRay, farther: Vec4): Vec4 {
+    return farther.add(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
+  }
+
+  /** The layer in front of that air, from above, and the ground that reflects it. */
+  glow({ view, cosView, hitsGround }: SkyRay): Vec4 {
+    const { down } = this.#gains(view, cosView, null)
+    const reflected = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
+    return vec4(this.#radiance.mul(reflected.add(down)))
+  }
+
+  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
+    const light = vec4(0).toVar()
+    // From below there is none of it in front of anything.
+    If(view.height.greaterThan(this.#altitude.sub(this.#width.mul(8))), () => {
+      const offset = view.toMapped(displacementView).toConst()
+      const distance = offset.length().max(1e-3).toConst() as Float
+      const cosView = offset.dot(view.up).div(distance).clamp(-1, 1).toConst() as Float
+      const { down, up } = this.#gains(view, cosView, distance)
+      light.assign(vec4(this.#radiance.mul(down.add(up))))
+    })
+    return light
+  }
+}
+
+function check(name: string, value: number, min: number, max: number): void {
+  if (!(value >= min && value <= max)) {
+    throw new Error(`Airglow: ${name} must be in [${min}, ${max}], got ${value}`)
+  }
+}
+
+/** The upper air's own light: see {@link Airglow}. */
+export const airglow = (options?: AirglowOptions): Airglow => new Airglow(options)
