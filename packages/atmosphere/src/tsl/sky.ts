@@ -77,6 +77,7 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
   const angles = { direction, cosView, cosViewSun, hitsGround, meetsAir }
   const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0) }
   for (const layer of layers) {
+    if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
     if (layer.glow !== undefined) radiance.addAssign(layer.glow(ray))
   }
   if (pixel !== null) {
