@@ -257,10 +257,17 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     await this.tables.read()
   }
 
-  /** What answers questions about light, as things are now. */
-  query(): AtmosphereQuery {
-    const { parameters, space, sunDirection, tables } = this
-    return new AtmosphereQuery(parameters, space, sunDirection, tables.data)
+  /**
+   * What answers questions about light, as things are now.
+   *
+   * @param position - World: where light is asked about.
+   * @param source - Whose light.
+   */
+  query(position: Vector3, source: LightSource = this.sun): AtmosphereQuery {
+    const { parameters, space, tables } = this
+    const direction = source.direction(this, new Vector3(), position)
+    const irradiance = source.irradianceAt(position)
+    return new AtmosphereQuery(parameters, space, direction, tables.data, irradiance)
   }
 
   /**
@@ -270,7 +277,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @returns Linear sRGB [lx].
    */
   sunIlluminanceAt(position: Vector3): Triple {
-    return this.query().sunIlluminance(position)
+    return this.query(position).sunIlluminance(position)
   }
 
   /**
@@ -282,7 +289,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @throws Before the tables were baked and read back: await {@link bake} first.
    */
   skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
-    return this.query().skyIlluminance(position, normal)
+    return this.query(position).skyIlluminance(position, normal)
   }
 
   /** Frees all GPU memory. The atmosphere can be used again, from nothing. */

@@ -2,11 +2,13 @@ import { Matrix3, Vector3 } from 'three'
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import type { Spectrum } from './AtmosphereParameters'
 import { eyeScalars } from './cpu/eye'
 import type { LightSource } from './LightSource'
 import type { EyeScalars } from './tsl/eye'
 
 const _position = new Vector3()
+const _direction = new Vector3()
 
 /** A camera in the space where the planet is a sphere, computed in float64. */
 export class AtmosphereView {
@@ -18,6 +20,8 @@ export class AtmosphereView {
   readonly sunDirection = new Vector3()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = new Matrix3()
+  /** Of the source, over the bare sun's. */
+  irradiance: Spectrum = [1, 1, 1, 1]
   eye: EyeScalars<number> | null = null
   /** Number of its volume in the atlas. */
   slot = 0
@@ -41,8 +45,10 @@ export class AtmosphereView {
     // At the very centre any direction is up.
     if (radius > 0) this.up.divideScalar(radius)
     else this.up.set(0, 0, 1)
-    this.source.direction(this.atmosphere, _position)
-    space.direction(_position, this.sunDirection)
+    _position.setFromMatrixPosition(matrixWorld)
+    this.irradiance = this.source.irradianceAt(_position)
+    this.source.direction(this.atmosphere, _direction, _position)
+    space.direction(_direction, this.sunDirection)
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
     this.eye = eyeScalars(parameters, this.height, cosSun)

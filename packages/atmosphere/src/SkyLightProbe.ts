@@ -3,6 +3,7 @@ import { Fn, normalView, positionView } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
 import { skyIrradiance } from './tsl/skyIrradiance'
 import type { Vec3 } from './tsl-types'
@@ -19,16 +20,21 @@ export class SkyLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
 
-  constructor(atmosphere: Atmosphere) {
+  /** Whose light sky and ground scatter: the sun's. */
+  readonly source: LightSource
+
+  /** @param source - Whose light sky and ground scatter; by default the sun's. */
+  constructor(atmosphere: Atmosphere, source: LightSource = atmosphere?.sun) {
     super()
     if (!atmosphere?.isAtmosphere) {
       throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
     }
     this.atmosphere = atmosphere
+    this.source = source
   }
 
   override clone(): this {
-    return new SkyLightProbe(this.atmosphere).copy(this) as this
+    return new SkyLightProbe(this.atmosphere, this.source).copy(this) as this
   }
 }
 
@@ -42,7 +48,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
 
   constructor(light: SkyLightProbe) {
     super(light)
-    this.#view = viewNodes(light.atmosphere)
+    this.#view = viewNodes(light.atmosphere, null, light.source)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
   }

@@ -4,6 +4,7 @@ import { Fn, positionView, uniform, renderGroup } from 'three/tsl'
 import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Vec3 } from './tsl-types'
@@ -26,8 +27,14 @@ export class SunDirectionalLight extends DirectionalLight {
   /** From the target to the light, along the sun's direction [world units]. */
   distance = 1
 
-  /** @param distance - From the target to the light [world units]. */
-  constructor(atmosphere: Atmosphere, distance = 1) {
+  /** Whose light it is: the sun's. */
+  readonly source: LightSource
+
+  /**
+   * @param distance - From the target to the light [world units].
+   * @param source - Whose light it is; by default the sun's.
+   */
+  constructor(atmosphere: Atmosphere, distance = 1, source: LightSource = atmosphere?.sun) {
     super()
     if (!atmosphere?.isAtmosphere) {
       throw new Error(
@@ -38,19 +45,21 @@ export class SunDirectionalLight extends DirectionalLight {
       throw new Error(`SunDirectionalLight: distance must be positive, got ${distance}`)
     }
     this.atmosphere = atmosphere
+    this.source = source
     this.distance = distance
     this.follow()
   }
 
   override clone(): this {
-    return new SunDirectionalLight(this.atmosphere, this.distance).copy(this) as this
+    return new SunDirectionalLight(this.atmosphere, this.distance, this.source).copy(this) as this
   }
 
   /** Moves to where the sun is; rendering does this by itself. */
   follow(): void {
     this.target.updateWorldMatrix(true, false)
-    _direction.copy(this.atmosphere.sunDirection).multiplyScalar(this.distance)
-    this.position.setFromMatrixPosition(this.target.matrixWorld).add(_direction)
+    this.position.setFromMatrixPosition(this.target.matrixWorld)
+    this.source.direction(this.atmosphere, _direction, this.position)
+    this.position.addScaledVector(_direction, this.distance)
     this.parent?.worldToLocal(this.position)
   }
 
@@ -70,7 +79,7 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
 
   constructor(light: SunDirectionalLight) {
     super(light)
-    this.#view = viewNodes(light.atmosphere)
+    this.#view = viewNodes(light.atmosphere, null, light.source)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
     const node = this as unknown as { color: Color; colorNode: unknown }

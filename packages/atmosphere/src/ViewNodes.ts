@@ -27,7 +27,8 @@ export class ViewNodes {
   readonly sunDirection = vector()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
-  readonly #camera: Camera | null
+  /** Whose view it is; null for whichever renders. */
+  readonly camera: Camera | null
 
   /** @param camera - The camera; null for whichever renders. */
   constructor(atmosphere: Atmosphere, camera: Camera | null, source: LightSource) {
@@ -36,7 +37,7 @@ export class ViewNodes {
     const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     this.atmosphere = atmosphere
     this.source = source
-    this.#camera = camera
+    this.camera = camera
     this.air = {
       uniforms,
       transmittance: texture(transmittance.target.texture),
@@ -51,17 +52,18 @@ export class ViewNodes {
 
   /** Bakes what the camera that renders needs. To be called before a render starts. */
   prepare(frame: NodeFrame): AtmosphereView | undefined {
-    const camera = this.#camera ?? frame.camera
+    const camera = this.camera ?? frame.camera
     if (frame.renderer === null || camera === null) return undefined
     return this.atmosphere.update(frame.renderer, camera, this.source)
   }
 
   /** Sets the uniforms for the camera that renders. */
-  update(frame: NodeFrame): AtmosphereView | undefined {
-    const camera = this.#camera ?? frame.camera
+  update(frame: Pick<NodeFrame, 'camera'>): AtmosphereView | undefined {
+    const camera = this.camera ?? frame.camera
     const view = camera === null ? undefined : this.atmosphere.viewOf(camera, this.source)
     if (view === undefined || view.eye === null) return undefined
     this.eye.set(view.eye, view.slot)
+    this.source.irradiance.value.set(...view.irradiance)
     this.height.value = view.height
     this.up.value.copy(view.up)
     this.sunDirection.value.copy(view.sunDirection)

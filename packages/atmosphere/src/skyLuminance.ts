@@ -18,7 +18,7 @@ export function skyLuminanceAt(
   position: Vector3,
   direction: Vector3
 ): Triple {
-  const query = atmosphere.query()
+  const query = atmosphere.query(position)
   const data = query.table('skyLuminanceAt')
   const { up, radius, cosSun } = query.place(position)
   const v = query.direction('direction', direction)

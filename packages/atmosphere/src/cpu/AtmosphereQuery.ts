@@ -13,17 +13,21 @@ export class AtmosphereQuery {
   readonly parameters: AtmosphereParameters
   readonly #space: SphericalSpace
   readonly #data: DiffuseLightData | null
+  /** Of the source of light, over the bare sun's. */
+  readonly #irradiance: Spectrum
   readonly sun: Vector3
 
   constructor(
     parameters: AtmosphereParameters,
     space: SphericalSpace,
     sunWorld: Vector3,
-    data: DiffuseLightData | null
+    data: DiffuseLightData | null,
+    irradiance: Spectrum
   ) {
     this.parameters = parameters
     this.#space = space
     this.#data = data
+    this.#irradiance = irradiance
     this.sun = space.direction(sunWorld, new Vector3())
   }
 
@@ -60,9 +64,10 @@ export class AtmosphereQuery {
     return this.#data
   }
 
-  /** From values per unit of solar irradiance. */
+  /** From values per unit of the source's irradiance. */
   linearSRGB(perIrradiance: number[]): Triple {
-    const values = perIrradiance.map((value, i) => value * this.parameters.solarIrradiance[i])
+    const { solarIrradiance } = this.parameters
+    const values = perIrradiance.map((value, i) => value * solarIrradiance[i] * this.#irradiance[i])
     return spectralToLinearSRGB(this.parameters, values as unknown as Spectrum)
   }
 
