@@ -28,3 +28,23 @@ export type { ExposureOptions } from './exposureFor'
 export { DayCycle } from './DayCycle'
 export type { DayCycleOptions } from './DayCycle'
 export type { Triple } from './cpu/color'
+export { SunFlare, sunFlare } from './SunFlare'
+export type { FlareOptions } from './HaloUniforms'
+export { Moon, moon } from './Moon'
+export type { MoonAppearance, MoonOptions } from './Moon'
+export { MoonDirectionalLight } from './MoonDirectionalLight'
+export { moonIlluminanceAt, moonSkyIlluminanceAt } from './moonIlluminance'
+export { PlanetGround, planetGround } from './PlanetGround'
+export type { PlanetGroundOptions } from './PlanetGround'
+export { AtmosphereShell, atmosphereShell } from './AtmosphereShell'
+export type { AtmosphereShellOptions, ShellSun } from './AtmosphereShell'
+export { FlatAtmosphere, flatAtmosphere } from './FlatAtmosphere'
+export {
+  airlessBody,
+  isAirless,
+  marsAtmosphere,
+  titanAtmosphere,
+  venusAtmosphere
+} from './planets'
+export { ImageEnvironmentNode, SkyEnvironmentNode, skyEnvironment } from './SkyEnvironmentNode'
+export type { EnvironmentOptions, SkyEnvironmentOptions } from './SkyEnvironmentNode'
