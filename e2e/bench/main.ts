@@ -1,7 +1,8 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
+import type { Atmosphere } from '@welkin/atmosphere'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
-import { benchScene, setSun, type Path } from './scene'
+import { addSunAndMoon, benchScene, setSun, type Path } from './scene'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -35,15 +36,23 @@ const log = (text: string): void => {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 
+/** What else is in the sky, and how high the sun stands [°]. */
+interface SkyCase {
+  decorate?: (atmosphere: Atmosphere) => void
+  elevation?: number
+}
+
 /** GPU milliseconds of one frame, median after warm-up; and CPU milliseconds to submit it. */
 async function time(
   path: Path,
   altitude: number,
   withAir: boolean,
-  sunMoves: boolean
+  sunMoves: boolean,
+  { decorate, elevation }: SkyCase = {}
 ): Promise<{ gpu: number; cpu: number }> {
   const renderer = await device.renderer(width, height)
-  const scene = benchScene(renderer, path, altitude, withAir, [width, height])
+  const scene = benchScene(renderer, path, altitude, withAir, [width, height], decorate)
+  if (elevation !== undefined) setSun(scene.atmosphere, scene.camera, elevation)
   const gpu: number[] = []
   const cpu: number[] = []
   for (let frame = 0; frame < WARM_UP + frames; frame++) {
@@ -76,6 +85,26 @@ for (const path of PATHS) {
     log(
       `${path.padEnd(8)} ${String(altitude).padStart(9)} m   composite ${compositeMs.toFixed(3)} ms` +
         `   volume update ${volumeUpdateMs.toFixed(3)} ms   (scene alone ${without.gpu.toFixed(3)} ms)`
+    )
+  }
+}
+
+/** What sun and moon cost, by day and in a night that the full moon lights. */
+interface SkyCost {
+  path: Path
+  elevation: number
+  sunAndMoonMs: number
+}
+
+const skyCosts: SkyCost[] = []
+for (const path of PATHS) {
+  for (const elevation of [40, -40]) {
+    const bare = await time(path, 2, true, false, { elevation })
+    const full = await time(path, 2, true, false, { elevation, decorate: addSunAndMoon })
+    const sunAndMoonMs = full.gpu - bare.gpu
+    skyCosts.push({ path, elevation, sunAndMoonMs })
+    log(
+      `${path.padEnd(8)} sun at ${String(elevation).padStart(3)}°   sun and moon ${sunAndMoonMs.toFixed(3)} ms`
     )
   }
 }
@@ -128,6 +157,7 @@ const firstFrameMs = await timeFirstFrame()
 const result = {
   device: device.name,
   cases,
+  skyCosts,
   bakeMs: bake.total,
   bakeMaxFrameMs: bake.most,
   gpuBytes: bake.bytes,

@@ -260,10 +260,10 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /**
    * What answers questions about light, as things are now.
    *
-   * @param position - World: where light is asked about.
+   * @param position - World: where light is asked about; by default the origin.
    * @param source - Whose light.
    */
-  query(position: Vector3, source: LightSource = this.sun): AtmosphereQuery {
+  query(position = new Vector3(), source: LightSource = this.sun): AtmosphereQuery {
     const { parameters, space, tables } = this
     const direction = source.direction(this, new Vector3(), position)
     const irradiance = source.irradianceAt(position)

@@ -12,14 +12,13 @@ import { HaloUniforms, type FlareOptions } from './HaloUniforms'
 import { LightSource } from './LightSource'
 import { MoonPlace, type MoonGeometry } from './moonGeometry'
 import { MoonSurface } from './MoonSurface'
+import { MoonlitAir } from './MoonlitAir'
 import { MoonVolumes } from './MoonVolumes'
 import type { SkyLayer, SkyRay } from './SkyLayer'
 import { haloRadiance } from './tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
-import { scatteredRadiance } from './tsl/scattering'
-import { rayLimits, sampleSky, sampleVolume } from './tsl/skyVolume'
-import type { Float, Vec3, Vec4 } from './tsl-types'
-import { viewNodes, type ViewNodes } from './ViewNodes'
+import type { Vec3, Vec4 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
 
 /** Options of {@link Moon}. */
 export interface MoonOptions {
@@ -57,12 +56,7 @@ export interface MoonAppearance {
 
 const FLARE = { innerPower: 12_000, innerStrength: 0.02, outerPower: 500, outerStrength: 0.006 }
 
-/** The sun as high, or the moon as low: then moonlight in the air is not seen. cos of the zenith angle. */
-const SUN_DROWNS = 0
-const MOON_IS_DOWN = -0.31
-
 const _position = new Vector3()
-const _direction = new Vector3()
 const _matrix = new Matrix4()
 
 const vector = () => uniform(new Vector3()).setGroup(renderGroup)
@@ -98,11 +92,9 @@ export class Moon implements SkyLayer {
   #radius = MOON_RADIUS
   #strength = 1
   readonly #place = new MoonPlace()
-  readonly #volumes: MoonVolumes
+  readonly #air: MoonlitAir
   readonly #surface: MoonSurface
   readonly #halo = new HaloUniforms('Moon', FLARE)
-  readonly #views = new Map<ViewNodes, ViewNodes>()
-  #renderer: Renderer | null = null
 
   readonly #direction = vector()
   readonly #light = vector()
@@ -113,8 +105,6 @@ export class Moon implements SkyLayer {
   readonly #flare = spectrum()
   /** 0 while the sun's disc is all covered, else 1. */
   readonly #sunShows = uniform(1).setGroup(renderGroup)
-  /** 1 while moonlight in the air can be seen. */
-  readonly #glows = uniform(0).setGroup(renderGroup)
 
   /** @throws If an argument is of the wrong kind or out of its range. */
   constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
@@ -135,12 +125,13 @@ export class Moon implements SkyLayer {
     this.setFlare(flare)
     this.#surface = new MoonSurface(mapSize)
     const { uniforms, transmittance, diffuseLight } = atmosphere.tables
-    this.#volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
+    const volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
     this.source = new LightSource(
       (_, target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
-      this.#volumes
+      volumes
     )
     this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
+    this.#air = new MoonlitAir(atmosphere, this.source, volumes)
     this.#eclipse()
   }
 
@@ -272,21 +263,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (!this.lightsAir) return
-    if (renderer !== this.#renderer) this.#volumes.invalidate()
-    this.#renderer = renderer
-    this.#volumes.isNeeded = this.#isSeenInAir(view)
-    if (this.#volumes.isNeeded) this.atmosphere.update(renderer, view.camera, this.source)
-  }
-
-  #isSeenInAir(view: AtmosphereView): boolean {
-    const { parameters, space } = this.atmosphere
-    if (this.#strength === 0) return false
-    if (view.height > parameters.topRadius - parameters.bottomRadius) return true
-    if (view.up.dot(view.sunDirection) > SUN_DROWNS) return false
-    _position.setFromMatrixPosition(view.camera.matrixWorld)
-    const direction = space.direction(this.#worldDirection(_position), _direction)
-    return view.up.dot(direction) > MOON_IS_DOWN
+    if (this.lightsAir && this.#strength > 0) this.#air.prepare(renderer, view)
   }
 
   update(view: AtmosphereView): void {
@@ -311,10 +288,7 @@ export class Moon implements SkyLayer {
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
     this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
-    this.#glows.value = this.lightsAir && this.#volumes.isNeeded ? 1 : 0
-    for (const nodes of this.#views.values()) {
-      if (nodes.camera === null || nodes.camera === view.camera) nodes.update(view)
-    }
+    this.#air.update(view)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
@@ -352,60 +326,17 @@ export class Moon implements SkyLayer {
   }
 
   glow(ray: SkyRay): Vec4 {
-    const light = vec4(0).toVar()
-    if (!this.lightsAir) return light
-    const { air, volume, eye, sunDirection } = this.#nodes(ray.view)
-    If(this.#glows.greaterThan(0).and(ray.meetsAir), () => {
-      const cosViewMoon = ray.direction.dot(sunDirection).clamp(-1, 1).toConst() as Float
-      const { cosView, hitsGround } = ray
-      const sky = sampleSky(air.uniforms, volume, eye, cosView, cosViewMoon, hitsGround)
-      light.assign(scatteredRadiance(air.uniforms, sky, cosViewMoon).mul(this.source.irradiance))
-    })
-    return light
+    return this.lightsAir ? this.#air.glow(ray) : vec4(0)
   }
 
   haze(view: ViewNodes, displacementView: Vec3): Vec4 {
-    const light = vec4(0).toVar()
-    if (!this.lightsAir) return light
-    const { air, volume, eye, up, sunDirection } = this.#nodes(view)
-    If(this.#glows.greaterThan(0), () => {
-      const offset = view.toMapped(displacementView).toConst()
-      const distance = offset.length().max(1e-3).toConst() as Float
-      const direction = offset.div(distance).toConst()
-      const cosView = direction.dot(up).clamp(-1, 1).toConst() as Float
-      const cosViewMoon = direction.dot(sunDirection).clamp(-1, 1).toConst() as Float
-      const limits = rayLimits(air.uniforms, eye, cosView)
-      const between = sampleVolume(
-        air.uniforms,
-        volume,
-        eye,
-        cosView,
-        cosViewMoon,
-        limits,
-        distance
-      )
-      light.assign(
-        scatteredRadiance(air.uniforms, between, cosViewMoon).mul(this.source.irradiance)
-      )
-    })
-    return light
-  }
-
-  /** The nodes of a view in the light of the moon. */
-  #nodes(view: ViewNodes): ViewNodes {
-    let nodes = this.#views.get(view)
-    if (nodes === undefined) {
-      nodes = viewNodes(this.atmosphere, view.camera, this.source)
-      this.#views.set(view, nodes)
-    }
-    return nodes
+    return this.lightsAir ? this.#air.haze(view, displacementView) : vec4(0)
   }
 
   /** Frees GPU memory. The moon can be used again. */
   dispose(): void {
     this.#surface.dispose()
-    this.#volumes.dispose()
-    this.#renderer = null
+    this.#air.dispose()
   }
 }
 

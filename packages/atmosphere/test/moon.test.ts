@@ -34,7 +34,7 @@ const ALLEN: readonly (readonly [number, number])[] = [
 ]
 
 describe('moonlight', () => {
-  it('has the illuminance of the published table at every phase angle, within 20 %', () => {
+  it('has the illuminance of the published table at every phase angle, within 10 %', () => {
     // Magnitude 0 is 2.54e-6 lx above the air; the full moon −12.74. Allen 1976, §98, §66.
     const full = 2.54e-6 * 10 ** (0.4 * 12.74)
     const { solarIrradiance } = new Atmosphere().parameters
@@ -47,7 +47,7 @@ describe('moonlight', () => {
       expect(luna.seenFrom(high).phaseAngle / degree).toBeCloseTo(angle, 3)
       const expected = full * 10 ** (-0.4 * magnitudes)
       const ratio = luminance(moonIlluminanceAt(luna, high)) / expected
-      expect(Math.abs(ratio - 1), `${angle}°: ${ratio}`).toBeLessThan(0.2)
+      expect(Math.abs(ratio - 1), `${angle}°: ${ratio}`).toBeLessThan(0.1)
     }
   })
 

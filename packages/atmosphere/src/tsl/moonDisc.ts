@@ -48,11 +48,10 @@ export function moonDisc(
   const height = across.dot(across).oneMinus().max(0).sqrt().toConst()
   const normal = across.sub(moon.direction.mul(height)).normalize().toConst() as Vec3
   const place = moon.toFixed.mul(normal).toConst() as Vec3
-  const texel = moon.map.size(0) as unknown as Vec2
+  const { width } = moon.map.value.image as { width: number }
   const level = pixel
     .div(moon.angularRadius)
-    .mul(float(texel.x))
-    .div(2 * MAP_RADIUS)
+    .mul(width / (2 * MAP_RADIUS))
     .max(1e-6)
     .log2()
   const sampled = moon.map as unknown as { sample(uv: Vec2): { level(n: Float): Vec4 } }
