@@ -20,6 +20,27 @@ export interface SkyRay {
   readonly pixel: Float
 }
 
+/** A straight way from the eye, to a point or to the end of the air or the ground, as shader nodes. */
+export interface Sightline {
+  readonly view: ViewNodes
+  /** Against the zenith of the eye. */
+  readonly cosView: Float
+  /** Against the sun. */
+  readonly cosViewSun: Float
+  /** [m] */
+  readonly distance: Float
+  /** Whether it is the sky's, ground included, and not one to a point. */
+  readonly isSky: boolean
+}
+
+/** What all that is in the air does to light on a {@link Sightline}. */
+export interface Veil {
+  /** Optical depth; for the sky that of layers alone. */
+  readonly depth: Vec4
+  /** Light added; for the sky its own. */
+  readonly light: Vec4
+}
+
 /**
  * Something in the sky besides air and sun: moon, stars, airglow. `atmosphere.add(layer)` shows it in
  * every node that draws this atmosphere's sky and haze.
@@ -52,6 +73,8 @@ export interface SkyLayer {
    * @param displacementView - From the camera to the point, in view space [world units].
    */
   haze?(view: ViewNodes, displacementView: Vec3): Vec4
+  /** Dims and lights a way, in front of the sky too, given what the air and the layers before do. */
+  veil?(line: Sightline, air: Veil): Veil
   /** Frees GPU memory. */
   dispose?(): void
 }

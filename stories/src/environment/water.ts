@@ -12,7 +12,6 @@ import {
   float
 } from 'three/tsl'
 import { MeshPhysicalNodeMaterial } from 'three/webgpu'
-import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
 
 const WAVES = 18

@@ -1,4 +1,5 @@
 import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { Sightline, Veil } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB, transmittanceRGB } from './color'
 import { scatteredRadiance } from './scattering'
@@ -10,6 +11,11 @@ export interface AerialPerspective {
   transmittance: Vec3
   /** Light added, linear sRGB × `luminanceScale`. */
   inScatter: Vec3
+}
+
+/** What the layers of the atmosphere make of the air's veil. */
+export function veiled(line: Sightline, air: Veil): Veil {
+  return line.view.atmosphere.layers.reduce((veil, layer) => layer.veil?.(line, veil) ?? veil, air)
 }
 
 /**
@@ -33,8 +39,10 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
     },
     scatteredRadiance(air.uniforms, between, cosViewSun).mul(view.source.irradiance)
   )
+  const line = { view, cosView, cosViewSun, distance, isSky: false }
+  const veil = veiled(line, { depth: between.depth, light })
   return {
-    transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp()),
-    inScatter: linearSRGB(air.uniforms, light)
+    transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),
+    inScatter: linearSRGB(air.uniforms, veil.light)
   }
 }
