@@ -2,6 +2,7 @@ import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
 import type { Atmosphere } from '@welkin/atmosphere'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
+import { timeEnvironment } from './environment'
 import { addSunAndMoon, benchScene, setSun, type Path } from './scene'
 import { median } from './statistics'
 
@@ -154,6 +155,7 @@ async function timeFirstFrame(): Promise<number> {
 
 const bake = await timeBake()
 const firstFrameMs = await timeFirstFrame()
+const environment = await timeEnvironment(device, [width, height], 10)
 const result = {
   device: device.name,
   cases,
@@ -162,12 +164,14 @@ const result = {
   bakeMaxFrameMs: bake.most,
   gpuBytes: bake.bytes,
   firstFrameMs,
+  environment,
   cpuMsPerFrame: median(cpuCosts)
 }
 log(`
 bake           ${bake.total.toFixed(2)} ms in all, ${bake.most.toFixed(2)} ms at most in a frame
 GPU memory     ${(bake.bytes / 1e6).toFixed(2)} MB
 first frame    ${firstFrameMs.toFixed(0)} ms at 320×180
+environment    ${environment.totalMs.toFixed(3)} ms in all, ${environment.mostMs.toFixed(3)} ms at most in a frame; CPU ${environment.submitMs.toFixed(2)} ms
 CPU            ${result.cpuMsPerFrame.toFixed(2)} ms a frame while the volume is updated`)
 if (values.json) console.log(JSON.stringify(result, null, 2))
 if (values.out !== undefined) writeFileSync(values.out, JSON.stringify(result, null, 2))

@@ -47,8 +47,8 @@ export class DistanceFog implements SkyLayer {
     this.#density.value = density > 0 ? density : 0
   }
 
-  veil({ view, cosView, cosViewSun, distance, isSky }: Sightline, air: Veil): Veil {
-    if (isSky) return air
+  veil({ view, cosView, cosViewSun, distance }: Sightline, air: Veil): Veil {
+    if (distance === undefined) return air
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.light).toVar()
     If(this.#density.greaterThan(0), () => {

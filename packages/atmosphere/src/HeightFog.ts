@@ -1,12 +1,15 @@
-import { Vector4 } from 'three'
+import { Vector3, Vector4 } from 'three'
 import { If, exp, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import type { LightSource } from './LightSource'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
 import { RADIANCE_SCALE } from './tableSizes'
 import { diffuseMoments } from './tsl/diffuseLight'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from './tsl/moments'
+import { rayLimits } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec4 } from './tsl-types'
 
@@ -22,6 +25,8 @@ export interface HeightFogOptions {
   albedo?: Spectrum
   /** g of the droplets' phase function, in [0, 0.95]. */
   asymmetry?: number
+  /** What lights it besides the sun: the moon's `source`. */
+  sources?: readonly LightSource[]
   /** Altitudes of the camera between which the fog fades away, rising [m]. */
   fade?: readonly [number, number]
 }
@@ -47,6 +52,7 @@ export class HeightFog implements SkyLayer {
   readonly #height = number(0)
   readonly #asymmetry = number(0)
   readonly #albedo = uniform(new Vector4()).setGroup(renderGroup)
+  readonly #lamps: readonly Lamp[]
   #options: Required<HeightFogOptions>
 
   /** @throws If an option is out of range. */
@@ -57,9 +63,15 @@ export class HeightFog implements SkyLayer {
       base: 0,
       albedo: [1, 1, 1, 1],
       asymmetry: 0.75,
+      sources: [],
       fade: [5000, 15_000],
       ...options
     })
+    this.#lamps = this.#options.sources.map(source => ({
+      source,
+      direction: uniform(new Vector3()).setGroup(renderGroup),
+      irradiance: uniform(new Vector4()).setGroup(renderGroup)
+    }))
   }
 
   /** As they are; change them with {@link set}. */
@@ -68,11 +80,11 @@ export class HeightFog implements SkyLayer {
   }
 
   /**
-   * Changes some options; nothing is compiled.
+   * Changes some options, of which `sources` are fixed; nothing is compiled.
    *
    * @throws If an option is out of range.
    */
-  set(options: HeightFogOptions): this {
+  set(options: Omit<HeightFogOptions, 'sources'>): this {
     this.#options = checked({ ...this.#options, ...options })
     return this
   }
@@ -87,45 +99,63 @@ export class HeightFog implements SkyLayer {
     this.#height.value = view.height - base
     this.#asymmetry.value = asymmetry
     this.#albedo.value.set(...albedo)
+    _position.setFromMatrixPosition(view.camera.matrixWorld)
+    for (const { source, direction, irradiance } of this.#lamps) {
+      source.direction(view.atmosphere, _direction, _position)
+      view.atmosphere.space.direction(_direction, direction.value)
+      irradiance.value.set(...source.irradianceAt(_position))
+    }
   }
 
   veil(line: Sightline, air: Veil): Veil {
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.light).toVar()
     If(this.#density.greaterThan(0), () => {
-      const radius = line.view.air.uniforms.bottomRadius.add(line.view.height).toConst() as Float
+      const { uniforms } = line.view.air
+      const limits = (): Float =>
+        rayLimits(uniforms, line.view.eye, line.cosView, line.hitsGround).length
+      const distance = line.distance ?? limits()
+      const radius = uniforms.bottomRadius.add(line.view.height).toConst() as Float
       const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
-      const fog = fogDepth(layer, this.#height, radius, line.cosView, line.distance)
+      const fog = fogDepth(layer, this.#height, radius, line.cosView, distance)
       const through = exp(fog.depth.negate()).toConst()
 
       // Where half of what shows of the fog is passed, on a line with these ends.
       const shown = fog.depth.min(1).mul(0.5)
       const here = this.#density.mul(fog.start.negate().exp()).max(1e-30).toConst()
-      const steepness = fog.start.sub(fog.end).div(line.distance).toConst()
+      const steepness = fog.start.sub(fog.end).div(distance.max(1e-3)).toConst()
       const growth = shown.mul(steepness).div(here).clamp(-0.99, 1e20).toConst()
       const logarithm = growth.add(1).log().div(growth)
       const isEven = growth.abs().lessThan(1e-3)
       const factor = isEven.select(growth.mul(-0.5).add(1), logarithm)
-      const reach = shown.div(here).mul(factor).min(line.distance).toConst()
+      const reach = shown.div(here).mul(factor).min(distance).toConst()
       const middle = fog.start.sub(steepness.mul(reach)).max(-20).toConst() as Float
 
       // Part of the air that is in front of the fog. Before the sky it is next to nothing.
-      const front = (line.isSky ? float(0) : reach.div(line.distance)).toConst()
+      const front = (line.distance === undefined ? float(0) : reach.div(line.distance)).toConst()
       const ahead = air.depth.mul(front).negate().exp()
-      const own = this.#light(line, radius, middle).mul(through.oneMinus()).mul(ahead)
+      const { eye, source } = line.view
+      const place = { line, radius, middle }
+      let own = this.#light(place, eye.cosSun, line.cosViewSun).mul(source.irradiance)
+      for (const { direction, irradiance } of this.#lamps) {
+        const cosLamp = line.view.up.dot(direction).clamp(-1, 1).toConst() as Float
+        const cosViewLamp = line.direction.dot(direction).clamp(-1, 1).toConst() as Float
+        own = own.add(this.#light(place, cosLamp, cosViewLamp).mul(irradiance))
+      }
+      own = own.mul(this.#albedo).mul(through.oneMinus()).mul(ahead)
       light.assign(air.light.mul(through.oneMinus().mul(front).add(through)).add(own))
       depth.addAssign(fog.depth)
     })
     return { depth: depth, light: light }
   }
 
-  /** Light that fog scatters towards the eye, for all of it at one altitude [1/sr]. */
-  #light({ view, cosView, cosViewSun }: Sightline, radius: Float, middle: Float): Vec4 {
-    const { air, eye, source } = view
+  /** Sunlight that fog scatters towards the eye, for all of it at one altitude [1/sr]. */
+  #light({ line, radius, middle }: FogPlace, cosSun: Float, cosViewSun: Float): Vec4 {
+    const { view, cosView } = line
+    const { air } = view
     const { uniforms } = air
     const rise = middle.mul(this.#falloff).sub(this.#height)
     const altitude = view.height.add(rise).clamp(0, uniforms.thickness).toConst() as Float
-    const cosSun = eye.cosSun
     // Depths by similarity: light that droplets deflect a little counts as not scattered.
     const vertical = this.#density.mul(this.#falloff).mul(this.#asymmetry.oneMinus()).toConst()
     const above = vertical.mul(middle.negate().exp()).toConst() as Float
@@ -139,9 +169,29 @@ export class HeightFog implements SkyLayer {
     const basis = momentBasis(cosView, cosSun, cosViewSun)
     const asymmetry = vec4(this.#asymmetry)
     const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry))
-    return sun.add(sky.max(0).div(RADIANCE_SCALE)).mul(this.#albedo).mul(source.irradiance)
+    return sun.add(sky.max(0).div(RADIANCE_SCALE))
   }
 }
+
+/** A source besides the sun, as seen from the camera. */
+interface Lamp {
+  source: LightSource
+  /** In the mapped space. */
+  direction: UniformNode<'vec3', Vector3>
+  irradiance: UniformNode<'vec4', Vector4>
+}
+
+/** Where on a line fog is lit. */
+interface FogPlace {
+  line: Sightline
+  /** Planet's centre to the eye [m]. */
+  radius: Float
+  /** Altitude above the base, in falloff heights. */
+  middle: Float
+}
+
+const _position = new Vector3()
+const _direction = new Vector3()
 
 const number = (value: number) => uniform(value).setGroup(renderGroup)
 

@@ -20,17 +20,12 @@ export interface SkyRay {
   readonly pixel: Float
 }
 
-/** A straight way from the eye, to a point or to the end of the air or the ground, as shader nodes. */
-export interface Sightline {
-  readonly view: ViewNodes
-  /** Against the zenith of the eye. */
-  readonly cosView: Float
-  /** Against the sun. */
-  readonly cosViewSun: Float
-  /** [m] */
-  readonly distance: Float
-  /** Whether it is the sky's, ground included, and not one to a point. */
-  readonly isSky: boolean
+/** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */
+export interface Sightline extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewSun'> {
+  /** To a point [m]; absent for the sky. */
+  readonly distance?: Float
+  /** For the sky: whether the planet is in the way. */
+  readonly hitsGround?: Bool
 }
 
 /** What all that is in the air does to light on a {@link Sightline}. */

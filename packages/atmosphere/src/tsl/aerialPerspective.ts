@@ -39,7 +39,7 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
     },
     scatteredRadiance(air.uniforms, between, cosViewSun).mul(view.source.irradiance)
   )
-  const line = { view, cosView, cosViewSun, distance, isSky: false }
+  const line = { view, direction, cosView, cosViewSun, distance }
   const veil = veiled(line, { depth: between.depth, light })
   return {
     transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),

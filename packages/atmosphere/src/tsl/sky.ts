@@ -6,7 +6,7 @@ import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
 import { scatteredRadiance } from './scattering'
 import { veiled } from './aerialPerspective'
-import { rayLimits, rayTargets, sampleSky, skyTransmittance } from './skyVolume'
+import { rayTargets, sampleSky, skyTransmittance } from './skyVolume'
 
 /**
  * Radiance of the sun's disc above the air, for unit irradiance [1/sr].
@@ -81,14 +81,8 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
     if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
     if (layer.glow !== undefined) radiance.addAssign(layer.glow(ray))
   }
-  let cover: Vec4 | null = null
-  if (layers.some(layer => layer.veil !== undefined)) {
-    const distance = rayLimits(uniforms, eye, cosView, hitsGround).length
-    const line = { view, cosView, cosViewSun, distance, isSky: true }
-    const veil = veiled(line, { depth: vec4(0), light: radiance })
-    radiance.assign(veil.light)
-    cover = veil.depth.negate().exp()
-  }
+  const veil = veiled(ray, { depth: vec4(0), light: radiance })
+  radiance.assign(veil.light)
   if (pixel !== null) {
     const reach = uniforms.sunAngularRadius.add(pixel).cos().sub(1e-6).toConst() as Float
     const isSomewhere = layers.some(layer => layer.beyond !== undefined)
@@ -97,8 +91,8 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
       : cosViewSun.greaterThan(reach).and(hitsGround.not())
     If(isThere, () => {
       const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
-      const light = lightBeyond(ray, reach, layers).mul(through)
-      radiance.addAssign(cover === null ? light : light.mul(cover))
+      const covered = through.mul(veil.depth.negate().exp())
+      radiance.addAssign(lightBeyond(ray, reach, layers).mul(covered))
     })
   }
   return linearSRGB(uniforms, radiance).min(BRIGHTEST)
