@@ -228,7 +228,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     material.blending = CustomBlending
     material.blendSrc = material.blendSrcAlpha = OneFactor
     material.blendDst = material.blendDstAlpha = OneMinusSrcAlphaFactor
-    material.premultipliedAlpha = true
+    // The colour is premultiplied already: three would do it again.
+    material.premultipliedAlpha = false
     material.fog = false
     material.lights = false
     material.fragmentNode = new ShellNode(this, shellColor(air, place, march))
