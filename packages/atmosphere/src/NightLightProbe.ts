@@ -3,17 +3,12 @@ import { Fn, normalView, renderGroup, uniform, vec4 } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import { NIGHT_ILLUMINANCE } from './cpu/twilight'
 import { ofLuminance } from './stars/starColor'
 import { linearSRGB } from './tsl/color'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 import { viewNodes } from './ViewNodes'
-
-/**
- * Illuminance of level ground in a clear night with no moon: by airglow 5e-4, by stars 2e-4, by the
- * Milky Way and what is too faint to be told apart 1.5e-4 [lx].
- */
-export const NIGHT_ILLUMINANCE = 8.5e-4
 
 /**
  * Light of the night sky on surfaces: what is left when sun and moon are down, so that nights are dark

@@ -4,9 +4,8 @@ import type { Atmosphere } from './Atmosphere'
 import { clampCosine } from './cpu/AtmosphereQuery'
 import { sampleDiffuseLight } from './cpu/diffuseLight'
 import { sunTransmittance } from './cpu/transmittance'
-import { almanacIlluminance } from './cpu/twilight'
+import { almanacIlluminance, NIGHT_ILLUMINANCE } from './cpu/twilight'
 import type { LightSource } from './LightSource'
-import { NIGHT_ILLUMINANCE } from './NightLightProbe'
 import { luminanceOf } from './stars/starColor'
 
 /** Options of {@link exposureFor}. */
@@ -32,7 +31,6 @@ const SCOTOPIC_POWER = 0.3
 /** Illuminance by the bare sun above the Earth's air [lx]. */
 const SUN_ILLUMINANCE = 132_000
 
-const _position = new Vector3()
 const _direction = new Vector3()
 
 /**
@@ -62,12 +60,18 @@ export function exposureOfIlluminance(illuminance: number): number {
 }
 
 /** Illuminance of level ground by a source at a zenith angle [lx]. */
-function groundIlluminance(atmosphere: Atmosphere, source: LightSource, cosSun: number): number {
+function groundIlluminance(
+  atmosphere: Atmosphere,
+  source: LightSource,
+  position: Vector3,
+  cosSun: number
+): number {
   const { parameters, tables } = atmosphere
-  const irradiance = source.irradiance.value.toArray()
+  const irradiance = source.irradianceAt(position)
   if (tables.data === null) {
     const elevation = Math.asin(clampCosine(cosSun)) * (180 / Math.PI)
-    return almanacIlluminance(elevation) * (luminanceOf(parameters, irradiance) / SUN_ILLUMINANCE)
+    const bySun = almanacIlluminance(elevation) - almanacIlluminance(-90)
+    return bySun * (luminanceOf(parameters, irradiance) / SUN_ILLUMINANCE)
   }
   const direct = sunTransmittance(parameters, parameters.bottomRadius, cosSun)
   const diffuse = sampleDiffuseLight(tables.data, 0, cosSun)[6]
@@ -108,14 +112,19 @@ export function exposureFor(
     throw new Error(`exposureFor: floor must be positive and finite, got ${floor}`)
   }
   const { space, parameters } = atmosphere
-  const up = space.position(_position.setFromMatrixPosition(camera.matrixWorld), new Vector3())
+  const position = new Vector3().setFromMatrixPosition(camera.matrixWorld)
+  const up = space.position(position, new Vector3())
   const radius = Math.max(up.length(), parameters.bottomRadius)
   up.normalize()
   const reach = Math.acos(parameters.bottomRadius / radius) / 2
   const illuminances = [atmosphere.sun, ...sources].map(source => {
-    const direction = space.direction(source.direction(atmosphere, _direction), new Vector3())
+    const direction = space.direction(
+      source.direction(atmosphere, _direction, position),
+      new Vector3()
+    )
     const zenithAngle = Math.acos(clampCosine(up.dot(direction)))
-    return groundIlluminance(atmosphere, source, Math.cos(Math.max(zenithAngle - reach, 0)))
+    const cosSun = Math.cos(Math.max(zenithAngle - reach, 0))
+    return groundIlluminance(atmosphere, source, position, cosSun)
   })
   return exposureOfIlluminance(illuminances.reduce((sum, value) => sum + value, floor))
 }

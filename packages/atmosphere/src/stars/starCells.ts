@@ -4,7 +4,7 @@ import type { Star } from './starCode'
 export const CELLS = 32
 
 /** Cells that a star may shine into from outside of them are within this angle of it [rad]. */
-export const STAR_REACH = 0.014
+export const STAR_REACH = 0.024
 
 /** Columns of the texture that the cells and their stars are kept in. */
 export const CELL_COLUMNS = 256

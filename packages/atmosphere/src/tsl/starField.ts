@@ -52,7 +52,8 @@ export function starField(
 ): Vec4 {
   const texel = (index: Int): Vec4 =>
     textureLoad(cells, ivec2(index.mod(CELL_COLUMNS), index.div(CELL_COLUMNS)))
-  const widest = STAR_REACH / EXTENT
+  // Pixels of more than 0.75° get a narrower star, which then falls between them at times.
+  const widest = STAR_REACH / 3
   const sigma = pixel
     .mul(SPREAD / Math.SQRT2)
     .clamp(1e-6, widest)
