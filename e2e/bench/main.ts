@@ -3,7 +3,7 @@ import { parseArgs } from 'node:util'
 import type { Atmosphere } from '@welkin/atmosphere'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
 import { timeEnvironment } from './environment'
-import { addSunAndMoon, benchScene, setSun, type Path } from './scene'
+import { addSunMoonAndStars, benchScene, setSun, type Path } from './scene'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -90,22 +90,22 @@ for (const path of PATHS) {
   }
 }
 
-/** What sun and moon cost, by day and in a night that the full moon lights. */
+/** What sun, moon and stars cost, by day and in a night that the full moon lights. */
 interface SkyCost {
   path: Path
   elevation: number
-  sunAndMoonMs: number
+  decoratedMs: number
 }
 
 const skyCosts: SkyCost[] = []
 for (const path of PATHS) {
   for (const elevation of [40, -40]) {
     const bare = await time(path, 2, true, false, { elevation })
-    const full = await time(path, 2, true, false, { elevation, decorate: addSunAndMoon })
-    const sunAndMoonMs = full.gpu - bare.gpu
-    skyCosts.push({ path, elevation, sunAndMoonMs })
+    const full = await time(path, 2, true, false, { elevation, decorate: addSunMoonAndStars })
+    const decoratedMs = full.gpu - bare.gpu
+    skyCosts.push({ path, elevation, decoratedMs })
     log(
-      `${path.padEnd(8)} sun at ${String(elevation).padStart(3)}°   sun and moon ${sunAndMoonMs.toFixed(3)} ms`
+      `${path.padEnd(8)} sun at ${String(elevation).padStart(3)}°   sun, moon, stars ${decoratedMs.toFixed(3)} ms`
     )
   }
 }

@@ -14,8 +14,11 @@ import {
   Atmosphere,
   aerialPerspective,
   aerialPerspectiveFog,
+  airglow,
+  milkyWay,
   moon,
   skyBackground,
+  stars,
   sunFlare
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
@@ -124,7 +127,7 @@ export function setSun(atmosphere: Atmosphere, camera: PerspectiveCamera, elevat
     .addScaledVector(east.addScaledVector(north, 0.5).normalize(), Math.cos(angle))
 }
 
-/** Sun with its flare, and the full moon. */
-export function addSunAndMoon(atmosphere: Atmosphere): void {
-  atmosphere.add(sunFlare(atmosphere), moon(atmosphere))
+/** Sun with its flare, the Milky Way, 5,044 stars, the full moon and airglow. */
+export function addSunMoonAndStars(atmosphere: Atmosphere): void {
+  atmosphere.add(sunFlare(atmosphere), milkyWay(), stars(), moon(atmosphere), airglow())
 }

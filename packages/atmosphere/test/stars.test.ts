@@ -90,12 +90,12 @@ describe('star catalogue', () => {
   })
 
   it('has the brightest stars with the magnitude that is published', () => {
-    for (const [name, star] of Object.entries(PUBLISHED)) {
-      const { ascension, declination } = place(star, new Date(Date.UTC(2000, 0, 1, 12)))
-      const found = nearest(ascension, declination)
-      expect(found, name).toBeDefined()
-      expect(Math.abs(found.magnitude - star[8]), name).toBeLessThan(0.03)
-    }
+    const epoch = new Date(Date.UTC(2000, 0, 1, 12))
+    const off = Object.entries(PUBLISHED).map(([name, star]) => {
+      const { ascension, declination } = place(star, epoch)
+      return [name, Math.abs(nearest(ascension, declination).magnitude - star[8])] as const
+    })
+    expect(off.filter(([, magnitudes]) => !(magnitudes < 0.03))).toEqual([])
   })
 
   it('reads what was written', () => {
@@ -250,17 +250,21 @@ describe('star cells', () => {
 
   it('list every star that can shine into them', () => {
     const packed = catalogue.map(star => [...starDirection(star), packStar(star)].map(Math.fround))
+    expect(packed).toHaveLength(5044)
     fc.assert(
       fc.property(number(-1, 1), number(0, 2 * Math.PI), (z, angle) => {
         const level = Math.sqrt(1 - z * z)
         const v = new Vector3(level * Math.cos(angle), level * Math.sin(angle), z)
         const [first, count] = texels.subarray(4 * cellOf(v))
-        const listed = Array.from({ length: count }, (_, i) =>
-          texels.slice(4 * (first + i), 4 * (first + i) + 4).join()
+        const listed = new Set(
+          Array.from({ length: count }, (_, i) =>
+            texels.slice(4 * (first + i), 4 * (first + i) + 4).join()
+          )
         )
-        catalogue.forEach((star, i) => {
-          if (directionOf(star).angleTo(v) < STAR_REACH) expect(listed).toContain(packed[i].join())
-        })
+        const missing = catalogue.filter(
+          (star, i) => directionOf(star).angleTo(v) < STAR_REACH && !listed.has(packed[i].join())
+        )
+        expect(missing).toEqual([])
       }),
       { ...runs, numRuns: 100 }
     )
