@@ -24,8 +24,8 @@ function imageryDirectory(): string {
 const EARTH_PICTURES = ['earth-blue-marble.jpg', 'earth-water.png', 'earth-night.jpg']
 
 function earthDirectory(): string {
-  const globe = dirname(createRequire(import.meta.url).resolve('three-globe/package.json'))
-  return join(globe, 'example/img')
+  const entry = createRequire(import.meta.url).resolve('three-globe')
+  return join(dirname(dirname(entry)), 'example/img')
 }
 
 function filesUnder(directory: string): string[] {
