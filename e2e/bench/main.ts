@@ -4,6 +4,7 @@ import type { Atmosphere } from '@welkin/atmosphere'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
 import { timeEnvironment } from './environment'
 import { addSunMoonAndStars, benchScene, setSun, type Path } from './scene'
+import { timeShells } from './shell'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -110,6 +111,13 @@ for (const path of PATHS) {
   }
 }
 
+const shells = await timeShells(device, [width, height], frames)
+for (const { model, outsideMs, insideMs } of shells) {
+  log(
+    `shell, ${model.padEnd(18)} outside ${outsideMs.toFixed(3)} ms   inside ${insideMs.toFixed(3)} ms`
+  )
+}
+
 /** GPU time of a bake, one step a frame: in all, and the most in a frame. */
 async function timeBake(): Promise<{ total: number; most: number; bytes: number }> {
   const runs: { total: number; most: number; bytes: number }[] = []
@@ -159,6 +167,7 @@ const environment = await timeEnvironment(device, [width, height], 10)
 const result = {
   device: device.name,
   cases,
+  shells,
   skyCosts,
   bakeMs: bake.total,
   bakeMaxFrameMs: bake.most,
