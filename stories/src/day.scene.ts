@@ -47,7 +47,7 @@ export async function createDay(
   const camera = new PerspectiveCamera(65, 1, 0.1, 30_000)
   camera.position.set(-14, 2.5, 0)
   const controls = new OrbitControls(camera, args.frame ? null : canvas)
-  controls.target.set(0, 6, 0)
+  controls.target.set(0, 6.35, 0)
   controls.update()
   const current = { ...args }
 

@@ -34,7 +34,7 @@ const meta: Meta<OrbitArgs> = {
     altitude: 410,
     angle: 190,
     fieldOfView: 50,
-    exposure: 0,
+    exposure: -1.5,
     forceWebGL: false,
     path: 'forward',
     frame: false
@@ -49,4 +49,4 @@ type Story = StoryObj<OrbitArgs>
 export const Night: Story = { tags: ['screenshot'] }
 
 /** The sun is about to rise ahead. */
-export const Dawn: Story = { args: { angle: 248, exposure: -4 }, tags: ['screenshot'] }
+export const Dawn: Story = { args: { angle: 248, exposure: -6 }, tags: ['screenshot'] }

@@ -5,6 +5,7 @@ import type { AtmosphereView } from './AtmosphereView'
 import type { SkyLayer, SkyRay } from './SkyLayer'
 import { ofLuminance } from './stars/starColor'
 import { glowGains } from './tsl/airglow'
+import { skyTransmittance } from './tsl/skyVolume'
 import type { Float, Vec3, Vec4 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 
@@ -21,13 +22,19 @@ export interface AirglowOptions {
 }
 
 /** The green line of oxygen at 557.7 nm, the sodium lines at 589 nm, and a continuum. */
-const GREENISH: Spectrum = [0.7, 1, 1.12, 0.72]
+const GREENISH: Spectrum = [0.76, 1.06, 1.05, 0.68]
 
 /**
  * Irradiance of a level plane over π times the radiance straight through the layer, with no air:
  * 2 (1 − √(1 − a))/a, a = (R/(R + 96 km))² of the Earth.
  */
 const DOME = 1.71
+
+/**
+ * Radiance in the air of light that it scattered from the layer, over that straight through the layer:
+ * the mean over all directions of a dome that is {@link DOME} times as bright, and of dark ground.
+ */
+const SCATTERED = DOME / 2
 
 /**
  * Airglow: the upper air's own light. From the ground a faint even light that brightens towards the
@@ -39,8 +46,9 @@ const DOME = 1.71
  *
  * A Gaussian layer at 96 km with a standard deviation of 4 km. By default 1e-4 cd/m² at the zenith
  * (22.6 magnitudes per square second of arc), as in years of a quiet sun; together with stars and the
- * Milky Way's faint light a moonless sky has about 22. The air below dims the layer; that it also
- * scatters its light is left out. Add it last: it is nearer than anything else in the sky.
+ * Milky Way's faint light a moonless sky has about 22. The air below dims the layer and scatters its
+ * light, by an estimate that takes light from all of the sky for even. Add it last: it is nearer than
+ * anything else in the sky.
  */
 export class Airglow implements SkyLayer {
   readonly isAdditive = true
@@ -91,11 +99,14 @@ export class Airglow implements SkyLayer {
     return farther.add(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
   }
 
-  /** The layer in front of that air, from above, and the ground that reflects it. */
+  /** The layer in front of that air, from above; its light scattered in the air, and the ground in it. */
   glow({ view, cosView, hitsGround }: SkyRay): Vec4 {
     const { down } = this.#gains(view, cosView, null)
-    const reflected = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
-    return vec4(this.#radiance.mul(reflected.add(down)))
+    const { uniforms } = view.air
+    const through = skyTransmittance(uniforms, view.volume, view.eye, cosView, hitsGround).toConst()
+    const ground = uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
+    const air = through.oneMinus().mul(SCATTERED)
+    return vec4(this.#radiance.mul(ground.mul(through).add(air).add(down)))
   }
 
   haze(view: ViewNodes, displacementView: Vec3): Vec4 {
