@@ -59,7 +59,10 @@ type Story = StoryObj<FogValleyArgs>
 export const Sunrise: Story = { tags: ['screenshot'] }
 
 /** In the middle of it. */
-export const Inside: Story = { args: { view: 'floor', hour: 12.5 }, tags: ['screenshot'] }
+export const Inside: Story = {
+  args: { view: 'floor', base: 342, density: 8, falloff: 25, hour: 12.5 },
+  tags: ['screenshot']
+}
 
 /** The same by the post effect. */
 export const Post: Story = { args: { path: 'post' }, tags: ['screenshot'] }

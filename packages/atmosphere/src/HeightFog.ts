@@ -1,5 +1,5 @@
 import { Vector3, Vector4 } from 'three'
-import { If, exp, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, exp, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
@@ -9,7 +9,8 @@ import { RADIANCE_SCALE } from './tableSizes'
 import { diffuseMoments } from './tsl/diffuseLight'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from './tsl/moments'
-import { rayLimits } from './tsl/skyVolume'
+import { scatteredRadiance } from './tsl/scattering'
+import { rayLimits, sampleVolume } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec4 } from './tsl-types'
 
@@ -112,38 +113,43 @@ export class HeightFog implements SkyLayer {
     const light = vec4(air.light).toVar()
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = line.view.air
-      const limits = (): Float =>
-        rayLimits(uniforms, line.view.eye, line.cosView, line.hitsGround).length
-      const distance = line.distance ?? limits()
+      const { eye, source } = line.view
+      const limits = rayLimits(uniforms, eye, line.cosView, line.hitsGround)
+      const distance = line.distance ?? limits.length
       const radius = uniforms.bottomRadius.add(line.view.height).toConst() as Float
       const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
       const fog = fogDepth(layer, this.#height, radius, line.cosView, distance)
       const through = exp(fog.depth.negate()).toConst()
 
-      // Where half of what shows of the fog is passed, on a line with these ends.
+      // Where half of what shows of the fog is passed, for an altitude that changes evenly.
       const shown = fog.depth.min(1).mul(0.5)
-      const here = this.#density.mul(fog.start.negate().exp()).max(1e-30).toConst()
-      const steepness = fog.start.sub(fog.end).div(distance.max(1e-3)).toConst()
-      const growth = shown.mul(steepness).div(here).clamp(-0.99, 1e20).toConst()
-      const logarithm = growth.add(1).log().div(growth)
+      const near = fog.start.min(HIGH).toConst()
+      const here = this.#density.mul(near.negate().exp()).max(1e-30).toConst()
+      const growth = shown.mul(fog.fall).div(here).clamp(-0.99, 1e20).toConst()
       const isEven = growth.abs().lessThan(1e-3)
-      const factor = isEven.select(growth.mul(-0.5).add(1), logarithm)
-      const reach = shown.div(here).mul(factor).min(distance).toConst()
-      const middle = fog.start.sub(steepness.mul(reach)).max(-20).toConst() as Float
+      const factor = isEven.select(growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
+      const inFog = shown.div(here).mul(factor).toConst()
+      const above = fog.start.sub(near).div(fog.fall.max(1e-7))
+      const reach = inFog.add(above).clamp(0, distance).toConst() as Float
+      const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, HIGH).toConst() as Float
 
-      // Part of the air that is in front of the fog. Before the sky it is next to nothing.
-      const front = (line.distance === undefined ? float(0) : reach.div(line.distance)).toConst()
-      const ahead = air.depth.mul(front).negate().exp()
-      const { eye, source } = line.view
+      // The air in front of that and its light; fog dims the rest.
+      const { volume } = line.view
+      const { cosView, cosViewSun } = line
+      const ahead = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, reach)
+      const front = scatteredRadiance(uniforms, ahead, cosViewSun)
+        .mul(source.irradiance)
+        .min(air.light)
+        .toConst()
       const place = { line, radius, middle }
-      let own = this.#light(place, eye.cosSun, line.cosViewSun).mul(source.irradiance)
+      let own = this.#light(place, eye.cosSun, cosViewSun).mul(source.irradiance)
       for (const { direction, irradiance } of this.#lamps) {
         const cosLamp = line.view.up.dot(direction).clamp(-1, 1).toConst() as Float
         const cosViewLamp = line.direction.dot(direction).clamp(-1, 1).toConst() as Float
         own = own.add(this.#light(place, cosLamp, cosViewLamp).mul(irradiance))
       }
-      own = own.mul(this.#albedo).mul(through.oneMinus()).mul(ahead)
-      light.assign(air.light.mul(through.oneMinus().mul(front).add(through)).add(own))
+      own = own.mul(this.#albedo).mul(through.oneMinus()).mul(ahead.depth.negate().exp())
+      light.assign(air.light.sub(front).mul(through).add(front).add(own))
       depth.addAssign(fog.depth)
     })
     return { depth: depth, light: light }
@@ -189,6 +195,9 @@ interface FogPlace {
   /** Altitude above the base, in falloff heights. */
   middle: Float
 }
+
+/** Altitude in falloff heights above which there is as good as no fog. */
+const HIGH = 40
 
 const _position = new Vector3()
 const _direction = new Vector3()

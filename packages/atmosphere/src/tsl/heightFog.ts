@@ -41,9 +41,10 @@ export function airMass(scale: Float, cosView: Float): Float {
 export interface FogDepth {
   /** Optical depth. */
   depth: Float
-  /** Altitude of both ends above the base, in falloff heights. */
+  /** Altitude of the start above the base, in falloff heights. */
   start: Float
-  end: Float
+  /** How fast the ray sinks on its way into the fog, in falloff heights per metre; negative if it rises. */
+  fall: Float
 }
 
 /**
@@ -71,16 +72,16 @@ export function fogDepth(
   const rise = along.mul(2).add(distance).mul(distance).toConst()
   const radiusThere = radius.mul(radius).add(rise).max(1).sqrt().toConst()
   const cosThere = along.add(distance).div(radiusThere).clamp(-1, 1).toConst() as Float
-  const start = exponent(height)
-  const end = exponent(height.add(rise.div(radiusThere.add(radius))))
-  const [here, there] = [start.negate().exp().toConst(), end.negate().exp().toConst()]
+  const gain = rise.div(radiusThere.add(radius)).toConst()
+  const here = exponent(height).negate().exp().toConst()
+  const there = exponent(height.add(gain)).negate().exp().toConst()
   const outward = here.mul(airMass(radius.div(falloff), cosView.abs())).toConst()
   const beyond = there.mul(airMass(radiusThere.div(falloff), cosThere.abs())).toConst()
 
   const sinks = cosView.lessThan(0).toConst()
   const turns = sinks.and(cosThere.greaterThan(0)).toConst() as Bool
   const lowestRadius = radius.mul(cosView.mul(cosView).oneMinus().max(0).sqrt()).toConst()
-  const drop = along.mul(along).div(lowestRadius.add(radius))
+  const drop = along.mul(along).div(lowestRadius.add(radius)).toConst()
   const lowest = exponent(height.sub(drop)).negate().exp().toConst()
   const chord = lowest
     .mul(
@@ -97,7 +98,12 @@ export function fogDepth(
   const least = here.min(there).mul(distance)
   const most = turns.select(lowest, here.max(there)).mul(distance)
   const depth = between.mul(falloff).clamp(least, most).mul(density)
-  return { depth: depth.toConst(), start, end }
+  const sinking = turns.select(drop.div(along.min(-1)), gain.div(distance.max(1e-3))).negate()
+  return {
+    depth: depth.toConst(),
+    start: height.div(falloff).toConst(),
+    fall: sinks.select(sinking, cosView.negate()).div(falloff).toConst()
+  }
 }
 
 /**
