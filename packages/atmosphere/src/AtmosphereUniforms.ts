@@ -46,27 +46,17 @@ export class AtmosphereUniforms {
    * @param luminanceScale - Output per luminance [1/(cd/m²)].
    */
   update(parameters: AtmosphereParameters, luminanceScale: number): void {
-    const set = (node: UniformNode<'vec4', Vector4>, value: Spectrum): void => {
-      node.value.set(...value)
+    for (const [name, node] of Object.entries(this)) {
+      const value = parameters[name as keyof AtmosphereParameters]
+      if (typeof value === 'number') node.value = value
+      else if (value !== undefined) node.value.set(...(value as Spectrum))
     }
-    this.bottomRadius.value = parameters.bottomRadius
     this.thickness.value = parameters.topRadius - parameters.bottomRadius
-    set(this.rayleighScattering, parameters.rayleighScattering)
-    this.rayleighScaleHeight.value = parameters.rayleighScaleHeight
-    set(this.mieScattering, parameters.mieScattering)
-    set(this.mieExtinction, parameters.mieExtinction)
-    this.mieScaleHeight.value = parameters.mieScaleHeight
-    this.mieAsymmetry.value = parameters.mieAsymmetry
-    this.miePhaseFactor.value = cornetteShanksFactor(parameters.mieAsymmetry)
-    const [, moment1, moment2] = asymmetryMoments(parameters.mieAsymmetry)
+    const { mieAsymmetry } = parameters
+    this.miePhaseFactor.value = cornetteShanksFactor(mieAsymmetry)
+    const [, moment1, moment2] = asymmetryMoments(mieAsymmetry)
     this.mieMoment1.value = moment1
     this.mieMoment2.value = moment2
-    set(this.absorptionExtinction, parameters.absorptionExtinction)
-    this.absorptionAltitude.value = parameters.absorptionAltitude
-    this.absorptionHalfWidth.value = parameters.absorptionHalfWidth
-    set(this.groundAlbedo, parameters.groundAlbedo)
-    this.sunAngularRadius.value = parameters.sunAngularRadius
-    set(this.limbDarkening, parameters.limbDarkening)
     linearSRGBColumns(parameters, luminanceScale).forEach((column, i) => {
       this.linearSRGB[i].value.set(...column)
     })
