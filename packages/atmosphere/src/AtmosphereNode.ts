@@ -2,7 +2,7 @@ import type { Camera } from 'three'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
-import { viewNodes, type ViewNodes } from './ViewNodes'
+import { checkAtmosphere, viewNodes, type ViewNodes } from './ViewNodes'
 
 /** Base of nodes that look at an atmosphere: they see to it that what they read is up to date. */
 export abstract class AtmosphereNode extends Node<'vec4'> {
@@ -16,11 +16,8 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
    */
   constructor(atmosphere: Atmosphere, camera: Camera | null = null) {
     super('vec4')
-    if (!atmosphere?.isAtmosphere) {
-      // The static type, not the constructor's name: minifiers keep it.
-      const { type } = new.target as unknown as { type: string }
-      throw new Error(`${type}: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
+    // The static type, not the constructor's name: minifiers keep it.
+    checkAtmosphere((new.target as unknown as { type: string }).type, atmosphere)
     this.atmosphere = atmosphere
     this.view = viewNodes(atmosphere, camera)
     this.updateBeforeType = NodeUpdateType.RENDER

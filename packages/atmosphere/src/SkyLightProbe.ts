@@ -7,7 +7,7 @@ import { linearSRGB } from './tsl/color'
 import { skyIrradiance } from './tsl/skyIrradiance'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
-import { viewNodes } from './ViewNodes'
+import { checkAtmosphere, viewNodes } from './ViewNodes'
 
 /**
  * Light of sky and ground: a light probe whose irradiance is looked up per fragment, at the
@@ -21,9 +21,7 @@ export class SkyLightProbe extends LightProbe {
 
   constructor(atmosphere: Atmosphere) {
     super()
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
+    checkAtmosphere('SkyLightProbe', atmosphere)
     this.atmosphere = atmosphere
   }
 
