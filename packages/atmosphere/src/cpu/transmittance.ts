@@ -67,36 +67,38 @@ function depthToSpace(p: AtmosphereParameters, radius: number, cosView: number):
 const HIGH_SUN = 36
 
 /**
- * Optical depth from a point to the sun: −ln of the transmittance's mean over the part of the disc
- * that is above the horizon, ∫ T(cos θ) sin² θ dθ / ∫ sin² θ dθ with cos θ the height on the disc.
+ * Mean transmittance to the part of the sun's disc that is above the horizon, one value per
+ * wavelength: ∫ T(cos θ) sin² θ dθ / ∫ sin² θ dθ with cos θ the height on the disc.
  *
  * From 36 of its radii above the horizon (9.6° for the Earth's sun) that of the centre: they differ by
  * less than 0.02 %.
  *
  * @param radius - Planet's centre to the point [m]; outside the air as well.
  * @param cosSun - μ_s.
- * @returns One value per wavelength.
  */
-export function sunDepth(p: AtmosphereParameters, radius: number, cosSun: number): number[] {
+export function discTransmittance(
+  p: AtmosphereParameters,
+  radius: number,
+  cosSun: number
+): number[] {
   const horizon = Math.PI - Math.asin(Math.min(p.bottomRadius / radius, 1))
   const elevation = (horizon - Math.acos(cosSun)) / p.sunAngularRadius
-  if (elevation > HIGH_SUN) return depthToSpace(p, radius, cosSun)
+  const sum = [0, 0, 0, 0]
+  let area = 0
+  const add = (height: number, weight: number): void => {
+    const above = Math.max(elevation + height, 0)
+    const depth = depthToSpace(p, radius, Math.cos(horizon - p.sunAngularRadius * above))
+    depth.forEach((value, i) => (sum[i] += weight * Math.exp(-value)))
+    area += weight
+  }
   const last = Math.acos(Math.max(-elevation, -1))
-  const parts = RULE.nodes.map((node, i) => {
-    const height = Math.max(elevation + Math.cos(last * node), 0)
-    const depth = depthToSpace(p, radius, Math.cos(horizon - p.sunAngularRadius * height))
-    return { depth, weight: RULE.weights[i] * Math.sin(last * node) ** 2 }
-  })
-  const total = parts.reduce((sum, { weight }) => sum + weight, 0)
-  return [0, 1, 2, 3].map(i => {
-    // Relative to the least, so that thick air does not underflow.
-    const least = Math.min(...parts.map(({ depth }) => depth[i]))
-    const light = parts.reduce(
-      (sum, { depth, weight }) => sum + weight * Math.exp(least - depth[i]),
-      0
+  if (elevation > HIGH_SUN) add(0, 1)
+  else {
+    RULE.nodes.forEach((node, i) =>
+      add(Math.cos(last * node), RULE.weights[i] * Math.sin(last * node) ** 2)
     )
-    return least - Math.log(light / total)
-  })
+  }
+  return sum.map(value => value / area)
 }
 
 /**
@@ -113,5 +115,5 @@ export function sunTransmittance(
 ): number[] {
   const visible = visibleSun(p, radius, cosSun)
   if (visible === 0) return [0, 0, 0, 0]
-  return sunDepth(p, radius, cosSun).map(value => visible * Math.exp(-value))
+  return discTransmittance(p, radius, cosSun).map(value => visible * value)
 }

@@ -1,11 +1,5 @@
 import { Fn } from 'three/tsl'
-import type { Float } from '../tsl-types'
-
-const layout = (name: string, ...inputs: string[]) => ({
-  name,
-  type: 'float' as const,
-  inputs: inputs.map(input => ({ name: input, type: 'float' as const }))
-})
+import { layout, type Float } from '../tsl-types'
 
 /**
  * Distance along a ray, from inside the air to its top boundary.

@@ -1,6 +1,6 @@
 import { Fn, float } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import type { Float } from '../tsl-types'
+import { layout, type Float } from '../tsl-types'
 
 /**
  * Phase function of molecules [1/sr].
@@ -22,11 +22,7 @@ const cornetteShanks = /*#__PURE__*/ Fn(
       .mul(cosViewSun.mul(cosViewSun).add(float(1)))
       .div(squaredChord.mul(squaredChord.sqrt()))
   },
-  {
-    name: 'cornetteShanks',
-    type: 'float',
-    inputs: ['cosViewSun', 'asymmetry', 'factor'].map(name => ({ name, type: 'float' as const }))
-  }
+  layout('cornetteShanks', 'cosViewSun', 'asymmetry', 'factor')
 )
 
 /**

@@ -17,6 +17,11 @@ function horizonDistance({ bottomRadius }: AtmosphereUniforms, altitude: Float):
   return altitude.mul(bottomRadius.mul(2).add(altitude)).max(0).sqrt()
 }
 
+/** Cosine of the zenith angle of the horizon, ≤ 0. */
+export function horizonCosine(uniforms: AtmosphereUniforms, altitude: Float): Float {
+  return horizonDistance(uniforms, altitude).div(uniforms.bottomRadius.add(altitude)).negate()
+}
+
 /**
  * Where in the table a ray to the top of the air is kept. Texels crowd at the horizon.
  *
@@ -99,10 +104,9 @@ export function sunTransmittance(
   altitude: Float,
   cosSun: Float
 ): Vec4 {
-  const radius = uniforms.bottomRadius.add(altitude).toConst()
-  const sinHorizon = uniforms.bottomRadius.div(radius).toConst()
-  const cosHorizon = horizonDistance(uniforms, altitude).div(radius).negate().toConst()
-  const margin = sinHorizon.mul(uniforms.sunAngularRadius)
+  const { bottomRadius, sunAngularRadius } = uniforms
+  const cosHorizon = horizonCosine(uniforms, altitude).toConst()
+  const margin = bottomRadius.div(bottomRadius.add(altitude)).mul(sunAngularRadius).toConst()
   const visible = smoothstep(margin.negate(), margin, cosSun.sub(cosHorizon))
   const uv = transmittanceUV(uniforms, altitude, cosSun.max(cosHorizon))
   return sampleLevel0(table, uv).negate().exp().mul(visible)
