@@ -27,6 +27,9 @@ const { values, positionals } = parseArgs({
   }
 })
 const backends = (values.backend?.split(',') ?? ['webgpu', 'webgl']) as Backend[]
+if (values.update && backends[0] !== 'webgpu') {
+  throw new Error('--update needs webgpu first: its pictures are what webgl is held to')
+}
 
 const storiesFolder = fileURLToPath(new URL('../../stories/src', import.meta.url))
 const baselineFolder = fileURLToPath(new URL('baselines', import.meta.url))
