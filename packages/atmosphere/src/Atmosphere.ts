@@ -70,16 +70,19 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   readonly #space = new SphericalSpace()
 
   /** @throws If an option is of the wrong kind. */
-  constructor({ parameters, ellipsoid }: AtmosphereOptions = {}) {
+  constructor({
+    parameters = new AtmosphereParameters(),
+    ellipsoid = Ellipsoid.WGS84
+  }: AtmosphereOptions = {}) {
     super()
-    if (parameters !== undefined && !(parameters instanceof AtmosphereParameters)) {
+    if (!(parameters instanceof AtmosphereParameters)) {
       fail('Atmosphere', 'parameters must be AtmosphereParameters', parameters)
     }
-    if (ellipsoid !== undefined && !(ellipsoid instanceof Ellipsoid)) {
+    if (!(ellipsoid instanceof Ellipsoid)) {
       fail('Atmosphere', 'ellipsoid must be an Ellipsoid', ellipsoid)
     }
-    this.parameters = parameters ?? new AtmosphereParameters()
-    this.ellipsoid = ellipsoid ?? Ellipsoid.WGS84
+    this.parameters = parameters
+    this.ellipsoid = ellipsoid
     this.#updateFrame()
   }
 

@@ -16,13 +16,6 @@ export type Mat4 = Node<'mat4'> & {
   element(column: number): Vec4 & { element(row: number): Float }
 }
 
-/** Layout of a `Fn` of floats. */
-export const layout = (name: string, ...inputs: string[]) => ({
-  name,
-  type: 'float' as const,
-  inputs: inputs.map(input => ({ name: input, type: 'float' as const }))
-})
-
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {
   const nodes = threeLoop as unknown as (

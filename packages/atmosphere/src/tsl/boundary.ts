@@ -1,5 +1,12 @@
 import { Fn } from 'three/tsl'
-import { layout, type Float } from '../tsl-types'
+import type { Float } from '../tsl-types'
+
+/** Layout of a `Fn` of floats. */
+const layout = (name: string, ...inputs: string[]) => ({
+  name,
+  type: 'float' as const,
+  inputs: inputs.map(input => ({ name: input, type: 'float' as const }))
+})
 
 /**
  * Distance along a ray, from inside the air to its top boundary.

@@ -38,16 +38,11 @@ export function diffuseLightReader(
   altitude: Float,
   cosSun: Float
 ): (tile: number) => Vec4 {
-  const uv = vec2(
-    sunColumn(cosSun)
-      .mul(COLUMNS - 1)
-      .add(0.5)
-      .div(COLUMNS * DIFFUSE_TILES),
-    altitudeRow(uniforms, altitude)
-      .mul(ROWS - 1)
-      .add(0.5)
-      .div(ROWS)
-  ).toConst()
+  const uv = vec2(sunColumn(cosSun), altitudeRow(uniforms, altitude))
+    .mul(vec2(COLUMNS - 1, ROWS - 1))
+    .add(0.5)
+    .div(vec2(COLUMNS * DIFFUSE_TILES, ROWS))
+    .toConst()
   return tile => sampleLevel0(table, tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0)))
 }
 
