@@ -1,9 +1,10 @@
 import { LightProbe } from 'three'
-import { Fn, normalView, positionView } from 'three/tsl'
+import { Fn, normalView } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import { linearSRGB } from './tsl/color'
+import { coveredPosition } from './tsl/coveredPosition'
 import { skyIrradiance } from './tsl/skyIrradiance'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
@@ -57,7 +58,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
   override setup(builder: NodeBuilder): undefined {
     const irradiance = Fn(() => {
       const { air } = this.#view
-      const offset = this.#view.toMapped(positionView).toConst()
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
       const { altitude, cosSun, up } = this.#view.place(offset)
       const normal = this.#view.toMapped(normalView).normalize().toConst()
       const received = skyIrradiance(

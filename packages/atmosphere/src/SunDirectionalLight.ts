@@ -1,10 +1,11 @@
 import { DirectionalLight, Vector3 } from 'three'
-import { Fn, positionView } from 'three/tsl'
+import { Fn } from 'three/tsl'
 import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import { checkPositive } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import { linearSRGB } from './tsl/color'
+import { coveredPosition } from './tsl/coveredPosition'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
@@ -79,7 +80,7 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
     const tint = node.colorNode
     node.colorNode = Fn(() => {
       const { uniforms, transmittance } = this.#view.air
-      const offset = this.#view.toMapped(positionView).toConst()
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
       const { altitude, cosSun } = this.#view.place(offset)
       const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
       return linearSRGB(uniforms, sunlight).mul(tint)
