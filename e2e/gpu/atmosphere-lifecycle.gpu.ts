@@ -162,6 +162,37 @@ gpuTest('leaves no memory behind, round after round', async t => {
   }
 })
 
+gpuTest(
+  'leaves renderer.info.memory where it was after a hundred rounds',
+  async t => {
+    const renderer = await t.createRenderer(small)
+    const camera = new PerspectiveCamera()
+    const round = (): void => {
+      const atmosphere = new Atmosphere()
+      atmosphere.bakeStepsPerFrame = 1
+      const background = skyBackground(atmosphere)
+      const sun = new SunDirectionalLight(atmosphere)
+      const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial())
+      mesh.position.z = -5
+      const scene = new Scene().add(sun, mesh)
+      scene.backgroundNode = background
+      renderer.render(scene, camera)
+      for (const owned of [background, sun, mesh.geometry, mesh.material]) owned.dispose()
+      atmosphere.dispose()
+    }
+    const memory = (): string => JSON.stringify(renderer.info.memory)
+    round()
+    const before = memory()
+    for (let i = 0; i < 100; i++) {
+      round()
+      expectTrue(memory() === before, `before ${before}\nafter round ${i} ${memory()}`)
+      if (i % 10 === 9) await finishWork(renderer)
+    }
+    t.note(before)
+  },
+  { timeoutSeconds: 400 }
+)
+
 gpuTest('draws every pixel ratio alike', async t => {
   const renderer = await t.createRenderer(small)
   const view = new View(renderer)

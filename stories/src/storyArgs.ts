@@ -5,7 +5,7 @@ export const timeArgTypes: ArgTypes<TimeArgs> = {
   day: {
     name: 'Date [UTC]',
     control: 'date',
-    description: 'Day; the sun stands where it does then'
+    description: 'Day; its time is the slider below'
   },
   hour: {
     name: 'Time [h UTC]',
