@@ -18,7 +18,7 @@ for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
   process.on(signal, () => {
     // The whole group: the server is a grandchild.
     if (process.platform === 'win32') child.kill(signal)
-    else process.kill(-child.pid, signal)
+    else if (child.pid !== undefined) process.kill(-child.pid, signal)
   })
 }
 child.on('exit', code => {
