@@ -1,7 +1,14 @@
-import { EventDispatcher, Matrix4, Vector3 } from 'three'
+import { EventDispatcher, MathUtils, Matrix4, Vector3 } from 'three'
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { Ellipsoid, Geodetic, sunDirectionECEF } from '@welkin/geo'
+import {
+  checkDirection,
+  checkPositive,
+  Ellipsoid,
+  fail,
+  Geodetic,
+  sunDirectionECEF
+} from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
 import { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
@@ -51,13 +58,8 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * other frame, such as the inverse of a tile set's `group.matrixWorld`. It must keep angles.
    */
   readonly worldToECEF = new Matrix4()
-  /** Output of every node per luminance [1/(cd/m²)]. */
-  luminanceScale = 1e-4
-  /**
-   * Most steps of baking tables in one frame; a bake has 20. The default bakes at once. Until the
-   * first bake is done the sky is black; after a change the old tables stand until the new are ready.
-   */
-  bakeStepsPerFrame = Infinity
+  #luminanceScale = 1e-4
+  #bakeStepsPerFrame = Infinity
   #metersPerUnit = 1
   #frame: AtmosphereFrame = 'local'
   readonly #place = new Geodetic()
@@ -76,29 +78,59 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   readonly #space = new SphericalSpace()
 
   /** @throws If an option is of the wrong kind. */
-  constructor({ parameters, ellipsoid }: AtmosphereOptions = {}) {
+  constructor({
+    parameters = new AtmosphereParameters(),
+    ellipsoid = Ellipsoid.WGS84
+  }: AtmosphereOptions = {}) {
     super()
-    if (parameters !== undefined && !(parameters instanceof AtmosphereParameters)) {
-      throw new Error(
-        `Atmosphere: parameters must be AtmosphereParameters, got ${String(parameters)}`
-      )
+    if (!(parameters instanceof AtmosphereParameters)) {
+      fail('Atmosphere', 'parameters must be AtmosphereParameters', parameters)
     }
-    if (ellipsoid !== undefined && !(ellipsoid instanceof Ellipsoid)) {
-      throw new Error(`Atmosphere: ellipsoid must be an Ellipsoid, got ${String(ellipsoid)}`)
+    if (!(ellipsoid instanceof Ellipsoid)) {
+      fail('Atmosphere', 'ellipsoid must be an Ellipsoid', ellipsoid)
     }
-    this.parameters = parameters ?? new AtmosphereParameters()
-    this.ellipsoid = ellipsoid ?? Ellipsoid.WGS84
+    this.parameters = parameters
+    this.ellipsoid = ellipsoid
     this.#updateFrame()
+  }
+
+  /** Output of every node per luminance, > 0 [1/(cd/m²)]. */
+  get luminanceScale(): number {
+    return this.#luminanceScale
+  }
+
+  set luminanceScale(value: number) {
+    checkPositive('Atmosphere', 'luminanceScale', value)
+    this.#luminanceScale = value
+  }
+
+  /**
+   * Most steps of baking tables in one frame, ≥ 1; a bake has 20. The default, infinity, bakes at once.
+   * Until the first bake is done the sky is black; after a change the old tables stand until the new
+   * are ready.
+   */
+  get bakeStepsPerFrame(): number {
+    return this.#bakeStepsPerFrame
+  }
+
+  set bakeStepsPerFrame(value: number) {
+    if (value !== Infinity && !(Number.isInteger(value) && value >= 1)) {
+      fail('Atmosphere', 'bakeStepsPerFrame must be a positive integer or Infinity', value)
+    }
+    this.#bakeStepsPerFrame = value
   }
 
   /**
    * Puts the world's origin at a place, Y up, X east, Z south.
    *
    * @param geodetic - Longitude, latitude [°], height above the ellipsoid [m], default 0.
-   * @throws If a coordinate is not finite or out of range.
+   * @throws If a coordinate is missing, not finite or out of range.
    */
   place(geodetic: GeodeticLike): this {
-    this.#place.set(geodetic.longitude, geodetic.latitude, geodetic.height ?? 0)
+    if (typeof geodetic !== 'object' || geodetic === null) {
+      fail('Atmosphere', 'place must be a longitude and latitude', geodetic)
+    }
+    this.#place.copy(geodetic)
     this.#frame = 'local'
     this.#updateFrame()
     return this
@@ -111,7 +143,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
 
   set frame(value: AtmosphereFrame) {
     if (value !== 'local' && value !== 'ecef') {
-      throw new Error(`Atmosphere: frame must be 'local' or 'ecef', got ${String(value)}`)
+      fail('Atmosphere', "frame must be 'local' or 'ecef'", value)
     }
     this.#frame = value
     this.#updateFrame()
@@ -123,9 +155,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   set metersPerUnit(value: number) {
-    if (!(value > 0 && value < Infinity)) {
-      throw new Error(`Atmosphere: metersPerUnit must be positive and finite, got ${value}`)
-    }
+    checkPositive('Atmosphere', 'metersPerUnit', value)
     this.#metersPerUnit = value
     this.#updateFrame()
   }
@@ -148,7 +178,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
 
   set date(value: Date | null) {
     if (value !== null && !(value instanceof Date && Number.isFinite(value.getTime()))) {
-      throw new Error(`Atmosphere: date must be a valid Date or null, got ${String(value)}`)
+      fail('Atmosphere', 'date must be a valid Date or null', value)
     }
     if (value === null) this.#sunWorld.copy(this.sunDirection)
     else sunDirectionECEF(value, this.#sunECEF)
@@ -165,41 +195,34 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   set sunDirection(world: Vector3) {
-    const length = world.length()
-    if (!(length > 0 && length < Infinity)) {
-      const { x, y, z } = world
-      throw new Error(
-        `Atmosphere: sunDirection must be finite and not zero, got (${x}, ${y}, ${z})`
-      )
-    }
-    this.#sunWorld.copy(world).divideScalar(length)
+    checkDirection('Atmosphere', 'sunDirection', world)
+    this.#sunWorld.copy(world).normalize()
     this.#date = null
   }
 
   /**
-   * Points the sun by angles at the world's origin, for scenes without a date.
+   * Points the sun by angles, for scenes without a date: from where {@link worldToECEF} puts the
+   * world's origin or, if that is deep inside the planet as in ECEF, from the {@link place}.
    *
    * @param elevation - Above the horizon, in [−90, 90] [°].
    * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
    */
   setSunAngles(elevation: number, azimuth: number): this {
     if (!(elevation >= -90 && elevation <= 90)) {
-      throw new Error(`Atmosphere: elevation must be in [-90, 90], got ${elevation}`)
+      fail('Atmosphere', 'elevation must be in [-90, 90]', elevation)
     }
-    if (!Number.isFinite(azimuth)) {
-      throw new Error(`Atmosphere: azimuth must be finite, got ${azimuth}`)
+    if (!Number.isFinite(azimuth)) fail('Atmosphere', 'azimuth must be finite', azimuth)
+    const origin = _position.setFromMatrixPosition(this.worldToECEF)
+    if (origin.length() < this.ellipsoid.radii.x / 2) {
+      this.ellipsoid.geodeticToECEF(this.#place, origin)
     }
-    const [up, north] = [elevation, azimuth].map(degrees => (degrees * Math.PI) / 180) as [
-      number,
-      number
-    ]
-    const level = Math.cos(up)
-    const local = new Vector3(level * Math.sin(north), Math.sin(up), -level * Math.cos(north))
-    if (this.#frame === 'ecef') {
-      this.ellipsoid.geodeticToECEF(this.#place, _position)
-      local.transformDirection(this.ellipsoid.localYUpFrame(_position, _rotation))
-    }
-    this.sunDirection = local
+    this.ellipsoid.localYUpFrame(origin, _rotation)
+    const north = MathUtils.degToRad(180 - azimuth)
+    const fromZenith = MathUtils.degToRad(90 - elevation)
+    this.sunDirection = new Vector3()
+      .setFromSphericalCoords(1, fromZenith, north)
+      .transformDirection(_rotation)
+      .transformDirection(_rotation.copy(this.worldToECEF).invert())
     return this
   }
 
@@ -221,7 +244,10 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     let views = this.#views.get(source)
     if (views === undefined) this.#views.set(source, (views = new WeakMap()))
     let view = views.get(camera)
-    if (view === undefined) views.set(camera, (view = new AtmosphereView(this, camera, source)))
+    if (view === undefined) {
+      if (!camera?.isCamera) fail('Atmosphere', 'camera must be a Camera', camera)
+      views.set(camera, (view = new AtmosphereView(this, camera, source)))
+    }
     view.update(renderer)
     return view
   }

@@ -1,5 +1,6 @@
 import { DataUtils } from 'three'
 import type { Renderer } from 'three/webgpu'
+import { fail } from '@welkin/geo'
 import type { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereUniforms } from './AtmosphereUniforms'
 import { DiffuseLightTable } from './DiffuseLightTable'
@@ -38,6 +39,7 @@ export class AtmosphereTables {
     luminanceScale: number,
     steps: number
   ): void {
+    if (!renderer?.isRenderer) fail('Atmosphere', 'renderer must be a WebGPURenderer', renderer)
     const stale = renderer !== this.#renderer || parameters.version !== this.#parametersVersion
     if (stale || luminanceScale !== this.#scale) {
       this.uniforms.update(parameters, luminanceScale)
@@ -65,13 +67,20 @@ export class AtmosphereTables {
     this.#work = null
     this.version++
     this.#reading = this.#read(renderer)
+    // Whoever awaits it in read() learns of an error; nobody has to.
+    this.#reading.catch(() => undefined)
   }
 
   async #read(renderer: Renderer): Promise<void> {
     const { target } = this.diffuseLight
     const version = this.version
     const { width, height } = target
-    const halves = await renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height)
+    const halves = await renderer
+      .readRenderTargetPixelsAsync(target, 0, 0, width, height)
+      .catch((error: unknown) => {
+        // Nobody misses what was disposed of or baked anew meanwhile.
+        if (version === this.version) throw error
+      })
     if (version !== this.version) return
     const values = Float32Array.from(halves as Uint16Array, half => DataUtils.fromHalfFloat(half))
     // WebGL reads from the bottom row up, which texture coordinates there call the first.

@@ -46,16 +46,13 @@ export class AtmosphereUniforms {
    * @param luminanceScale - Output per luminance [1/(cd/m²)].
    */
   update(parameters: AtmosphereParameters, luminanceScale: number): void {
-    const set = (node: UniformNode<'vec4', Vector4>, value: Spectrum): void => {
-      node.value.set(...value)
+    for (const [name, node] of Object.entries(this)) {
+      if (name === 'mieAsymmetry') continue
+      const value = parameters[name as keyof AtmosphereParameters]
+      if (typeof value === 'number') node.value = value
+      else if (value !== undefined) node.value.set(...(value as Spectrum))
     }
-    this.bottomRadius.value = parameters.bottomRadius
     this.thickness.value = parameters.topRadius - parameters.bottomRadius
-    set(this.rayleighScattering, parameters.rayleighScattering)
-    this.rayleighScaleHeight.value = parameters.rayleighScaleHeight
-    set(this.mieScattering, parameters.mieScattering)
-    set(this.mieExtinction, parameters.mieExtinction)
-    this.mieScaleHeight.value = parameters.mieScaleHeight
     spectrumOf(parameters.mieAsymmetry).forEach((asymmetry, i) => {
       const [, moment1, moment2] = asymmetryMoments(asymmetry)
       this.mieAsymmetry.value.setComponent(i, asymmetry)
@@ -63,12 +60,6 @@ export class AtmosphereUniforms {
       this.mieMoment1.value.setComponent(i, moment1)
       this.mieMoment2.value.setComponent(i, moment2)
     })
-    set(this.absorptionExtinction, parameters.absorptionExtinction)
-    this.absorptionAltitude.value = parameters.absorptionAltitude
-    this.absorptionHalfWidth.value = parameters.absorptionHalfWidth
-    set(this.groundAlbedo, parameters.groundAlbedo)
-    this.sunAngularRadius.value = parameters.sunAngularRadius
-    set(this.limbDarkening, parameters.limbDarkening)
     linearSRGBColumns(parameters, luminanceScale).forEach((column, i) => {
       this.linearSRGB[i].value.set(...column)
     })

@@ -52,6 +52,8 @@ export class AtmosphereView {
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
     this.eye = eyeScalars(parameters, this.height, cosSun)
+    // Before the first bake is done there is no light to compute a volume from.
+    if (tables.version === 0) return
     this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot
   }
 }

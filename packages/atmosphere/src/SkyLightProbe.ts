@@ -1,14 +1,15 @@
 import { LightProbe } from 'three'
-import { Fn, normalView, positionView } from 'three/tsl'
+import { Fn, normalView } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
+import { coveredPosition } from './tsl/coveredPosition'
 import { skyIrradiance } from './tsl/skyIrradiance'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
-import { viewNodes } from './ViewNodes'
+import { checkAtmosphere, viewNodes } from './ViewNodes'
 
 /**
  * Light of sky and ground: a light probe whose irradiance is looked up per fragment, at the
@@ -26,9 +27,7 @@ export class SkyLightProbe extends LightProbe {
   /** @param source - Whose light sky and ground scatter; by default the sun's. */
   constructor(atmosphere: Atmosphere, source: LightSource = atmosphere?.sun) {
     super()
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
+    checkAtmosphere('SkyLightProbe', atmosphere)
     this.atmosphere = atmosphere
     this.source = source
   }
@@ -65,7 +64,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
   override setup(builder: NodeBuilder): undefined {
     const irradiance = Fn(() => {
       const { air } = this.#view
-      const offset = this.#view.toMapped(positionView).toConst()
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
       const { altitude, cosSun, up } = this.#view.place(offset)
       const normal = this.#view.toMapped(normalView).normalize().toConst()
       const received = skyIrradiance(

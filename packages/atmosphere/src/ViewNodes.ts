@@ -2,6 +2,7 @@ import { Matrix3, Vector3 } from 'three'
 import type { Camera } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { NodeFrame, UniformNode } from 'three/webgpu'
+import { fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
@@ -94,6 +95,11 @@ export class ViewNodes {
       up: up
     }
   }
+}
+
+/** @throws If it is no atmosphere. */
+export function checkAtmosphere(where: string, value: Atmosphere): void {
+  if (!value?.isAtmosphere) fail(where, 'atmosphere must be an Atmosphere', value)
 }
 
 const shared = new WeakMap<LightSource, WeakMap<object, ViewNodes>>()

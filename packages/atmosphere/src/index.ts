@@ -27,7 +27,6 @@ export { exposureFor, exposureOfIlluminance } from './exposureFor'
 export type { ExposureOptions } from './exposureFor'
 export { DayCycle } from './DayCycle'
 export type { DayCycleOptions } from './DayCycle'
-export type { Triple } from './cpu/color'
 export { SunFlare, sunFlare } from './SunFlare'
 export type { FlareOptions } from './HaloUniforms'
 export { Moon, moon } from './Moon'
@@ -39,16 +38,37 @@ export type { PlanetGroundOptions } from './PlanetGround'
 export { AtmosphereShell, atmosphereShell } from './AtmosphereShell'
 export type { AtmosphereShellOptions, ShellSun } from './AtmosphereShell'
 export { FlatAtmosphere, flatAtmosphere } from './FlatAtmosphere'
-export {
-  airlessBody,
-  isAirless,
-  marsAtmosphere,
-  titanAtmosphere,
-  venusAtmosphere
-} from './planets'
+export { airlessBody, isAirless, marsAtmosphere, titanAtmosphere, venusAtmosphere } from './planets'
 export { ImageEnvironmentNode, SkyEnvironmentNode, skyEnvironment } from './SkyEnvironmentNode'
 export type { EnvironmentOptions, SkyEnvironmentOptions } from './SkyEnvironmentNode'
 export { HeightFog, heightFog } from './HeightFog'
 export type { HeightFogOptions } from './HeightFog'
 export { DistanceFog, distanceFog } from './DistanceFog'
 export type { DistanceFogOptions } from './DistanceFog'
+
+// For shaders of one's own; `AtmosphereNode` has an example.
+export { AtmosphereNode } from './AtmosphereNode'
+export type { AtmosphereUniforms } from './AtmosphereUniforms'
+export type { ViewNodes } from './ViewNodes'
+export { pointAlong, scatteredRadiance, scattering } from './tsl/scattering'
+export type { Air, LightSources, Ray, Scattered } from './tsl/scattering'
+export { marchedAir, marchedSky } from './tsl/marchedAir'
+export { rayLimits } from './tsl/skyVolume'
+export type { AirBetween, RayLimits } from './tsl/skyVolume'
+export { aerialPerspectiveTo } from './tsl/aerialPerspective'
+export type { AerialPerspective } from './tsl/aerialPerspective'
+export { linearSRGB, transmittanceRGB } from './tsl/color'
+export type { Eye, EyeScalars } from './tsl/eye'
+
+// The same physics in float64, without a GPU. Rays are in the mapped, spherical space.
+export { distanceToGround, distanceToTop, hitsGround } from './cpu/boundary'
+export { spectralToLinearSRGB, xyzToLinearSRGB } from './cpu/color'
+export type { Triple } from './cpu/color'
+export type { DiffuseLightData } from './cpu/diffuseLight'
+export { cornetteShanksPhase, rayleighPhase } from './cpu/phase'
+export { enterAir, inScatter, skyRadiance } from './cpu/scattering'
+export type { RayNumbers } from './cpu/scattering'
+export { skyIrradiance } from './cpu/skyIrradiance'
+export { solveDiffuseLight } from './cpu/solveDiffuseLight'
+export type { DiffuseLightQuality } from './cpu/solveDiffuseLight'
+export { opticalDepth, sunTransmittance, visibleSun } from './cpu/transmittance'

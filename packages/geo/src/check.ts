@@ -17,13 +17,13 @@ export function checkFinite(where: string, name: string, value: number): void {
 }
 
 export function checkPositive(where: string, name: string, value: number): void {
-  if (!(value > 0 && value < Infinity)) {
+  if (!(Number.isFinite(value) && value > 0)) {
     fail(where, `${name} must be positive and finite`, value)
   }
 }
 
 export function checkNonNegative(where: string, name: string, value: number): void {
-  if (!(value >= 0 && value < Infinity)) {
+  if (!(Number.isFinite(value) && value >= 0)) {
     fail(where, `${name} must be finite and ≥ 0`, value)
   }
 }
@@ -36,7 +36,7 @@ export function checkLatitude(where: string, latitude: number): void {
 
 export function checkVector(where: string, name: string, vector: XYZ): void {
   // One sum finds NaN and Infinity in any component: Infinity − Infinity is NaN.
-  if (!Number.isFinite(vector.x + vector.y + vector.z)) {
+  if (!Number.isFinite(vector?.x + vector?.y + vector?.z)) {
     fail(where, `${name} must have finite components`, vector)
   }
 }
@@ -59,5 +59,5 @@ function describe(value: unknown): string {
   if ('x' in value && 'y' in value && 'z' in value) {
     return `(${String(value.x)}, ${String(value.y)}, ${String(value.z)})`
   }
-  return Object.prototype.toString.call(value)
+  return Array.isArray(value) ? `[${String(value)}]` : (value.constructor?.name ?? 'object')
 }

@@ -1,7 +1,7 @@
 import { spectrumOf, type AtmosphereParameters } from '../AtmosphereParameters'
 import { distanceToGround, distanceToTop, hitsGround } from './boundary'
 import { sampleDiffuseLight, type DiffuseLightData } from './diffuseLight'
-import { densities, extinctionAt } from './medium'
+import { densities, extinction } from './medium'
 import { applyMoments } from './moments'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from './phase'
 import { gaussLegendre } from './quadrature'
@@ -67,7 +67,9 @@ export function inScatter(
     const rMiddle = Math.sqrt(radius ** 2 + 2 * radius * cosView * middle + middle ** 2)
     const rLast = Math.sqrt(radius ** 2 + 2 * radius * cosView * last + last ** 2)
     // Simpson's rule from one node to the next.
-    const ends = [rLast, rMiddle, r].map(x => extinctionAt(p, Math.max(x - p.bottomRadius, 0)))
+    const ends = [rLast, rMiddle, r].map(x =>
+      extinction(p, densities(p, Math.max(x - p.bottomRadius, 0)))
+    )
     const [molecules, aerosols] = densities(p, altitude)
     const sun = sunTransmittance(p, r, muSun)
     const tiles = data && sampleDiffuseLight(data, altitude / thickness, muSun)

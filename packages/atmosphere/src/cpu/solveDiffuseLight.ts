@@ -5,7 +5,7 @@ import { diffuseColumn, diffuseColumnCosine, type DiffuseLightData } from './dif
 import { densities } from './medium'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from './phase'
 import { gaussLegendre } from './quadrature'
-import { opticalDepth, visibleSun } from './transmittance'
+import { discTransmittance, visibleSun } from './transmittance'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const PER_CELL = 4 * DIFFUSE_TILES
@@ -71,7 +71,10 @@ class Sunlight {
         const distance = shortest + ((longest - shortest) * column) / (columns - 1)
         const cosine = (this.#chord ** 2 - horizon ** 2 - distance ** 2) / (2 * radius * distance)
         const cosView = distance > 1 ? Math.min(Math.max(cosine, -1), 1) : 1
-        const depth = opticalDepth(p, radius, cosView, distance)
+        // Thick air's transmittance underflows, but a depth must be finite.
+        const depth = discTransmittance(p, radius, cosView).map(
+          value => -Math.log(Math.max(value, 1e-300))
+        )
         this.#depth.set(depth, 4 * (row * columns + column))
       }
     }

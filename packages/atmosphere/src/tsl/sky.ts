@@ -7,6 +7,7 @@ import { linearSRGB } from './color'
 import { scatteredRadiance } from './scattering'
 import { veiled } from './aerialPerspective'
 import { rayTargets, sampleSky, skyTransmittance } from './skyVolume'
+import { sine } from './trigonometry'
 
 /**
  * Radiance of the sun's disc above the air, for unit irradiance [1/sr].
@@ -28,7 +29,7 @@ export function sunDisc(
   const part = direction.sub(sunDirection).length().div(sunAngularRadius).toConst()
   const edge = pixel.div(sunAngularRadius).mul(0.5).max(1e-4)
   const coverage = smoothstep(edge.negate(), edge, part.oneMinus())
-  const cosLimb = part.mul(part).oneMinus().max(0).sqrt()
+  const cosLimb = sine(part)
   const profile = limbDarkening
     .mul(cosLimb.oneMinus())
     .oneMinus()
