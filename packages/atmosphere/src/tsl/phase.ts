@@ -22,8 +22,8 @@ export function rayleighPhase(cosViewSun: Float): Float {
 export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 {
   const { mieAsymmetry, miePhaseFactor } = uniforms
   const chord = mieAsymmetry.mul(mieAsymmetry).add(1).sub(mieAsymmetry.mul(cosViewSun).mul(2))
-  const squaredChord = chord.max(1e-4).toConst()
+  const inverse = chord.max(1e-4).inverseSqrt().toConst()
   return miePhaseFactor
     .mul(cosViewSun.mul(cosViewSun).add(1))
-    .div(squaredChord.mul(squaredChord.sqrt()))
+    .mul(inverse.mul(inverse).mul(inverse))
 }
