@@ -89,6 +89,10 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     if (!(ellipsoid instanceof Ellipsoid)) {
       fail('Atmosphere', 'ellipsoid must be an Ellipsoid', ellipsoid)
     }
+    const { bottomRadius } = parameters
+    if (Math.abs(bottomRadius / ellipsoid.radii.x - 1) > 0.02) {
+      fail('Atmosphere', 'bottomRadius must be near that of the ellipsoid', bottomRadius)
+    }
     this.parameters = parameters
     this.ellipsoid = ellipsoid
     this.#updateFrame()
@@ -106,8 +110,8 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
 
   /**
    * Most steps of baking tables in one frame, ≥ 1; a bake has 20. The default, infinity, bakes at once.
-   * Until the first bake is done the sky is black; after a change the old tables stand until the new
-   * are ready.
+   * Until the first bake is done the sky is black. After a change sunlight follows at once, the sky when
+   * its table is ready; a bake that is under way is finished before the next one starts.
    */
   get bakeStepsPerFrame(): number {
     return this.#bakeStepsPerFrame
@@ -171,9 +175,9 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.worldToECEF.scale(_position.setScalar(unit))
   }
 
-  /** When it is: the sun follows. Null if the sun's direction was set by hand. */
+  /** When it is, a copy: the sun follows. Null if the sun's direction was set by hand. */
   get date(): Date | null {
-    return this.#date
+    return this.#date && new Date(this.#date)
   }
 
   set date(value: Date | null) {
@@ -182,7 +186,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     }
     if (value === null) this.#sunWorld.copy(this.sunDirection)
     else sunDirectionECEF(value, this.#sunECEF)
-    this.#date = value
+    this.#date = value && new Date(value)
   }
 
   /**

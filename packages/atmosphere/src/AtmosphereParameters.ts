@@ -29,7 +29,7 @@ export interface AtmosphereParametersInit {
   rayleighScattering?: Spectrum
   /** Height over which molecules thin out by a factor e [m]. */
   rayleighScaleHeight?: number
-  /** Scattering by aerosols at the ground [1/m]. */
+  /** Scattering by aerosols at the ground, at most `mieExtinction` [1/m]. */
   mieScattering?: Spectrum
   /** Extinction (scattering and absorption) by aerosols at the ground [1/m]. */
   mieExtinction?: Spectrum
@@ -238,6 +238,8 @@ export class AtmosphereParameters {
       Object.assign(next, { [name]: checkedCopy<unknown>(name, value, shape, least, most) })
     }
     const { bottomRadius = this.bottomRadius, topRadius = this.topRadius } = next
+    const { mieScattering = this.mieScattering, mieExtinction = this.mieExtinction } = next
+    mieScattering.forEach((value, i) => check('mieScattering', value, 0, mieExtinction[i]))
     check('topRadius', topRadius, bottomRadius * (1 + 1e-5), bottomRadius * 1.5)
     Object.assign(this, next)
     this.#version++

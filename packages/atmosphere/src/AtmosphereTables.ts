@@ -40,7 +40,9 @@ export class AtmosphereTables {
     steps: number
   ): void {
     if (!renderer?.isRenderer) fail('Atmosphere', 'renderer must be a WebGPURenderer', renderer)
-    const stale = renderer !== this.#renderer || parameters.version !== this.#parametersVersion
+    const stale =
+      renderer !== this.#renderer ||
+      (this.#work === null && parameters.version !== this.#parametersVersion)
     if (stale || luminanceScale !== this.#scale) {
       this.uniforms.update(parameters, luminanceScale)
       this.#scale = luminanceScale

@@ -3,7 +3,7 @@ import { describe, expect, it } from 'vitest'
 import { Camera, Euler, Quaternion, Vector3 } from 'three'
 import {
   Atmosphere,
-  type AtmosphereParameters,
+  AtmosphereParameters,
   SkyLightProbe,
   SunDirectionalLight,
   skyBackground,
@@ -143,6 +143,26 @@ describe('Atmosphere', () => {
     const [r, g, b] = atmosphere.sunIlluminanceAt(new Vector3(7e6, 0, 0))
     expect(0.2126 * r + 0.7152 * g + 0.0722 * b).toBeGreaterThan(129_000)
     expect(atmosphere.sunIlluminanceAt(new Vector3(-6.38e6, 0, 0))).toEqual([0, 0, 0])
+  })
+
+  it('keeps a date of its own', () => {
+    const date = new Date('2026-06-21T03:00:00Z')
+    const atmosphere = new Atmosphere()
+    atmosphere.date = date
+    const before = atmosphere.sunDirection
+    date.setUTCHours(12)
+    atmosphere.date.setUTCHours(15)
+    expect(atmosphere.date.toISOString()).toBe('2026-06-21T03:00:00.000Z')
+    expect(atmosphere.sunDirection.equals(before)).toBe(true)
+  })
+
+  it('refuses air that does not belong to the ellipsoid', () => {
+    const ellipsoid = new Ellipsoid(3_389_500, 3_389_500, 3_389_500)
+    expect(() => new Atmosphere({ ellipsoid })).toThrow(
+      'Atmosphere: bottomRadius must be near that of the ellipsoid, got 6378137'
+    )
+    const parameters = new AtmosphereParameters({ bottomRadius: 3_389_500, topRadius: 3_500_000 })
+    expect(new Atmosphere({ ellipsoid, parameters }).ellipsoid).toBe(ellipsoid)
   })
 
   it('refuses what makes no sense, by name and value', () => {

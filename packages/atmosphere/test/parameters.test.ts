@@ -73,6 +73,15 @@ describe('AtmosphereParameters', () => {
     expect(parameters.mieAsymmetry).toBe(0.6)
   })
 
+  it('refuses aerosols that scatter more light than they take', () => {
+    const parameters = new AtmosphereParameters()
+    const { version } = parameters
+    expect(() => parameters.set({ mieScattering: [0, 0, 0, 1e-5] })).toThrow(
+      /mieScattering must be a number in \[0, 0\.0000044\d*\], got 0\.00001/
+    )
+    expect(parameters.version).toBe(version)
+  })
+
   it('copies', () => {
     const parameters = new AtmosphereParameters({ mieAsymmetry: 0.7 })
     const copy = parameters.clone()

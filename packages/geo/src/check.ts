@@ -29,7 +29,7 @@ export function checkNonNegative(where: string, name: string, value: number): vo
 }
 
 export function checkLatitude(where: string, latitude: number): void {
-  if (!(latitude >= -90 && latitude <= 90)) {
+  if (!(Number.isFinite(latitude) && Math.abs(latitude) <= 90)) {
     fail(where, 'latitude must be in [−90, 90]', latitude)
   }
 }

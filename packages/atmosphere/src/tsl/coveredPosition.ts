@@ -11,7 +11,7 @@ import type { Vec3 } from '../tsl-types'
 export const coveredPosition = /*#__PURE__*/ Fn(({ material }): Vec3 => {
   // Without a vertex position there is only what the depth says.
   if ((material as { vertexNode?: object | null }).vertexNode) return positionView
-  const covered = varying(positionView, 'v_coveredPosition')
+  const covered = varying(positionView)
   covered.setInterpolation(
     InterpolationSamplingType.PERSPECTIVE,
     InterpolationSamplingMode.CENTROID
