@@ -93,15 +93,23 @@ export const EarthNight: Story = {
   args: { planet: 'earth', height: 1.2e7, pitch: -90, sunElevation: -60, exposure: 10 }
 }
 
-/** No picture at all: continents are made up. */
+/** The Mediterranean, and a low sun on it. */
 export const LowOrbit: Story = {
   args: {
-    planet: 'made-up',
+    planet: 'earth',
     height: 4e5,
-    pitch: -22,
-    sunElevation: 25,
-    sunAzimuth: 20,
+    longitude: 18,
+    latitude: 31,
+    pitch: -25,
+    sunElevation: 35,
+    sunAzimuth: 25,
     exposure: -1
   },
+  tags: ['screenshot']
+}
+
+/** No picture at all: continents are made up. */
+export const MadeUp: Story = {
+  args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -1 },
   tags: ['screenshot']
 }

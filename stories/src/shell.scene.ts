@@ -61,7 +61,7 @@ export async function createShell(
     color: string
   ): void => {
     const ball = new Mesh(
-      new SphereGeometry(1, 512, 256),
+      args.view === 'map' ? new SphereGeometry(1, 128, 64) : new SphereGeometry(1, 512, 256),
       new MeshStandardMaterial({ color, roughness: 1 })
     )
     ball.scale.setScalar(radius)
@@ -77,9 +77,9 @@ export async function createShell(
   const cockpit = new Group()
   const build = (): void => {
     if (args.view === 'map') {
-      add(new AtmosphereParameters(), 1, new Vector3(-1.1, 0, 0), '#24445c')
-      add(marsAtmosphere(), 0.53, new Vector3(0.9, 0.2, 0.6), '#8a4a26')
-      add(titanAtmosphere(), 0.4, new Vector3(1.5, -0.5, -0.8), '#6b4a20')
+      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#24445c')
+      add(marsAtmosphere(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
+      add(titanAtmosphere(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
       add(airlessBody(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
       return
     }

@@ -129,6 +129,8 @@ class ShellNode extends Node<'vec4'> {
  * the middle of the way through the air, a ship or a cockpit, is drawn without haze, and what is
  * behind it with all of it. One alpha dims all colours of what is behind alike.
  *
+ * An eclipse of its sun does not dim it.
+ *
  * It draws transparent, back faces only, premultiplied, writes no depth, and has `renderOrder` 1, after
  * a body's own transparent tiles. It casts no shadow and no ray hits it.
  */
