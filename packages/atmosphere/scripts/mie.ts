@@ -93,6 +93,8 @@ function cloud(wavelength: number, m: Complex, radius: number, variance: number)
   }
 }
 
+export {}
+
 const print = (name: string, values: ReturnType<typeof cloud>): void => {
   const { extinction, albedo, asymmetry } = values
   console.log(

@@ -2,11 +2,11 @@ import { Vector4 } from 'three'
 import { If, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
-import type { SkyLayer, SkyRay } from './SkyLayer'
+import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
 import { ofLuminance } from './stars/starColor'
 import { glowGains } from './tsl/airglow'
 import { skyTransmittance } from './tsl/skyVolume'
-import type { Float, Vec3, Vec4 } from './tsl-types'
+import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 
 /** Options of {@link Airglow}. */
@@ -94,19 +94,38 @@ export class Airglow implements SkyLayer {
     return glowGains(layer, view.height, cosView, bottomRadius, distance)
   }
 
+  /** By day it is less than a thousandth of the sky. */
+  #isSeen(airlight: Vec4): Bool {
+    return airlight.y.lessThan(this.#radiance.y.mul(DROWNS))
+  }
+
   /** The layer beyond the air below it. */
-  beyond({ view, cosView }: SkyRay, farther: Vec4): Vec4 {
-    return farther.add(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
+  beyond({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
+    const light = farther.toVar()
+    If(this.#isSeen(airlight), () => {
+      light.addAssign(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
+    })
+    return light
   }
 
   /** The layer in front of that air, from above; its light scattered in the air, and the ground in it. */
-  glow({ view, cosView, hitsGround }: SkyRay): Vec4 {
-    const { down } = this.#gains(view, cosView, null)
-    const { uniforms } = view.air
-    const through = skyTransmittance(uniforms, view.volume, view.eye, cosView, hitsGround).toConst()
-    const ground = uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
-    const air = through.oneMinus().mul(SCATTERED)
-    return vec4(this.#radiance.mul(ground.mul(through).add(air).add(down)))
+  glow({ view, cosView, hitsGround, airlight }: SkyRay): Vec4 {
+    const light = vec4(0).toVar()
+    If(this.#isSeen(airlight), () => {
+      const { down } = this.#gains(view, cosView, null)
+      const { uniforms } = view.air
+      const through = skyTransmittance(
+        uniforms,
+        view.volume,
+        view.eye,
+        cosView,
+        hitsGround
+      ).toConst()
+      const ground = uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
+      const air = through.oneMinus().mul(SCATTERED)
+      light.assign(vec4(this.#radiance.mul(ground.mul(through).add(air).add(down))))
+    })
+    return light
   }
 
   haze(view: ViewNodes, displacementView: Vec3): Vec4 {

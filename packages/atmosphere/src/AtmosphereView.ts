@@ -7,6 +7,9 @@ import { eyeScalars } from './cpu/eye'
 import type { LightSource } from './LightSource'
 import type { EyeScalars } from './tsl/eye'
 
+/** Cosine of the source's zenith angle, 25° below the horizon. */
+const DEEP_NIGHT = -0.42
+
 const _position = new Vector3()
 const _direction = new Vector3()
 
@@ -22,6 +25,8 @@ export class AtmosphereView {
   readonly viewToMapped = new Matrix3()
   /** Of the source, over the bare sun's. */
   irradiance: Spectrum = [1, 1, 1, 1]
+  /** Whether the source can light any air that is seen. */
+  isLit = true
   eye: EyeScalars<number> | null = null
   /** Number of its volume in the atlas. */
   slot = 0
@@ -52,6 +57,9 @@ export class AtmosphereView {
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
     this.eye = eyeScalars(parameters, this.height, cosSun)
+    // From inside the air a line of sight gets 16° nearer to the sun at most, where dusk ends at −9°.
+    this.isLit = cosSun > DEEP_NIGHT || radius > parameters.topRadius
+    if (!this.isLit) return
     // Before the first bake is done there is no light to compute a volume from.
     if (tables.version === 0) return
     this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot

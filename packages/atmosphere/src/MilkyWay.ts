@@ -1,11 +1,11 @@
 import { RepeatWrapping, Vector4 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
-import { Fn, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
+import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereView } from './AtmosphereView'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from './FragmentPass'
-import type { SkyLayer, SkyRay } from './SkyLayer'
+import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
 import { starIrradiance } from './stars/starColor'
 import { galacticUV, milkyWayMap, toGalactic } from './tsl/milkyWay'
 import { sampleLevel0, type Vec4 } from './tsl-types'
@@ -78,9 +78,14 @@ export class MilkyWay implements SkyLayer {
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
-    const direction = toGalactic(this.#frame.toCelestial(ray.direction)).toConst()
-    const light = sampleLevel0(this.#map, galacticUV(direction))
-    return farther.add(vec4(light.mul(this.#color)))
+    const sum = farther.toVar()
+    // By day it is less than a thousandth of the sky.
+    If(ray.airlight.y.lessThan(this.#color.y.mul(DROWNS)), () => {
+      const direction = toGalactic(this.#frame.toCelestial(ray.direction)).toConst()
+      const light = sampleLevel0(this.#map, galacticUV(direction))
+      sum.addAssign(vec4(light.mul(this.#color)))
+    })
+    return sum
   }
 
   /** Frees the map. It is drawn again when it is needed. */

@@ -3,6 +3,9 @@ import type { AtmosphereView } from './AtmosphereView'
 import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 
+/** Air this many times as bright as something faint in the sky hides it: less than half a grey level. */
+export const DROWNS = 10_000
+
 /** A line of sight into the sky, as shader nodes. */
 export interface SkyRay {
   readonly view: ViewNodes
@@ -18,6 +21,8 @@ export interface SkyRay {
   readonly meetsAir: Bool
   /** Angle that a pixel covers [rad]. */
   readonly pixel: Float
+  /** Light of the air and of layers in it so far: what is far fainter need not be drawn. */
+  readonly airlight: Vec4
 }
 
 /** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */

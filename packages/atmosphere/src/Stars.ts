@@ -10,6 +10,7 @@ import { MAGNITUDE_ZERO_ILLUMINANCE, starIrradiance } from './stars/starColor'
 import { starField } from './tsl/starField'
 import type { Vec4 } from './tsl-types'
 import { vec4Array } from './tsl-types'
+import { If, renderGroup, uniform } from 'three/tsl'
 
 /** Options of {@link Stars}. */
 export interface StarsOptions {
@@ -46,6 +47,8 @@ export class Stars implements SkyLayer {
   readonly #frame = new CelestialFrame()
   readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
   readonly #cells: DataTexture
+  /** A hundred times the irradiance of the brightest star, over `solarIrradiance`. */
+  readonly #brightest = uniform(0).setGroup(renderGroup)
   #paletteOf = ''
 
   /** @throws If a star has a number that is not finite. */
@@ -88,6 +91,9 @@ export class Stars implements SkyLayer {
     if (state === this.#paletteOf) return
     this.#paletteOf = state
     const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * Math.max(this.intensity, 0)
+    const magnitude = this.catalogue.reduce((least, star) => Math.min(least, star.magnitude), 9)
+    const [, green] = starIrradiance(parameters, 0, illuminance * 10 ** (-0.4 * magnitude))
+    this.#brightest.value = 100 * green
     this.#palette.array.forEach((color, step) => {
       const colorIndex = COLOR_STEPS.min + step * COLOR_STEPS.step
       color.fromArray(starIrradiance(parameters, colorIndex, illuminance))
@@ -101,7 +107,14 @@ export class Stars implements SkyLayer {
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
-    return this.overlay ? farther : farther.add(this.light(ray))
+    if (this.overlay) return farther
+    const light = farther.toVar()
+    // By day even the brightest star is less than a hundredth of the sky.
+    const drowns = ray.pixel.mul(ray.pixel).mul(ray.airlight.y)
+    If(drowns.lessThan(this.#brightest), () => {
+      light.addAssign(this.light(ray))
+    })
+    return light
   }
 
   dispose(): void {

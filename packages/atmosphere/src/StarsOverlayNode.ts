@@ -83,7 +83,10 @@ export class StarsOverlayNode extends AtmosphereNode {
         const cosView = direction.dot(this.view.up).clamp(-1, 1).toConst() as Float
         const cosViewSun = direction.dot(this.view.sunDirection).clamp(-1, 1).toConst() as Float
         const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
-        const ray = { view: this.view, direction, cosView, cosViewSun, hitsGround, meetsAir, pixel }
+        // What is overlaid is asked for its light itself, which no air hides.
+        const airlight = vec4(0) as Vec4
+        const angles = { direction, cosView, cosViewSun, hitsGround, meetsAir }
+        const ray = { view: this.view, ...angles, pixel, airlight }
         If(hitsGround.not(), () => {
           const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
           added.assign(linearSRGB(uniforms, this.#light(ray).mul(through)))

@@ -22,6 +22,8 @@ export class ViewNodes {
   readonly eye = new EyeUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */
   readonly height = uniform(0).setGroup(renderGroup)
+  /** 1 where light of the source can reach what the camera sees of the air, 0 deep in the night. */
+  readonly isLit = uniform(1).setGroup(renderGroup)
   /** Zenith at the camera, in the mapped space. */
   readonly up = vector()
   /** Direction to the source, in the mapped space. */
@@ -66,6 +68,7 @@ export class ViewNodes {
     this.eye.set(view.eye, view.slot)
     this.source.irradiance.value.set(...view.irradiance)
     this.height.value = view.height
+    this.isLit.value = view.isLit ? 1 : 0
     this.up.value.copy(view.up)
     this.sunDirection.value.copy(view.sunDirection)
     this.viewToMapped.value.copy(view.viewToMapped)

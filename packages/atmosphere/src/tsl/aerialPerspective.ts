@@ -1,3 +1,4 @@
+import { If, vec4 } from 'three/tsl'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { Sightline, Veil } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
@@ -32,13 +33,15 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const limits = rayLimits(air.uniforms, eye, cosView)
   const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
-  const light = view.atmosphere.layers.reduce<Vec4>(
-    (sum, layer) => {
-      const haze = layer.haze?.(view, displacementView)
-      return haze === undefined ? sum : sum.add(haze)
-    },
-    scatteredRadiance(air.uniforms, between, cosViewSun).mul(view.source.irradiance)
-  )
+  const sunlit = vec4(0).toVar()
+  If(view.isLit.greaterThan(0), () => {
+    const scattered = scatteredRadiance(air.uniforms, between, cosViewSun)
+    sunlit.assign(scattered.mul(view.source.irradiance))
+  })
+  const light = view.atmosphere.layers.reduce<Vec4>((sum, layer) => {
+    const haze = layer.haze?.(view, displacementView)
+    return haze === undefined ? sum : sum.add(haze)
+  }, sunlit)
   const line = { view, direction, cosView, cosViewSun, distance }
   const veil = veiled(line, { depth: between.depth, light })
   return {

@@ -72,12 +72,12 @@ export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): V
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
   const radiance = vec4(0).toVar()
-  If(meetsAir, () => {
+  If(meetsAir.and(view.isLit.greaterThan(0)), () => {
     const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
     radiance.assign(scatteredRadiance(uniforms, light, cosViewSun).mul(view.source.irradiance))
   })
   const angles = { direction, cosView, cosViewSun, hitsGround, meetsAir }
-  const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0) }
+  const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0), airlight: radiance }
   for (const layer of layers) {
     if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
     if (layer.glow !== undefined) radiance.addAssign(layer.glow(ray))
