@@ -93,9 +93,7 @@ function cloud(wavelength: number, m: Complex, radius: number, variance: number)
   }
 }
 
-export {}
-
-const print = (name: string, values: ReturnType<typeof cloud>): void => {
+const report = (name: string, values: ReturnType<typeof cloud>): void => {
   const { extinction, albedo, asymmetry } = values
   console.log(
     `${name}: extinction efficiency ${extinction.toFixed(3)}, ` +
@@ -109,8 +107,8 @@ for (const [nm, k] of [
   [560, 0.0051],
   [630, 0.0035]
 ]) {
-  print(`Mars, ${nm} nm`, cloud(nm / 1000, [1.5, k], 1.6, 0.2))
+  report(`Mars, ${nm} nm`, cloud(nm / 1000, [1.5, k], 1.6, 0.2))
 }
 for (const nm of [440, 520, 560, 630]) {
-  print(`Venus, ${nm} nm`, cloud(nm / 1000, [1.44, 0], 1.05, 0.07))
+  report(`Venus, ${nm} nm`, cloud(nm / 1000, [1.44, 0], 1.05, 0.07))
 }
