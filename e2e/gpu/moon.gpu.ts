@@ -253,6 +253,8 @@ gpuTest('leaves no memory behind', async t => {
   const camera = new PerspectiveCamera(60, 1, 1, 1e6)
   const round = (): string => {
     const atmosphere = new Atmosphere().setSunAngles(-30, 0)
+    // Tables that are never done are never read back.
+    atmosphere.bakeStepsPerFrame = 1
     atmosphere.add(sunFlare(atmosphere), moon(atmosphere, { mapSize: 16 }))
     const scene = new Scene()
     const background = skyBackground(atmosphere)

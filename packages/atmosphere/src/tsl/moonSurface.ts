@@ -1,18 +1,5 @@
 import { Vector4 } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  int,
-  mix,
-  mx_cell_noise_vec3,
-  mx_fractal_noise_float,
-  mx_fractal_noise_vec3,
-  smoothstep,
-  vec2,
-  vec3,
-  vec4
-} from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import {
   loop,
   vec4Array,
@@ -22,6 +9,7 @@ import {
   type Vec4,
   type Vec4Array
 } from '../tsl-types'
+import { cellRandom, fractalNoise } from './noise'
 import { CRATERS, MARIA, RAYS, type MoonFeature } from './moonFeatures'
 
 /** How far from the middle of the near side the map reaches [rad]: as far as libration shows. */
@@ -88,7 +76,7 @@ function forEach(
 
 /** How much of a place is covered by lava, in [0, 1]. */
 function mariaCoverage(place: Vec3): Float {
-  const ragged = mx_fractal_noise_vec3(place.mul(6), int(6), 2.1, 0.62).mul(0.055)
+  const ragged = fractalNoise(place.mul(7), 6).mul(0.047)
   const warped = place.add(ragged).normalize().toConst()
   const bare = float(1).toVar()
   forEach('mare', MARIA, ({ centre, radius, strength }) => {
@@ -109,7 +97,7 @@ function rayBrightness(place: Vec3): Float {
       const along = away.sub(centre.mul(away.dot(centre))).normalize()
       // Noise on a circle around the crater, that changes slowly on the way out.
       const at = along.mul(5).add(centre.mul(distance.mul(0.6).add(7)))
-      const streak = smoothstep(0, 0.4, mx_fractal_noise_float(at, int(3), 2.3, 0.7))
+      const streak = smoothstep(-0.05, 0.6, fractalNoise(at, 3).x)
       const part = distance.div(radius).toConst()
       const halo = part.mul(part).mul(-40).exp().mul(0.8)
       const rays = streak.mul(part.mul(-2.2).exp()).mul(smoothstep(0.6, 1.15, part).oneMinus())
@@ -155,14 +143,14 @@ function craterGradient(place: Vec3, maria: Float): { gradient: Vec3; fresh: Flo
       const index = float(cell).add(0.5)
       const offset = vec3(index, index.div(2), index.div(4)).floor().mod(2).sub(0.5)
       const corner = scaled.round().add(offset).toConst()
-      const centre = corner.add(mx_cell_noise_vec3(corner).sub(0.5).mul(0.8)).toConst()
+      const centre = corner.add(cellRandom(corner.sub(0.5)).sub(0.5).mul(0.8)).toConst()
       const height = centre.length().toConst()
       const away = place.sub(centre.div(height)).toConst()
       const distance = away.length().max(1e-5).toConst() as Float
       // Only cells whose centre is near the surface: as many craters everywhere.
       const isNear = distance.mul(frequency).lessThan(0.6)
       If(isNear.and(height.sub(frequency).abs().lessThan(0.5)), () => {
-        const random = mx_cell_noise_vec3(corner.add(41)).toConst() as Vec3
+        const random = cellRandom(corner.add(40.5)).toConst() as Vec3
         const exists = random.x.greaterThan(maria.mul(0.45).add(0.4)).select(1, 0).toConst()
         const radius = random.y.mul(random.y).mul(0.25).add(0.12).div(frequency)
         const part = distance.div(radius).toConst() as Float
@@ -184,7 +172,7 @@ export const BRIGHTEST_GROUND = 2
  *
  * @see e2e/gpu/moon.gpu.ts, which holds it to 2 %.
  */
-const MEAN = 1
+const MEAN = 0.979
 
 /**
  * The ground of the moon: seas where they are, the large craters and their rays, and many more craters
@@ -198,10 +186,10 @@ export const moonGround = (place: Vec3): Vec4 =>
   Fn(() => {
     const maria = mariaCoverage(place)
     const { gradient, fresh } = craterGradient(place, maria)
-    const rough = mx_fractal_noise_float(place.mul(7), int(5), 2.2, 0.6) as Float
-    const patches = mx_fractal_noise_float(place.mul(3.2).add(5), int(4), 2, 0.6) as Float
-    const highland = float(1.25).add(rough.mul(0.3))
-    const sea = float(0.54).add(patches.mul(0.2)).add(rough.mul(0.1))
+    const rough = fractalNoise(place.mul(7), 5).x
+    const patches = fractalNoise(place.mul(3.2).add(5), 4).y
+    const highland = float(1.25).add(rough.mul(0.2))
+    const sea = float(0.54).add(patches.mul(0.12)).add(rough.mul(0.06))
     const ground = mix(highland, sea, maria)
     const bright = ground.add(rayBrightness(place).mul(0.6)).add(fresh.mul(0.12))
     return vec4(gradient.mul(0.5).add(0.5), bright.mul(1 / (MEAN * BRIGHTEST_GROUND)))
