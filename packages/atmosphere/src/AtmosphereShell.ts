@@ -12,6 +12,7 @@ import {
 } from 'three'
 import type { Camera, DirectionalLight, Light, PointLight, BufferGeometry } from 'three'
 import {
+  If,
   cameraProjectionMatrix,
   modelViewMatrix,
   positionLocal,
@@ -25,12 +26,14 @@ import type { Atmosphere } from './Atmosphere'
 import { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereUniforms } from './AtmosphereUniforms'
+import { eyeScalars } from './cpu/eye'
 import { sunWhite } from './cpu/reflectance'
 import { isAirless } from './planets'
+import { EyeUniforms, SkyVolumes } from './SkyVolumes'
 import type { Air } from './tsl/scattering'
-import { shellColor, shellDepth, type ShellPlace } from './tsl/shell'
-import { singleScatteringShell, tableShell } from './tsl/shellMarch'
-import type { Float, Vec4 } from './tsl-types'
+import { shellColor, shellDepth, type ShellPlace, type Way } from './tsl/shell'
+import { singleScatteringShell, tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import type { Bool, Vec4 } from './tsl-types'
 
 /** Where a shell's light comes from. */
 export type ShellSun = Atmosphere | DirectionalLight | PointLight | Vector3
@@ -54,6 +57,12 @@ export interface AtmosphereShellOptions {
 
 /** Segments of the march on the tables, two points each. */
 const TABLE_STEPS = 8
+
+/**
+ * Radii from which on the air is marched instead of read from a volume: a body that far off has few
+ * pixels, and float32 no elevations for them in a volume.
+ */
+const FAR = 20
 
 /** Scale that the colour matrix is computed with; `tint` makes it any other. */
 const SCALE = 1e-4
@@ -82,7 +91,7 @@ function ballAround(radius: number): BufferGeometry {
 const isAtmosphere = (sun: ShellSun): sun is Atmosphere => 'isAtmosphere' in sun
 const isLight = (sun: ShellSun): sun is DirectionalLight | PointLight => 'isLight' in sun
 
-/** Follows body, camera and sun, and has tables baked, whenever its shell is drawn. */
+/** Follows body, camera and sun, and has tables and volumes baked, whenever its shell is drawn. */
 class ShellNode extends Node<'vec4'> {
   static get type(): string {
     return 'AtmosphereShellNode'
@@ -96,15 +105,12 @@ class ShellNode extends Node<'vec4'> {
     this.#shell = shell
     this.#output = output
     this.updateBeforeType = NodeUpdateType.OBJECT
-    this.updateType = NodeUpdateType.OBJECT
   }
 
-  override updateBefore({ renderer }: NodeFrame): undefined {
-    if (renderer !== null) this.#shell.bake(renderer)
-  }
-
-  override update({ camera }: NodeFrame): undefined {
-    if (camera !== null) this.#shell.follow(camera)
+  override updateBefore({ renderer, camera }: NodeFrame): undefined {
+    if (renderer === null) return
+    this.#shell.bake(renderer)
+    if (camera !== null) this.#shell.see(renderer, camera)
   }
 
   override setup(): Node {
@@ -147,6 +153,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Its own tables; null for single scattering, or where the atmosphere that is its sun lends its. */
   readonly #tables: AtmosphereTables | null
   readonly #lender: Atmosphere | null
+  /** Its own even if tables are lent: its body's place is not the atmosphere's. */
+  readonly #volumes: SkyVolumes | null
+  readonly #eye = new EyeUniforms()
+  readonly #isMarched = uniform(1)
   #version = -1
   readonly #height = uniform(0)
   readonly #up = uniform(new Vector3())
@@ -215,13 +225,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       viewToMapped: this.#viewToMapped,
       tint: this.#tint
     }
-    const march =
-      tables === null
-        ? (ray: Parameters<typeof tableShell>[1], length: Float) =>
-            singleScatteringShell(air, ray, length)
-        : (ray: Parameters<typeof tableShell>[1], length: Float) =>
-            tableShell(air, ray, length, TABLE_STEPS)
-
+    this.#volumes =
+      tables &&
+      (this.#tables?.volumes ??
+        new SkyVolumes(tables.uniforms, tables.transmittance.target, tables.diffuseLight.target))
     const { material } = this
     material.name = 'Welkin.AtmosphereShell'
     material.side = BackSide
@@ -234,11 +241,35 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     material.premultipliedAlpha = false
     material.fog = false
     material.lights = false
-    material.fragmentNode = new ShellNode(this, shellColor(air, place, march))
+    material.fragmentNode = new ShellNode(
+      this,
+      shellColor(air, place, this.#light(air, this.#volumes))
+    )
     material.depthNode = shellDepth(air, place)
     // Its depth is written by the fragments: let neither plane of the frustum clip it.
     const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
     material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
+  }
+
+  #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
+    if (volumes === null) return ({ ray, sight }) => singleScatteringShell(air, ray, sight)
+    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
+    const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
+    const isMarched = this.#isMarched.greaterThan(0) as Bool
+    return ({ ray, sight }) => {
+      const radiance = vec4(0).toVar()
+      const depth = vec4(0).toVar()
+      If(isMarched, () => {
+        const shell = tableShell(air, ray, sight.length, TABLE_STEPS)
+        radiance.assign(shell.radiance)
+        depth.assign(shell.depth)
+      }).Else(() => {
+        const shell = volumeShell(air.uniforms, textures, this.#eye, sight)
+        radiance.assign(shell.radiance)
+        depth.assign(shell.depth)
+      })
+      return { radiance, depth }
+    }
   }
 
   /** No ray hits air. */
@@ -274,6 +305,27 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#followSun()
   }
 
+  /**
+   * Sees that there is a sky volume for a camera, and follows it. Drawing does this by itself, after
+   * {@link bake}.
+   */
+  see(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
+    this.follow(camera)
+    const tables = this.#lender?.tables ?? this.#tables
+    if (this.#volumes === null || tables === null) return
+    const { parameters } = this
+    const height = this.#height.value
+    // Rays of an orthographic camera do not start where it is.
+    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
+    const isFar = height > FAR * parameters.bottomRadius
+    const isMarched = isOrthographic || isFar || tables.version === 0
+    this.#isMarched.value = isMarched ? 1 : 0
+    if (isMarched) return
+    const cosSun = Math.min(Math.max(this.#up.value.dot(this.#sunDirection.value), -1), 1)
+    const eye = eyeScalars(parameters, height, cosSun)
+    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, tables.version).slot)
+  }
+
   #followSun(): void {
     const { sun } = this
     const direction = this.#sunDirection.value
@@ -306,7 +358,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   override dispose(): void {
     this.geometry.dispose()
     this.material.dispose()
-    this.#tables?.dispose()
+    const owned = this.#tables ?? this.#volumes
+    owned?.dispose()
   }
 }
 

@@ -18,6 +18,7 @@ import { linearSRGB, transmittanceRGB } from './color'
 import type { Air, Ray } from './scattering'
 import { screenRay } from './screenRay'
 import type { Shell } from './shellMarch'
+import type { Sight } from './skyVolume'
 
 /** Where a shell is seen from: the mapped space of its body, as shader nodes. */
 export interface ShellPlace {
@@ -34,10 +35,11 @@ export interface ShellPlace {
 }
 
 /** A fragment's way through the air of a shell. */
-interface Way {
+export interface Way {
+  /** From the camera, or from where it enters the air. */
   ray: Ray
-  /** Length of the way to the ground or out of the air; 0 if it misses the air [m]. */
-  length: Float
+  /** The same from the camera. Its length is 0 if it misses the air. */
+  sight: Sight
   /** Half of the way, in view space [world units]. */
   middleView: Vec3
 }
@@ -86,14 +88,19 @@ function wayThrough({ uniforms }: Air, place: ShellPlace): Way {
     cosViewSun
   }
   const discriminant = groundDiscriminant(ray.altitude, ray.cosView, bottomRadius).toConst()
-  const hitsGround = discriminant.greaterThanEqual(0).and(ray.cosView.lessThan(0))
+  const hitsGround = discriminant.greaterThanEqual(0).and(ray.cosView.lessThan(0)).toConst() as Bool
   const length = hitsGround.select(
     distanceToGround(ray.altitude, ray.cosView, discriminant as Float, bottomRadius),
     distanceToTop(ray.altitude, ray.cosView, bottomRadius, thickness)
   )
   const inAir = misses.select(0, length).toConst() as Float
   const middle = entry.add(inAir.mul(0.5)).div(metersPerUnit)
-  return { ray, length: inAir, middleView: originView.add(directionView.mul(middle)) }
+  const sinView = miss.div(radius).toConst() as Float
+  return {
+    ray,
+    sight: { cosView, sinView, cosViewSun, hitsGround, length: inAir },
+    middleView: originView.add(directionView.mul(middle))
+  }
 }
 
 /** Depth of a point in view space as the renderer writes it, within what it can write. */
@@ -123,18 +130,14 @@ const LUMINANCE = /*#__PURE__*/ vec3(0.2126, 0.7152, 0.0722)
 /**
  * Light of a shell's air, and how much of what is behind it that hides: premultiplied colour.
  *
- * @param march - Along a ray of some length.
+ * @param lightOf - What the air along a way gives and takes.
  */
-export function shellColor(
-  air: Air,
-  place: ShellPlace,
-  march: (ray: Ray, length: Float) => Shell
-): Vec4 {
+export function shellColor(air: Air, place: ShellPlace, lightOf: (way: Way) => Shell): Vec4 {
   return Fn(() => {
-    const { ray, length } = wayThrough(air, place)
+    const way = wayThrough(air, place)
     const color = vec4(0).toVar()
-    If(length.greaterThan(0), () => {
-      const { radiance, depth } = march(ray, length)
+    If(way.sight.length.greaterThan(0), () => {
+      const { radiance, depth } = lightOf(way)
       const through = transmittanceRGB(air.uniforms, depth.negate().exp())
       const light = linearSRGB(air.uniforms, radiance).mul(place.tint)
       color.assign(vec4(light, dot(through, LUMINANCE).oneMinus().clamp()))

@@ -118,7 +118,7 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
     const { column, row, slice } = atlasPosition(uv())
     const { cosView, hitsGround, position } = rowCosine(eye, row, ELEVATIONS)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
-    const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, limits)
+    const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
     const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
