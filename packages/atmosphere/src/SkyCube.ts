@@ -4,13 +4,14 @@ import {
   CubeCamera,
   HalfFloatType,
   LinearSRGBColorSpace,
+  Matrix3,
   Mesh,
   NoBlending,
   PerspectiveCamera,
   Vector3
 } from 'three'
 import type { Texture } from 'three'
-import { Fn, positionWorldDirection, vec4 } from 'three/tsl'
+import { Fn, positionWorldDirection, renderGroup, uniform, vec4 } from 'three/tsl'
 import { CubeRenderTarget, NodeMaterial, PMREMGenerator, RendererUtils } from 'three/webgpu'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
@@ -22,7 +23,14 @@ import { viewNodes, type ViewNodes } from './ViewNodes'
 /** Faces of the cube, and the filter. */
 export const SKY_CUBE_STEPS = 7
 
+/**
+ * Texels below the horizon over which the sky goes on, so that three's filter, which blurs even what
+ * polished surfaces mirror, does not draw the ground into the sky that still water has at its horizon.
+ */
+const MARGIN = 12
+
 const _position = new Vector3()
+const _rotation = new Matrix3()
 
 /**
  * Sky and ground about a place as three's prefiltered environment map, in the world's axes. Drawn in
@@ -35,6 +43,8 @@ export class SkyCube {
   readonly #view: ViewNodes
   readonly #faces: CubeRenderTarget
   readonly #cameras = new CubeCamera(1, 10, null as never)
+  /** Zenith in world space. */
+  readonly #up = uniform(new Vector3()).setGroup(renderGroup)
   readonly #box: Mesh<BoxGeometry, NodeMaterial>
   #generator: PMREMGenerator | null = null
   #renderer: Renderer | null = null
@@ -56,10 +66,14 @@ export class SkyCube {
     material.side = BackSide
     material.blending = NoBlending
     material.depthTest = material.depthWrite = material.toneMapped = material.fog = false
-    // With the world's axes a direction in view space is one in world space.
-    material.fragmentNode = Fn(() =>
-      vec4(skyColor(this.#view, positionWorldDirection.toConst() as Vec3, null), 1)
-    )()
+    material.fragmentNode = Fn(() => {
+      const direction = positionWorldDirection.toConst() as Vec3
+      const height = direction.dot(this.#up).sub(this.#view.eye.cosHorizon).toConst()
+      const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / size))
+      // With the world's axes a direction in view space is one in world space.
+      const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
+      return vec4(skyColor(this.#view, raised, null), 1)
+    })()
     this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }
 
@@ -71,7 +85,8 @@ export class SkyCube {
   /** Looks from a camera's place at the sky as it is now; the steps that follow draw that. */
   aim(renderer: Renderer, from: PerspectiveCamera['matrixWorld']): void {
     this.camera.matrixWorld.setPosition(_position.setFromMatrixPosition(from))
-    this.#atmosphere.update(renderer, this.camera)
+    const { up, viewToMapped } = this.#atmosphere.update(renderer, this.camera)
+    this.#up.value.copy(up).applyMatrix3(_rotation.copy(viewToMapped).transpose()).normalize()
   }
 
   /**
