@@ -40,24 +40,30 @@ export class AtmosphereTables {
     steps: number
   ): void {
     if (!renderer?.isRenderer) fail('Atmosphere', 'renderer must be a WebGPURenderer', renderer)
-    const stale =
-      renderer !== this.#renderer ||
-      (this.#work === null && parameters.version !== this.#parametersVersion)
-    if (stale || luminanceScale !== this.#scale) {
-      this.uniforms.update(parameters, luminanceScale)
-      this.#scale = luminanceScale
-    }
-    if (stale) {
-      this.#work?.return()
+    if (renderer !== this.#renderer) {
       // Another renderer shares no textures with the last one.
-      if (renderer !== this.#renderer) this.volumes.invalidate()
+      this.#work?.return()
+      this.#work = null
+      this.volumes.invalidate()
       this.#renderer = renderer
-      this.#parametersVersion = parameters.version
-      this.#work = this.#bake(renderer)
+      this.#parametersVersion = -1
     }
-    for (let step = 0; this.#work !== null && step < steps; step++) {
+    for (let step = 0; step < steps; step++) {
+      // What changed during a bake is baked after it.
+      if (this.#work === null) {
+        if (parameters.version === this.#parametersVersion) break
+        this.#parametersVersion = parameters.version
+        this.#setUniforms(parameters, luminanceScale)
+        this.#work = this.#bake(renderer)
+      }
       if (this.#work.next().done === true) this.#finish(renderer)
     }
+    if (luminanceScale !== this.#scale) this.#setUniforms(parameters, luminanceScale)
+  }
+
+  #setUniforms(parameters: AtmosphereParameters, luminanceScale: number): void {
+    this.uniforms.update(parameters, luminanceScale)
+    this.#scale = luminanceScale
   }
 
   *#bake(renderer: Renderer): Generator<void, void, void> {
