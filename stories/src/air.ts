@@ -1,13 +1,30 @@
-import { aerialPerspective } from '@welkin/atmosphere'
-import type { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
+import {
+  aerialPerspective,
+  aerialPerspectiveFog,
+  skyBackground,
+  SkyLightProbe,
+  SunDirectionalLight
+} from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
 import type { Camera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { quickStart } from './quickStart'
+import type { QuickStart } from './quickStart'
 
 /** How the air is drawn: by the materials themselves, or over the finished picture. */
 export type AirPath = 'forward' | 'post'
+
+/** What the quick start does, with an atmosphere that is there. */
+function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
+  const sun = new SunDirectionalLight(atmosphere)
+  const sky = new SkyLightProbe(atmosphere)
+  scene.add(sun, sun.target, sky)
+  scene.backgroundNode = skyBackground(atmosphere)
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  return { atmosphere, sun, sky }
+}
 
 /** The quick start's sky, haze, sunlight and sky light for a scene, by either path. */
 export class Air {
@@ -20,9 +37,10 @@ export class Air {
     private readonly renderer: WebGPURenderer,
     private readonly scene: Scene,
     private readonly camera: Camera,
-    path: AirPath
+    path: AirPath,
+    given?: Atmosphere
   ) {
-    const { atmosphere, sun, sky } = quickStart(scene)
+    const { atmosphere, sun, sky } = given === undefined ? quickStart(scene) : airOf(scene, given)
     this.atmosphere = atmosphere
     this.sun = sun
     this.sky = sky

@@ -90,7 +90,7 @@ export async function createFogValley(
   const mist = heightFog()
   const murk = distanceFog()
   atmosphere.add(murk, mist)
-  const air = new Air(renderer, scene, camera, atmosphere, args.path)
+  const air = new Air(renderer, scene, camera, args.path, atmosphere)
   prepareShadow(air.sun)
 
   const controls = new GlobeControls(land, camera, args.frame ? undefined : canvas)

@@ -102,7 +102,7 @@ export async function createPlanets(
       parameters.set({ groundAlbedo: await ground.meanAlbedo(renderer, parameters) })
     }
     shown?.air.dispose()
-    const air = new Air(renderer, scene, camera, atmosphere, args.path)
+    const air = new Air(renderer, scene, camera, args.path, atmosphere)
     shown = { air, atmosphere, key: keyOf(current) }
     apply()
   }
