@@ -11,9 +11,16 @@ const child = spawn(command, [...prefix, 'run', 'storybook', '-w', 'stories', '-
   cwd: rootFolder,
   stdio: 'inherit',
   shell,
+  detached: process.platform !== 'win32',
   env: { ...process.env, STORYBOOK_DISABLE_TELEMETRY: '1' }
 })
-for (const signal of ['SIGINT', 'SIGTERM']) process.on(signal, () => child.kill(signal))
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
+  process.on(signal, () => {
+    // The whole group: the server is a grandchild.
+    if (process.platform === 'win32') child.kill(signal)
+    else if (child.pid !== undefined) process.kill(-child.pid, signal)
+  })
+}
 child.on('exit', code => {
   process.exitCode = code ?? 0
 })

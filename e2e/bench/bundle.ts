@@ -15,4 +15,5 @@ await build({
   alias: sourceAliases,
   logLevel: 'warning'
 })
-console.log(outfile)
+// Standard output is for the figures.
+console.error(outfile)

@@ -1,7 +1,10 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
+import type { Atmosphere } from '@welkin/atmosphere'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
-import { benchScene, setSun, type Path } from './scene'
+import { timeEnvironment } from './environment'
+import { addSunMoonAndStars, benchScene, setSun, type Path } from './scene'
+import { timeShells } from './shell'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -35,15 +38,23 @@ const log = (text: string): void => {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 
+/** What else is in the sky, and how high the sun stands [°]. */
+interface SkyCase {
+  decorate?: (atmosphere: Atmosphere) => void
+  elevation?: number
+}
+
 /** GPU milliseconds of one frame, median after warm-up; and CPU milliseconds to submit it. */
 async function time(
   path: Path,
   altitude: number,
   withAir: boolean,
-  sunMoves: boolean
+  sunMoves: boolean,
+  { decorate, elevation }: SkyCase = {}
 ): Promise<{ gpu: number; cpu: number }> {
   const renderer = await device.renderer(width, height)
-  const scene = benchScene(renderer, path, altitude, withAir, [width, height])
+  const scene = benchScene(renderer, path, altitude, withAir, [width, height], decorate)
+  if (elevation !== undefined) setSun(scene.atmosphere, scene.camera, elevation)
   const gpu: number[] = []
   const cpu: number[] = []
   for (let frame = 0; frame < WARM_UP + frames; frame++) {
@@ -62,6 +73,8 @@ async function time(
   return { gpu: median(gpu), cpu: median(cpu) }
 }
 
+// Before anything else is warm.
+const firstFrameMs = await timeFirstFrame()
 const cases: Case[] = []
 const cpuCosts: number[] = []
 for (const path of PATHS) {
@@ -78,6 +91,33 @@ for (const path of PATHS) {
         `   volume update ${volumeUpdateMs.toFixed(3)} ms   (scene alone ${without.gpu.toFixed(3)} ms)`
     )
   }
+}
+
+/** What sun, moon and stars cost, by day and in a night that the full moon lights. */
+interface SkyCost {
+  path: Path
+  elevation: number
+  decoratedMs: number
+}
+
+const skyCosts: SkyCost[] = []
+for (const path of PATHS) {
+  for (const elevation of [40, -40]) {
+    const bare = await time(path, 2, true, false, { elevation })
+    const full = await time(path, 2, true, false, { elevation, decorate: addSunMoonAndStars })
+    const decoratedMs = full.gpu - bare.gpu
+    skyCosts.push({ path, elevation, decoratedMs })
+    log(
+      `${path.padEnd(8)} sun at ${String(elevation).padStart(3)}°   sun, moon, stars ${decoratedMs.toFixed(3)} ms`
+    )
+  }
+}
+
+const shells = await timeShells(device, [width, height], frames)
+for (const { model, outsideMs, insideMs } of shells) {
+  log(
+    `shell, ${model.padEnd(18)} outside ${outsideMs.toFixed(3)} ms   inside ${insideMs.toFixed(3)} ms`
+  )
 }
 
 /** GPU time of a bake, one step a frame: in all, and the most in a frame. */
@@ -105,7 +145,7 @@ async function timeBake(): Promise<{ total: number; most: number; bytes: number 
   }
   return {
     total: median(runs.map(run => run.total)),
-    most: median(runs.map(run => run.most)),
+    most: Math.max(...runs.map(run => run.most)),
     bytes: runs[0].bytes
   }
 }
@@ -124,20 +164,24 @@ async function timeFirstFrame(): Promise<number> {
 }
 
 const bake = await timeBake()
-const firstFrameMs = await timeFirstFrame()
+const environment = await timeEnvironment(device, [width, height], 10)
 const result = {
   device: device.name,
   cases,
+  shells,
+  skyCosts,
   bakeMs: bake.total,
   bakeMaxFrameMs: bake.most,
   gpuBytes: bake.bytes,
   firstFrameMs,
+  environment,
   cpuMsPerFrame: median(cpuCosts)
 }
 log(`
 bake           ${bake.total.toFixed(2)} ms in all, ${bake.most.toFixed(2)} ms at most in a frame
 GPU memory     ${(bake.bytes / 1e6).toFixed(2)} MB
 first frame    ${firstFrameMs.toFixed(0)} ms at 320×180
+environment    ${environment.totalMs.toFixed(3)} ms in all, ${environment.mostMs.toFixed(3)} ms at most in a frame; CPU ${environment.submitMs.toFixed(2)} ms
 CPU            ${result.cpuMsPerFrame.toFixed(2)} ms a frame while the volume is updated`)
 if (values.json) console.log(JSON.stringify(result, null, 2))
 if (values.out !== undefined) writeFileSync(values.out, JSON.stringify(result, null, 2))

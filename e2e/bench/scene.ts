@@ -14,7 +14,12 @@ import {
   Atmosphere,
   aerialPerspective,
   aerialPerspectiveFog,
-  skyBackground
+  airglow,
+  milkyWay,
+  moon,
+  skyBackground,
+  stars,
+  sunFlare
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 
@@ -52,15 +57,18 @@ export function placeCamera(camera: PerspectiveCamera, altitude: number): void {
  * A globe without light or texture, so that what the air costs stands out.
  *
  * @param withAir - False for the same scene without it, to be subtracted.
+ * @param decorate - Adds what else is in the sky.
  */
 export function benchScene(
   renderer: WebGPURenderer,
   path: Path,
   altitude: number,
   withAir: boolean,
-  size: readonly [number, number]
+  size: readonly [number, number],
+  decorate: (atmosphere: Atmosphere) => void = () => undefined
 ): BenchScene {
   const atmosphere = new Atmosphere()
+  decorate(atmosphere)
   atmosphere.frame = 'ecef'
   const camera = new PerspectiveCamera(50, size[0] / size[1])
   placeCamera(camera, altitude)
@@ -117,4 +125,9 @@ export function setSun(atmosphere: Atmosphere, camera: PerspectiveCamera, elevat
   atmosphere.sunDirection = up
     .multiplyScalar(Math.sin(angle))
     .addScaledVector(east.addScaledVector(north, 0.5).normalize(), Math.cos(angle))
+}
+
+/** Sun with its flare, the Milky Way, 5,044 stars, the full moon and airglow. */
+export function addSunMoonAndStars(atmosphere: Atmosphere): void {
+  atmosphere.add(sunFlare(atmosphere), milkyWay(), stars(), moon(atmosphere), airglow())
 }

@@ -15,25 +15,31 @@ function difference(png: PNG, place: string, x: number, y: number, expected: Col
     : []
 }
 
-/** In words what is wrong when the sky is not blue, or the sunlit ground not a bright grey. */
-function checkNoon(png: PNG): string[] {
+const brightness = (color: Color): number => color.reduce((sum, value) => sum + value, 0)
+
+/** In words what is wrong when the sky is not blue, the ground not sunlit, or the ball casts no shadow. */
+function checkQuickStart(png: PNG): string[] {
   const wrong: string[] = []
   const [skyRed, skyGreen, skyBlue] = at(png, 160, 10)
   if (!(skyBlue > skyGreen && skyGreen > skyRed && skyBlue > 100)) {
     wrong.push(`the sky is not blue: ${skyRed} ${skyGreen} ${skyBlue}`)
   }
-  const ground = at(png, 160, 170)
-  if (Math.min(...ground) < 90 || Math.max(...ground) - Math.min(...ground) > 40) {
-    wrong.push(`the ground is not a bright grey: ${ground.join(' ')}`)
+  const ground = at(png, 60, 160)
+  if (Math.min(...ground) < 70 || Math.max(...ground) - Math.min(...ground) > 60) {
+    wrong.push(`the ground is not sunlit: ${ground.join(' ')}`)
+  }
+  const shadow = at(png, 200, 130)
+  if (brightness(shadow) > 0.7 * brightness(ground)) {
+    wrong.push(`the ball casts no shadow: ${shadow.join(' ')} beside ${ground.join(' ')}`)
   }
   return wrong
 }
 
-/** Per scene of the app (`app/src/NAME.ts`), what is wrong with its frame of 320×180. */
+/** Per page of the app (`app/PAGE.html`), what is wrong with its frame of 320×180. */
 export const expectations: Record<string, (png: PNG) => string[]> = {
+  index: checkQuickStart,
   geo: png => [
     ...difference(png, 'the globe', 160, 90, [0x22, 0x55, 0xaa]),
     ...difference(png, 'space', 5, 5, [0, 0, 0])
-  ],
-  atmosphere: checkNoon
+  ]
 }

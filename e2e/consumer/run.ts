@@ -1,16 +1,18 @@
 import { execFileSync } from 'node:child_process'
-import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs'
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { fileURLToPath } from 'node:url'
-import type { Browser } from 'playwright-core'
+import type { Browser, Page } from 'playwright-core'
 import { PNG } from 'pngjs'
 import type { Backend } from '../gpu/harness/gpu-test'
 import { launchChromium } from '../harness/browser'
 import { withLimit } from '../harness/limit'
-import { Report } from '../harness/report'
+import { outputFolder, Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
+import { isBlank } from '../visual/compare'
 import { expectations } from './expectations'
+import { writeReadmeModules } from './readme'
 
 const root = fileURLToPath(new URL('../..', import.meta.url))
 const template = fileURLToPath(new URL('app', import.meta.url))
@@ -38,11 +40,14 @@ function attempt(name: string, work: () => string): boolean {
   }
 }
 
-const workspace = (
-  JSON.parse(readFileSync(join(root, 'package.json'), 'utf8')) as {
-    devDependencies: Record<string, string>
-  }
-).devDependencies
+const devDependencies = (folder: string): Record<string, string> =>
+  (
+    JSON.parse(readFileSync(join(root, folder, 'package.json'), 'utf8')) as {
+      devDependencies: Record<string, string>
+    }
+  ).devDependencies
+
+const workspace = { ...devDependencies('.'), ...devDependencies('stories') }
 
 /** Installs the packed packages as a user would: from files, with the versions of the workspace. */
 function install(app: string): string {
@@ -55,33 +60,55 @@ function install(app: string): string {
     const [{ filename }] = JSON.parse(output) as [{ filename: string }]
     return `./${filename}`
   })
-  const tools = ['three', '@types/three', 'typescript', 'vite'].map(
+  const tools = ['three', '@types/three', 'typescript', 'vite', '3d-tiles-renderer'].map(
     name => `${name}@${workspace[name]}`
   )
   execute('npm', ['install', '--no-audit', '--no-fund', ...packed, ...tools], app)
   return packed.map(file => file.replace('./', '')).join(', ')
 }
 
-async function look(browser: Browser, origin: string, scene: string, backend: Backend) {
-  const label = `the app's ${scene} scene draws what it should [${backend}]`
-  const page = await browser.newPage()
+/** Three's word about its fallback from WebGPU, which the app without it is meant to take. */
+const fallback = /WebGPU is not available, running under WebGL2 backend/
+
+/** Runs in the page: the next frame as a PNG data URL, taken in the task that draws it. */
+function takeFrame(): Promise<string> {
+  return new Promise(resolve => {
+    // The renderer's own request came first, and so it draws first.
+    requestAnimationFrame(() => resolve(document.querySelector('canvas')!.toDataURL('image/png')))
+  })
+}
+
+/** The app's first frame that is not blank. */
+async function firstFrame(page: Page): Promise<PNG> {
+  for (;;) {
+    const png = PNG.sync.read(Buffer.from((await page.evaluate(takeFrame)).split(',')[1], 'base64'))
+    if (!isBlank(png)) return png
+  }
+}
+
+async function look(browser: Browser, origin: string, name: string, backend: Backend) {
+  const label = `the app's ${name} page draws what it should [${backend}]`
+  const page = await browser.newPage({ viewport: { width: 320, height: 180 } })
   const errors: string[] = []
   page.on('pageerror', error => errors.push(String(error)))
   page.on('console', message => {
-    // Three warns when it falls back from WebGPU.
     const text = message.text()
+    if (backend === 'webgl' && fallback.test(text)) return
     if (message.type() === 'error' || text.startsWith('THREE')) errors.push(text)
   })
   try {
-    const query = backend === 'webgl' ? '&webgl' : ''
-    await page.goto(`${origin}/index.html?scene=${scene}${query}`)
-    await page.waitForFunction(() => 'draw' in window, undefined, { timeout: 60_000 })
-    const url = await withLimit(
-      page.evaluate(() => (window as unknown as { draw: () => string }).draw()),
-      120
-    )
-    const png = PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'))
-    errors.push(...expectations[scene](png))
+    if (backend === 'webgl') {
+      await page.addInitScript(() => Object.defineProperty(navigator, 'gpu', { value: undefined }))
+    }
+    await page.goto(`${origin}/${name}.html`)
+    await page.waitForSelector('canvas', { state: 'attached', timeout: 60_000 })
+    const png = await withLimit(firstFrame(page), 120)
+    const wrong = expectations[name](png)
+    if (wrong.length > 0) {
+      const file = join(outputFolder, `consumer-${name}.${backend}.png`)
+      writeFileSync(file, PNG.sync.write(png))
+      errors.push(...wrong, `see e2e/output/consumer-${name}.${backend}.png`)
+    }
   } catch (error) {
     errors.push(String(error))
   }
@@ -94,9 +121,9 @@ async function lookAtAll(folder: string): Promise<void> {
   const server = await serveStatic([{ path: '/', folder }])
   const browser = await launchChromium()
   try {
-    for (const scene of Object.keys(expectations)) {
+    for (const name of Object.keys(expectations)) {
       for (const backend of ['webgpu', 'webgl'] as const) {
-        await look(browser, server.origin, scene, backend)
+        await look(browser, server.origin, name, backend)
       }
     }
   } finally {
@@ -108,8 +135,10 @@ async function lookAtAll(folder: string): Promise<void> {
 const app = mkdtempSync(join(tmpdir(), 'welkin-consumer-'))
 try {
   cpSync(template, app, { recursive: true })
+  mkdirSync(outputFolder, { recursive: true })
   const steps: [string, () => string][] = [
     ['npm install of the packed packages', () => install(app)],
+    ['the code of the READMEs', () => `${writeReadmeModules(root, app)} blocks`],
     ['strict types, skipLibCheck off', () => execute('npx', ['--no-install', 'tsc'], app)],
     ['vite build', () => execute('npx', ['--no-install', 'vite', 'build', '--logLevel=warn'], app)]
   ]

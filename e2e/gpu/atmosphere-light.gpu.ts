@@ -14,7 +14,7 @@ import {
   Vector3
 } from 'three'
 import { skyBackground } from '@welkin/atmosphere'
-import { CubeRenderTarget, type WebGPURenderer } from 'three/webgpu'
+import { CubeRenderTarget } from 'three/webgpu'
 import { drawForward, expectLight } from './harness/atmosphere'
 import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
@@ -35,8 +35,9 @@ gpuTest('lights a white plane as float64 predicts, within 1 %', async t => {
   camera.position.y = 10
   camera.rotation.x = -Math.PI / 2
   const up = new Vector3(0, 1, 0)
-  for (const elevation of [80, 40, 10, 3, -2]) {
+  for (const elevation of [80, 40, 10, 3, -3]) {
     atmosphere.setSunAngles(elevation, 150)
+    atmosphere.luminanceScale = elevation > 0 ? 1e-4 : 1e-1
     const picture = await t.render(renderer, scene, camera, small)
     const sun = atmosphere.sunIlluminanceAt(new Vector3())
     const sky = atmosphere.skyIlluminanceAt(new Vector3(), up)
@@ -136,50 +137,3 @@ gpuTest('sees haze through glass', async t => {
   )
   atmosphere.dispose()
 })
-
-gpuTest('bakes the same tables step by step', async t => {
-  const tables: Float32Array[] = []
-  for (const steps of [Infinity, 1]) {
-    const renderer = await t.createRenderer(small)
-    const atmosphere = new Atmosphere()
-    atmosphere.bakeStepsPerFrame = steps
-    const camera = new PerspectiveCamera()
-    let frames = 0
-    while (atmosphere.tables.version === 0 && frames < 40) {
-      atmosphere.update(renderer, camera)
-      frames++
-    }
-    expectTrue(steps === 1 ? frames > 10 : frames === 1, `it took ${frames} frames`)
-    await atmosphere.tables.read()
-    tables.push(atmosphere.tables.data!.values)
-    atmosphere.dispose()
-  }
-  expectClose(tables[1], tables[0], {})
-})
-
-gpuTest(
-  'leaves no memory behind, round after round',
-  async t => {
-    const renderer: WebGPURenderer = await t.createRenderer({ width: 8, height: 8 })
-    const camera = new PerspectiveCamera(60, 1, 1, 1e6)
-    const round = (): void => {
-      const atmosphere = new Atmosphere()
-      atmosphere.bakeStepsPerFrame = 1
-      const scene = new Scene()
-      const background = skyBackground(atmosphere)
-      scene.backgroundNode = background
-      renderer.render(scene, camera)
-      background.dispose()
-      atmosphere.dispose()
-    }
-    round()
-    round()
-    const before = JSON.stringify(renderer.info.memory)
-    // WebGL takes a second to compile a round's shaders in software.
-    const rounds = t.backend === 'webgpu' ? 100 : 10
-    for (let i = 0; i < rounds; i++) round()
-    const after = JSON.stringify(renderer.info.memory)
-    expectTrue(after === before, `before ${before}, after ${after}`)
-  },
-  { timeoutSeconds: 120 }
-)

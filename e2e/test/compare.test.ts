@@ -22,7 +22,7 @@ describe('compare', () => {
   const expected = gradient(0, 20)
 
   it('takes a picture for itself', () => {
-    expect(compare(expected, expected)).toMatchObject({ same: true })
+    expect(compare(expected, expected)).toMatchObject({ same: true, isNearLimit: false })
   })
 
   it('lets an edge move by a pixel', () => {
@@ -35,6 +35,14 @@ describe('compare', () => {
 
   it('sees an exposure that is off by 2 %', () => {
     expect(compare(gradient(5, 20), expected).same).toBe(false)
+  })
+
+  it('knows when a picture passes but barely', () => {
+    const fewOff = picture((x, y) =>
+      y === 18 && x > 40 && x % 6 === 0 ? [255, 0, 255] : [2 * x, 3 * y, 60]
+    )
+    const plain = picture((x, y) => [2 * x, 3 * y, 60])
+    expect(compare(fewOff, plain)).toMatchObject({ same: true, isNearLimit: true })
   })
 
   it('sees another size', () => {

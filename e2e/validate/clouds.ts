@@ -72,9 +72,8 @@ export async function validateClouds(file: string, backend: Backend): Promise<Cl
 
 const percent = (value: number): string => `${(100 * value).toFixed(1)} %`.padStart(9)
 
-/** Prints the scores of slabs and spheres; answers with the number of goals missed. */
-export function printClouds(figures: CloudFigures): number {
-  let missed = 0
+/** Prints the scores of slabs and spheres. */
+export function printClouds(figures: CloudFigures): void {
   for (const shape of ['slab', 'sphere'] as const) {
     const goal: CloudGoal = cloudGoals[shape]
     const scored = figures.cases.filter(result => result.shape === shape && isScored(result))
@@ -101,10 +100,8 @@ export function printClouds(figures: CloudFigures): number {
       const limit = goal[key]
       if (limit === undefined) continue
       const met = figures[shape][key] <= limit
-      if (!met) missed++
       console.log(`  goal: ${key} ≤ ${percent(limit).trim()} ${met ? '✓' : '✗'}`)
     }
   }
   console.log()
-  return missed
 }

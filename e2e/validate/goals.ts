@@ -1,4 +1,6 @@
-import type { BandName } from './score'
+import type { CloudFigures } from './clouds'
+import type { ColorFigures, SkyComparisons } from './figures'
+import type { Band, BandName, Comparison } from './score'
 
 /** Largest errors that the project accepts; fractions, or ΔE. */
 export interface Goal {
@@ -33,4 +35,52 @@ export interface CloudGoal {
 export const cloudGoals: Record<'slab' | 'sphere', CloudGoal> = {
   slab: { median: 0.03, p95: 0.15 },
   sphere: { median: 0.2, p90: 0.6 }
+}
+
+/** The largest error of irradiance that has a goal; undefined if none has. */
+export function worstIrradiance(comparisons: readonly Comparison[]): Comparison | undefined {
+  return comparisons
+    .filter(comparison => comparison.sunZenith <= irradianceGoal.sunZenith)
+    .toSorted((a, b) => Math.abs(b.error) - Math.abs(a.error))[0]
+}
+
+/** Names the goals that the figures miss, each with its figure. What was not compared misses none. */
+export function missedGoals(
+  { irradiance = [] }: SkyComparisons,
+  statistics: Record<string, Band[]>,
+  colors: ColorFigures | undefined
+): string[] {
+  const missed: string[] = []
+  const hold = (name: string, figure: number, goal: number | undefined): void => {
+    if (goal === undefined || figure <= goal) return // NaN meets no goal
+    missed.push(`${name} is ${figure.toPrecision(3)}, goal ${goal}`)
+  }
+  for (const [quantity, bands] of Object.entries(statistics)) {
+    for (const figures of bands) {
+      const goal = bandGoals[quantity]?.[figures.band] ?? {}
+      for (const key of ['median', 'p95', 'max'] as const) {
+        hold(`${key} of ${quantity}, sun ${figures.band}°`, figures[key], goal[key])
+      }
+    }
+  }
+  const worst = worstIrradiance(irradiance)
+  if (worst !== undefined) {
+    hold(`irradiance ${worst.label}`, Math.abs(worst.error), irradianceGoal.max)
+  }
+  if (colors !== undefined) {
+    hold('mean of spectral', colors.mean, colorGoal.mean)
+    hold('p95 of spectral', colors.p95, colorGoal.p95)
+  }
+  return missed
+}
+
+/** Names the goals that clouds miss, each with its figure. */
+export function missedCloudGoals(figures: CloudFigures): string[] {
+  return (['slab', 'sphere'] as const).flatMap(shape =>
+    Object.entries(cloudGoals[shape]).flatMap(([key, goal]: [string, number]) => {
+      const figure = figures[shape][key as keyof CloudGoal]
+      if (figure <= goal) return [] // NaN meets no goal
+      return [`${key} of cloud ${shape}s is ${figure.toPrecision(3)}, goal ${goal}`]
+    })
+  )
 }

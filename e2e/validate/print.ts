@@ -1,5 +1,5 @@
 import type { ColorFigures, SkyComparisons } from './figures'
-import { bandGoals, colorGoal, irradianceGoal, type Goal } from './goals'
+import { bandGoals, colorGoal, irradianceGoal, worstIrradiance, type Goal } from './goals'
 import type { Band, Comparison } from './score'
 
 const titles: Record<string, string> = {
@@ -15,57 +15,50 @@ const percent = (value: number): string => {
 }
 const cell = (text: string, width: number): string => text.padStart(width)
 
-/** A figure with its goal and a mark; counts a missed goal. */
-class Tally {
-  missed = 0
-
-  figure(value: number, goal: number | undefined, format: (value: number) => string): string {
-    if (goal === undefined) return cell(format(value), 10).padEnd(24)
-    const met = value <= goal
-    if (!met) this.missed++
-    return `${cell(format(value), 10)} ${`≤ ${format(goal)}`.padEnd(10)}${met ? '✓' : '✗'}`.padEnd(
-      24
-    )
-  }
+/** A figure with its goal and a mark. */
+function judged(
+  value: number,
+  goal: number | undefined,
+  format: (value: number) => string
+): string {
+  if (goal === undefined) return cell(format(value), 10).padEnd(24)
+  const mark = value <= goal ? '✓' : '✗'
+  return `${cell(format(value), 10)} ${`≤ ${format(goal)}`.padEnd(10)}${mark}`.padEnd(24)
 }
 
-function printBands(tally: Tally, bands: Band[], goals: Partial<Record<string, Goal>>): void {
+function printBands(bands: Band[], goals: Partial<Record<string, Goal>>): void {
   const head = ['    median'.padEnd(24), '       p95'.padEnd(24), '       max'.padEnd(24)]
   console.log(`  ${'sun'.padEnd(8)}${cell('n', 6)}${head.join('')}${cell('ref. error', 11)}`)
   for (const { band, n, median, p95, max, stderr } of bands) {
     const goal = goals[band] ?? {}
     const figures = [
-      tally.figure(median, goal.median, percent),
-      tally.figure(p95, goal.p95, percent),
-      tally.figure(max, goal.max, percent)
+      judged(median, goal.median, percent),
+      judged(p95, goal.p95, percent),
+      judged(max, goal.max, percent)
     ]
     const name = `${band.replace('-', '–')}°`.padEnd(8)
     console.log(`  ${name}${cell(String(n), 6)}${figures.join('')}${cell(percent(stderr), 11)}`)
   }
 }
 
-function printIrradianceGoal(tally: Tally, comparisons: Comparison[]): void {
-  const { sunZenith, max } = irradianceGoal
-  const within = comparisons.filter(comparison => comparison.sunZenith <= sunZenith)
-  if (within.length === 0) return
-  const worst = within.reduce((a, b) => (Math.abs(b.error) > Math.abs(a.error) ? b : a))
-  const figure = tally.figure(Math.abs(worst.error), max, percent).trim()
-  console.log(`  largest of ${within.length} up to ${sunZenith}°: ${figure}  (${worst.label})`)
+function printIrradianceGoal(comparisons: Comparison[]): void {
+  const worst = worstIrradiance(comparisons)
+  if (worst === undefined) return
+  const figure = judged(Math.abs(worst.error), irradianceGoal.max, percent).trim()
+  console.log(`  largest up to ${irradianceGoal.sunZenith}°: ${figure}  (${worst.label})`)
 }
 
-/** Prints a table per quantity; answers with the number of goals missed. */
+/** Prints a table per quantity. */
 export function printQuantities(
   comparisons: SkyComparisons,
   statistics: Record<string, Band[]>
-): number {
-  const tally = new Tally()
+): void {
   for (const [name, bands] of Object.entries(statistics)) {
     console.log(titles[name])
-    printBands(tally, bands, bandGoals[name] ?? {})
-    if (name === 'irradiance') printIrradianceGoal(tally, comparisons.irradiance!)
+    printBands(bands, bandGoals[name] ?? {})
+    if (name === 'irradiance') printIrradianceGoal(comparisons.irradiance ?? [])
     console.log()
   }
-  return tally.missed
 }
 
 /** Prints how far off the sun alone is, per angle. */
@@ -83,16 +76,14 @@ export function printSun(comparisons: Comparison[]): void {
   console.log()
 }
 
-/** Prints the colour differences; answers with the number of goals missed. */
-export function printColors({ n, mean, p95, max }: ColorFigures): number {
-  const tally = new Tally()
+/** Prints the colour differences. */
+export function printColors({ n, mean, p95, max }: ColorFigures): void {
   const format = (value: number): string => value.toFixed(2)
   console.log('Colour of the sky, ΔE2000')
   console.log(`  n ${n}`)
-  console.log(`  mean ${tally.figure(mean, colorGoal.mean, format)}`)
-  console.log(`  p95  ${tally.figure(p95, colorGoal.p95, format)}`)
-  console.log(`  max  ${tally.figure(max, undefined, format)}`)
-  return tally.missed
+  console.log(`  mean ${judged(mean, colorGoal.mean, format)}`)
+  console.log(`  p95  ${judged(p95, colorGoal.p95, format)}`)
+  console.log(`  max  ${judged(max, undefined, format)}`)
 }
 
 /** Lists the largest errors. */

@@ -16,6 +16,8 @@ export const tolerance = {
 
 export interface Comparison {
   same: boolean
+  /** Whether more than half of a tolerance is used up. */
+  isNearLimit: boolean
   detail: string
   /** The difference, eightfold. */
   diff: PNG
@@ -43,7 +45,7 @@ export function compare(actual: PNG, expected: PNG): Comparison {
   const diff = new PNG({ width, height })
   if (actual.width !== width || actual.height !== height) {
     const detail = `${actual.width}×${actual.height} instead of ${width}×${height}`
-    return { same: false, detail, diff }
+    return { same: false, isNearLimit: true, detail, diff }
   }
   let sum = 0
   let farOff = 0
@@ -66,6 +68,7 @@ export function compare(actual: PNG, expected: PNG): Comparison {
   const mean = sum / (3 * width * height)
   const share = farOff / (width * height)
   return {
+    isNearLimit: mean > tolerance.mean / 2 || share > tolerance.farOffShare / 2,
     same: mean <= tolerance.mean && share <= tolerance.farOffShare,
     detail: `mean ${mean.toFixed(2)}/255, ${(100 * share).toFixed(2)} % far off`,
     diff

@@ -1,8 +1,8 @@
 import {
   aerialPerspective,
   aerialPerspectiveFog,
-  SkyLightProbe,
   skyBackground,
+  SkyLightProbe,
   SunDirectionalLight
 } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
@@ -10,12 +10,25 @@ import type { Camera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
+import { quickStart } from './quickStart'
+import type { QuickStart } from './quickStart'
 
 /** How the air is drawn: by the materials themselves, or over the finished picture. */
 export type AirPath = 'forward' | 'post'
 
-/** Sky, haze, sunlight and sky light for a scene, by either path. */
+/** What the quick start does, with an atmosphere that is there. */
+function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
+  const sun = new SunDirectionalLight(atmosphere)
+  const sky = new SkyLightProbe(atmosphere)
+  scene.add(sun, sun.target, sky)
+  scene.backgroundNode = skyBackground(atmosphere)
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  return { atmosphere, sun, sky }
+}
+
+/** The quick start's sky, haze, sunlight and sky light for a scene, by either path. */
 export class Air {
+  readonly atmosphere: Atmosphere
   readonly sun: SunDirectionalLight
   private readonly sky: SkyLightProbe
   private readonly pipeline: RenderPipeline | undefined
@@ -24,16 +37,16 @@ export class Air {
     private readonly renderer: WebGPURenderer,
     private readonly scene: Scene,
     private readonly camera: Camera,
-    private readonly atmosphere: Atmosphere,
-    path: AirPath
+    path: AirPath,
+    given?: Atmosphere
   ) {
-    this.sun = new SunDirectionalLight(atmosphere)
-    this.sky = new SkyLightProbe(atmosphere)
-    scene.add(this.sun, this.sun.target, this.sky)
-    if (path === 'forward') {
-      scene.backgroundNode = skyBackground(atmosphere)
-      scene.fogNode = aerialPerspectiveFog(atmosphere)
-    } else {
+    const { atmosphere, sun, sky } = given === undefined ? quickStart(scene) : airOf(scene, given)
+    this.atmosphere = atmosphere
+    this.sun = sun
+    this.sky = sky
+    if (path === 'post') {
+      scene.backgroundNode = null
+      scene.fogNode = null
       // One sample: the air needs the depth of the very point that the colour is of.
       const scenePass = pass(scene, camera, { samples: 0 })
       const color = scenePass.getTextureNode()

@@ -40,21 +40,26 @@ export async function createClouds(
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const camera = new PerspectiveCamera(60, 1, 1, 1e9)
+  // #region clouds
   const atmosphere = new Atmosphere()
   const scenePass = pass(scene, camera, { samples: 0 })
   const depth = scenePass.getTextureNode('depth')
   const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
-  const current = { ...args }
   const pipeline = new RenderPipeline(renderer)
+  const addClouds = (preset: CloudPresetName, quality: CloudQualityName): CloudsNode => {
+    const node = clouds(air, depth, camera, atmosphere, cloudPreset(preset), { quality })
+    pipeline.outputNode = node
+    pipeline.needsUpdate = true
+    return node
+  }
+  // #endregion
+  const current = { ...args }
   let node: CloudsNode | undefined
 
   /** A node's layers are its own: another preset takes another node. */
   const choose = (): void => {
     node?.dispose()
-    const { preset, quality } = current
-    node = clouds(air, depth, camera, atmosphere, cloudPreset(preset), { quality })
-    pipeline.outputNode = node
-    pipeline.needsUpdate = true
+    node = addClouds(current.preset, current.quality)
   }
   const apply = (): void => {
     atmosphere.place(current)

@@ -4,12 +4,13 @@ import { createClouds } from './clouds.scene'
 import type { CloudsArgs } from './clouds.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 
 const { forceWebGL, frame } = rendererArgTypes
 
 const meta: Meta<CloudsArgs> = {
   title: 'Clouds',
-  render: mount(createClouds),
+  render: mount(createClouds, storyCode('clouds.scene.ts', 'clouds')),
   argTypes: {
     preset: {
       name: 'Clouds',

@@ -1,6 +1,5 @@
 import { GlobeControls } from '3d-tiles-renderer'
 import type { TilesRenderer } from '3d-tiles-renderer'
-import { Atmosphere } from '@welkin/atmosphere'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
 import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { createCity } from './globe/city'
@@ -11,18 +10,12 @@ import type { PlaceName } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
 import { createTerrain } from './globe/terrain'
 import { Air } from './air'
-import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
-import type { RendererArgs, SceneHandle } from './scene'
+import { applyTime, createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 import { loadTiles, tilesProgress } from './globe/loadTiles'
 
-export interface GlobeArgs extends RendererArgs {
+export interface GlobeArgs extends RendererArgs, TimeArgs {
   place: PlaceName
-  /** A moment of the day [ms since 1970]. */
-  day: number
-  /** Hour of that day, UTC [h]. */
-  hour: number
-  /** [stops], 0 for daylight. */
-  exposure: number
 }
 
 /** The city is smaller than a pixel from higher up [m]. */
@@ -46,9 +39,11 @@ export async function createGlobe(
   land.add(surface.tiles.group, terrain.tiles.group)
   scene.add(land, city.object)
 
-  const atmosphere = new Atmosphere()
-  atmosphere.frame = 'ecef'
-  const air = new Air(renderer, scene, camera, atmosphere, args.path)
+  const air = new Air(renderer, scene, camera, args.path)
+  const { atmosphere } = air
+  // #region globe
+  atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
+  // #endregion
   prepareShadow(air.sun)
 
   const controls = new GlobeControls(land, camera, args.frame ? undefined : canvas)
@@ -99,12 +94,7 @@ export async function createGlobe(
     load()
   }
 
-  const applyLight = (): void => {
-    atmosphere.date = dateOf(current.day, current.hour)
-    renderer.toneMappingExposure = exposureOf(current.exposure)
-  }
-
-  applyLight()
+  applyTime(renderer, air, current)
   goTo(current.place)
 
   return {
@@ -124,10 +114,7 @@ export async function createGlobe(
       draw()
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       for (const tiles of tilesets) {
         tiles.setResolution(camera, width * pixelRatio, height * pixelRatio)
       }
@@ -137,7 +124,7 @@ export async function createGlobe(
       const place = changes.place ?? current.place
       const moved = place !== current.place
       Object.assign(current, changes)
-      applyLight()
+      applyTime(renderer, air, current)
       if (moved) {
         goTo(place)
       }

@@ -4,10 +4,15 @@ import type { GlobeArgs } from './globe.scene'
 import { PLACES } from './globe/places'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('globe.scene.ts', 'globe')}`
 
 const meta: Meta<GlobeArgs> = {
   title: 'Globe',
-  render: mount(createGlobe),
+  render: mount(createGlobe, code),
   argTypes: {
     place: {
       name: 'Camera',

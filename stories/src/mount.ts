@@ -22,6 +22,10 @@ const STYLE = `
   .welkin-note { position: absolute; left: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px;
     background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity .4s }
   .welkin-note progress { width: 140px; height: 6px; margin-right: 8px; accent-color: #8fc7ff }
+  .welkin-code { position: absolute; left: 12px; top: 12px; max-width: calc(100% - 24px); border-radius: 6px;
+    background: rgb(5 7 10 / 70%) }
+  .welkin-code summary { padding: 6px 10px; cursor: pointer }
+  .welkin-code pre { margin: 0; padding: 2px 12px 12px; overflow: auto; font: 12px/1.5 ui-monospace, monospace }
   .welkin-error { position: absolute; inset: 0; display: grid; place-items: center; padding: 10%; text-align: center;
     white-space: pre-line }
 `
@@ -31,9 +35,12 @@ const STYLE = `
  *
  * The canvas fills the page; new arguments go to the running scene. With `frame` it draws once, when everything is
  * loaded, and sets `data-ready="true"` on the body.
+ *
+ * @param code - What a user writes for it: shown on request.
  */
 export function mount<Args extends RendererArgs>(
-  create: CreateScene<Args>
+  create: CreateScene<Args>,
+  code: string
 ): (args: Args, context: { id: string }) => HTMLElement {
   return (args, { id }) => {
     const key = [id, args.forceWebGL, args.path, args.frame].join(' ')
@@ -41,7 +48,7 @@ export function mount<Args extends RendererArgs>(
       mounted.update(args)
     } else {
       mounted?.dispose()
-      mounted = start(key, create, args)
+      mounted = start(key, create, code, args)
     }
     return mounted.element
   }
@@ -50,13 +57,17 @@ export function mount<Args extends RendererArgs>(
 function start<Args extends RendererArgs>(
   key: string,
   create: CreateScene<Args>,
+  code: string,
   args: Args
 ): Mounted {
   delete document.body.dataset.ready
   const element = document.createElement('div')
   element.className = 'welkin'
   element.innerHTML = `<style>${STYLE}</style><canvas></canvas>
-    <div class="welkin-note"><progress max="1"></progress><span>Loading</span></div>`
+    <div class="welkin-note"><progress max="1"></progress><span>Loading</span></div>
+    <details class="welkin-code"><summary>Code</summary><pre></pre></details>`
+  element.querySelector('pre')!.textContent = code
+  element.querySelector<HTMLElement>('.welkin-code')!.hidden = args.frame
   const canvas = element.querySelector('canvas')!
   const note = element.querySelector<HTMLElement>('.welkin-note')!
   let latest = args

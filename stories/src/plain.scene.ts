@@ -1,12 +1,4 @@
 import {
-  aerialPerspective,
-  aerialPerspectiveFog,
-  Atmosphere,
-  SkyLightProbe,
-  skyBackground,
-  SunDirectionalLight
-} from '@welkin/atmosphere'
-import {
   BoxGeometry,
   CircleGeometry,
   Mesh,
@@ -19,24 +11,17 @@ import {
 } from 'three'
 import type { Material } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { pass } from 'three/tsl'
-import { RenderPipeline } from 'three/webgpu'
-import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
-import type { RendererArgs, SceneHandle } from './scene'
+import { Air } from './air'
+import { applyTime, createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
-export interface PlainArgs extends RendererArgs {
+export interface PlainArgs extends RendererArgs, TimeArgs {
   /** [degrees] */
   longitude: number
   /** [degrees] */
   latitude: number
   /** Of the scene's ground above the ellipsoid [m]. */
   height: number
-  /** A moment of the day [ms since 1970]. */
-  day: number
-  /** Hour of that day, UTC [h]. */
-  hour: number
-  /** [stops], 0 for daylight. */
-  exposure: number
 }
 
 /** Far enough to reach the horizon of a camera a few metres up [m]. */
@@ -114,50 +99,24 @@ export async function createPlain(
   const meshes = populate(scene)
 
   const current = { ...args }
-  const atmosphere = new Atmosphere()
-  atmosphere.place(current)
-  atmosphere.date = dateOf(current.day, current.hour)
-  const sun = new SunDirectionalLight(atmosphere)
-  const sky = new SkyLightProbe(atmosphere)
-  scene.add(sun, sun.target, sky)
-  let pipeline: RenderPipeline | undefined
-  if (args.path === 'forward') {
-    scene.backgroundNode = skyBackground(atmosphere)
-    scene.fogNode = aerialPerspectiveFog(atmosphere)
-  } else {
-    const scenePass = pass(scene, camera)
-    const color = scenePass.getTextureNode()
-    const depth = scenePass.getTextureNode('depth')
-    pipeline = new RenderPipeline(renderer)
-    pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
-  }
-
-  sun.distance = 50
-  sun.castShadow = true
-  sun.shadow.mapSize.setScalar(2048)
-  sun.shadow.camera.left = sun.shadow.camera.bottom = -14
-  sun.shadow.camera.right = sun.shadow.camera.top = 14
-  sun.shadow.camera.far = 100
-  sun.shadow.normalBias = 0.02
+  const air = new Air(renderer, scene, camera, args.path)
+  const { shadow } = air.sun
+  shadow.mapSize.setScalar(2048)
+  shadow.camera.left = shadow.camera.bottom = -14
+  shadow.camera.right = shadow.camera.top = 14
+  shadow.camera.far = 100
+  shadow.normalBias = 0.02
 
   const apply = (): void => {
-    atmosphere.place(current)
-    atmosphere.date = dateOf(current.day, current.hour)
-    renderer.toneMappingExposure = exposureOf(current.exposure)
+    air.atmosphere.place(current)
+    applyTime(renderer, air, current)
   }
   apply()
 
-  const draw = (): void => {
-    if (pipeline === undefined) {
-      renderer.render(scene, camera)
-    } else {
-      pipeline.render()
-    }
-  }
   let ready: Promise<void> = Promise.resolve()
   const warmUp = async (): Promise<void> => {
     for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-      draw()
+      air.render()
     }
   }
 
@@ -173,13 +132,10 @@ export async function createPlain(
       if (!current.frame) {
         controls.update()
       }
-      draw()
+      air.render()
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = warmUp()
     },
     update(changes) {
@@ -190,10 +146,7 @@ export async function createPlain(
       if (controls.domElement !== null) {
         controls.dispose()
       }
-      sun.dispose()
-      sky.dispose()
-      pipeline?.dispose()
-      atmosphere.dispose()
+      air.dispose()
       for (const { geometry, material } of meshes) {
         geometry.dispose()
         ;(material as Material).dispose()

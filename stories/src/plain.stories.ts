@@ -3,10 +3,11 @@ import { mount } from './mount'
 import { createPlain } from './plain.scene'
 import type { PlainArgs } from './plain.scene'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 
 const meta: Meta<PlainArgs> = {
   title: 'Plain scene',
-  render: mount(createPlain),
+  render: mount(createPlain, storyCode('quickStart.ts', 'quick start')),
   argTypes: {
     longitude: {
       name: 'Longitude [°]',

@@ -1,7 +1,7 @@
 import { AgXToneMapping } from 'three'
-import type { Camera, Scene } from 'three'
+import type { Camera, PerspectiveCamera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
-import type { AirPath } from './air'
+import type { Air, AirPath } from './air'
 
 /** A scene that draws itself, apart from the page and the clock: what a story shows and a test drives. */
 export interface SceneHandle<Args> {
@@ -27,6 +27,16 @@ export interface RendererArgs {
   path: AirPath
   /** Draw one reproducible frame, with no controls, and stop. */
   frame: boolean
+}
+
+/** When a scene is seen, and how bright the picture is. */
+export interface TimeArgs {
+  /** A moment of the day [ms since 1970]. */
+  day: number
+  /** Hour of that day, UTC [h]. */
+  hour: number
+  /** [stops], 0 for daylight. */
+  exposure: number
 }
 
 export type CreateScene<Args extends RendererArgs> = (
@@ -75,4 +85,32 @@ export function dateOf(day: number, hour: number): Date {
   const date = new Date(day)
   date.setUTCHours(0, 0, 0, 0)
   return new Date(date.getTime() + hour * 3_600_000)
+}
+
+/** Lets the sun and the exposure follow a story's arguments. */
+export function applyTime(
+  renderer: WebGPURenderer,
+  { atmosphere }: Air,
+  { day, hour, exposure }: TimeArgs
+): void {
+  atmosphere.date = dateOf(day, hour)
+  renderer.toneMappingExposure = exposureOf(exposure)
+}
+
+/**
+ * Fits a renderer and a camera to the size of a canvas.
+ *
+ * @param pixelRatio - Device pixels per CSS pixel; width and height are CSS pixels.
+ */
+export function fitToCanvas(
+  renderer: WebGPURenderer,
+  camera: PerspectiveCamera,
+  width: number,
+  height: number,
+  pixelRatio: number
+): void {
+  renderer.setPixelRatio(pixelRatio)
+  renderer.setSize(width, height, false)
+  camera.aspect = width / height
+  camera.updateProjectionMatrix()
 }

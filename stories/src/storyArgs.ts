@@ -1,8 +1,12 @@
 import type { ArgTypes } from '@storybook/html-vite'
-import type { RendererArgs } from './scene'
+import type { RendererArgs, TimeArgs } from './scene'
 
-export const timeArgTypes: ArgTypes<{ day: number; hour: number; exposure: number }> = {
-  day: { name: 'Date', control: 'date', description: 'Day, UTC' },
+export const timeArgTypes: ArgTypes<TimeArgs> = {
+  day: {
+    name: 'Date [UTC]',
+    control: 'date',
+    description: 'Day; its time is the slider below'
+  },
   hour: {
     name: 'Time [h UTC]',
     control: { type: 'range', min: 0, max: 24, step: 0.05 },
@@ -30,6 +34,6 @@ export const rendererArgTypes: ArgTypes<RendererArgs> = {
   frame: {
     name: 'One frame',
     control: 'boolean',
-    description: 'Draw one reproducible frame, without controls'
+    description: 'Draw one reproducible frame, without mouse or animation'
   }
 }

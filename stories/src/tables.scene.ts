@@ -125,10 +125,12 @@ export async function createTables(
 
   const apply = (): void => {
     const { turbidity, ozone, groundAlbedo, altitude, sunElevation } = current
+    // #region tables
     atmosphere.parameters
       .setEarth({ turbidity, ozone })
       .set({ groundAlbedo: [groundAlbedo, groundAlbedo, groundAlbedo, groundAlbedo] })
     atmosphere.setSunAngles(sunElevation, 180)
+    // #endregion
     eye.position.y = altitude * 1000
     eye.updateMatrixWorld()
     const exposure = exposureOf(current.exposure)

@@ -1,12 +1,13 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { rendererArgTypes } from './storyArgs'
+import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 import { createTables } from './tables.scene'
 import type { TablesArgs } from './tables.scene'
 
 const meta: Meta<TablesArgs> = {
   title: 'Tables',
-  render: mount(createTables),
+  render: mount(createTables, storyCode('tables.scene.ts', 'tables')),
   argTypes: {
     turbidity: {
       name: 'Turbidity',
@@ -33,11 +34,9 @@ const meta: Meta<TablesArgs> = {
       control: { type: 'range', min: -18, max: 90, step: 0.5 },
       description: 'For the sky volume'
     },
-    exposure: {
-      name: 'Exposure [stops]',
-      control: { type: 'range', min: -4, max: 20, step: 0.25 }
-    },
-    ...rendererArgTypes
+    exposure: timeArgTypes.exposure,
+    ...rendererArgTypes,
+    path: { table: { disable: true } }
   },
   args: {
     turbidity: 2,

@@ -8,6 +8,7 @@ const TYPES: Record<string, string> = {
   glb: 'model/gltf-binary',
   jpg: 'image/jpeg',
   json: 'application/json',
+  png: 'image/png',
   xml: 'application/xml'
 }
 
@@ -19,6 +20,14 @@ function imageryDirectory(): string {
   return join(engine, 'Source/Assets/Textures/NaturalEarthII')
 }
 
+/** Pictures of the whole Earth that a story uses: colours, open water, lights. */
+const EARTH_PICTURES = ['earth-blue-marble.jpg', 'earth-water.png', 'earth-night.jpg']
+
+function earthDirectory(): string {
+  const entry = createRequire(import.meta.url).resolve('three-globe')
+  return join(dirname(dirname(entry)), 'example/img')
+}
+
 function filesUnder(directory: string): string[] {
   return readdirSync(directory, { recursive: true, withFileTypes: true })
     .filter(entry => entry.isFile())
@@ -28,7 +37,7 @@ function filesUnder(directory: string): string[] {
 /**
  * Serves the stories' local data in development and adds it to a build: no network is needed for either.
  *
- * `world-data/natural-earth/` is the imagery in the `@cesium/engine` package; `world-data/terrain/` is made here
+ * `world-data/earth/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the imagery in the `@cesium/engine` package; `world-data/terrain/` is made here
  * from the heights in `data/`, the first time and whenever they or the script change.
  */
 export function worldData(): Plugin {
@@ -38,6 +47,7 @@ export function worldData(): Plugin {
     buildStart() {
       directories.set('natural-earth', imageryDirectory())
       directories.set('terrain', ensureTerrain())
+      directories.set('earth', earthDirectory())
     },
     configureServer(server) {
       server.middlewares.use((request, response, next) => {
@@ -63,7 +73,11 @@ export function worldData(): Plugin {
     },
     generateBundle() {
       for (const [name, directory] of directories) {
-        for (const file of filesUnder(directory)) {
+        const files =
+          name === 'earth'
+            ? EARTH_PICTURES.map(picture => join(directory, picture))
+            : filesUnder(directory)
+        for (const file of files) {
           const path = relative(directory, file).split(sep).join('/')
           this.emitFile({
             type: 'asset',

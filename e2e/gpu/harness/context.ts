@@ -3,6 +3,7 @@ import { WebGPURenderer, type Node } from 'three/webgpu'
 import { ConsoleWatch } from './console'
 import { evaluateOnGpu } from './evaluate'
 import type { Backend } from './gpu-test'
+import { finishWork } from './graphics'
 import { Picture, readPicture } from './picture'
 
 export interface RendererOptions {
@@ -138,6 +139,8 @@ export function createContext(backend: Backend): ContextHandle {
       // A frame later: pipeline errors of WebGPU arrive asynchronously.
       await new Promise(resolve => setTimeout(resolve, 20))
       for (const renderer of renderers) {
+        // The next test must not wait for what this one has queued.
+        await finishWork(renderer)
         await renderer.dispose()
         renderer.domElement.remove()
       }

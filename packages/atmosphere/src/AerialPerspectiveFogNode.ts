@@ -1,8 +1,9 @@
-import { Fn, output, positionView, vec4 } from 'three/tsl'
+import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import { AtmosphereNode } from './AtmosphereNode'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
+import { coveredPosition } from './tsl/coveredPosition'
 
 /**
  * Aerial perspective as a scene's fog: every material with `fog`, opaque or transparent, dims and
@@ -19,7 +20,7 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   override setup(_builder: NodeBuilder): Node {
     return Fn(() => {
-      const { transmittance, inScatter } = aerialPerspectiveTo(this.view, positionView)
+      const { transmittance, inScatter } = aerialPerspectiveTo(this.view, coveredPosition())
       return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
     })()
   }

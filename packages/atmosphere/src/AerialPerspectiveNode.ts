@@ -69,7 +69,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
   }
 
   override customCacheKey(): number {
-    return (this.showSky ? 1 : 0) + (this.showSun ? 2 : 0)
+    return 4 * super.customCacheKey() + (this.showSky ? 1 : 0) + (this.showSun ? 2 : 0)
   }
 
   override update(frame: NodeFrame): undefined {

@@ -1,11 +1,20 @@
-import { EventDispatcher, Matrix4, Vector3 } from 'three'
+import { EventDispatcher, MathUtils, Matrix4, Vector3 } from 'three'
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { Ellipsoid, Geodetic, sunDirectionECEF } from '@welkin/geo'
+import {
+  checkDirection,
+  checkPositive,
+  Ellipsoid,
+  fail,
+  Geodetic,
+  sunDirectionECEF
+} from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
 import { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereView } from './AtmosphereView'
+import { LightSource } from './LightSource'
+import type { SkyLayer } from './SkyLayer'
 import { AtmosphereQuery } from './cpu/AtmosphereQuery'
 import { SphericalSpace } from './cpu/spherical'
 import type { Triple } from './cpu/color'
@@ -49,13 +58,8 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * other frame, such as the inverse of a tile set's `group.matrixWorld`. It must keep angles.
    */
   readonly worldToECEF = new Matrix4()
-  /** Output of every node per luminance [1/(cd/m²)]. */
-  luminanceScale = 1e-4
-  /**
-   * Most steps of baking tables in one frame; a bake has 20. The default bakes at once. Until the
-   * first bake is done the sky is black; after a change the old tables stand until the new are ready.
-   */
-  bakeStepsPerFrame = Infinity
+  #luminanceScale = 1e-4
+  #bakeStepsPerFrame = Infinity
   #metersPerUnit = 1
   #frame: AtmosphereFrame = 'local'
   readonly #place = new Geodetic()
@@ -64,33 +68,73 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   readonly #sunWorld = new Vector3(1, Math.SQRT2, 1).normalize()
   /** What is kept on the GPU. */
   readonly tables = new AtmosphereTables()
-  readonly #views = new WeakMap<Camera, AtmosphereView>()
+  /** The sun as a source of light; its `irradiance` dims in an eclipse. */
+  readonly sun = new LightSource(
+    (atmosphere, target) => target.copy(atmosphere.sunDirection),
+    this.tables.volumes
+  )
+  readonly #layers: SkyLayer[] = []
+  readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()
   readonly #space = new SphericalSpace()
 
   /** @throws If an option is of the wrong kind. */
-  constructor({ parameters, ellipsoid }: AtmosphereOptions = {}) {
+  constructor({
+    parameters = new AtmosphereParameters(),
+    ellipsoid = Ellipsoid.WGS84
+  }: AtmosphereOptions = {}) {
     super()
-    if (parameters !== undefined && !(parameters instanceof AtmosphereParameters)) {
-      throw new Error(
-        `Atmosphere: parameters must be AtmosphereParameters, got ${String(parameters)}`
-      )
+    if (!(parameters instanceof AtmosphereParameters)) {
+      fail('Atmosphere', 'parameters must be AtmosphereParameters', parameters)
     }
-    if (ellipsoid !== undefined && !(ellipsoid instanceof Ellipsoid)) {
-      throw new Error(`Atmosphere: ellipsoid must be an Ellipsoid, got ${String(ellipsoid)}`)
+    if (!(ellipsoid instanceof Ellipsoid)) {
+      fail('Atmosphere', 'ellipsoid must be an Ellipsoid', ellipsoid)
     }
-    this.parameters = parameters ?? new AtmosphereParameters()
-    this.ellipsoid = ellipsoid ?? Ellipsoid.WGS84
+    const { bottomRadius } = parameters
+    if (Math.abs(bottomRadius / ellipsoid.radii.x - 1) > 0.02) {
+      fail('Atmosphere', 'bottomRadius must be near that of the ellipsoid', bottomRadius)
+    }
+    this.parameters = parameters
+    this.ellipsoid = ellipsoid
     this.#updateFrame()
+  }
+
+  /** Output of every node per luminance, > 0 [1/(cd/m²)]. */
+  get luminanceScale(): number {
+    return this.#luminanceScale
+  }
+
+  set luminanceScale(value: number) {
+    checkPositive('Atmosphere', 'luminanceScale', value)
+    this.#luminanceScale = value
+  }
+
+  /**
+   * Most steps of baking tables in one frame, ≥ 1; a bake has 20. The default, infinity, bakes at once.
+   * Until the first bake is done the sky is black. After a change sunlight follows at once, the sky when
+   * its table is ready; a bake that is under way is finished before the next one starts.
+   */
+  get bakeStepsPerFrame(): number {
+    return this.#bakeStepsPerFrame
+  }
+
+  set bakeStepsPerFrame(value: number) {
+    if (value !== Infinity && !(Number.isInteger(value) && value >= 1)) {
+      fail('Atmosphere', 'bakeStepsPerFrame must be a positive integer or Infinity', value)
+    }
+    this.#bakeStepsPerFrame = value
   }
 
   /**
    * Puts the world's origin at a place, Y up, X east, Z south.
    *
    * @param geodetic - Longitude, latitude [°], height above the ellipsoid [m], default 0.
-   * @throws If a coordinate is not finite or out of range.
+   * @throws If a coordinate is missing, not finite or out of range.
    */
   place(geodetic: GeodeticLike): this {
-    this.#place.set(geodetic.longitude, geodetic.latitude, geodetic.height ?? 0)
+    if (typeof geodetic !== 'object' || geodetic === null) {
+      fail('Atmosphere', 'place must be a longitude and latitude', geodetic)
+    }
+    this.#place.copy(geodetic)
     this.#frame = 'local'
     this.#updateFrame()
     return this
@@ -103,7 +147,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
 
   set frame(value: AtmosphereFrame) {
     if (value !== 'local' && value !== 'ecef') {
-      throw new Error(`Atmosphere: frame must be 'local' or 'ecef', got ${String(value)}`)
+      fail('Atmosphere', "frame must be 'local' or 'ecef'", value)
     }
     this.#frame = value
     this.#updateFrame()
@@ -115,9 +159,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   set metersPerUnit(value: number) {
-    if (!(value > 0 && value < Infinity)) {
-      throw new Error(`Atmosphere: metersPerUnit must be positive and finite, got ${value}`)
-    }
+    checkPositive('Atmosphere', 'metersPerUnit', value)
     this.#metersPerUnit = value
     this.#updateFrame()
   }
@@ -133,18 +175,18 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.worldToECEF.scale(_position.setScalar(unit))
   }
 
-  /** When it is: the sun follows. Null if the sun's direction was set by hand. */
+  /** When it is, a copy: the sun follows. Null if the sun's direction was set by hand. */
   get date(): Date | null {
-    return this.#date
+    return this.#date && new Date(this.#date)
   }
 
   set date(value: Date | null) {
     if (value !== null && !(value instanceof Date && Number.isFinite(value.getTime()))) {
-      throw new Error(`Atmosphere: date must be a valid Date or null, got ${String(value)}`)
+      fail('Atmosphere', 'date must be a valid Date or null', value)
     }
     if (value === null) this.#sunWorld.copy(this.sunDirection)
     else sunDirectionECEF(value, this.#sunECEF)
-    this.#date = value
+    this.#date = value && new Date(value)
   }
 
   /**
@@ -157,41 +199,34 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   set sunDirection(world: Vector3) {
-    const length = world.length()
-    if (!(length > 0 && length < Infinity)) {
-      const { x, y, z } = world
-      throw new Error(
-        `Atmosphere: sunDirection must be finite and not zero, got (${x}, ${y}, ${z})`
-      )
-    }
-    this.#sunWorld.copy(world).divideScalar(length)
+    checkDirection('Atmosphere', 'sunDirection', world)
+    this.#sunWorld.copy(world).normalize()
     this.#date = null
   }
 
   /**
-   * Points the sun by angles at the world's origin, for scenes without a date.
+   * Points the sun by angles, for scenes without a date: from where {@link worldToECEF} puts the
+   * world's origin or, if that is deep inside the planet as in ECEF, from the {@link place}.
    *
    * @param elevation - Above the horizon, in [−90, 90] [°].
    * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
    */
   setSunAngles(elevation: number, azimuth: number): this {
     if (!(elevation >= -90 && elevation <= 90)) {
-      throw new Error(`Atmosphere: elevation must be in [-90, 90], got ${elevation}`)
+      fail('Atmosphere', 'elevation must be in [-90, 90]', elevation)
     }
-    if (!Number.isFinite(azimuth)) {
-      throw new Error(`Atmosphere: azimuth must be finite, got ${azimuth}`)
+    if (!Number.isFinite(azimuth)) fail('Atmosphere', 'azimuth must be finite', azimuth)
+    const origin = _position.setFromMatrixPosition(this.worldToECEF)
+    if (origin.length() < this.ellipsoid.radii.x / 2) {
+      this.ellipsoid.geodeticToECEF(this.#place, origin)
     }
-    const [up, north] = [elevation, azimuth].map(degrees => (degrees * Math.PI) / 180) as [
-      number,
-      number
-    ]
-    const level = Math.cos(up)
-    const local = new Vector3(level * Math.sin(north), Math.sin(up), -level * Math.cos(north))
-    if (this.#frame === 'ecef') {
-      this.ellipsoid.geodeticToECEF(this.#place, _position)
-      local.transformDirection(this.ellipsoid.localYUpFrame(_position, _rotation))
-    }
-    this.sunDirection = local
+    this.ellipsoid.localYUpFrame(origin, _rotation)
+    const north = MathUtils.degToRad(180 - azimuth)
+    const fromZenith = MathUtils.degToRad(90 - elevation)
+    this.sunDirection = new Vector3()
+      .setFromSphericalCoords(1, fromZenith, north)
+      .transformDirection(_rotation)
+      .transformDirection(_rotation.copy(this.worldToECEF).invert())
     return this
   }
 
@@ -206,18 +241,40 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * call it yourself to choose when the work is done.
    *
    * @param camera - Its `matrixWorld` must be up to date.
+   * @param source - Whose light it is.
    */
-  update(renderer: Renderer, camera: Camera): AtmosphereView {
+  update(renderer: Renderer, camera: Camera, source: LightSource = this.sun): AtmosphereView {
     this.tables.update(renderer, this.parameters, this.luminanceScale, this.bakeStepsPerFrame)
-    let view = this.#views.get(camera)
-    if (view === undefined) this.#views.set(camera, (view = new AtmosphereView(this, camera)))
+    let views = this.#views.get(source)
+    if (views === undefined) this.#views.set(source, (views = new WeakMap()))
+    let view = views.get(camera)
+    if (view === undefined) {
+      if (!camera?.isCamera) fail('Atmosphere', 'camera must be a Camera', camera)
+      views.set(camera, (view = new AtmosphereView(this, camera, source)))
+    }
     view.update(renderer)
     return view
   }
 
   /** A camera's view as {@link update} last left it. */
-  viewOf(camera: Camera): AtmosphereView | undefined {
-    return this.#views.get(camera)
+  viewOf(camera: Camera, source: LightSource = this.sun): AtmosphereView | undefined {
+    return this.#views.get(source)?.get(camera)
+  }
+
+  /** What is in the sky besides air and sun, from far to near. */
+  get layers(): readonly SkyLayer[] {
+    return this.#layers
+  }
+
+  /**
+   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near, and
+   * all of it before the first render.
+   *
+   * @returns This atmosphere.
+   */
+  add(...layers: SkyLayer[]): this {
+    this.#layers.push(...layers)
+    return this
   }
 
   /**
@@ -230,10 +287,17 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     await this.tables.read()
   }
 
-  /** What answers questions about light, as things are now. */
-  query(): AtmosphereQuery {
-    const { parameters, space, sunDirection, tables } = this
-    return new AtmosphereQuery(parameters, space, sunDirection, tables.data)
+  /**
+   * What answers questions about light, as things are now.
+   *
+   * @param position - World: where light is asked about; by default the origin.
+   * @param source - Whose light.
+   */
+  query(position = new Vector3(), source: LightSource = this.sun): AtmosphereQuery {
+    const { parameters, space, tables } = this
+    const direction = source.direction(this, new Vector3(), position)
+    const irradiance = source.irradianceAt(position)
+    return new AtmosphereQuery(parameters, space, direction, tables.data, irradiance)
   }
 
   /**
@@ -243,7 +307,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @returns Linear sRGB [lx].
    */
   sunIlluminanceAt(position: Vector3): Triple {
-    return this.query().sunIlluminance(position)
+    return this.query(position).sunIlluminance(position)
   }
 
   /**
@@ -255,12 +319,13 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @throws Before the tables were baked and read back: await {@link bake} first.
    */
   skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
-    return this.query().skyIlluminance(position, normal)
+    return this.query(position).skyIlluminance(position, normal)
   }
 
   /** Frees all GPU memory. The atmosphere can be used again, from nothing. */
   dispose(): void {
     this.tables.dispose()
+    for (const layer of this.#layers) layer.dispose?.()
     this.dispatchEvent({ type: 'dispose' })
   }
 }

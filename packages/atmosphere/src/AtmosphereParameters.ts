@@ -1,3 +1,5 @@
+import { fail } from '@welkin/geo'
+
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
 
@@ -27,14 +29,14 @@ export interface AtmosphereParametersInit {
   rayleighScattering?: Spectrum
   /** Height over which molecules thin out by a factor e [m]. */
   rayleighScaleHeight?: number
-  /** Scattering by aerosols at the ground [1/m]. */
+  /** Scattering by aerosols at the ground, at most `mieExtinction` [1/m]. */
   mieScattering?: Spectrum
   /** Extinction (scattering and absorption) by aerosols at the ground [1/m]. */
   mieExtinction?: Spectrum
   /** Height over which aerosols thin out by a factor e [m]. */
   mieScaleHeight?: number
-  /** Asymmetry g of the aerosols' Cornette–Shanks phase function, in (−1, 1). */
-  mieAsymmetry?: number
+  /** Asymmetry g of the aerosols' Cornette–Shanks phase function, in (−1, 1); one, or per wavelength. */
+  mieAsymmetry?: number | Spectrum
   /** Absorption by the tent-shaped layer where it is densest [1/m]. */
   absorptionExtinction?: Spectrum
   /** Altitude at which that layer is densest [m]. */
@@ -55,6 +57,8 @@ export interface AtmosphereParametersInit {
   spectralToXYZ?: SpectralMatrix
 }
 
+type Fields = Required<AtmosphereParametersInit>
+
 /** Air at sea level scatters this over λ⁴, λ in µm [µm⁴/m]. Bruneton 2017, after Penndorf 1957. */
 const RAYLEIGH_COEFFICIENT = 1.24062e-6
 
@@ -68,6 +72,11 @@ const OZONE_CROSS_SECTION: Spectrum = [1.582e-26, 2.139e-25, 4.266e-25, 3.215e-2
 const CLEAR_AEROSOL_EXTINCTION = 5.328e-3 / 1200
 
 const all = (value: number): Spectrum => [value, value, value, value]
+
+/** Four numbers from one that stands for all, or from four. */
+export const spectrumOf = (value: number | Spectrum): Spectrum =>
+  typeof value === 'number' ? all(value) : value
+
 const map = (values: Spectrum, f: (value: number) => number): Spectrum => [
   f(values[0]),
   f(values[1]),
@@ -81,44 +90,59 @@ const OZONE_HALF_WIDTH = 15_000
 const earthOzone = (dobsonUnits: number): Spectrum =>
   map(OZONE_CROSS_SECTION, area => (area * dobsonUnits * DOBSON_UNIT) / OZONE_HALF_WIDTH)
 
-const EARTH: Required<AtmosphereParametersInit> = {
-  wavelengths: EARTH_WAVELENGTHS,
-  solarIrradiance: [1.91198, 1.8685, 1.8341, 1.64654],
-  sunAngularRadius: 0.004675,
-  limbDarkening: [0.75, 0.65, 0.6, 0.52],
-  bottomRadius: 6_378_137,
-  topRadius: 6_378_137 + 60_000,
-  rayleighScattering: /*#__PURE__*/ map(
-    EARTH_WAVELENGTHS,
-    nm => RAYLEIGH_COEFFICIENT / (nm * 1e-3) ** 4
-  ),
-  rayleighScaleHeight: 8000,
-  mieScattering: /*#__PURE__*/ all(0.9 * CLEAR_AEROSOL_EXTINCTION),
-  mieExtinction: /*#__PURE__*/ all(CLEAR_AEROSOL_EXTINCTION),
-  mieScaleHeight: 1200,
-  mieAsymmetry: 0.8,
-  absorptionExtinction: /*#__PURE__*/ earthOzone(300),
-  absorptionAltitude: 25_000,
-  absorptionHalfWidth: OZONE_HALF_WIDTH,
-  groundAlbedo: /*#__PURE__*/ all(0.1),
+/** The Earth's value of every field, and the least and most that its numbers may be. */
+const FIELDS: {
+  readonly [Name in keyof Fields]: readonly [earth: Fields[Name], least: number, most: number]
+} = {
+  wavelengths: [EARTH_WAVELENGTHS, 100, 3000],
+  solarIrradiance: [[1.91198, 1.8685, 1.8341, 1.64654], 0, 1e4],
+  sunAngularRadius: [0.004675, 1e-6, 0.2],
+  limbDarkening: [[0.75, 0.65, 0.6, 0.52], 0, 1],
+  bottomRadius: [6_378_137, 1e3, 1e9],
+  topRadius: [6_378_137 + 60_000, 1e3, 2e9],
+  rayleighScattering: [
+    /*#__PURE__*/ map(EARTH_WAVELENGTHS, nm => RAYLEIGH_COEFFICIENT / (nm * 1e-3) ** 4),
+    0,
+    1
+  ],
+  rayleighScaleHeight: [8000, 1, 1e6],
+  mieScattering: [/*#__PURE__*/ all(0.9 * CLEAR_AEROSOL_EXTINCTION), 0, 1],
+  mieExtinction: [/*#__PURE__*/ all(CLEAR_AEROSOL_EXTINCTION), 0, 1],
+  mieScaleHeight: [1200, 1, 1e6],
+  mieAsymmetry: [0.8, -0.99, 0.99],
+  absorptionExtinction: [/*#__PURE__*/ earthOzone(300), 0, 1],
+  absorptionAltitude: [25_000, -1e6, 1e6],
+  absorptionHalfWidth: [OZONE_HALF_WIDTH, 1, 1e6],
+  groundAlbedo: [/*#__PURE__*/ all(0.1), 0, 1],
   spectralToXYZ: [
-    [15.663, -1.271, 49.385, 42.533],
-    [2.555, 30.708, 53.273, 20.437],
-    [80.267, 44.313, -19.464, 1.186]
+    [
+      [15.663, -1.271, 49.385, 42.533],
+      [2.555, 30.708, 53.273, 20.437],
+      [80.267, 44.313, -19.464, 1.186]
+    ],
+    -1e4,
+    1e4
   ]
 }
 
-function check(name: string, value: number, min: number, max: number): void {
-  if (!(value >= min && value <= max)) {
-    throw new Error(`AtmosphereParameters: ${name} must be in [${min}, ${max}], got ${value}`)
+const CLASS = 'AtmosphereParameters'
+
+function check(name: string, value: unknown, min: number, max: number): void {
+  if (!(typeof value === 'number' && value >= min && value <= max)) {
+    fail(CLASS, `${name} must be a number in [${min}, ${max}]`, value)
   }
 }
 
-function checkSpectrum(name: string, values: Spectrum, min: number, max: number): void {
-  if (values.length !== 4) {
-    throw new Error(`AtmosphereParameters: ${name} must have 4 values, got ${values.length}`)
+/** A checked copy of a field's value, which must have the shape of the Earth's. */
+function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: number): T {
+  if (!Array.isArray(earth)) {
+    check(name, value, least, most)
+    return value
   }
-  values.forEach((value, i) => check(`${name}[${i}]`, value, min, max))
+  if (!Array.isArray(value) || value.length !== earth.length) {
+    fail(CLASS, `${name} must be an array of ${earth.length} values`, value)
+  }
+  return earth.map((part, i) => checkedCopy(`${name}[${i}]`, value[i], part, least, most)) as T
 }
 
 /**
@@ -131,35 +155,39 @@ function checkSpectrum(name: string, values: Spectrum, min: number, max: number)
  * ```
  */
 export class AtmosphereParameters {
-  /** Counts the calls of {@link set}. */
-  version = 0
+  #version = 0
 
-  readonly wavelengths!: Spectrum
-  readonly solarIrradiance!: Spectrum
-  readonly sunAngularRadius!: number
-  readonly limbDarkening!: Spectrum
-  readonly bottomRadius!: number
-  readonly topRadius!: number
-  readonly rayleighScattering!: Spectrum
-  readonly rayleighScaleHeight!: number
-  readonly mieScattering!: Spectrum
-  readonly mieExtinction!: Spectrum
-  readonly mieScaleHeight!: number
-  readonly mieAsymmetry!: number
-  readonly absorptionExtinction!: Spectrum
-  readonly absorptionAltitude!: number
-  readonly absorptionHalfWidth!: number
-  readonly groundAlbedo!: Spectrum
-  readonly spectralToXYZ!: SpectralMatrix
+  declare readonly wavelengths: Spectrum
+  declare readonly solarIrradiance: Spectrum
+  declare readonly sunAngularRadius: number
+  declare readonly limbDarkening: Spectrum
+  declare readonly bottomRadius: number
+  declare readonly topRadius: number
+  declare readonly rayleighScattering: Spectrum
+  declare readonly rayleighScaleHeight: number
+  declare readonly mieScattering: Spectrum
+  declare readonly mieExtinction: Spectrum
+  declare readonly mieScaleHeight: number
+  declare readonly mieAsymmetry: number | Spectrum
+  declare readonly absorptionExtinction: Spectrum
+  declare readonly absorptionAltitude: number
+  declare readonly absorptionHalfWidth: number
+  declare readonly groundAlbedo: Spectrum
+  declare readonly spectralToXYZ: SpectralMatrix
 
   /**
    * @param init - Fields that differ from the Earth's.
-   * @throws If a field is not a number or out of its range.
+   * @throws If a field is unknown, of the wrong kind or out of its range.
    */
   constructor(init: AtmosphereParametersInit = {}) {
-    Object.assign(this, EARTH)
-    this.set(init)
-    this.version = 0
+    const earth = Object.entries(FIELDS).map(([name, [value]]) => [name, value])
+    this.set({ ...Object.fromEntries(earth), ...init })
+    this.#version = 0
+  }
+
+  /** Counts the calls of {@link set}. */
+  get version(): number {
+    return this.#version
   }
 
   /**
@@ -179,44 +207,42 @@ export class AtmosphereParameters {
    * @throws If a number is out of its range; then nothing has changed.
    */
   setEarth({ turbidity, ozone }: { turbidity?: number; ozone?: number }): this {
-    if (turbidity !== undefined) check('turbidity', turbidity, 1, 20)
-    if (ozone !== undefined) check('ozone', ozone, 0, 1000)
+    const init: AtmosphereParametersInit = {}
     if (turbidity !== undefined) {
+      check('turbidity', turbidity, 1, 20)
       const extinction = CLEAR_AEROSOL_EXTINCTION * (turbidity - 1)
-      this.set({ mieScattering: all(0.9 * extinction), mieExtinction: all(extinction) })
+      init.mieScattering = all(0.9 * extinction)
+      init.mieExtinction = all(extinction)
     }
-    if (ozone !== undefined) this.set({ absorptionExtinction: earthOzone(ozone) })
-    return this
+    if (ozone !== undefined) {
+      check('ozone', ozone, 0, 1000)
+      init.absorptionExtinction = earthOzone(ozone)
+    }
+    return this.set(init)
   }
 
   /**
    * Replaces fields. Whoever holds tables made from these parameters re-bakes them.
    *
-   * @param init - The fields to replace.
-   * @throws If a field is not a number or out of its range; then nothing has changed.
+   * @param init - The fields to replace; arrays are copied.
+   * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
    */
   set(init: AtmosphereParametersInit): this {
-    const next = { ...(this as Required<AtmosphereParametersInit>), ...init }
-    checkSpectrum('wavelengths', next.wavelengths, 100, 3000)
-    checkSpectrum('solarIrradiance', next.solarIrradiance, 0, 1e4)
-    check('sunAngularRadius', next.sunAngularRadius, 1e-6, 0.2)
-    checkSpectrum('limbDarkening', next.limbDarkening, 0, 1)
-    check('bottomRadius', next.bottomRadius, 1e3, 1e9)
-    check('topRadius', next.topRadius, next.bottomRadius * (1 + 1e-5), next.bottomRadius * 1.5)
-    checkSpectrum('rayleighScattering', next.rayleighScattering, 0, 1)
-    check('rayleighScaleHeight', next.rayleighScaleHeight, 1, 1e6)
-    checkSpectrum('mieScattering', next.mieScattering, 0, 1)
-    checkSpectrum('mieExtinction', next.mieExtinction, 0, 1)
-    check('mieScaleHeight', next.mieScaleHeight, 1, 1e6)
-    check('mieAsymmetry', next.mieAsymmetry, -0.99, 0.99)
-    checkSpectrum('absorptionExtinction', next.absorptionExtinction, 0, 1)
-    check('absorptionAltitude', next.absorptionAltitude, -1e6, 1e6)
-    check('absorptionHalfWidth', next.absorptionHalfWidth, 1, 1e6)
-    checkSpectrum('groundAlbedo', next.groundAlbedo, 0, 1)
-    next.spectralToXYZ.forEach((row, i) => checkSpectrum(`spectralToXYZ[${i}]`, row, -1e4, 1e4))
-    const { version } = this
-    Object.assign(this, init)
-    this.version = version + 1
+    const next: AtmosphereParametersInit = {}
+    for (const [name, value] of Object.entries(init)) {
+      if (!Object.hasOwn(FIELDS, name)) fail(CLASS, 'fields must be parameters', name)
+      const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
+      const [earth, least, most] = field
+      // The one field of either kind.
+      const shape = name === 'mieAsymmetry' && Array.isArray(value) ? all(0) : earth
+      Object.assign(next, { [name]: checkedCopy<unknown>(name, value, shape, least, most) })
+    }
+    const { bottomRadius = this.bottomRadius, topRadius = this.topRadius } = next
+    const { mieScattering = this.mieScattering, mieExtinction = this.mieExtinction } = next
+    mieScattering.forEach((value, i) => check('mieScattering', value, 0, mieExtinction[i]))
+    check('topRadius', topRadius, bottomRadius * (1 + 1e-5), bottomRadius * 1.5)
+    Object.assign(this, next)
+    this.#version++
     return this
   }
 

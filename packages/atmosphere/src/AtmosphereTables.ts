@@ -1,5 +1,6 @@
 import { DataUtils } from 'three'
 import type { Renderer } from 'three/webgpu'
+import { fail } from '@welkin/geo'
 import type { AtmosphereParameters } from './AtmosphereParameters'
 import { AtmosphereUniforms } from './AtmosphereUniforms'
 import { DiffuseLightTable } from './DiffuseLightTable'
@@ -38,22 +39,31 @@ export class AtmosphereTables {
     luminanceScale: number,
     steps: number
   ): void {
-    const stale = renderer !== this.#renderer || parameters.version !== this.#parametersVersion
-    if (stale || luminanceScale !== this.#scale) {
-      this.uniforms.update(parameters, luminanceScale)
-      this.#scale = luminanceScale
-    }
-    if (stale) {
-      this.#work?.return()
+    if (!renderer?.isRenderer) fail('Atmosphere', 'renderer must be a WebGPURenderer', renderer)
+    if (renderer !== this.#renderer) {
       // Another renderer shares no textures with the last one.
-      if (renderer !== this.#renderer) this.volumes.invalidate()
+      this.#work?.return()
+      this.#work = null
+      this.volumes.invalidate()
       this.#renderer = renderer
-      this.#parametersVersion = parameters.version
-      this.#work = this.#bake(renderer)
+      this.#parametersVersion = -1
     }
-    for (let step = 0; this.#work !== null && step < steps; step++) {
+    for (let step = 0; step < steps; step++) {
+      // What changed during a bake is baked after it.
+      if (this.#work === null) {
+        if (parameters.version === this.#parametersVersion) break
+        this.#parametersVersion = parameters.version
+        this.#setUniforms(parameters, luminanceScale)
+        this.#work = this.#bake(renderer)
+      }
       if (this.#work.next().done === true) this.#finish(renderer)
     }
+    if (luminanceScale !== this.#scale) this.#setUniforms(parameters, luminanceScale)
+  }
+
+  #setUniforms(parameters: AtmosphereParameters, luminanceScale: number): void {
+    this.uniforms.update(parameters, luminanceScale)
+    this.#scale = luminanceScale
   }
 
   *#bake(renderer: Renderer): Generator<void, void, void> {
@@ -65,13 +75,20 @@ export class AtmosphereTables {
     this.#work = null
     this.version++
     this.#reading = this.#read(renderer)
+    // Whoever awaits it in read() learns of an error; nobody has to.
+    this.#reading.catch(() => undefined)
   }
 
   async #read(renderer: Renderer): Promise<void> {
     const { target } = this.diffuseLight
     const version = this.version
     const { width, height } = target
-    const halves = await renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height)
+    const halves = await renderer
+      .readRenderTargetPixelsAsync(target, 0, 0, width, height)
+      .catch((error: unknown) => {
+        // Nobody misses what was disposed of or baked anew meanwhile.
+        if (version === this.version) throw error
+      })
     if (version !== this.version) return
     const values = Float32Array.from(halves as Uint16Array, half => DataUtils.fromHalfFloat(half))
     // WebGL reads from the bottom row up, which texture coordinates there call the first.

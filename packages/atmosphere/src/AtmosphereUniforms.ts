@@ -1,7 +1,7 @@
 import { Vector3, Vector4 } from 'three'
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import type { AtmosphereParameters, Spectrum } from './AtmosphereParameters'
+import { spectrumOf, type AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 import { asymmetryMoments, cornetteShanksFactor } from './cpu/phase'
 import { linearSRGBColumns, whiteBalancedColumns } from './cpu/color'
 
@@ -23,12 +23,12 @@ export class AtmosphereUniforms {
   readonly mieScattering = spectrum()
   readonly mieExtinction = spectrum()
   readonly mieScaleHeight = number()
-  readonly mieAsymmetry = number()
+  readonly mieAsymmetry = spectrum()
   /** 3/(8π) (1 − g²)/(2 + g²), what is constant in the Cornette–Shanks phase function [1/sr]. */
-  readonly miePhaseFactor = number()
+  readonly miePhaseFactor = spectrum()
   /** χ₁ and χ₂, first Legendre coefficients of the aerosols' phase function. */
-  readonly mieMoment1 = number()
-  readonly mieMoment2 = number()
+  readonly mieMoment1 = spectrum()
+  readonly mieMoment2 = spectrum()
   readonly absorptionExtinction = spectrum()
   readonly absorptionAltitude = number()
   readonly absorptionHalfWidth = number()
@@ -46,27 +46,20 @@ export class AtmosphereUniforms {
    * @param luminanceScale - Output per luminance [1/(cd/m²)].
    */
   update(parameters: AtmosphereParameters, luminanceScale: number): void {
-    const set = (node: UniformNode<'vec4', Vector4>, value: Spectrum): void => {
-      node.value.set(...value)
+    for (const [name, node] of Object.entries(this)) {
+      if (name === 'mieAsymmetry') continue
+      const value = parameters[name as keyof AtmosphereParameters]
+      if (typeof value === 'number') node.value = value
+      else if (value !== undefined) node.value.set(...(value as Spectrum))
     }
-    this.bottomRadius.value = parameters.bottomRadius
     this.thickness.value = parameters.topRadius - parameters.bottomRadius
-    set(this.rayleighScattering, parameters.rayleighScattering)
-    this.rayleighScaleHeight.value = parameters.rayleighScaleHeight
-    set(this.mieScattering, parameters.mieScattering)
-    set(this.mieExtinction, parameters.mieExtinction)
-    this.mieScaleHeight.value = parameters.mieScaleHeight
-    this.mieAsymmetry.value = parameters.mieAsymmetry
-    this.miePhaseFactor.value = cornetteShanksFactor(parameters.mieAsymmetry)
-    const [, moment1, moment2] = asymmetryMoments(parameters.mieAsymmetry)
-    this.mieMoment1.value = moment1
-    this.mieMoment2.value = moment2
-    set(this.absorptionExtinction, parameters.absorptionExtinction)
-    this.absorptionAltitude.value = parameters.absorptionAltitude
-    this.absorptionHalfWidth.value = parameters.absorptionHalfWidth
-    set(this.groundAlbedo, parameters.groundAlbedo)
-    this.sunAngularRadius.value = parameters.sunAngularRadius
-    set(this.limbDarkening, parameters.limbDarkening)
+    spectrumOf(parameters.mieAsymmetry).forEach((asymmetry, i) => {
+      const [, moment1, moment2] = asymmetryMoments(asymmetry)
+      this.mieAsymmetry.value.setComponent(i, asymmetry)
+      this.miePhaseFactor.value.setComponent(i, cornetteShanksFactor(asymmetry))
+      this.mieMoment1.value.setComponent(i, moment1)
+      this.mieMoment2.value.setComponent(i, moment2)
+    })
     linearSRGBColumns(parameters, luminanceScale).forEach((column, i) => {
       this.linearSRGB[i].value.set(...column)
     })

@@ -12,9 +12,12 @@ import { vec4Array } from './tsl-types'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 
-/** Directions and steps of a round: sunlight has a sharp peak, light scattered before has none. */
-const SUN_ROUND = { elevations: 12, azimuths: 12, steps: 8 }
-const DIFFUSE_ROUND = { elevations: 8, azimuths: 6, steps: 4 }
+/**
+ * Directions and steps of a round, and where its nodes start in the rule: sunlight has a sharp peak,
+ * light scattered before has none.
+ */
+const SUN_ROUND = { elevations: 12, azimuths: 12, steps: 8, offset: 0 }
+const DIFFUSE_ROUND = { elevations: 8, azimuths: 6, steps: 4, offset: SUN_ROUND.elevations }
 const MOST_RAYS = 2 * SUN_ROUND.elevations * SUN_ROUND.azimuths
 
 /** Orders of scattering that are computed; those beyond are summed as a geometric series. */
@@ -75,7 +78,7 @@ class Workshop {
     const round = order === 0 ? SUN_ROUND : DIFFUSE_ROUND
     this.#elevations.value = round.elevations
     this.#azimuths.value = round.azimuths
-    this.#offset.value = order === 0 ? 0 : SUN_ROUND.elevations
+    this.#offset.value = round.offset
     this.#firstRow.value = firstRow
     if (order > 0) this.#previous.value = this.orders[order - 1].texture
     const rays = order === 0 ? this.#sunRays : this.#diffuseRays

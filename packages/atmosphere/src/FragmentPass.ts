@@ -42,20 +42,21 @@ export class FragmentPass {
    * @param output - What every texel becomes.
    */
   constructor(name: string, output: Vec4 | TwoOutputs) {
-    this.material = new NodeMaterial()
-    this.material.name = name
+    this.material = Object.assign(new NodeMaterial(), {
+      name,
+      blending: NoBlending,
+      depthTest: false,
+      depthWrite: false,
+      toneMapped: false,
+      fog: false,
+      lights: false
+    })
     if ('color' in output) {
       this.material.colorNode = output.color
       this.material.outputNode = output.output as never
     } else {
       this.material.fragmentNode = output
     }
-    this.material.blending = NoBlending
-    this.material.depthTest = false
-    this.material.depthWrite = false
-    this.material.toneMapped = false
-    this.material.fog = false
-    this.material.lights = false
     this.#quad = new QuadMesh(this.material)
     this.#quad.name = name
   }

@@ -1,13 +1,15 @@
 import { LightProbe } from 'three'
-import { Fn, normalView, positionView } from 'three/tsl'
+import { Fn, normalView } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
+import { coveredPosition } from './tsl/coveredPosition'
 import { skyIrradiance } from './tsl/skyIrradiance'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
-import { viewNodes } from './ViewNodes'
+import { checkAtmosphere, viewNodes } from './ViewNodes'
 
 /**
  * Light of sky and ground: a light probe whose irradiance is looked up per fragment, at the
@@ -19,16 +21,19 @@ export class SkyLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
 
-  constructor(atmosphere: Atmosphere) {
+  /** Whose light sky and ground scatter: the sun's. */
+  readonly source: LightSource
+
+  /** @param source - Whose light sky and ground scatter; by default the sun's. */
+  constructor(atmosphere: Atmosphere, source: LightSource = atmosphere?.sun) {
     super()
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`SkyLightProbe: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
+    checkAtmosphere('SkyLightProbe', atmosphere)
     this.atmosphere = atmosphere
+    this.source = source
   }
 
   override clone(): this {
-    return new SkyLightProbe(this.atmosphere).copy(this) as this
+    return new SkyLightProbe(this.atmosphere, this.source).copy(this) as this
   }
 }
 
@@ -42,7 +47,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
 
   constructor(light: SkyLightProbe) {
     super(light)
-    this.#view = viewNodes(light.atmosphere)
+    this.#view = viewNodes(light.atmosphere, null, light.source)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
   }
@@ -59,7 +64,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
   override setup(builder: NodeBuilder): undefined {
     const irradiance = Fn(() => {
       const { air } = this.#view
-      const offset = this.#view.toMapped(positionView).toConst()
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
       const { altitude, cosSun, up } = this.#view.place(offset)
       const normal = this.#view.toMapped(normalView).normalize().toConst()
       const received = skyIrradiance(
@@ -70,7 +75,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
         cosSun,
         normal.dot(this.#view.sunDirection)
       )
-      return linearSRGB(air.uniforms, received).mul(
+      return linearSRGB(air.uniforms, received.mul(this.#view.source.irradiance)).mul(
         (this as unknown as { colorNode: Vec3 }).colorNode
       )
     })()

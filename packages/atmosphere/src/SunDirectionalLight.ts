@@ -1,14 +1,16 @@
 import { DirectionalLight, Vector3 } from 'three'
-import type { Color } from 'three'
-import { Fn, positionView, uniform, renderGroup } from 'three/tsl'
+import { Fn } from 'three/tsl'
 import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
+import { checkPositive } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
+import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
+import { coveredPosition } from './tsl/coveredPosition'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
-import { viewNodes } from './ViewNodes'
+import { checkAtmosphere, viewNodes } from './ViewNodes'
 
 const _direction = new Vector3()
 
@@ -23,34 +25,44 @@ const _direction = new Vector3()
 export class SunDirectionalLight extends DirectionalLight {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
-  /** From the target to the light, along the sun's direction [world units]. */
-  distance = 1
+  #distance = 1
 
-  /** @param distance - From the target to the light [world units]. */
-  constructor(atmosphere: Atmosphere, distance = 1) {
+  /** Whose light it is: the sun's. */
+  readonly source: LightSource
+
+  /**
+   * @param distance - From the target to the light [world units].
+   * @param source - Whose light it is; by default the sun's.
+   */
+  constructor(atmosphere: Atmosphere, distance = 1, source: LightSource = atmosphere?.sun) {
     super()
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(
-        `SunDirectionalLight: atmosphere must be an Atmosphere, got ${typeof atmosphere}`
-      )
-    }
-    if (!(distance > 0 && distance < Infinity)) {
-      throw new Error(`SunDirectionalLight: distance must be positive, got ${distance}`)
-    }
+    checkAtmosphere('SunDirectionalLight', atmosphere)
     this.atmosphere = atmosphere
+    this.source = source
     this.distance = distance
     this.follow()
   }
 
+  /** From the target to the light, along the sun's direction, > 0 [world units]. */
+  get distance(): number {
+    return this.#distance
+  }
+
+  set distance(value: number) {
+    checkPositive('SunDirectionalLight', 'distance', value)
+    this.#distance = value
+  }
+
   override clone(): this {
-    return new SunDirectionalLight(this.atmosphere, this.distance).copy(this) as this
+    return new SunDirectionalLight(this.atmosphere, this.distance, this.source).copy(this) as this
   }
 
   /** Moves to where the sun is; rendering does this by itself. */
   follow(): void {
     this.target.updateWorldMatrix(true, false)
-    _direction.copy(this.atmosphere.sunDirection).multiplyScalar(this.distance)
-    this.position.setFromMatrixPosition(this.target.matrixWorld).add(_direction)
+    this.position.setFromMatrixPosition(this.target.matrixWorld)
+    this.source.direction(this.atmosphere, _direction, this.position)
+    this.position.addScaledVector(_direction, this.distance)
     this.parent?.worldToLocal(this.position)
   }
 
@@ -70,17 +82,17 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
 
   constructor(light: SunDirectionalLight) {
     super(light)
-    this.#view = viewNodes(light.atmosphere)
+    this.#view = viewNodes(light.atmosphere, null, light.source)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
-    const node = this as unknown as { color: Color; colorNode: unknown }
-    const tint = uniform(node.color).setGroup(renderGroup) as unknown as Vec3
+    const node = this as unknown as { colorNode: Vec3 }
+    const tint = node.colorNode
     node.colorNode = Fn(() => {
       const { uniforms, transmittance } = this.#view.air
-      const offset = this.#view.toMapped(positionView).toConst()
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
       const { altitude, cosSun } = this.#view.place(offset)
       const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
-      return linearSRGB(uniforms, sunlight).mul(tint)
+      return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
     })()
   }
 

@@ -5,9 +5,10 @@ import type { AtmosphereUniforms } from './AtmosphereUniforms'
 import { FragmentPass, tableTarget } from './FragmentPass'
 import { TRANSMITTANCE_SIZE } from './tableSizes'
 import { distanceToTop } from './tsl/boundary'
-import { segmentDepth, stepExponent, type Air } from './tsl/scattering'
-import { transmittanceRay } from './tsl/transmittance'
-import { loop, type Float, type Vec4 } from './tsl-types'
+import { march, segmentDepth, type Air } from './tsl/scattering'
+import { horizonCosine, transmittanceRay } from './tsl/transmittance'
+import { sine } from './tsl/trigonometry'
+import type { Float, Vec4 } from './tsl-types'
 
 /** Of a march to the top of the air; two evaluations each. */
 const STEPS = 30
@@ -26,15 +27,9 @@ function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
   const { bottomRadius, thickness } = air.uniforms
   const distance = distanceToTop(altitude, cosView, bottomRadius, thickness)
   const ray = { altitude, cosView, cosSun: cosView, cosViewSun: cosView }
-  const exponent = stepExponent(air.uniforms, thickness.sub(altitude)).toConst()
-  const scale = distance.div(exponent.exp().sub(1)).toConst()
-  const start = float(0).toVar()
   const depth = vec4(0).toVar()
-  loop('step', STEPS, step => {
-    const x = float(step).add(1).div(STEPS)
-    const end = exponent.mul(x).exp().sub(1).mul(scale).toConst()
+  march(air.uniforms, distance, thickness.sub(altitude), STEPS, (start, end) => {
     depth.addAssign(segmentDepth(air, ray, start, end).depth)
-    start.assign(end)
   })
   return depth
 }
@@ -52,20 +47,14 @@ export class TransmittanceTable {
   readonly #pass: FragmentPass
 
   constructor(uniforms: AtmosphereUniforms) {
-    const { bottomRadius, sunAngularRadius } = uniforms
+    const { sunAngularRadius } = uniforms
     const air: Air = { uniforms, transmittance: null as never, diffuse: null }
     this.#pass = new FragmentPass(
       'Welkin.Transmittance',
       Fn(() => {
         const { altitude, cosView } = transmittanceRay(uniforms, uv())
-        const radius = bottomRadius.add(altitude)
-        const cosHorizon = altitude
-          .mul(bottomRadius.mul(2).add(altitude))
-          .sqrt()
-          .div(radius)
-          .negate()
-          .toConst()
-        const sinView = cosView.mul(cosView).oneMinus().max(0).sqrt().toConst()
+        const cosHorizon = horizonCosine(uniforms, altitude).toConst()
+        const sinView = sine(cosView).toConst()
         const light = vec4(0).toVar()
         const area = float(0).toVar()
         const least = vec4(1e9).toVar()

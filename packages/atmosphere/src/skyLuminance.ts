@@ -1,5 +1,6 @@
 import type { Vector3 } from 'three'
 import type { Atmosphere } from './Atmosphere'
+import { checkAtmosphere } from './ViewNodes'
 import { clampCosine } from './cpu/AtmosphereQuery'
 import type { Triple } from './cpu/color'
 import { skyRadiance } from './cpu/scattering'
@@ -18,7 +19,8 @@ export function skyLuminanceAt(
   position: Vector3,
   direction: Vector3
 ): Triple {
-  const query = atmosphere.query()
+  checkAtmosphere('skyLuminanceAt', atmosphere)
+  const query = atmosphere.query(position)
   const data = query.table('skyLuminanceAt')
   const { up, radius, cosSun } = query.place(position)
   const v = query.direction('direction', direction)

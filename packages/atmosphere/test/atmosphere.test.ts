@@ -1,9 +1,16 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
-import { Vector3 } from 'three'
-import { Atmosphere, type AtmosphereParameters, skyLuminanceAt } from '@welkin/atmosphere'
+import { Camera, Euler, Quaternion, Vector3 } from 'three'
+import {
+  Atmosphere,
+  AtmosphereParameters,
+  SkyLightProbe,
+  SunDirectionalLight,
+  skyBackground,
+  skyLuminanceAt
+} from '@welkin/atmosphere'
 import type { AtmosphereFrame } from '@welkin/atmosphere'
-import { Ellipsoid, sunDirectionECEF } from '@welkin/geo'
+import { Ellipsoid, type GeodeticLike, sunDirectionECEF } from '@welkin/geo'
 import { number, runs } from './arbitraries'
 
 const degree = Math.PI / 180
@@ -75,6 +82,35 @@ describe('Atmosphere', () => {
     expect(atmosphere.sunDirection.distanceTo(new Vector3(0, 0, -1))).toBeLessThan(1e-9)
   })
 
+  it('points the sun by angles from the origin of a world set by hand', () => {
+    fc.assert(
+      fc.property(
+        number(-180, 180),
+        number(-89, 89),
+        number(-90, 90),
+        number(0, 360),
+        number(0.01, 100),
+        (longitude, latitude, elevation, azimuth, unit) => {
+          const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 50 })
+          const origin = Ellipsoid.WGS84.geodeticToECEF({ longitude, latitude, height: 300 })
+          // A tile set that was turned and scaled, with its origin somewhere on the globe.
+          const turn = new Quaternion().setFromEuler(new Euler(latitude, elevation, longitude))
+          atmosphere.worldToECEF.compose(origin, turn, new Vector3(unit, unit, unit))
+          atmosphere.setSunAngles(elevation, azimuth)
+          const sun = atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF)
+          const up = Ellipsoid.WGS84.surfaceNormal(origin)
+          expect(sun.dot(up)).toBeCloseTo(Math.sin(elevation * degree), 9)
+          const frame = Ellipsoid.WGS84.eastNorthUpFrame(origin)
+          const [east, north] = [0, 1].map(i => new Vector3().setFromMatrixColumn(frame, i))
+          const level = Math.cos(elevation * degree)
+          expect(sun.dot(east)).toBeCloseTo(level * Math.sin(azimuth * degree), 9)
+          expect(sun.dot(north)).toBeCloseTo(level * Math.cos(azimuth * degree), 9)
+        }
+      ),
+      { ...runs, numRuns: 60 }
+    )
+  })
+
   it('keeps the sun where it is when the date is taken away', () => {
     const atmosphere = new Atmosphere().place({ longitude: 7, latitude: 50 })
     atmosphere.date = equinoxNoon
@@ -109,8 +145,30 @@ describe('Atmosphere', () => {
     expect(atmosphere.sunIlluminanceAt(new Vector3(-6.38e6, 0, 0))).toEqual([0, 0, 0])
   })
 
+  it('keeps a date of its own', () => {
+    const date = new Date('2026-06-21T03:00:00Z')
+    const atmosphere = new Atmosphere()
+    atmosphere.date = date
+    const before = atmosphere.sunDirection
+    date.setUTCHours(12)
+    atmosphere.date.setUTCHours(15)
+    expect(atmosphere.date.toISOString()).toBe('2026-06-21T03:00:00.000Z')
+    expect(atmosphere.sunDirection.equals(before)).toBe(true)
+  })
+
+  it('refuses air that does not belong to the ellipsoid', () => {
+    const ellipsoid = new Ellipsoid(3_389_500, 3_389_500, 3_389_500)
+    expect(() => new Atmosphere({ ellipsoid })).toThrow(
+      'Atmosphere: bottomRadius must be near that of the ellipsoid, got 6378137'
+    )
+    const parameters = new AtmosphereParameters({ bottomRadius: 3_389_500, topRadius: 3_500_000 })
+    expect(new Atmosphere({ ellipsoid, parameters }).ellipsoid).toBe(ellipsoid)
+  })
+
   it('refuses what makes no sense, by name and value', () => {
     const atmosphere = new Atmosphere()
+    const light = new SunDirectionalLight(atmosphere, 2)
+    const missing = undefined as never
     const wrong: [() => unknown, RegExp][] = [
       [() => (atmosphere.date = new Date(NaN)), /Atmosphere: date .*Invalid Date/],
       [() => (atmosphere.date = 'noon' as unknown as Date), /Atmosphere: date .*noon/],
@@ -131,11 +189,36 @@ describe('Atmosphere', () => {
         () => skyLuminanceAt(atmosphere, new Vector3(), new Vector3(0, 1, 0)),
         /skyLuminanceAt .*bake/
       ],
-      [() => new Atmosphere({ parameters: {} as AtmosphereParameters }), /Atmosphere: parameters/],
-      [() => new Atmosphere({ ellipsoid: {} as Ellipsoid }), /Atmosphere: ellipsoid/]
+      [
+        () => new Atmosphere({ parameters: {} as AtmosphereParameters }),
+        /Atmosphere: parameters must be AtmosphereParameters, got Object/
+      ],
+      [
+        () => new Atmosphere({ ellipsoid: new Vector3() as unknown as Ellipsoid }),
+        /Atmosphere: ellipsoid must be an Ellipsoid, got \(0, 0, 0\)/
+      ],
+      [() => (atmosphere.luminanceScale = 0), /Atmosphere: luminanceScale .*0/],
+      [() => (atmosphere.luminanceScale = '1' as never), /Atmosphere: luminanceScale .*1/],
+      [() => (atmosphere.bakeStepsPerFrame = 0), /Atmosphere: bakeStepsPerFrame .*0/],
+      [() => (atmosphere.bakeStepsPerFrame = 1.5), /Atmosphere: bakeStepsPerFrame .*1\.5/],
+      [() => (atmosphere.bakeStepsPerFrame = NaN), /Atmosphere: bakeStepsPerFrame .*NaN/],
+      [() => (atmosphere.sunDirection = missing), /Atmosphere: sunDirection .*undefined/],
+      [() => (atmosphere.date = missing), /Atmosphere: date .*undefined/],
+      [() => (atmosphere.metersPerUnit = missing), /Atmosphere: metersPerUnit .*undefined/],
+      [() => atmosphere.place(missing), /Atmosphere: place .*undefined/],
+      [() => atmosphere.place({ longitude: 3 } as GeodeticLike), /latitude .*undefined/],
+      [() => atmosphere.sunIlluminanceAt(missing), /Atmosphere: position .*undefined/],
+      [() => atmosphere.update(missing, new Camera()), /Atmosphere: renderer .*undefined/],
+      [() => new SunDirectionalLight(missing), /SunDirectionalLight: atmosphere .*undefined/],
+      [() => new SunDirectionalLight(atmosphere, NaN), /SunDirectionalLight: distance .*NaN/],
+      [() => (light.distance = -1), /SunDirectionalLight: distance .*-1/],
+      [() => new SkyLightProbe({} as Atmosphere), /SkyLightProbe: atmosphere .*got Object/],
+      [() => skyBackground(missing), /SkyBackgroundNode: atmosphere .*undefined/]
     ]
     const before = [...atmosphere.worldToECEF.elements, ...atmosphere.sunDirection.toArray()]
     for (const [act, message] of wrong) expect(act).toThrow(message)
+    expect([atmosphere.luminanceScale, atmosphere.bakeStepsPerFrame]).toEqual([1e-4, Infinity])
+    expect(light.distance).toBe(2)
     expect([...atmosphere.worldToECEF.elements, ...atmosphere.sunDirection.toArray()]).toEqual(
       before
     )

@@ -6,7 +6,7 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
   [{ bottomRadius: -1 }, /AtmosphereParameters: bottomRadius .*-1/],
   [{ topRadius: 6_378_137 }, /AtmosphereParameters: topRadius .*6378137/],
   [{ topRadius: NaN }, /AtmosphereParameters: topRadius .*NaN/],
-  [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry .*1/],
+  [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry.* got 1/],
   [{ rayleighScaleHeight: 0 }, /AtmosphereParameters: rayleighScaleHeight .*0/],
   [{ groundAlbedo: [0, 0, 1.5, 0] }, /AtmosphereParameters: groundAlbedo\[2\] .*1\.5/],
   [
@@ -17,6 +17,31 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
     { wavelengths: [1, 2, 3] as unknown as Spectrum },
     /AtmosphereParameters: wavelengths .*4 values.*3/
   ],
+  [{ mieScattering: undefined }, /AtmosphereParameters: mieScattering .*4 values.*undefined/],
+  [{ mieAsymmetry: undefined }, /AtmosphereParameters: mieAsymmetry .*undefined/],
+  [
+    { mieScaleHeight: '1200' } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: mieScaleHeight .*1200/
+  ],
+  [
+    { groundAlbedo: ['0', 0, 0, 0] } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: groundAlbedo\[0\] .*0/
+  ],
+  [
+    { groundAlbedo: 0.3 } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: groundAlbedo .*4 values.*0\.3/
+  ],
+  [{ albedo: 0.3 } as AtmosphereParametersInit, /AtmosphereParameters: .*albedo/],
+  [{ toString: 0.3 } as unknown as AtmosphereParametersInit, /AtmosphereParameters: .*toString/],
+  [
+    { spectralToXYZ: [[0, 0, 0, 0]] } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: spectralToXYZ .*3 values/
+  ],
+  [
+    { spectralToXYZ: [[0, 0, 0, 0], [0, 0, 0, 0], [0]] } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: spectralToXYZ\[2\] .*4 values/
+  ],
+  [{ bottomRadius: 7e6 }, /AtmosphereParameters: topRadius .*6438137/],
   [{ sunAngularRadius: Infinity }, /AtmosphereParameters: sunAngularRadius .*Infinity/],
   [
     {
@@ -36,7 +61,7 @@ describe('AtmosphereParameters', () => {
     const parameters = new AtmosphereParameters()
     const before = parameters.clone()
     expect(() => parameters.set({ mieScaleHeight: 2000, ...init })).toThrow(message)
-    before.version = parameters.version
+    expect(parameters.version).toBe(0)
     expect(parameters).toEqual(before)
   })
 
@@ -48,12 +73,37 @@ describe('AtmosphereParameters', () => {
     expect(parameters.mieAsymmetry).toBe(0.6)
   })
 
+  it('refuses aerosols that scatter more light than they take', () => {
+    const parameters = new AtmosphereParameters()
+    const { version } = parameters
+    expect(() => parameters.set({ mieScattering: [0, 0, 0, 1e-5] })).toThrow(
+      /mieScattering must be a number in \[0, 0\.0000044\d*\], got 0\.00001/
+    )
+    expect(parameters.version).toBe(version)
+  })
+
   it('copies', () => {
     const parameters = new AtmosphereParameters({ mieAsymmetry: 0.7 })
     const copy = parameters.clone()
     parameters.set({ mieAsymmetry: 0.1 })
     expect(copy.mieAsymmetry).toBe(0.7)
     expect(copy.version).toBe(0)
+  })
+
+  it('shares no array with what it was made from, nor with its copies', () => {
+    const groundAlbedo: [number, number, number, number] = [0.1, 0.2, 0.3, 0.4]
+    const parameters = new AtmosphereParameters({ groundAlbedo })
+    const copy = parameters.clone()
+    expect(copy).toEqual(parameters)
+    groundAlbedo[0] = 1
+    expect(parameters.groundAlbedo[0]).toBe(0.1)
+    const other = new AtmosphereParameters()
+    for (const [name, value] of Object.entries(parameters)) {
+      if (!Array.isArray(value)) continue
+      expect(copy[name as keyof AtmosphereParameters]).not.toBe(value)
+      expect(other[name as keyof AtmosphereParameters]).not.toBe(value)
+    }
+    expect(copy.spectralToXYZ[0]).not.toBe(parameters.spectralToXYZ[0])
   })
 
   it('makes the air of the Earth from turbidity and ozone', () => {

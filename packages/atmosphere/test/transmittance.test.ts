@@ -81,6 +81,43 @@ describe('transmittance', () => {
     expect(sunTransmittance(earth, 3 * bottomRadius, 0.5)).toEqual([1, 1, 1, 1])
   })
 
+  it('averages the part of the disc above the horizon, wherever the sun stands', () => {
+    const strips = 400
+    fc.assert(
+      fc.property(number(0, 100_000), number(-0.0046, 0.3), number(0, 19), (height, e, haze) => {
+        const p = AtmosphereParameters.earth({ turbidity: 1 + haze })
+        const radius = bottomRadius + height
+        const horizon = Math.PI - Math.asin(bottomRadius / radius)
+        const elevation = Math.sign(e) * e ** 2 * (e < 0 ? 200 : 3)
+        const visible = visibleSun(p, radius, Math.cos(horizon - elevation))
+        const light = [0, 0, 0, 0]
+        let area = 0
+        for (let strip = 0; strip < strips; strip++) {
+          const y = (2 * strip + 1) / strips - 1
+          const above = elevation + y * p.sunAngularRadius
+          if (above < 0) continue
+          const width = Math.sqrt(1 - y * y)
+          const mu = Math.cos(horizon - above)
+          const lowest = radius * Math.sqrt(1 - mu * mu)
+          const half = Math.sqrt(Math.max(topRadius ** 2 - lowest ** 2, 0))
+          const misses = lowest > topRadius || (radius > topRadius && mu > 0)
+          const start = radius > topRadius && !misses ? -radius * mu - half : 0
+          const length = misses ? 0 : half - radius * mu - start
+          const r = Math.sqrt(radius ** 2 + 2 * radius * mu * start + start ** 2)
+          const depth = opticalDepth(p, r, (radius * mu + start) / r, length)
+          area += width
+          depth.forEach((value, i) => (light[i] += width * Math.exp(-value)))
+        }
+        const actual = sunTransmittance(p, radius, Math.cos(horizon - elevation))
+        for (const i of spectrumIndex) {
+          const expected = area > 0 ? (visible * light[i]) / area : 0
+          expect(Math.abs(actual[i] - expected)).toBeLessThan(1e-4)
+        }
+      }),
+      { ...runs, numRuns: 60 }
+    )
+  })
+
   it('agrees with the reference', () => {
     const file = fileURLToPath(new URL('../../../e2e/reference/sky.json', import.meta.url))
     const { parameters, channels, segments } = readSkyReference(file)

@@ -60,7 +60,7 @@ function requireFinite(name: string, value: unknown): void {
 
 function requireParameters(parameters: CloudLayerParameters): void {
   for (const name of Object.keys(parameters)) {
-    if (!(name in defaults)) throw new Error(`CloudLayer: there is no parameter ${name}`)
+    if (!Object.hasOwn(defaults, name)) throw new Error(`CloudLayer: there is no parameter ${name}`)
   }
   const { baseAltitude, topAltitude, profileExponent, weatherWeights, wind, shadow } = parameters
   requireRange('baseAltitude', baseAltitude, 0, highestAltitude)
@@ -80,8 +80,8 @@ function requireParameters(parameters: CloudLayerParameters): void {
     )
   }
   weatherWeights.forEach((weight, i) => requireRange(`weatherWeights[${i}]`, weight, 0, 1))
-  requireFinite('wind.east', wind.east)
-  requireFinite('wind.north', wind.north)
+  requireFinite('wind.east', wind?.east)
+  requireFinite('wind.north', wind?.north)
   if (typeof shadow !== 'boolean') {
     throw new Error(`CloudLayer: shadow must be true or false, got ${String(shadow)}`)
   }

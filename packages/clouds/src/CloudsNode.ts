@@ -1,4 +1,4 @@
-import { airTo, AtmosphereNode, linearSRGB } from '@welkin/atmosphere'
+import { aerialPerspectiveTo, AtmosphereNode, linearSRGB } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
 import { Vector2 } from 'three'
 import type { Camera, PerspectiveCamera, Texture } from 'three'
@@ -162,7 +162,8 @@ export class CloudsNode extends AtmosphereNode {
       const opacity = marched.transmittance.oneMinus().toConst()
       const result = color.toVar()
       If(opacity.greaterThan(0), () => {
-        const air = airTo(this.view, direction.mul(marched.distance))
+        const reach = marched.distance.div(this.view.toMapped(middle).length())
+        const air = aerialPerspectiveTo(this.view, middle.mul(reach))
         const light = linearSRGB(this.view.air.uniforms, marched.radiance)
         const added = light.mul(air.transmittance).add(air.inScatter.mul(opacity))
         result.assign(

@@ -17,26 +17,26 @@ export function checkFinite(where: string, name: string, value: number): void {
 }
 
 export function checkPositive(where: string, name: string, value: number): void {
-  if (!(value > 0 && value < Infinity)) {
+  if (!(Number.isFinite(value) && value > 0)) {
     fail(where, `${name} must be positive and finite`, value)
   }
 }
 
 export function checkNonNegative(where: string, name: string, value: number): void {
-  if (!(value >= 0 && value < Infinity)) {
+  if (!(Number.isFinite(value) && value >= 0)) {
     fail(where, `${name} must be finite and ≥ 0`, value)
   }
 }
 
 export function checkLatitude(where: string, latitude: number): void {
-  if (!(latitude >= -90 && latitude <= 90)) {
+  if (!(Number.isFinite(latitude) && Math.abs(latitude) <= 90)) {
     fail(where, 'latitude must be in [−90, 90]', latitude)
   }
 }
 
 export function checkVector(where: string, name: string, vector: XYZ): void {
   // One sum finds NaN and Infinity in any component: Infinity − Infinity is NaN.
-  if (!Number.isFinite(vector.x + vector.y + vector.z)) {
+  if (!Number.isFinite(vector?.x + vector?.y + vector?.z)) {
     fail(where, `${name} must have finite components`, vector)
   }
 }
@@ -59,5 +59,5 @@ function describe(value: unknown): string {
   if ('x' in value && 'y' in value && 'z' in value) {
     return `(${String(value.x)}, ${String(value.y)}, ${String(value.z)})`
   }
-  return Object.prototype.toString.call(value)
+  return Array.isArray(value) ? `[${String(value)}]` : (value.constructor?.name ?? 'object')
 }

@@ -59,6 +59,7 @@ export function fitGlobeCamera(
       : perspectiveRange(camera, positionECEF, settings)
 
   const metersPerUnit = settings.worldToECEF.getMaxScaleOnAxis()
+  checkPositive('fitGlobeCamera', 'scale of worldToECEF', metersPerUnit)
   if (camera.near === near / metersPerUnit && camera.far === far / metersPerUnit) return
   camera.near = near / metersPerUnit
   camera.far = far / metersPerUnit

@@ -18,3 +18,5 @@ export type { SphereEye } from './sphereEye'
 export { ellipsoidToSphere } from './tsl/ellipsoidToSphere'
 export { offsetHeight } from './tsl/offsetHeight'
 export { rayEllipsoid, raySphere } from './tsl/rayEllipsoid'
+// Preconditions that Welkin's packages share; not for use elsewhere.
+export { checkDirection, checkPositive, checkVector, fail } from './check'

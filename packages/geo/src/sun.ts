@@ -1,7 +1,5 @@
-import { e_tilt, MakeTime } from 'astronomy-engine'
 import { Vector3 } from 'three'
 import { checkDate } from './check'
-import { siderealAngle } from './earthRotation'
 
 type Term = readonly [amplitude: number, phase: number, frequency: number]
 
@@ -11,7 +9,8 @@ const astronomicalUnit = 149597870700
  * The Earth around the sun: the leading terms of VSOP87D (ecliptic and equinox of date), A cos(B + C τ)
  * with τ in thousands of Julian years from J2000. Longitude in radians, distance in astronomical units.
  *
- * astronomy-engine has the long series, but its tables of every planet come with it (17 kB gzipped).
+ * astronomy-engine has the long series, but its tables of every planet come with it (17 kB gzipped), and
+ * even its sidereal time and nutation alone make 2 kB. What an atmosphere needs of the sun is here.
  *
  * @see Bretagnon & Francou 1988; Meeus, Astronomical Algorithms, 2nd ed., appendix III.
  */
@@ -58,13 +57,13 @@ const aberration = ((20.4898 / 3600) * Math.PI) / 180
 /**
  * Apparent position of the sun's centre from the Earth's centre, aberration and nutation included.
  *
- * Within 12″ of the full theory from 1800 to 2200, and 15″ more in longitude because UT1 is taken
+ * Within 13″ of the full theory from 1800 to 2200, and 15″ more in longitude because UT1 is taken
  * equal to UTC.
  *
  * @param date - Instant, UTC.
  * @returns ECEF [m].
  * @throws Error if the date is invalid.
- * @see Meeus, Astronomical Algorithms, 2nd ed., chapter 25.
+ * @see Meeus, Astronomical Algorithms, 2nd ed., chapters 12, 22 and 25.
  */
 export function sunPositionECEF(date: Date, target: Vector3 = new Vector3()): Vector3 {
   checkDate('sunPositionECEF', date)
@@ -84,12 +83,29 @@ export function sunDirectionECEF(date: Date, target: Vector3 = new Vector3()): V
   return computeSunPosition(date, target).normalize()
 }
 
+const radians = (degrees: number): number => (degrees * Math.PI) / 180
+
+/**
+ * ΔT = TT − UT in the long run [s]. Within 50 s from 1800 to 2100, in which the sun moves 2″.
+ *
+ * @see Morrison & Stephenson 2004.
+ */
+const terrestrialLag = (centuries: number): number => -20 + 32 * (centuries + 1.8) ** 2
+
 function computeSunPosition(date: Date, target: Vector3): Vector3 {
-  const time = MakeTime(date)
-  const millennia = time.tt / 365250
-  const { dpsi, tobl } = e_tilt(time)
-  const nutation = ((dpsi / 3600) * Math.PI) / 180
-  const obliquity = (tobl * Math.PI) / 180
+  // Days and Julian centuries from J2000, UT.
+  const days = date.getTime() / 86_400_000 - 10_957.5
+  const t = days / 36_525
+  const millennia = (days + terrestrialLag(t) / 86_400) / 365_250
+
+  // Nutation by its two leading terms each; the rest is below 0.5″.
+  const node = radians(125.04452 - 1934.136261 * t)
+  const twiceMeanLongitude = radians(2 * (280.4665 + 36000.7698 * t))
+  const arcseconds = radians(1 / 3600)
+  const nutation = -arcseconds * (17.2 * Math.sin(node) + 1.32 * Math.sin(twiceMeanLongitude))
+  const obliquity =
+    radians(23.4392911 - 0.0130042 * t) +
+    arcseconds * (9.2 * Math.cos(node) + 0.57 * Math.cos(twiceMeanLongitude))
 
   const distance = series(distanceTerms, millennia)
   const longitude = series(longitudeTerms, millennia) + Math.PI + nutation - aberration / distance
@@ -98,7 +114,8 @@ function computeSunPosition(date: Date, target: Vector3): Vector3 {
   const y = Math.sin(longitude) * Math.cos(obliquity)
   const z = Math.sin(longitude) * Math.sin(obliquity)
 
-  const angle = siderealAngle(date)
+  const meanSiderealTime = radians(280.46061837 + 360.98564736629 * days + 0.000387933 * t * t)
+  const angle = meanSiderealTime + nutation * Math.cos(obliquity)
   const c = Math.cos(angle)
   const s = Math.sin(angle)
   return target.set(c * x + s * y, c * y - s * x, z).multiplyScalar(distance * astronomicalUnit)

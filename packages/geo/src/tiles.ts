@@ -7,7 +7,7 @@ import { fail } from './check'
  * matrix, since tiles are in ECEF metres inside their group.
  *
  * ```ts
- * atmosphere.worldToECEF = ecefFromTilesGroup(tiles.group)
+ * atmosphere.worldToECEF.copy(ecefFromTilesGroup(tiles.group))
  * const ellipsoid = Ellipsoid.from(tiles.ellipsoid)
  * ```
  *

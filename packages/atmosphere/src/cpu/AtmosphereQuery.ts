@@ -1,4 +1,5 @@
 import { Vector3 } from 'three'
+import { checkDirection, checkVector } from '@welkin/geo'
 import type { AtmosphereParameters, Spectrum } from '../AtmosphereParameters'
 import { spectralToLinearSRGB, type Triple } from './color'
 import type { DiffuseLightData } from './diffuseLight'
@@ -13,29 +14,30 @@ export class AtmosphereQuery {
   readonly parameters: AtmosphereParameters
   readonly #space: SphericalSpace
   readonly #data: DiffuseLightData | null
+  /** Of the source of light, over the bare sun's. */
+  readonly #irradiance: Spectrum
   readonly sun: Vector3
 
   constructor(
     parameters: AtmosphereParameters,
     space: SphericalSpace,
     sunWorld: Vector3,
-    data: DiffuseLightData | null
+    data: DiffuseLightData | null,
+    irradiance: Spectrum
   ) {
     this.parameters = parameters
     this.#space = space
     this.#data = data
+    this.#irradiance = irradiance
     this.sun = space.direction(sunWorld, new Vector3())
   }
 
   /** Where a position [world] is in the mapped space. */
   place(position: Vector3) {
+    checkVector('Atmosphere', 'position', position)
     const up = this.#space.position(position, new Vector3())
-    if (!Number.isFinite(up.lengthSq()) || up.lengthSq() === 0) {
-      const { x, y, z } = position
-      throw new Error(
-        `Atmosphere: position must be finite and not the centre, got (${x}, ${y}, ${z})`
-      )
-    }
+    // At the planet's centre there is no zenith.
+    checkDirection('Atmosphere', 'position', up)
     const radius = Math.max(up.length(), this.parameters.bottomRadius)
     up.normalize()
     return { up, radius, cosSun: clampCosine(up.dot(this.sun)) }
@@ -43,10 +45,7 @@ export class AtmosphereQuery {
 
   /** A direction [world] in the mapped space. */
   direction(name: string, world: Vector3): Vector3 {
-    if (!(world.lengthSq() > 0 && world.lengthSq() < Infinity)) {
-      const { x, y, z } = world
-      throw new Error(`Atmosphere: ${name} must be finite and not zero, got (${x}, ${y}, ${z})`)
-    }
+    checkDirection('Atmosphere', name, world)
     return this.#space.direction(world, new Vector3())
   }
 
@@ -60,9 +59,10 @@ export class AtmosphereQuery {
     return this.#data
   }
 
-  /** From values per unit of solar irradiance. */
+  /** From values per unit of the source's irradiance. */
   linearSRGB(perIrradiance: number[]): Triple {
-    const values = perIrradiance.map((value, i) => value * this.parameters.solarIrradiance[i])
+    const { solarIrradiance } = this.parameters
+    const values = perIrradiance.map((value, i) => value * solarIrradiance[i] * this.#irradiance[i])
     return spectralToLinearSRGB(this.parameters, values as unknown as Spectrum)
   }
 

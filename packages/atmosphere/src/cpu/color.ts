@@ -13,11 +13,12 @@ const XYZ_TO_LINEAR_SRGB: readonly Triple[] = [
   [0.0556434, -0.2040259, 1.0572252]
 ]
 
+const dot = (a: readonly number[], b: readonly number[]): number =>
+  a.reduce((sum, value, i) => sum + value * b[i], 0)
+
 /** CIE XYZ (D65 white) to linear sRGB, same unit. */
 export function xyzToLinearSRGB(xyz: Readonly<Triple>): Triple {
-  return XYZ_TO_LINEAR_SRGB.map(
-    row => row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]
-  ) as Triple
+  return XYZ_TO_LINEAR_SRGB.map(row => dot(row, xyz)) as Triple
 }
 
 /**
@@ -25,12 +26,8 @@ export function xyzToLinearSRGB(xyz: Readonly<Triple>): Triple {
  * luminance [cd/m²] or illuminance [lx].
  */
 export function spectralToLinearSRGB(parameters: AtmosphereParameters, values: Spectrum): Triple {
-  const xyz = parameters.spectralToXYZ.map(
-    row =>
-      MAXIMUM_EFFICACY *
-      (row[0] * values[0] + row[1] * values[1] + row[2] * values[2] + row[3] * values[3])
-  ) as Triple
-  return xyzToLinearSRGB(xyz)
+  const xyz = parameters.spectralToXYZ.map(row => MAXIMUM_EFFICACY * dot(row, values))
+  return xyzToLinearSRGB(xyz as Triple)
 }
 
 /**

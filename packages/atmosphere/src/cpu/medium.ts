@@ -9,9 +9,14 @@ export function densities(p: AtmosphereParameters, altitude: number): [number, n
   ]
 }
 
-/** Extinction coefficient at an altitude [m], one value per wavelength [1/m]. */
-export function extinctionAt(p: AtmosphereParameters, altitude: number): number[] {
-  const [molecules, aerosols, absorber] = densities(p, altitude)
+/**
+ * Extinction coefficient of air with given densities, one value per wavelength [1/m]; or of a column,
+ * from densities integrated along it [m], the optical depth.
+ */
+export function extinction(
+  p: AtmosphereParameters,
+  [molecules, aerosols, absorber]: readonly [number, number, number]
+): number[] {
   return [0, 1, 2, 3].map(
     i =>
       p.rayleighScattering[i] * molecules +

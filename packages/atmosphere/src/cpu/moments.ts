@@ -1,14 +1,9 @@
+import { SH0, SH1, SH20, SH21, SH22 } from '../tsl/moments'
+
 /** Real spherical harmonics of degree ≤ 2 of a unit vector whose y does not matter by symmetry. */
 function harmonics(x: number, z: number): [number, number, number, number, number, number] {
   const ySquared = 1 - x * x - z * z
-  return [
-    0.28209479177387814,
-    0.4886025119029199 * z,
-    0.4886025119029199 * x,
-    0.31539156525252005 * (3 * z * z - 1),
-    1.0925484305920792 * x * z,
-    0.5462742152960396 * (x * x - ySquared)
-  ]
+  return [SH0, SH1 * z, SH1 * x, SH20 * (3 * z * z - 1), SH21 * x * z, SH22 * (x * x - ySquared)]
 }
 
 /**

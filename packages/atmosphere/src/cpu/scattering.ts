@@ -1,7 +1,7 @@
-import type { AtmosphereParameters } from '../AtmosphereParameters'
+import { spectrumOf, type AtmosphereParameters } from '../AtmosphereParameters'
 import { distanceToGround, distanceToTop, hitsGround } from './boundary'
 import { sampleDiffuseLight, type DiffuseLightData } from './diffuseLight'
-import { densities, extinctionAt } from './medium'
+import { densities, extinction } from './medium'
 import { applyMoments } from './moments'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from './phase'
 import { gaussLegendre } from './quadrature'
@@ -51,8 +51,10 @@ export function inScatter(
   distance: number
 ): number[] {
   const { radius, cosView, cosSun, cosViewSun } = ray
-  const phases = [rayleighPhase(cosViewSun), cornetteShanksPhase(p.mieAsymmetry, cosViewSun)]
-  const mie = asymmetryMoments(p.mieAsymmetry)
+  const asymmetries = spectrumOf(p.mieAsymmetry)
+  const molecularPhase = rayleighPhase(cosViewSun)
+  const aerosolPhases = asymmetries.map(g => cornetteShanksPhase(g, cosViewSun))
+  const mie = asymmetries.map(asymmetryMoments)
   const sum = [0, 0, 0, 0]
   const thickness = p.topRadius - p.bottomRadius
   const depthBefore = [0, 0, 0, 0]
@@ -65,7 +67,9 @@ export function inScatter(
     const rMiddle = Math.sqrt(radius ** 2 + 2 * radius * cosView * middle + middle ** 2)
     const rLast = Math.sqrt(radius ** 2 + 2 * radius * cosView * last + last ** 2)
     // Simpson's rule from one node to the next.
-    const ends = [rLast, rMiddle, r].map(x => extinctionAt(p, Math.max(x - p.bottomRadius, 0)))
+    const ends = [rLast, rMiddle, r].map(x =>
+      extinction(p, densities(p, Math.max(x - p.bottomRadius, 0)))
+    )
     const [molecules, aerosols] = densities(p, altitude)
     const sun = sunTransmittance(p, r, muSun)
     const tiles = data && sampleDiffuseLight(data, altitude / thickness, muSun)
@@ -73,11 +77,11 @@ export function inScatter(
       depthBefore[i] += ((t - last) / 6) * (ends[0][i] + 4 * ends[1][i] + ends[2][i])
       const byMolecules = p.rayleighScattering[i] * molecules
       const byAerosols = p.mieScattering[i] * aerosols
-      let source = (byMolecules * phases[0] + byAerosols * phases[1]) * sun[i]
+      let source = (byMolecules * molecularPhase + byAerosols * aerosolPhases[i]) * sun[i]
       if (tiles) {
         const moments = tiles.map(tile => tile[i])
         source += byMolecules * applyMoments(moments, [1, 0, 0.1], mu, muSun, cosViewSun)
-        source += byAerosols * applyMoments(moments, mie, mu, muSun, cosViewSun)
+        source += byAerosols * applyMoments(moments, mie[i], mu, muSun, cosViewSun)
       }
       sum[i] += weight * source * Math.exp(-depthBefore[i])
     }

@@ -1,11 +1,11 @@
-import type { AtmosphereParameters } from '../AtmosphereParameters'
+import { spectrumOf, type AtmosphereParameters } from '../AtmosphereParameters'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../tableSizes'
 import { distanceToGround, distanceToTop } from './boundary'
 import { diffuseColumn, diffuseColumnCosine, type DiffuseLightData } from './diffuseLight'
 import { densities } from './medium'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from './phase'
 import { gaussLegendre } from './quadrature'
-import { opticalDepth, visibleSun } from './transmittance'
+import { discTransmittance, visibleSun } from './transmittance'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const PER_CELL = 4 * DIFFUSE_TILES
@@ -71,7 +71,10 @@ class Sunlight {
         const distance = shortest + ((longest - shortest) * column) / (columns - 1)
         const cosine = (this.#chord ** 2 - horizon ** 2 - distance ** 2) / (2 * radius * distance)
         const cosView = distance > 1 ? Math.min(Math.max(cosine, -1), 1) : 1
-        const depth = opticalDepth(p, radius, cosView, distance)
+        // Thick air's transmittance underflows, but a depth must be finite.
+        const depth = discTransmittance(p, radius, cosView).map(
+          value => -Math.log(Math.max(value, 1e-300))
+        )
         this.#depth.set(depth, 4 * (row * columns + column))
       }
     }
@@ -101,7 +104,7 @@ class Gatherer {
   readonly depth = new Float64Array(4)
   readonly #p: AtmosphereParameters
   readonly #sunlight: Sunlight
-  readonly #mie: [number, number, number]
+  readonly #mie: [number, number, number][]
   readonly #sun = new Float64Array(4)
   readonly #cell = new Float64Array(PER_CELL)
   readonly #extinctions = [new Float64Array(4), new Float64Array(4)] as const
@@ -109,7 +112,7 @@ class Gatherer {
   constructor(p: AtmosphereParameters) {
     this.#p = p
     this.#sunlight = new Sunlight(p)
-    this.#mie = asymmetryMoments(p.mieAsymmetry)
+    this.#mie = spectrumOf(p.mieAsymmetry).map(asymmetryMoments)
   }
 
   /** Moments of light scattered before at a point, into the scratch cell. */
@@ -150,7 +153,8 @@ class Gatherer {
     const growth = Math.min(Math.max((0.3 * rise) / p.rayleighScaleHeight, -4), 4)
     const exponent = Math.abs(growth) < 0.05 ? 0.05 : growth
     const at = (x: number): number => (distance * Math.expm1(exponent * x)) / Math.expm1(exponent)
-    const phases = [rayleighPhase(cosViewSun), cornetteShanksPhase(p.mieAsymmetry, cosViewSun)]
+    const molecularPhase = rayleighPhase(cosViewSun)
+    const aerosolPhases = spectrumOf(p.mieAsymmetry).map(g => cornetteShanksPhase(g, cosViewSun))
     for (let step = 0; step < steps; step++) {
       const start = at(step / steps)
       const half = (at((step + 1) / steps) - start) / 2
@@ -180,9 +184,9 @@ class Gatherer {
           const byAerosols = p.mieScattering[i] * density[1]
           const source =
             light === null
-              ? (byMolecules * phases[0] + byAerosols * phases[1]) * this.#sun[i]
+              ? (byMolecules * molecularPhase + byAerosols * aerosolPhases[i]) * this.#sun[i]
               : byMolecules * this.#field(i, basis, 0, 0.1) +
-                byAerosols * this.#field(i, basis, this.#mie[1], this.#mie[2])
+                byAerosols * this.#field(i, basis, this.#mie[i][1], this.#mie[i][2])
           // Extinction as the line through both nodes, integrated from the step's start.
           const mean = (first[i] + second[i]) / 2
           const slope = ((second[i] - first[i]) * Math.sqrt(3)) / 2

@@ -1,4 +1,6 @@
-import type { Float, Vec3 } from '../tsl-types'
+import { If, vec4 } from 'three/tsl'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { Sightline, Veil } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB, transmittanceRGB } from './color'
 import { scatteredRadiance } from './scattering'
@@ -12,30 +14,38 @@ export interface AerialPerspective {
   inScatter: Vec3
 }
 
+/** What the layers of the atmosphere make of the air's veil. */
+export function veiled(line: Sightline, air: Veil): Veil {
+  return line.view.atmosphere.layers.reduce((veil, layer) => layer.veil?.(line, veil) ?? veil, air)
+}
+
 /**
  * Air between the camera and a point, from the sky volume.
  *
  * @param displacementView - From the camera to the point, in view space [world units].
  */
 export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
-  return airTo(view, view.toMapped(displacementView).toConst())
-}
-
-/**
- * Air between the camera and a point, from the sky volume.
- *
- * @param offset - From the camera to the point, in the mapped space [m].
- */
-export function airTo(view: ViewNodes, offset: Vec3): AerialPerspective {
   const { air, volume, eye } = view
+  const offset = view.toMapped(displacementView).toConst()
   const distance = offset.length().max(1e-3).toConst() as Float
   const direction = offset.div(distance).toConst()
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const limits = rayLimits(air.uniforms, eye, cosView)
   const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
+  const sunlit = vec4(0).toVar()
+  If(view.isLit.greaterThan(0), () => {
+    const scattered = scatteredRadiance(air.uniforms, between, cosViewSun)
+    sunlit.assign(scattered.mul(view.source.irradiance))
+  })
+  const light = view.atmosphere.layers.reduce<Vec4>((sum, layer) => {
+    const haze = layer.haze?.(view, displacementView)
+    return haze === undefined ? sum : sum.add(haze)
+  }, sunlit)
+  const line = { view, direction, cosView, cosViewSun, distance }
+  const veil = veiled(line, { depth: between.depth, light })
   return {
-    transmittance: transmittanceRGB(air.uniforms, between.depth.negate().exp()),
-    inScatter: linearSRGB(air.uniforms, scatteredRadiance(air.uniforms, between, cosViewSun))
+    transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),
+    inScatter: linearSRGB(air.uniforms, veil.light)
   }
 }

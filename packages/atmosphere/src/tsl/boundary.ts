@@ -1,6 +1,7 @@
 import { Fn } from 'three/tsl'
 import type { Float } from '../tsl-types'
 
+/** Layout of a `Fn` of floats. */
 const layout = (name: string, ...inputs: string[]) => ({
   name,
   type: 'float' as const,

@@ -5,21 +5,25 @@ import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../tableSizes'
 import { sampleLevel0, type Float, type Vec4 } from '../tsl-types'
 import { diffuseSunCosine, diffuseSunSlope, diffuseSunOrigin } from '../cpu/diffuseLight'
 import type { Moments } from './moments'
+import { asinh, sinh } from './trigonometry'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 
 type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 
-/** asinh, from the magnitude: the plain form cancels for negative arguments. */
-export function asinh(x: Float): Float {
-  const magnitude = x.abs()
-  return magnitude.add(x.mul(x).add(1).sqrt()).log().mul(x.sign())
+/** asinh of the sun's cosine, as the table spaces its columns: they crowd about the horizon. */
+export function spreadSun(cosSun: Float): Float {
+  return asinh(cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst())
 }
 
-/** Position of the sun's cosine among the columns, in [0, 1]. Columns crowd about the horizon. */
+/** The sun's cosine from {@link spreadSun} of it. */
+export function spreadCosine(x: Float): Float {
+  return sinh(x).mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
+}
+
+/** Position of the sun's cosine among the columns, in [0, 1]. */
 function sunColumn(cosSun: Float): Float {
-  const x = cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst()
-  return asinh(x).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp()
+  return spreadSun(cosSun).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp()
 }
 
 /** Position of an altitude among the rows, in [0, 1]. Rows crowd at the ground. */
@@ -34,16 +38,11 @@ export function diffuseLightReader(
   altitude: Float,
   cosSun: Float
 ): (tile: number) => Vec4 {
-  const uv = vec2(
-    sunColumn(cosSun)
-      .mul(COLUMNS - 1)
-      .add(0.5)
-      .div(COLUMNS * DIFFUSE_TILES),
-    altitudeRow(uniforms, altitude)
-      .mul(ROWS - 1)
-      .add(0.5)
-      .div(ROWS)
-  ).toConst()
+  const uv = vec2(sunColumn(cosSun), altitudeRow(uniforms, altitude))
+    .mul(vec2(COLUMNS - 1, ROWS - 1))
+    .add(0.5)
+    .div(vec2(COLUMNS * DIFFUSE_TILES, ROWS))
+    .toConst()
   return tile => sampleLevel0(table, tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0)))
 }
 

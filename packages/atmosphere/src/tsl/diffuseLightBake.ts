@@ -1,6 +1,6 @@
 import { Discard, Fn, If, float, int, mix, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, TextureNode } from 'three/webgpu'
-import { diffuseSunCosine, diffuseSunOrigin, diffuseSunSlope } from '../cpu/diffuseLight'
+import { diffuseSunOrigin, diffuseSunSlope } from '../cpu/diffuseLight'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../tableSizes'
 import {
   loop,
@@ -12,8 +12,11 @@ import {
   type Vec4Array
 } from '../tsl-types'
 import { distanceToGround, distanceToTop, groundDiscriminant } from './boundary'
+import { spreadCosine } from './diffuseLight'
 import { SH0, SH1, SH20, SH21, SH22 } from './moments'
 import { groundRadiance, pointAlong, scatteredRadiance, scattering, type Air } from './scattering'
+import { rowAndColumn } from './texels'
+import { sine } from './trigonometry'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 
@@ -51,8 +54,7 @@ function cell(air: Air, row: Float, column: Float) {
     .div(diffuseSunSlope)
     .add(diffuseSunOrigin)
     .toConst()
-  const sinh = x.exp().sub(x.negate().exp()).mul(0.5)
-  const cosSun = sinh.mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
+  const cosSun = spreadCosine(x)
   return {
     altitude: altitude.toConst() as Float,
     cosSun: cosSun.min(HIGHEST_SUN).toConst() as Float
@@ -82,8 +84,7 @@ function direction(air: Air, altitude: Float, cosSun: Float, number: Int, at: Di
     .div(float(at.azimuths))
   const cosView = elevation.sin().toConst()
   const towardsSun = cosElevation.mul(azimuth.cos()).toConst()
-  const sinSun = cosSun.mul(cosSun).oneMinus().sqrt()
-  const cosViewSun = towardsSun.mul(sinSun).add(cosView.mul(cosSun)).clamp(-1, 1)
+  const cosViewSun = towardsSun.mul(sine(cosSun)).add(cosView.mul(cosSun)).clamp(-1, 1)
   return {
     up: up as Node<'bool'>,
     cosView: cosView as Float,
@@ -121,8 +122,7 @@ export function bakeRays(
       .mul(BAKE_ROWS * COLUMNS)
       .floor()
       .toConst()
-    const row = cellIndex.add(0.5).div(COLUMNS).floor().toConst()
-    const column = cellIndex.sub(row.mul(COLUMNS))
+    const { row, column } = rowAndColumn(cellIndex, COLUMNS)
     const { altitude, cosSun } = cell(air, row.add(float(firstRow)), column)
     const towards = direction(air, altitude, cosSun, number, at)
     const ray = { altitude, cosView: towards.cosView, cosSun, cosViewSun: towards.cosViewSun }
@@ -175,8 +175,7 @@ export function reduceRays(
       .mul(COLUMNS * DIFFUSE_TILES)
       .floor()
       .toConst()
-    const tile = x.add(0.5).div(COLUMNS).floor().toConst()
-    const column = x.sub(tile.mul(COLUMNS)).toConst()
+    const { row: tile, column } = rowAndColumn(x, COLUMNS)
     const { altitude, cosSun } = cell(air, row, column)
     const sinSquaredSun = cosSun.mul(cosSun).oneMinus().toConst()
     const inverseSinSun = sinSquaredSun.inverseSqrt().toConst()

@@ -56,8 +56,8 @@ export function momentBasis(
 export function applyMoments(
   moments: Moments<Vec4>,
   basis: Omit<Moments<Float>, 'm00'>,
-  weight1: Float | number,
-  weight2: Float | number
+  weight1: Vec4 | number,
+  weight2: Vec4 | number
 ): Vec4 {
   const first = moments.m10.mul(basis.m10).add(moments.m11.mul(basis.m11))
   const second = moments.m20

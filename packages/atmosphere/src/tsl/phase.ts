@@ -1,6 +1,5 @@
-import { Fn, float } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import type { Float } from '../tsl-types'
+import type { Float, Vec4 } from '../tsl-types'
 
 /**
  * Phase function of molecules [1/sr].
@@ -14,27 +13,17 @@ export function rayleighPhase(cosViewSun: Float): Float {
     .mul(3 / (16 * Math.PI))
 }
 
-const cornetteShanks = /*#__PURE__*/ Fn(
-  ([cosViewSun, asymmetry, factor]: [Float, Float, Float]) => {
-    const chord = asymmetry.mul(asymmetry).add(1).sub(asymmetry.mul(cosViewSun).mul(2))
-    const squaredChord = chord.max(1e-4).toConst('squaredChord')
-    return factor
-      .mul(cosViewSun.mul(cosViewSun).add(float(1)))
-      .div(squaredChord.mul(squaredChord.sqrt()))
-  },
-  {
-    name: 'cornetteShanks',
-    type: 'float',
-    inputs: ['cosViewSun', 'asymmetry', 'factor'].map(name => ({ name, type: 'float' as const }))
-  }
-)
-
 /**
- * Phase function of aerosols [1/sr].
+ * Phase function of aerosols, per wavelength [1/sr].
  *
  * @param cosViewSun - ν, cosine of the scattering angle, in [−1, 1].
  * @see Cornette & Shanks 1992. Twin: cpu/phase.ts
  */
-export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Float {
-  return cornetteShanks(cosViewSun, uniforms.mieAsymmetry, uniforms.miePhaseFactor)
+export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 {
+  const { mieAsymmetry, miePhaseFactor } = uniforms
+  const chord = mieAsymmetry.mul(mieAsymmetry).add(1).sub(mieAsymmetry.mul(cosViewSun).mul(2))
+  const inverse = chord.max(1e-4).inverseSqrt().toConst()
+  return miePhaseFactor
+    .mul(cosViewSun.mul(cosViewSun).add(1))
+    .mul(inverse.mul(inverse).mul(inverse))
 }

@@ -97,38 +97,36 @@ function source(
   return { molecular, aerosol }
 }
 
+const INVERSE_ROOT_3 = 1 / Math.sqrt(3)
+
 /** Nodes of the two-point Gauss–Legendre rule on [0, 2]. */
-const NODE_1 = 1 - 1 / Math.sqrt(3)
-const NODE_2 = 1 + 1 / Math.sqrt(3)
+const NODES = [1 - INVERSE_ROOT_3, 1 + INVERSE_ROOT_3]
 
 /**
  * Optical depth from the start of a segment to a node, of the line through both nodes' extinctions:
  * half × (first × extinction₁ + second × extinction₂).
  */
-const DEPTH_TO_NODE_1 = [1 / 2, 1 / 2 - 1 / Math.sqrt(3)] as const
-const DEPTH_TO_NODE_2 = [1 / 2 + 1 / Math.sqrt(3), 1 / 2] as const
+const DEPTH_TO_NODE_1 = [0.5, 0.5 - INVERSE_ROOT_3] as const
+const DEPTH_TO_NODE_2 = [0.5 + INVERSE_ROOT_3, 0.5] as const
 
 /** Extinctions at the two nodes of a segment, and their sum times half its length. */
 export function segmentDepth(air: Air, ray: Ray, start: Float, end: Float) {
   const half = end.sub(start).mul(0.5).toConst()
   const { bottomRadius } = air.uniforms
-  const [first, second] = [NODE_1, NODE_2].map(node => {
+  const [first, second] = NODES.map(node => {
     const distance = start.add(half.mul(node)).toConst() as Float
     const altitude = altitudeAlong(ray.altitude, ray.cosView, distance, bottomRadius).max(0)
     const density = densities(air.uniforms, altitude.toConst()).toConst()
     return { distance, density, extinction: extinction(air.uniforms, density).toConst() }
   }) as unknown as [NodeOnRay, NodeOnRay]
-  return { half: half as Float, first, second, depth: sumDepth(half, first, second) }
+  const depth = first.extinction.add(second.extinction).mul(half).toConst() as Vec4
+  return { half: half as Float, first, second, depth }
 }
 
 interface NodeOnRay {
   distance: Float
   density: ReturnType<typeof densities>
   extinction: Vec4
-}
-
-function sumDepth(half: Float, first: NodeOnRay, second: NodeOnRay): Vec4 {
-  return first.extinction.add(second.extinction).mul(half).toConst()
 }
 
 /**
@@ -165,18 +163,47 @@ export function scatterSegment(
   }
 }
 
+/** How much faster than the density of molecules the steps of a march grow. */
+const STEP_GROWTH = 0.3
+
 /**
- * Exponent κ by which the steps of a march grow: t(x) = t_max (e^{κx} − 1)/(e^κ − 1). Steps are short
- * where the air is dense, at the lower end of the ray.
+ * κ of a way's steps, see {@link march}; never 0, where they would be 0/0.
  *
- * @param rise - Altitude at the end of the ray less that at its start [m].
+ * @param rise - Altitude at the end of the way less that at its start [m].
  */
 export function stepExponent({ rayleighScaleHeight }: AtmosphereUniforms, rise: Float): Float {
-  const exponent = rise.div(rayleighScaleHeight).mul(STEP_GROWTH).clamp(-4, 4)
-  // Never 0, where the form above is 0/0.
-  return exponent.abs().max(0.05).mul(exponent.lessThan(0).select(-1, 1))
+  const wanted = rise.div(rayleighScaleHeight).mul(STEP_GROWTH).clamp(-4, 4)
+  return wanted.abs().max(0.05).mul(wanted.lessThan(0).select(-1, 1))
 }
-const STEP_GROWTH = 0.3
+
+/**
+ * Cuts a way into steps, t(x) = t_max (e^{κx} − 1)/(e^κ − 1): short where the air is dense, at the
+ * lower end of the way.
+ *
+ * @param distance - Length of the way [m].
+ * @param rise - Altitude at its end less that at its start [m].
+ * @param step - Called with the distances at which a step starts and ends [m].
+ */
+export function march(
+  uniforms: AtmosphereUniforms,
+  distance: Float,
+  rise: Float,
+  steps: number | Int,
+  step: (start: Float, end: Float) => void
+): void {
+  const exponent = stepExponent(uniforms, rise).toConst()
+  const scale = distance.div(exponent.exp().sub(1)).toConst()
+  const inverse = float(1)
+    .div(float(steps as number))
+    .toConst()
+  const start = float(0).toVar()
+  loop('step', steps, index => {
+    const x = float(index).add(1).mul(inverse)
+    const end = exponent.mul(x).exp().sub(1).mul(scale).toConst() as Float
+    step(start, end)
+    start.assign(end)
+  })
+}
 
 /**
  * Light scattered along a ray, by marching it: the reference for the sky volume, and for rays that
@@ -198,26 +225,17 @@ export function scattering(
   steps: number | Int,
   lights: LightSources = { sun: true, diffuse: true }
 ): Scattered & { depth: Vec4 } {
-  const exponent = stepExponent(air.uniforms, rise).toConst()
-  const scale = distance.div(exponent.exp().sub(1)).toConst()
-  const inverse = float(1)
-    .div(float(steps as number))
-    .toConst()
-  const start = float(0).toVar()
   const molecular = vec4(0).toVar()
   const aerosol = vec4(0).toVar()
   const depth = vec4(0).toVar()
-  loop('step', steps, step => {
-    const x = float(step).add(1).mul(inverse)
-    const end = exponent.mul(x).exp().sub(1).mul(scale).toConst()
+  march(air.uniforms, distance, rise, steps, (start, end) => {
     const segment = scatterSegment(air, ray, start, end, lights)
     const through = depth.negate().exp().toConst()
     molecular.addAssign(segment.molecular.mul(through))
     aerosol.addAssign(segment.aerosol.mul(through))
     depth.addAssign(segment.depth)
-    start.assign(end)
   })
-  return { molecular: molecular, aerosol: aerosol, depth: depth }
+  return { molecular, aerosol, depth }
 }
 
 /** Adds both parts with the aerosols' phase function, and takes the table's scale out [1/sr]. */

@@ -1,12 +1,14 @@
 import { If, float, mix, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import { diffuseSunCosine } from '../cpu/diffuseLight'
 import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { distanceToGround, groundDiscriminant } from './boundary'
+import { spreadCosine, spreadSun } from './diffuseLight'
 import type { Eye } from './eye'
 import type { Scattered } from './scattering'
+import { rowAndColumn } from './texels'
+import { sine } from './trigonometry'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
@@ -66,13 +68,18 @@ export function rayLimits(
  *
  * @param cosView - μ, ray against the zenith of the eye.
  * @param hitsGround - Which half.
+ * @param sinView - √(1 − μ²), which from far away is better known than μ tells.
  */
-function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool): Float {
-  const sinView = cosView.mul(cosView).oneMinus().max(0).sqrt().toConst()
-  const sine = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
-  const cosine = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
+function elevationPosition(
+  eye: Eye,
+  cosView: Float,
+  hitsGround: Bool,
+  sinView: Float = sine(cosView).toConst()
+): Float {
+  const across = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
+  const along = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
   const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
-  return sine.div(cosine.add(1).max(1e-6)).div(span).clamp().sqrt()
+  return across.div(along.add(1).max(1e-6)).div(span).clamp().sqrt()
 }
 
 /** Row of a position in a table with that many rows, the lower half below the horizon, in texels. */
@@ -97,10 +104,10 @@ export function rowCosine(
   const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
   const tangent = position.mul(position).mul(span).toConst()
   const square = tangent.mul(tangent).toConst()
-  const sine = tangent.mul(hitsGround.select(-2, 2))
+  const double = tangent.mul(hitsGround.select(-2, 2))
   const cosView = eye.cosHorizon
     .mul(square.oneMinus())
-    .add(eye.sinHorizon.mul(sine))
+    .add(eye.sinHorizon.mul(double))
     .div(square.add(1))
     .clamp(-1, 1)
   return {
@@ -113,32 +120,29 @@ export function rowCosine(
 /**
  * The sun's cosine where a ray from outside the air meets the ground or passes nearest to it:
  * the mean over azimuths, and the most that an azimuth adds or takes away.
+ *
+ * With b = r √(1 − μ²), the ray's distance from the planet's centre, the foot is half a chord
+ * c = √(r_ground² − b²) before the nearest point, or that point.
  */
-function sunAtFoot(uniforms: AtmosphereUniforms, eye: Eye, cosView: Float, limits: RayLimits) {
-  const radius = uniforms.bottomRadius.add(eye.altitude)
-  const sinView = cosView.mul(cosView).oneMinus().max(0).sqrt().toConst()
-  const distance = limits.hitsGround.select(
-    limits.start.add(limits.length),
-    radius.mul(cosView).negate()
-  )
-  const across = distance.mul(sinView).toConst()
-  const along = radius.add(distance.mul(cosView)).toConst()
-  const inverse = across.mul(across).add(along.mul(along)).max(1).inverseSqrt().toConst()
-  const sinSun = eye.cosSun.mul(eye.cosSun).oneMinus().max(0).sqrt()
+function sunAtFoot(
+  uniforms: AtmosphereUniforms,
+  eye: Eye,
+  cosView: Float,
+  sinView: Float,
+  hitsGround: Bool
+) {
+  const { bottomRadius } = uniforms
+  const nearest = bottomRadius.add(eye.altitude).mul(sinView).toConst()
+  const square = bottomRadius.sub(nearest).mul(bottomRadius.add(nearest)).max(0)
+  const chord = hitsGround.select(square.sqrt(), 0).toConst()
+  const across = nearest.mul(cosView).add(chord.mul(sinView))
+  const along = nearest.mul(sinView).sub(chord.mul(cosView))
+  const inverse = hitsGround.select(bottomRadius, nearest.max(1)).reciprocal().toConst()
+  const sinSun = sine(eye.cosSun)
   return {
     mean: along.mul(inverse).mul(eye.cosSun).toConst() as Float,
     swing: across.mul(inverse).mul(sinSun).abs().max(1e-4).toConst() as Float
   }
-}
-
-/**
- * asinh of the sun's cosine, as the diffuse-light table spaces it: fine about the horizon. The plain
- * form will do here: its argument stays above −9, where it has five digits left.
- */
-const spread = (cosSun: Float): Float => {
-  const { centre, width } = diffuseSunCosine
-  const x = cosSun.sub(centre).div(width).toConst()
-  return x.add(x.mul(x).add(1).sqrt()).log()
 }
 
 /**
@@ -154,22 +158,18 @@ function azimuthColumn(
   uniforms: AtmosphereUniforms,
   eye: Eye,
   cosView: Float,
-  cosViewSun: Float
+  sinView: Float,
+  cosViewSun: Float,
+  hitsGround: Bool
 ): Float {
-  const sines = cosView
-    .mul(cosView)
-    .oneMinus()
-    .mul(eye.cosSun.mul(eye.cosSun).oneMinus())
-    .max(1e-12)
-    .sqrt()
+  const sines = sinView.mul(sine(eye.cosSun)).max(1e-6)
   const cosAzimuth = cosViewSun.sub(cosView.mul(eye.cosSun)).div(sines).clamp(-1, 1).toConst()
   const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
   If(eye.altitude.greaterThan(uniforms.thickness), () => {
-    const limits = rayLimits(uniforms, eye, cosView)
-    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
-    const first = spread(mean.add(swing)).toConst()
-    const last = spread(mean.sub(swing))
-    const here = spread(mean.add(swing.mul(cosAzimuth)))
+    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, sinView, hitsGround)
+    const first = spreadSun(mean.add(swing)).toConst()
+    const last = spreadSun(mean.sub(swing))
+    const here = spreadSun(mean.add(swing.mul(cosAzimuth)))
     position.assign(first.sub(here).div(first.sub(last)).clamp())
   })
   return position.mul(AZIMUTHS - 1).add(0.5)
@@ -181,28 +181,22 @@ export function columnCosine(
   eye: Eye,
   cosView: Float,
   column: Float,
-  limits: RayLimits
+  hitsGround: Bool
 ): Float {
+  const sinView = sine(cosView).toConst() as Float
   const position = column
     .floor()
     .div(AZIMUTHS - 1)
     .toConst()
   const cosAzimuth = position.mul(position).mul(2).oneMinus().toVar()
   If(eye.altitude.greaterThan(uniforms.thickness), () => {
-    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, limits)
-    const first = spread(mean.add(swing)).toConst()
-    const last = spread(mean.sub(swing))
+    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, sinView, hitsGround)
+    const first = spreadSun(mean.add(swing)).toConst()
+    const last = spreadSun(mean.sub(swing))
     const x = mix(first, last, position).toConst()
-    const sinh = x.exp().sub(x.negate().exp()).mul(0.5)
-    const cosSun = sinh.mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
-    cosAzimuth.assign(cosSun.sub(mean).div(swing).clamp(-1, 1))
+    cosAzimuth.assign(spreadCosine(x).sub(mean).div(swing).clamp(-1, 1))
   })
-  const sines = cosView
-    .mul(cosView)
-    .oneMinus()
-    .mul(eye.cosSun.mul(eye.cosSun).oneMinus())
-    .max(0)
-    .sqrt()
+  const sines = sinView.mul(sine(eye.cosSun))
   return cosView.mul(eye.cosSun).add(sines.mul(cosAzimuth)).clamp(-1, 1).toConst()
 }
 
@@ -265,17 +259,17 @@ function tileReader(
   cosView: Float,
   cosViewSun: Float,
   elevation: Float,
-  hitsGround: Bool
+  hitsGround: Bool,
+  sinView: Float = sine(cosView).toConst()
 ): TileReader {
   const row = elevationRow(elevation, hitsGround, ELEVATIONS)
-  const column = azimuthColumn(uniforms, eye, cosView, cosViewSun)
+  const column = azimuthColumn(uniforms, eye, cosView, sinView, cosViewSun, hitsGround)
   const inTile = vec2(column, row).toConst() as Vec2
   const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS))
   return (source, tile) => {
-    // Half a tile from the edges: a division that rounds down must not land in another row.
-    const tileRow = tile.add(0.5).div(TILE_COLUMNS).floor()
+    const { row: tileRow, column: tileColumn } = rowAndColumn(tile, TILE_COLUMNS)
     const corner = vec2(
-      tile.sub(tileRow.mul(TILE_COLUMNS)).mul(AZIMUTHS),
+      tileColumn.mul(AZIMUTHS),
       tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)
     )
     return sampleLevel0(source, inTile.add(corner).mul(atlas))
@@ -352,6 +346,39 @@ export function sampleSky(
   const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround)
   const tile = float(SKY_TILE) as Float
   return { molecular: fetch(textures.molecular, tile), aerosol: fetch(textures.aerosol, tile) }
+}
+
+/** A line of sight from an eye that meets the air. */
+export interface Sight {
+  /** μ, against the zenith of the eye. */
+  cosView: Float
+  /** √(1 − μ²), better known than μ tells. */
+  sinView: Float
+  /** ν, against the sun. */
+  cosViewSun: Float
+  /** Whether the ground is behind. */
+  hitsGround: Bool
+  /** Of the way through the air, to the ground or out of it [m]. */
+  length: Float
+}
+
+/** Reads all the air along a line of sight from the volume, without what is behind it: 3 fetches. */
+export function sampleAir(
+  uniforms: AtmosphereUniforms,
+  textures: VolumeTextures,
+  eye: Eye,
+  { cosView, sinView, cosViewSun, hitsGround, length }: Sight
+): AirBetween {
+  const elevation = elevationPosition(eye, cosView, hitsGround, sinView).toConst() as Float
+  const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround, sinView)
+  // The slice before the ground's ends where the air does.
+  const tile = float(SKY_TILE - 1) as Float
+  const mean = meanExtinction(textures.depth, eye, elevation, hitsGround, float(1))
+  return {
+    molecular: fetch(textures.molecular, tile),
+    aerosol: fetch(textures.aerosol, tile),
+    depth: mean.mul(length)
+  }
 }
 
 /** Transmittance of all the air in a direction; 1 where there is none. */

@@ -22,6 +22,7 @@ import {
   sliceDistance,
   type RayLimits
 } from './skyVolume'
+import { rowAndColumn } from './texels'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
@@ -89,7 +90,6 @@ export function bakeDepth(air: Air, eye: Eye): Vec4 {
 
 /** Position of a texel in the atlas of slices. */
 function atlasPosition(texel: Vec2) {
-  // Half a texel from the edges: a division that rounds down must not land in another tile.
   const x = texel.x
     .mul(AZIMUTHS * TILE_COLUMNS)
     .floor()
@@ -98,11 +98,11 @@ function atlasPosition(texel: Vec2) {
     .mul(ELEVATIONS * TILE_ROWS)
     .floor()
     .toConst()
-  const tileColumn = x.add(0.5).div(AZIMUTHS).floor().toConst()
-  const tileRow = y.add(0.5).div(ELEVATIONS).floor().toConst()
+  const { row: tileColumn, column } = rowAndColumn(x, AZIMUTHS)
+  const { row: tileRow, column: row } = rowAndColumn(y, ELEVATIONS)
   return {
-    column: x.sub(tileColumn.mul(AZIMUTHS)).toConst() as Float,
-    row: y.sub(tileRow.mul(ELEVATIONS)).toConst() as Float,
+    column,
+    row,
     slice: tileRow.mul(TILE_COLUMNS).add(tileColumn).toConst() as Float
   }
 }
@@ -118,7 +118,7 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
     const { column, row, slice } = atlasPosition(uv())
     const { cosView, hitsGround, position } = rowCosine(eye, row, ELEVATIONS)
     const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
-    const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, limits)
+    const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
     const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
@@ -147,10 +147,8 @@ export function sumSegments(eye: Eye, molecular: TextureNode, aerosol: TextureNo
     const sums = { molecular: vec4(0).toVar(), aerosol: vec4(0).toVar() }
     const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
     loop('before', int(slice).add(1), index => {
-      const before = float(index).toConst()
-      const tileRow = before.add(0.5).div(TILE_COLUMNS).floor().toConst()
-      const tileColumn = before.sub(tileRow.mul(TILE_COLUMNS))
-      const corner = vec2(tileColumn.mul(AZIMUTHS), tileRow.mul(ELEVATIONS))
+      const tile = rowAndColumn(float(index).toConst(), TILE_COLUMNS)
+      const corner = vec2(tile.column.mul(AZIMUTHS), tile.row.mul(ELEVATIONS))
       const at = vec2(column, row).add(corner).add(0.5).mul(size).toConst() as Vec2
       sums.molecular.addAssign(sampleLevel0(molecular, at))
       sums.aerosol.addAssign(sampleLevel0(aerosol, at))

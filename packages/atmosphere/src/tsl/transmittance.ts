@@ -17,6 +17,11 @@ function horizonDistance({ bottomRadius }: AtmosphereUniforms, altitude: Float):
   return altitude.mul(bottomRadius.mul(2).add(altitude)).max(0).sqrt()
 }
 
+/** Cosine of the zenith angle of the horizon, ≤ 0. */
+export function horizonCosine(uniforms: AtmosphereUniforms, altitude: Float): Float {
+  return horizonDistance(uniforms, altitude).div(uniforms.bottomRadius.add(altitude)).negate()
+}
+
 /**
  * Where in the table a ray to the top of the air is kept. Texels crowd at the horizon.
  *
@@ -35,12 +40,12 @@ export function transmittanceUV(
   const horizon = horizonDistance(uniforms, altitude).toConst()
   const distance = distanceToTop(altitude, cosView, bottomRadius, thickness)
   const shortest = thickness.sub(altitude)
-  const x = distance.sub(shortest).div(horizon.add(chord).sub(shortest).max(1)).clamp()
-  const y = horizon.div(chord).clamp()
-  return vec2(
-    x.mul((WIDTH - 1) / WIDTH).add(0.5 / WIDTH),
-    y.mul((HEIGHT - 1) / HEIGHT).add(0.5 / HEIGHT)
-  )
+  const x = distance.sub(shortest).div(horizon.add(chord).sub(shortest).max(1))
+  return vec2(x, horizon.div(chord))
+    .clamp()
+    .mul(vec2(WIDTH - 1, HEIGHT - 1))
+    .add(0.5)
+    .div(vec2(WIDTH, HEIGHT))
 }
 
 /**
@@ -54,14 +59,12 @@ export function transmittanceRay(
   uv: Vec2
 ): { altitude: Float; cosView: Float; distance: Float } {
   const { bottomRadius, thickness } = uniforms
-  const x = uv.x
-    .sub(0.5 / WIDTH)
-    .mul(WIDTH / (WIDTH - 1))
+  const { x, y } = uv
+    .mul(vec2(WIDTH, HEIGHT))
+    .sub(0.5)
+    .div(vec2(WIDTH - 1, HEIGHT - 1))
     .clamp()
-  const y = uv.y
-    .sub(0.5 / HEIGHT)
-    .mul(HEIGHT / (HEIGHT - 1))
-    .clamp()
+    .toConst()
   const chord = horizonChord(uniforms).toConst()
   const horizon = chord.mul(y).toConst()
   // ρ² = h (2 r_bottom + h), solved for h without cancellation.
@@ -99,10 +102,9 @@ export function sunTransmittance(
   altitude: Float,
   cosSun: Float
 ): Vec4 {
-  const radius = uniforms.bottomRadius.add(altitude).toConst()
-  const sinHorizon = uniforms.bottomRadius.div(radius).toConst()
-  const cosHorizon = horizonDistance(uniforms, altitude).div(radius).negate().toConst()
-  const margin = sinHorizon.mul(uniforms.sunAngularRadius)
+  const { bottomRadius, sunAngularRadius } = uniforms
+  const cosHorizon = horizonCosine(uniforms, altitude).toConst()
+  const margin = bottomRadius.div(bottomRadius.add(altitude)).mul(sunAngularRadius).toConst()
   const visible = smoothstep(margin.negate(), margin, cosSun.sub(cosHorizon))
   const uv = transmittanceUV(uniforms, altitude, cosSun.max(cosHorizon))
   return sampleLevel0(table, uv).negate().exp().mul(visible)

@@ -1,4 +1,4 @@
-import { horizontalIrradiance, sunTransmittance } from '@welkin/atmosphere'
+import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
 import { Break, If, float, int, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { CloudLight } from '../CloudLightTable'
@@ -139,7 +139,7 @@ function sourceAt(
     cosView,
     cosViewSun
   })
-  const source = sunTransmittance(uniforms, air, sample.altitude, cosSun).mul(sun)
+  const source = transmittanceToSun(uniforms, air, sample.altitude, cosSun).mul(sun)
   if (diffuse === null) return source
   const irradiance = horizontalIrradiance(uniforms, diffuse, sample.altitude, cosSun)
   const ambient = cloudAmbient(

@@ -1,0 +1,256 @@
+import {
+  aerialPerspectiveFog,
+  Atmosphere,
+  skyBackground,
+  SkyLightProbe,
+  SunDirectionalLight,
+  type AtmosphereParametersInit,
+  type Spectrum
+} from '@welkin/atmosphere'
+import { Mesh, MeshLambertMaterial, PerspectiveCamera, Scene, SphereGeometry } from 'three'
+import type { WebGPURenderer } from 'three/webgpu'
+import { drawToFloat, postPath, relativeDifferences } from './harness/atmosphere'
+import type { GpuContext } from './harness/context'
+import { expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+import { countCompilations, countObjects, finishWork, nextFrame } from './harness/graphics'
+import type { Picture } from './harness/picture'
+
+const all = (value: number): Spectrum => [value, value, value, value]
+const small = { width: 64, height: 36 }
+
+/** A ball in the haze, lit by sun and sky: everything that an atmosphere offers at once. */
+class View {
+  readonly atmosphere = new Atmosphere().setSunAngles(35, 120)
+  readonly camera = new PerspectiveCamera(60, small.width / small.height, 1, 1e6)
+  readonly #ball = new Mesh(new SphereGeometry(2500, 32, 16), new MeshLambertMaterial())
+  readonly #sun = new SunDirectionalLight(this.atmosphere)
+  readonly #sky = new SkyLightProbe(this.atmosphere)
+  readonly #background = skyBackground(this.atmosphere)
+  readonly #fog = aerialPerspectiveFog(this.atmosphere)
+  readonly #scene = new Scene()
+  readonly #forward = new Scene()
+  readonly #post
+
+  constructor(readonly renderer: WebGPURenderer) {
+    this.camera.position.y = 100
+    this.#ball.position.set(2000, 1000, -9000)
+    this.#scene.add(this.#ball, this.#sun, this.#sky)
+    this.#post = postPath(renderer, this.#scene, this.camera, this.atmosphere)
+    this.#forward.backgroundNode = this.#background
+    this.#forward.fogNode = this.#fog
+  }
+
+  render(path: 'forward' | 'post'): void {
+    if (path === 'post') this.#post.render()
+    else {
+      this.#forward.add(...this.#scene.children)
+      this.renderer.render(this.#forward, this.camera)
+      this.#scene.add(...this.#forward.children)
+    }
+  }
+
+  dispose(): void {
+    this.#post.dispose()
+    const { geometry, material } = this.#ball
+    const owned = [geometry, material, this.#sun, this.#sky, this.#background, this.#fog]
+    for (const part of owned) part.dispose()
+    this.atmosphere.dispose()
+  }
+}
+
+const paths = ['forward', 'post'] as const
+
+/** What a viewer sees on the canvas, by each path. */
+async function shoot(t: GpuContext, view: View): Promise<Picture[]> {
+  const pictures: Picture[] = []
+  for (const path of paths) {
+    await nextFrame()
+    pictures.push(await t.capture(view.renderer, () => view.render(path)))
+  }
+  return pictures
+}
+
+function expectSame(actual: Picture[], expected: Picture[], label: string): void {
+  expected.forEach(({ width, height, data }, i) => {
+    const [picture, path] = [actual[i], paths[i]]
+    const size = `${picture.width}×${picture.height}`
+    expectTrue(size === `${width}×${height}`, `${path} ${label}: ${size}, not ${width}×${height}`)
+    const changes = data.map((value, k) => Math.abs(picture.data[k] - value))
+    const changed = changes.filter(change => change > 0).length
+    const most = Math.max(...changes)
+    expectTrue(changed === 0, `${path} ${label}: ${changed} numbers changed, by up to ${most}`)
+    const [dark, bright] = [Math.min(...data), Math.max(...data)]
+    expectTrue(bright - dark > 0.2, `${path}: the picture is flat, from ${dark} to ${bright}`)
+  })
+}
+
+gpuTest('re-bakes for new parameters, and compiles nothing', async t => {
+  const renderer = await t.createRenderer(small)
+  const counts = countCompilations(renderer)
+  const compiled = (): number => Object.values(counts).reduce((sum, count) => sum + count, 0)
+  const view = new View(renderer)
+  const { parameters } = view.atmosphere
+  const draw = (): Promise<Picture> => drawToFloat(renderer, () => view.render('forward'))
+  const before = await draw()
+  const first = compiled()
+  expectTrue(first > 0, 'the first picture compiled nothing')
+  const { mieScattering, mieExtinction, absorptionExtinction, groundAlbedo } = parameters
+  let last = before
+  for (const [name, change] of Object.entries<AtmosphereParametersInit>({
+    aerosol: { mieScattering: all(3e-5), mieExtinction: all(3.3e-5) },
+    ozone: { absorptionExtinction: all(0) },
+    groundAlbedo: { groundAlbedo: all(0.6) }
+  })) {
+    parameters.set(change)
+    const picture = await draw()
+    const difference = relativeDifferences(last, picture).at(-1)!
+    t.note(`${name} changes ${(100 * difference).toFixed(0)} %`)
+    expectTrue(difference > 0.02, `${name}: no pixel changed by more than ${difference}`)
+    last = picture
+  }
+  parameters.set({ mieScattering, mieExtinction, absorptionExtinction, groundAlbedo })
+  const again = relativeDifferences(before, await draw()).at(-1)!
+  expectTrue(again === 0, `with the first parameters again, a pixel differs by ${again}`)
+  t.note(`${first} compiled at first`)
+  expectTrue(compiled() === first, `compiled ${JSON.stringify(counts)}, of which first ${first}`)
+  view.dispose()
+})
+
+gpuTest('bakes the same tables step by step', async t => {
+  const tables: Float32Array[] = []
+  const renderer = await t.createRenderer(small)
+  for (const steps of [Infinity, 1]) {
+    const atmosphere = new Atmosphere()
+    atmosphere.bakeStepsPerFrame = steps
+    const camera = new PerspectiveCamera()
+    let frames = 0
+    while (atmosphere.tables.version === 0 && frames < 40) {
+      atmosphere.update(renderer, camera)
+      frames++
+    }
+    expectTrue(steps === 1 ? frames > 10 : frames === 1, `it took ${frames} frames`)
+    await atmosphere.tables.read()
+    tables.push(atmosphere.tables.data!.values)
+    atmosphere.dispose()
+  }
+  expectTrue(
+    tables[0].every((value, i) => value === tables[1][i]),
+    'the tables differ'
+  )
+})
+
+gpuTest('leaves no memory behind, round after round', async t => {
+  const renderer = await t.createRenderer(small)
+  const objects = countObjects(renderer)
+  const round = async (): Promise<string> => {
+    const view = new View(renderer)
+    // A leak does not need the whole bake.
+    view.atmosphere.bakeStepsPerFrame = 1
+    await nextFrame()
+    for (const path of paths) view.render(path)
+    view.dispose()
+    await finishWork(renderer)
+    return `${JSON.stringify(renderer.info.memory)}, objects ${JSON.stringify(objects)}`
+  }
+  await round()
+  const before = await round()
+  t.note(`objects ${JSON.stringify(objects)}`)
+  for (let i = 0; i < 4; i++) {
+    const after = await round()
+    expectTrue(after === before, `before ${before}\nafter round ${i} ${after}`)
+  }
+})
+
+gpuTest(
+  'leaves renderer.info.memory where it was after a hundred rounds',
+  async t => {
+    const renderer = await t.createRenderer(small)
+    const camera = new PerspectiveCamera()
+    const round = (): void => {
+      const atmosphere = new Atmosphere()
+      atmosphere.bakeStepsPerFrame = 1
+      const background = skyBackground(atmosphere)
+      const sun = new SunDirectionalLight(atmosphere)
+      const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial())
+      mesh.position.z = -5
+      const scene = new Scene().add(sun, mesh)
+      scene.backgroundNode = background
+      renderer.render(scene, camera)
+      for (const owned of [background, sun, mesh.geometry, mesh.material]) owned.dispose()
+      atmosphere.dispose()
+    }
+    const memory = (): string => JSON.stringify(renderer.info.memory)
+    round()
+    const before = memory()
+    for (let i = 0; i < 100; i++) {
+      round()
+      expectTrue(memory() === before, `before ${before}\nafter round ${i} ${memory()}`)
+      if (i % 10 === 9) await finishWork(renderer)
+    }
+    t.note(before)
+  },
+  { timeoutSeconds: 400 }
+)
+
+gpuTest('draws every pixel ratio alike', async t => {
+  const renderer = await t.createRenderer(small)
+  const view = new View(renderer)
+  const first = await shoot(t, view)
+  const set = (ratio: number, width: number, height: number): Promise<Picture[]> => {
+    renderer.setPixelRatio(ratio)
+    renderer.setSize(width, height)
+    return shoot(t, view)
+  }
+  expectSame(await set(2, 32, 18), first, 'with two pixels per unit')
+  const fine = await set(1.5, 64, 36)
+  expectSame(await set(1, 96, 54), fine, 'with one pixel per unit')
+  expectSame(await set(1, 64, 36), first, 'back at the first ratio')
+  view.dispose()
+})
+
+gpuTest('follows the size of the canvas', async t => {
+  const renderer = await t.createRenderer(small)
+  const view = new View(renderer)
+  const first = await shoot(t, view)
+  const resize = (width: number, height: number): void => {
+    renderer.setSize(width, height)
+    view.camera.aspect = width / height
+    view.camera.updateProjectionMatrix()
+  }
+  resize(40, 50)
+  const tall = await shoot(t, view)
+  const fresh = new View(renderer)
+  fresh.camera.aspect = 40 / 50
+  fresh.camera.updateProjectionMatrix()
+  expectSame(tall, await shoot(t, fresh), 'after a change of size')
+  fresh.dispose()
+  resize(small.width, small.height)
+  expectSame(await shoot(t, view), first, 'back at the first size')
+  view.dispose()
+})
+
+gpuTest('outlives a canvas of no size', async t => {
+  if (t.backend === 'webgpu') {
+    // three's own, of any scene on such a canvas. Textures of the atmosphere have other names.
+    t.allowConsole(/texture size \(\[Extent3D width:0, height:0, .* is empty/)
+    t.allowConsole(/Could not create a swapchain texture of size 0/)
+    t.allowConsole(/\[Invalid Texture(View)?( "depthBuffer")?\] is invalid due to a previous error/)
+    t.allowConsole(/\[Invalid CommandBuffer from CommandEncoder "renderContext_\d+"\] is invalid/)
+  }
+  const renderer = await t.createRenderer(small)
+  const view = new View(renderer)
+  const first = await shoot(t, view)
+  renderer.setSize(0, 0)
+  // As many a page computes it.
+  view.camera.aspect = renderer.domElement.width / renderer.domElement.height
+  view.camera.updateProjectionMatrix()
+  await nextFrame()
+  for (const path of paths) view.render(path)
+  await finishWork(renderer)
+  renderer.setSize(small.width, small.height)
+  view.camera.aspect = small.width / small.height
+  view.camera.updateProjectionMatrix()
+  expectSame(await shoot(t, view), first, 'after a canvas of no size')
+  view.dispose()
+})

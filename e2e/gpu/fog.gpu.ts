@@ -1,0 +1,197 @@
+import { Atmosphere, distanceFog, heightFog, skyBackground } from '@welkin/atmosphere'
+import {
+  BoxGeometry,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Scene
+} from 'three'
+import { float } from 'three/tsl'
+import * as twin from '../../packages/atmosphere/src/cpu/heightFog'
+import {
+  airMass,
+  erfcx,
+  fogDepth,
+  multipleScattering
+} from '../../packages/atmosphere/src/tsl/heightFog'
+import {
+  drawForward,
+  expectLight,
+  postPath,
+  random,
+  relativeDifferences
+} from './harness/atmosphere'
+import { expectClose, expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+
+const BOTTOM = 6_378_137
+const size = { width: 48, height: 27 }
+const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+gpuTest('has the optical depth of its float64 twin', async t => {
+  const next = random(31)
+  const layer = { density: 0.01, falloff: 50, base: 100 }
+  const rays = Array.from({ length: 600 }, () => {
+    const height = (next() * 8 - 1) * layer.falloff
+    const cosView = (next() * 2 - 1) ** 3
+    const radius = BOTTOM + layer.base + height
+    const down = -radius * cosView
+    const limit = cosView < 0 ? ((height + 4 * layer.falloff) / -cosView) * 0.9 : 1e6
+    return [height, cosView, Math.min(10 ** (next() * 5), limit, down > 0 ? 2e5 : 1e6), 0]
+  })
+  const actual = await t.evaluate(rays, ray => {
+    const nodes = { density: float(layer.density), falloff: float(layer.falloff) }
+    return fogDepth(nodes, ray.x, ray.x.add(BOTTOM + layer.base), ray.y, ray.z).depth
+  })
+  let worst = 0
+  rays.forEach(([height, cosView, distance], i) => {
+    const expected = twin.fogDepth(layer, BOTTOM + layer.base + height, cosView, BOTTOM, distance)
+    const error = Math.abs(actual[4 * i] - expected)
+    worst = Math.max(worst, error / (expected + 0.01))
+    const label = `height ${height.toFixed(1)}, μ ${cosView.toFixed(5)}, ${distance.toFixed(1)} m`
+    expectClose(actual[4 * i], expected, { relative: 2e-3, absolute: 5e-5 }, label)
+  })
+  t.note(`worst ${(100 * worst).toFixed(3)} %`)
+})
+
+gpuTest('has the error function and the multiple scattering of their twins', async t => {
+  const next = random(5)
+  const inputs = Array.from({ length: 200 }, () => [
+    10 ** (next() * 6 - 3),
+    next() * 3,
+    next() * 3,
+    0.003 + next() * 0.997
+  ])
+  const values = await t.evaluate(inputs, input => erfcx(input.x))
+  const light = await t.evaluate(inputs, ({ y, z, w }) => multipleScattering(y, y.add(z), w))
+  const mass = await t.evaluate(inputs, ({ w }) => airMass(float(1e5), w))
+  inputs.forEach(([x, above, below, cosSun], i) => {
+    expectClose(values[4 * i], twin.erfcx(x), { relative: 2e-5 }, `erfcx ${x}`)
+    const expected = twin.multipleScattering(above, above + below, cosSun)
+    expectClose(light[4 * i], expected, { absolute: 2e-6, relative: 1e-4 }, `light ${i}`)
+    // The sphere hardly counts away from the horizon.
+    if (cosSun > 0.1) expectClose(mass[4 * i], 1 / cosSun, { relative: 2e-3 }, `mass ${cosSun}`)
+  })
+})
+
+/** Boxes from near to far on a plain, and a camera that looks along it. */
+function plainScene(): { scene: Scene; camera: PerspectiveCamera } {
+  const scene = new Scene()
+  // No vertex right below the camera, where w is 0: software rasterisers take that ill.
+  const ground = new PlaneGeometry(40_000, 40_000, 63, 63).rotateX(-Math.PI / 2)
+  scene.add(new Mesh(ground, new MeshBasicMaterial({ color: 0x446633 })))
+  for (let i = 0; i < 8; i++) {
+    const box = new Mesh(new BoxGeometry(1, 1, 1), new MeshLambertMaterial({ emissive: 0x662211 }))
+    const distance = 20 * 2.4 ** i
+    box.scale.setScalar(distance / 6)
+    box.position.set((i - 3.5) * distance * 0.17, distance / 12, -distance)
+    scene.add(box)
+  }
+  const camera = new PerspectiveCamera(50, size.width / size.height, 0.5, 1e5)
+  camera.position.y = 12
+  return { scene, camera }
+}
+
+gpuTest('is the same in front of things by both paths, at any height and time', async t => {
+  const renderer = await t.createRenderer(size)
+  const { scene, camera } = plainScene()
+  // Rasterisers place a fragment to a sixteenth of a pixel: of few, that shows in the glow about the sun.
+  camera.fov = 20
+  camera.updateProjectionMatrix()
+  const atmosphere = new Atmosphere()
+  const mist = heightFog({ base: 0, falloff: 20, density: 0.01 })
+  atmosphere.add(distanceFog({ density: 1e-4 }), mist)
+  const post = postPath(renderer, scene, camera, atmosphere)
+  const cases = [
+    [12, 30, 0],
+    [1, 2, 0],
+    [150, 5, 0],
+    [3, -4, 0],
+    // The base above and far above the camera.
+    [5, 30, 100],
+    [5, 30, 3000]
+  ] as const
+  for (const [height, elevation, base] of cases) {
+    camera.position.y = height
+    atmosphere.setSunAngles(elevation, 40)
+    mist.set({ base })
+    const forward = await drawForward(renderer, scene, camera, atmosphere)
+    const effect = await post.draw()
+    const label = `at ${height} m, sun at ${elevation}°, base at ${base} m`
+    expectLight(forward, label)
+    expectLight(effect, `${label}, post`)
+    const differences = relativeDifferences(forward, effect)
+    const p95 = differences[Math.floor(0.95 * differences.length)]
+    expectTrue(p95 < 0.01, `${label}: 95th percentile of the difference ${p95}`)
+  }
+  post.dispose()
+  atmosphere.dispose()
+})
+
+gpuTest('thickens towards the ground, and hides what is far away in its own light', async t => {
+  const renderer = await t.createRenderer(size)
+  const { scene, camera } = plainScene()
+  const atmosphere = new Atmosphere().setSunAngles(40, 90)
+  const mist = heightFog({ base: 0, falloff: 20, density: 0 })
+  atmosphere.add(mist)
+  scene.backgroundNode = skyBackground(atmosphere)
+  const clear = await drawForward(renderer, scene, camera, atmosphere)
+  mist.set({ density: 0.05 })
+  const thick = await drawForward(renderer, scene, camera, atmosphere)
+  // What is 500 m away and more, and the sky close above it, are one.
+  const [ground, sky] = [luminance(thick.at(4, 14)), luminance(thick.at(4, 12))]
+  expectClose(ground, sky, { relative: 0.05 }, 'ground beside sky at the horizon')
+  expectTrue(Math.abs(luminance(clear.at(4, 14)) / luminance(clear.at(4, 12)) - 1) > 0.2, 'clear')
+  // As bright as white paper in this sun, about: fog absorbs nothing.
+  t.note(`fog ${sky.toFixed(3)}, clear sky there ${luminance(clear.at(4, 12)).toFixed(3)}`)
+  expectTrue(sky > 0.1 && sky < 0.9, `fog is ${sky}`)
+  // From above it, the sky is clear.
+  camera.position.y = 400
+  mist.set({ density: 0 })
+  const without = await drawForward(renderer, scene, camera, atmosphere)
+  mist.set({ density: 0.05 })
+  const above = await drawForward(renderer, scene, camera, atmosphere)
+  expectClose(luminance(above.at(24, 2)), luminance(without.at(24, 2)), { relative: 1e-3 }, 'sky')
+  atmosphere.dispose()
+})
+
+gpuTest('is not there from orbit', async t => {
+  const renderer = await t.createRenderer(size)
+  const camera = new PerspectiveCamera(60, size.width / size.height, 1000, 1e8)
+  camera.position.y = 4e5
+  camera.rotation.x = -0.4
+  const pictures = []
+  for (const withFog of [false, true]) {
+    const atmosphere = new Atmosphere()
+    if (withFog) atmosphere.add(heightFog({ density: 0.1 }), distanceFog({ density: 1e-3 }))
+    pictures.push(await drawForward(renderer, new Scene(), camera, atmosphere))
+    atmosphere.dispose()
+  }
+  const [clear, fog] = pictures
+  expectClose(fog.data, clear.data, { absolute: 1e-6, relative: 1e-5 }, 'pixel')
+})
+
+gpuTest('by distance gives far things the colour of the sky behind them', async t => {
+  const renderer = await t.createRenderer(size)
+  const { scene, camera } = plainScene()
+  // A row of pixels is 0.3°, for the sky changes fast above the horizon.
+  camera.fov = 8
+  camera.updateProjectionMatrix()
+  for (const [elevation, azimuth] of [
+    [30, 0],
+    [2, 20],
+    [-5, 300]
+  ] as const) {
+    const atmosphere = new Atmosphere().setSunAngles(elevation, azimuth)
+    atmosphere.add(distanceFog({ density: 1 / 300 }))
+    const picture = await drawForward(renderer, scene, camera, atmosphere)
+    for (const x of [3, 12, 44]) {
+      const [below, above] = [luminance(picture.at(x, 14)), luminance(picture.at(x, 12))]
+      expectClose(below, above, { relative: 0.05 }, `sun at ${elevation}°, column ${x}`)
+    }
+    scene.backgroundNode = null
+    atmosphere.dispose()
+  }
+})

@@ -1,0 +1,266 @@
+import {
+  Airglow,
+  Atmosphere,
+  brightStars,
+  milkyWay,
+  NightLightProbe,
+  skyBackground,
+  Stars,
+  stars,
+  starsOverlay
+} from '@welkin/atmosphere'
+import type { Star } from '@welkin/atmosphere'
+import {
+  FloatType,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Scene,
+  Vector3
+} from 'three'
+import { float, pass } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { glowGain } from '../../packages/atmosphere/src/cpu/airglow'
+import { starDirection } from '../../packages/atmosphere/src/stars/starCells'
+import { glowGains } from '../../packages/atmosphere/src/tsl/airglow'
+import { drawToFloat, expectLight } from './harness/atmosphere'
+import { expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+import type { Picture } from './harness/picture'
+
+const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+/** Illuminance by a star of magnitude 0 [lx]. */
+const VEGA = 2.54e-6
+
+/** A camera far above the air, where the frame of the stars is ECEF: the atmosphere has no date. */
+function inSpace(
+  fov: number,
+  towards: Star
+): { atmosphere: Atmosphere; camera: PerspectiveCamera } {
+  const atmosphere = new Atmosphere()
+  atmosphere.frame = 'ecef'
+  atmosphere.luminanceScale = 1
+  const camera = new PerspectiveCamera(fov, 64 / 36, 1, 1e9)
+  const direction = new Vector3(...starDirection(towards))
+  // The planet and the sun are behind.
+  atmosphere.sunDirection = direction.clone().negate()
+  camera.position.copy(direction).multiplyScalar(1e8)
+  camera.up.set(0.3, 0.5, 0.8).normalize()
+  camera.lookAt(direction.clone().multiplyScalar(2e8))
+  camera.updateMatrixWorld()
+  return { atmosphere, camera }
+}
+
+/** Illuminance of a plane that faces the middle of a picture, by all that is in it [lx]. */
+function illuminance({ width, height, data }: Picture, fov: number): number {
+  const side = (2 * Math.tan((fov * Math.PI) / 360)) / height
+  let sum = 0
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const [u, v] = [(x + 0.5 - width / 2) * side, (y + 0.5 - height / 2) * side]
+      const solidAngle = (side * side) / (1 + u * u + v * v) ** 1.5
+      const i = 4 * (y * width + x)
+      sum += luminance([data[i], data[i + 1], data[i + 2]]) * solidAngle
+    }
+  }
+  return sum
+}
+
+/** Where light in a picture is, in pixels from the top left. */
+function centroid({ width, data }: Picture): [number, number] {
+  let [sum, sumX, sumY] = [0, 0, 0]
+  for (let i = 0; i < data.length; i += 4) {
+    const weight = luminance([data[i], data[i + 1], data[i + 2]])
+    sum += weight
+    sumX += weight * (((i / 4) % width) + 0.5)
+    sumY += weight * (Math.floor(i / 4 / width) + 0.5)
+  }
+  return [sumX / sum, sumY / sum]
+}
+
+gpuTest(
+  'gives each star its illuminance and place, whatever the picture’s size and field',
+  async t => {
+    const vega = brightStars().find(({ ascension }) => Math.abs(ascension - 4.87356) < 1e-3) as Star
+    for (const [width, height, fov] of [
+      [64, 36, 20],
+      [160, 90, 20],
+      [128, 72, 1],
+      [96, 54, 5]
+    ]) {
+      const renderer = await t.createRenderer({ width, height })
+      const { atmosphere, camera } = inSpace(fov, vega)
+      camera.setViewOffset(width, height, 0.31, -0.22, width, height)
+      const field = new Stars([{ ...vega, colorIndex: 0 }])
+      atmosphere.add(field)
+      const scene = new Scene()
+      scene.backgroundNode = skyBackground(atmosphere)
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      expectLight(picture, `${width}×${height}`)
+      const ratio = illuminance(picture, fov) / (VEGA * 10 ** (-0.4 * vega.magnitude))
+      const [x, y] = centroid(picture)
+      t.note(
+        `${width}×${height} over ${fov}°: ${ratio.toFixed(3)}, at ${x.toFixed(2)}, ${y.toFixed(2)}`
+      )
+      expectTrue(Math.abs(ratio - 1) < 0.02, `illuminance is ${ratio} of what it should be`)
+      const off = Math.hypot(x - width / 2 + 0.31, y - height / 2 - 0.22)
+      expectTrue(off < 0.05, `it is ${off} pixels from its place`)
+      atmosphere.dispose()
+    }
+  }
+)
+
+gpuTest('has the light of the whole catalogue', async t => {
+  const renderer = await t.createRenderer({ width: 128, height: 128 })
+  // 90° square, six of them: the whole sky.
+  let sum = 0
+  const size = 90
+  for (const [x, y, z] of [
+    [1, 0, 0],
+    [-1, 0, 0],
+    [0, 1, 0],
+    [0, -1, 0],
+    [0, 0, 1],
+    [0, 0, -1]
+  ]) {
+    const ascension = Math.atan2(y, x)
+    const towards = { ascension, declination: (z * Math.PI) / 2, magnitude: 0, colorIndex: 0 }
+    const { atmosphere, camera } = inSpace(size, towards)
+    camera.aspect = 1
+    camera.up.set(0, z === 0 ? 0 : 1, z === 0 ? 1 : 0)
+    camera.lookAt(camera.position.clone().multiplyScalar(2))
+    camera.updateProjectionMatrix()
+    atmosphere.add(stars())
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
+    const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+    // On a plane that faces each star, not the face's middle.
+    const side = 2 / picture.height
+    for (let i = 0; i < picture.data.length; i += 4) {
+      const u = (((i / 4) % 128) + 0.5) * side - 1
+      const v = (Math.floor(i / 4 / 128) + 0.5) * side - 1
+      const [r, g, b] = picture.data.subarray(i, i + 3)
+      sum += (luminance([r, g, b]) * side * side) / (1 + u * u + v * v) ** 1.5
+    }
+    atmosphere.dispose()
+  }
+  const expected = brightStars().reduce(
+    (total, star) => total + VEGA * 10 ** (-0.4 * star.magnitude),
+    0
+  )
+  t.note(`${sum.toExponential(3)} of ${expected.toExponential(3)} lx`)
+  expectTrue(Math.abs(sum / expected - 1) < 0.05, `${sum} lx of ${expected}`)
+})
+
+gpuTest('draws the same stars after post-processing, behind what was drawn', async t => {
+  const [width, height, fov] = [96, 54, 40]
+  const renderer = await t.createRenderer({ width, height })
+  const orion = { ascension: 1.46, declination: 0, magnitude: 0, colorIndex: 0 }
+  const draw = async (overlay: boolean): Promise<Picture> => {
+    const { atmosphere, camera } = inSpace(fov, orion)
+    atmosphere.add(milkyWay(), stars({ overlay }))
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
+    // Hides the left half.
+    const card = new Mesh(new PlaneGeometry(2e6, 2e6), new MeshLambertMaterial({ color: 0 }))
+    card.position.set(-1e6, 0, -1e6)
+    camera.add(card)
+    scene.add(camera)
+    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    const color = scenePass.getTextureNode()
+    const depth = scenePass.getTextureNode('depth')
+    pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, atmosphere) : color
+    const picture = await drawToFloat(renderer, () => pipeline.render())
+    scenePass.dispose()
+    pipeline.dispose()
+    card.geometry.dispose()
+    card.material.dispose()
+    atmosphere.dispose()
+    return picture
+  }
+  const inSky = await draw(false)
+  const onTop = await draw(true)
+  let [worst, most] = [0, 0]
+  for (let i = 0; i < inSky.data.length; i++) {
+    most = Math.max(most, inSky.data[i])
+    worst = Math.max(worst, Math.abs(inSky.data[i] - onTop.data[i]))
+  }
+  t.note(`off by ${(worst / most).toExponential(1)} of the brightest`)
+  expectTrue(most > 0, 'there are no stars')
+  expectTrue(worst < 1e-4 * most, `off by ${worst} of ${most}`)
+  expectTrue(Math.max(...onTop.at(20, 27).slice(0, 3)) === 0, 'there are stars before the card')
+})
+
+gpuTest('has airglow as bright as its layer is long', async t => {
+  const [altitude, width, bottomRadius] = [96_000, 4000, 6_378_137]
+  const layer = { altitude, width }
+  const cases: { name: string; height: number; cosView: number }[] = []
+  for (const height of [0, 1e4]) {
+    for (const cosView of [1, 0.7, 0.3, 0.05, 0]) cases.push({ name: 'below', height, cosView })
+  }
+  for (const height of [4e5, 3.6e7]) {
+    for (const tangent of [60_000, 85_000, 92_000, 95_000, 96_000, 98_000, 102_000, 108_000]) {
+      const sine = (bottomRadius + tangent) / (bottomRadius + height)
+      cases.push({ name: 'limb', height, cosView: -Math.sqrt(1 - sine * sine) })
+    }
+  }
+  const gpu = await t.evaluate(
+    cases.map(({ height, cosView }) => [height, cosView, 0, 0]),
+    input => {
+      const nodes = { altitude: float(altitude), width: float(width) }
+      const gains = glowGains(nodes, input.x, input.y, float(bottomRadius), null)
+      return gains.down.add(gains.up)
+    }
+  )
+  let worst = 0
+  cases.forEach(({ name, height, cosView }, i) => {
+    const radius = bottomRadius + height
+    const away = 2 * Math.abs(radius * cosView) + 2e6
+    const exact = glowGain(layer, radius, cosView, bottomRadius, away)
+    const off = Math.abs(gpu[4 * i] - exact) / Math.max(exact, 0.5)
+    worst = Math.max(worst, off)
+    const label = `${name}, ${height} m, cos ${cosView}`
+    expectTrue(off < 0.02, `${label}: ${gpu[4 * i]}, not ${exact}`)
+  })
+  t.note(`off by ${(100 * worst).toFixed(2)} % at most`)
+})
+
+gpuTest('lights a level plane at night as much as told', async t => {
+  const renderer = await t.createRenderer({ width: 32, height: 32 })
+  const atmosphere = new Atmosphere()
+  atmosphere.luminanceScale = 1
+  const scene = new Scene()
+  const plane = new Mesh(
+    new PlaneGeometry(100, 100).rotateX(-Math.PI / 2),
+    new MeshLambertMaterial()
+  )
+  scene.add(plane, new NightLightProbe(atmosphere, 1e-3))
+  const camera = new PerspectiveCamera(40, 1, 0.1, 100)
+  camera.position.set(0, 5, 0)
+  camera.lookAt(0, 0, 0)
+  const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+  const got = luminance(picture.at(16, 16))
+  t.note(`${got.toExponential(3)} cd/m²`)
+  expectTrue(Math.abs((got * Math.PI) / 1e-3 - 1) < 0.01, `${got} cd/m²`)
+  plane.geometry.dispose()
+  plane.material.dispose()
+  atmosphere.dispose()
+})
+
+gpuTest('wants sensible airglow', () => {
+  const fails = (options: object, message: string): void => {
+    try {
+      const made = new Airglow(options)
+      expectTrue(false, `made ${made.luminance}`)
+    } catch (error) {
+      expectTrue(String(error).includes(message), `says ${String(error)}`)
+    }
+  }
+  fails({ luminance: -1 }, 'Airglow: luminance must be in [0, 1000000000], got -1')
+  fails({ altitude: NaN }, 'Airglow: altitude must be in')
+  fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must have 4 values, got 3')
+})

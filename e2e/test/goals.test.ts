@@ -1,0 +1,38 @@
+import { describe, expect, it } from 'vitest'
+import { missedGoals } from '../validate/goals'
+import { bandStatistics, type Comparison } from '../validate/score'
+
+const errors = (sunZenith: number, error: number): Comparison[] =>
+  Array.from({ length: 20 }, () => ({ sunZenith, error, stderr: 0, label: `sun ${sunZenith}°` }))
+
+function missed(quantity: 'sky' | 'irradiance', comparisons: Comparison[]): string[] {
+  const quantities = { [quantity]: comparisons }
+  return missedGoals(quantities, { [quantity]: bandStatistics(comparisons) }, undefined)
+}
+
+describe('missedGoals', () => {
+  it('has nothing to say of what was not compared', () => {
+    expect(missedGoals({}, {}, undefined)).toEqual([])
+  })
+
+  it('holds each band to its own goals, whatever the sign', () => {
+    expect(missed('sky', errors(30, 0.004))).toEqual([])
+    expect(missed('sky', errors(30, -0.006))).toEqual([
+      'median of sky, sun 0-80° is 0.00600, goal 0.005'
+    ])
+    expect(missed('sky', errors(85, 0.006))).toEqual([])
+    expect(missed('sky', errors(97.5, 0.5))).toEqual([])
+  })
+
+  it('holds the worst irradiance up to 93°', () => {
+    expect(missed('irradiance', [...errors(90, 0.009), ...errors(94, 0.5)])).toEqual([])
+    expect(missed('irradiance', [...errors(90, 0.009), ...errors(92, -0.011)])).toHaveLength(1)
+  })
+
+  it('holds mean and p95 of the colours, not their maximum', () => {
+    const figures = { n: 10, mean: 0.29, p95: 0.79, max: 9 }
+    expect(missedGoals({}, {}, figures)).toEqual([])
+    expect(missedGoals({}, {}, { ...figures, mean: 0.31 })).toHaveLength(1)
+    expect(missedGoals({}, {}, { ...figures, p95: NaN })).toHaveLength(1)
+  })
+})

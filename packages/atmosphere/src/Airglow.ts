@@ -1,0 +1,152 @@
+import { Vector4 } from 'three'
+import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import type { Spectrum } from './AtmosphereParameters'
+import type { AtmosphereView } from './AtmosphereView'
+import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
+import { ofLuminance } from './stars/starColor'
+import { glowGains } from './tsl/airglow'
+import { skyTransmittance } from './tsl/skyVolume'
+import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+
+/** Options of {@link Airglow}. */
+export interface AirglowOptions {
+  /** Luminance straight through the layer, ≥ 0 [cd/m²]. */
+  luminance?: number
+  /** Altitude of the layer's middle, in [1, 1e7] [m]. */
+  altitude?: number
+  /** Standard deviation of its emission over altitude, in [1, 1e6] [m]. */
+  width?: number
+  /** Spectral radiance at the four wavelengths, of which only the ratios count. */
+  spectrum?: Spectrum
+}
+
+/** The green line of oxygen at 557.7 nm, the sodium lines at 589 nm, and a continuum. */
+const GREENISH: Spectrum = [0.76, 1.06, 1.05, 0.68]
+
+/**
+ * Irradiance of a level plane over π times the radiance straight through the layer, with no air:
+ * 2 (1 − √(1 − a))/a, a = (R/(R + 96 km))² of the Earth.
+ */
+const DOME = 1.71
+
+/**
+ * Radiance in the air of light that it scattered from the layer, over that straight through the layer:
+ * the mean over all directions of a dome that is {@link DOME} times as bright, and of dark ground.
+ */
+const SCATTERED = DOME / 2
+
+/**
+ * Airglow: the upper air's own light. From the ground a faint even light that brightens towards the
+ * horizon; from orbit a thin greenish line above the limb.
+ *
+ * ```ts
+ * atmosphere.add(milkyWay(), stars(), airglow())
+ * ```
+ *
+ * A Gaussian layer at 96 km with a standard deviation of 4 km. By default 1e-4 cd/m² at the zenith
+ * (22.6 magnitudes per square second of arc), as in years of a quiet sun; together with stars and the
+ * Milky Way's faint light a moonless sky has about 22. The air below dims the layer and scatters its
+ * light, by an estimate that takes light from all of the sky for even. Add it last: it is nearer than
+ * anything else in the sky.
+ */
+export class Airglow implements SkyLayer {
+  readonly isAdditive = true
+  /** Luminance straight through the layer [cd/m²]. */
+  readonly luminance: number
+  readonly #spectrum: Spectrum
+  readonly #altitude
+  readonly #width
+  /** Radiance straight through the layer, over `solarIrradiance`. */
+  readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
+  /** Multiplies the physical brightness, ≥ 0. */
+  intensity = 1
+
+  /** @throws If an option is out of range. */
+  constructor({
+    luminance = 1e-4,
+    altitude = 96_000,
+    width = 4000,
+    spectrum = GREENISH
+  }: AirglowOptions = {}) {
+    check('luminance', luminance, 0, 1e9)
+    check('altitude', altitude, 1, 1e7)
+    check('width', width, 1, 1e6)
+    if (spectrum.length !== 4) {
+      throw new Error(`Airglow: spectrum must have 4 values, got ${spectrum.length}`)
+    }
+    spectrum.forEach((value, i) => check(`spectrum[${i}]`, value, 0, 1e9))
+    this.luminance = luminance
+    this.#spectrum = spectrum
+    this.#altitude = uniform(altitude).setGroup(renderGroup)
+    this.#width = uniform(width).setGroup(renderGroup)
+  }
+
+  update({ atmosphere: { parameters } }: AtmosphereView): void {
+    const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
+    const luminance = this.luminance * Math.max(this.intensity, 0)
+    this.#radiance.value.fromArray(ofLuminance(parameters, values, luminance))
+  }
+
+  #gains(view: ViewNodes, cosView: Float, distance: Float | null): { down: Float; up: Float } {
+    const layer = { altitude: this.#altitude as Float, width: this.#width as Float }
+    const { bottomRadius } = view.air.uniforms
+    return glowGains(layer, view.height, cosView, bottomRadius, distance)
+  }
+
+  /** By day it is less than a thousandth of the sky. */
+  #isSeen(airlight: Vec4): Bool {
+    return airlight.y.lessThan(this.#radiance.y.mul(DROWNS))
+  }
+
+  /** The layer beyond the air below it. */
+  beyond({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
+    const light = farther.toVar()
+    If(this.#isSeen(airlight), () => {
+      light.addAssign(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
+    })
+    return light
+  }
+
+  /** The layer in front of that air, from above; its light scattered in the air, and the ground in it. */
+  glow({ view, cosView, hitsGround, airlight }: SkyRay): Vec4 {
+    const light = vec4(0).toVar()
+    If(this.#isSeen(airlight), () => {
+      const { down } = this.#gains(view, cosView, null)
+      const { uniforms } = view.air
+      const through = skyTransmittance(
+        uniforms,
+        view.volume,
+        view.eye,
+        cosView,
+        hitsGround
+      ).toConst()
+      const ground = uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
+      const air = through.oneMinus().mul(SCATTERED)
+      light.assign(vec4(this.#radiance.mul(ground.mul(through).add(air).add(down))))
+    })
+    return light
+  }
+
+  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
+    const light = vec4(0).toVar()
+    // From below there is none of it in front of anything.
+    If(view.height.greaterThan(this.#altitude.sub(this.#width.mul(8))), () => {
+      const offset = view.toMapped(displacementView).toConst()
+      const distance = offset.length().max(1e-3).toConst() as Float
+      const cosView = offset.dot(view.up).div(distance).clamp(-1, 1).toConst() as Float
+      const { down, up } = this.#gains(view, cosView, distance)
+      light.assign(vec4(this.#radiance.mul(down.add(up))))
+    })
+    return light
+  }
+}
+
+function check(name: string, value: number, min: number, max: number): void {
+  if (!(value >= min && value <= max)) {
+    throw new Error(`Airglow: ${name} must be in [${min}, ${max}], got ${value}`)
+  }
+}
+
+/** The upper air's own light: see {@link Airglow}. */
+export const airglow = (options?: AirglowOptions): Airglow => new Airglow(options)

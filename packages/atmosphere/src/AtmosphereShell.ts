@@ -1,0 +1,380 @@
+import {
+  BackSide,
+  CustomBlending,
+  IcosahedronGeometry,
+  Matrix3,
+  Matrix4,
+  Mesh,
+  OneFactor,
+  OneMinusSrcAlphaFactor,
+  Plane,
+  Vector3
+} from 'three'
+import type { Camera, DirectionalLight, Light, PointLight, BufferGeometry } from 'three'
+import {
+  If,
+  cameraProjectionMatrix,
+  modelViewMatrix,
+  positionLocal,
+  texture,
+  uniform,
+  vec4
+} from 'three/tsl'
+import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
+import type { NodeFrame } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import { AtmosphereParameters } from './AtmosphereParameters'
+import { AtmosphereTables } from './AtmosphereTables'
+import { AtmosphereUniforms } from './AtmosphereUniforms'
+import { eyeScalars } from './cpu/eye'
+import { sunWhite } from './cpu/reflectance'
+import { isAirless } from './planets'
+import { EyeUniforms, SkyVolumes } from './SkyVolumes'
+import type { Air } from './tsl/scattering'
+import { shellColor, shellDepth, type ShellPlace, type Way } from './tsl/shell'
+import { singleScatteringShell, tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import type { Bool, Vec4 } from './tsl-types'
+
+/** Where a shell's light comes from. */
+export type ShellSun = Atmosphere | DirectionalLight | PointLight | Vector3
+
+/** Options of {@link atmosphereShell}. */
+export interface AtmosphereShellOptions {
+  /**
+   * The sun. An atmosphere's; or a light, whose colour and intensity then are those of the sun above the
+   * air; or a direction in world space, which may be changed in place. Default: (1, √2, 1).
+   */
+  sun?: ShellSun
+  /**
+   * `'tables'`, the default: all orders of scattering, from tables that are baked on first use.
+   * `'single-scattering'`: sunlight scattered once, without any texture; skies are darker and bluer, and
+   * dark soon after sunset.
+   */
+  model?: 'tables' | 'single-scattering'
+  /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
+  luminanceScale?: number
+}
+
+/** Segments of the march on the tables, two points each. */
+const TABLE_STEPS = 8
+
+/**
+ * Radii from which on the air is marched instead of read from a volume: a body that far off has few
+ * pixels, and float32 no elevations for them in a volume.
+ */
+const FAR = 20
+
+/** Scale that the colour matrix is computed with; `tint` makes it any other. */
+const SCALE = 1e-4
+
+const _inverse = new Matrix4()
+const _point = new Vector3()
+const _other = new Vector3()
+
+/** A ball of triangles around the unit sphere: none of them cuts it. */
+function ballAround(radius: number): BufferGeometry {
+  const ball = new IcosahedronGeometry(1, 6)
+  const position = ball.getAttribute('position')
+  const plane = new Plane()
+  const corners = [new Vector3(), new Vector3(), new Vector3()] as const
+  let inner = 1
+  for (let i = 0; i < position.count; i += 3) {
+    corners.forEach((corner, k) => corner.fromBufferAttribute(position, i + k))
+    inner = Math.min(inner, Math.abs(plane.setFromCoplanarPoints(...corners).constant))
+  }
+  ball.deleteAttribute('normal')
+  ball.deleteAttribute('uv')
+  ball.scale(radius / inner, radius / inner, radius / inner)
+  return ball
+}
+
+const isAtmosphere = (sun: ShellSun): sun is Atmosphere => 'isAtmosphere' in sun
+const isLight = (sun: ShellSun): sun is DirectionalLight | PointLight => 'isLight' in sun
+
+/** Follows body, camera and sun, and has tables and volumes baked, whenever its shell is drawn. */
+class ShellNode extends Node<'vec4'> {
+  static get type(): string {
+    return 'AtmosphereShellNode'
+  }
+
+  readonly #shell: AtmosphereShell
+  readonly #output: Vec4
+
+  constructor(shell: AtmosphereShell, output: Vec4) {
+    super('vec4')
+    this.#shell = shell
+    this.#output = output
+    this.updateBeforeType = NodeUpdateType.OBJECT
+  }
+
+  override updateBefore({ renderer, camera }: NodeFrame): undefined {
+    if (renderer === null) return
+    this.#shell.bake(renderer)
+    if (camera !== null) this.#shell.see(renderer, camera)
+  }
+
+  override setup(): Node {
+    return this.#output
+  }
+}
+
+/**
+ * A planet's air as a mesh, for scenes with no post pass and no sky background: a map, a game's body,
+ * many small planets. A child of the body's mesh:
+ *
+ * ```ts
+ * const shell = atmosphereShell(new AtmosphereParameters(), 1, { sun: light })
+ * if (shell !== null) globe.add(shell)
+ * ```
+ *
+ * Seen from space it hazes the body and rims it, on the night side too; seen from inside it is the sky.
+ * It follows its body, wherever that goes and however large it is, the camera and the sun by itself.
+ * Works for perspective and orthographic cameras and every kind of depth buffer.
+ *
+ * The way through the air ends at the body's sphere, not at the scene's depth: what stands in front of
+ * the middle of the way through the air, a ship or a cockpit, is drawn without haze, and what is
+ * behind it with all of it. One alpha dims all colours of what is behind alike.
+ *
+ * An eclipse of its sun does not dim it.
+ *
+ * It draws transparent, back faces only, premultiplied, writes no depth, and has `renderOrder` 1, after
+ * a body's own transparent tiles. It casts no shadow and no ray hits it.
+ */
+export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
+  /** What the air is made of; shared. Change it with `parameters.set(…)`. */
+  readonly parameters: AtmosphereParameters
+  /** Of the body, in its own units. */
+  readonly bodyRadius: number
+  /** Where the light comes from. */
+  sun: ShellSun
+  /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
+  luminanceScale: number
+  readonly #uniforms: AtmosphereUniforms
+  /** Its own tables; null for single scattering, or where the atmosphere that is its sun lends its. */
+  readonly #tables: AtmosphereTables | null
+  readonly #lender: Atmosphere | null
+  /** Its own even if tables are lent: its body's place is not the atmosphere's. */
+  readonly #volumes: SkyVolumes | null
+  readonly #eye = new EyeUniforms()
+  readonly #isMarched = uniform(1)
+  #version = -1
+  readonly #height = uniform(0)
+  readonly #up = uniform(new Vector3())
+  readonly #sunDirection = uniform(new Vector3())
+  readonly #viewToMapped = uniform(new Matrix3())
+  readonly #tint = uniform(new Vector3(1, 1, 1))
+
+  /**
+   * @param parameters - What the air is made of. `bottomRadius` in metres is what `bodyRadius` stands for.
+   * @param bodyRadius - Of the body, in units of the object that the shell is added to.
+   * @throws If an argument is missing or out of its range.
+   */
+  constructor(
+    parameters: AtmosphereParameters,
+    bodyRadius: number,
+    {
+      sun = new Vector3(1, Math.SQRT2, 1),
+      model = 'tables',
+      luminanceScale = SCALE
+    }: AtmosphereShellOptions = {}
+  ) {
+    if (!(bodyRadius > 0 && bodyRadius < Infinity)) {
+      throw new Error(
+        `AtmosphereShell: bodyRadius must be positive and finite, got ${String(bodyRadius)}`
+      )
+    }
+    if (!(parameters instanceof AtmosphereParameters)) {
+      throw new Error(
+        `AtmosphereShell: parameters must be AtmosphereParameters, got ${typeof parameters}`
+      )
+    }
+    if (model !== 'tables' && model !== 'single-scattering') {
+      throw new Error(
+        `AtmosphereShell: model must be 'tables' or 'single-scattering', got ${String(model)}`
+      )
+    }
+    if (!(luminanceScale > 0 && luminanceScale < Infinity)) {
+      throw new Error(`AtmosphereShell: luminanceScale must be positive, got ${luminanceScale}`)
+    }
+    super(
+      ballAround((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
+      new NodeMaterial()
+    )
+    this.parameters = parameters
+    this.bodyRadius = bodyRadius
+    this.sun = sun
+    this.luminanceScale = luminanceScale
+    this.name = 'AtmosphereShell'
+    this.renderOrder = 1
+
+    const lends = model === 'tables' && isAtmosphere(sun) && sun.parameters === parameters
+    this.#lender = lends ? sun : null
+    this.#tables = model === 'tables' && !lends ? new AtmosphereTables() : null
+    const tables = this.#lender?.tables ?? this.#tables
+    this.#uniforms = tables?.uniforms ?? new AtmosphereUniforms()
+    const air: Air = {
+      uniforms: this.#uniforms,
+      transmittance: (tables &&
+        texture(tables.transmittance.target.texture)) as Air['transmittance'],
+      diffuse: tables && texture(tables.diffuseLight.target.texture)
+    }
+    const place: ShellPlace = {
+      height: this.#height,
+      up: this.#up,
+      sunDirection: this.#sunDirection,
+      viewToMapped: this.#viewToMapped,
+      tint: this.#tint
+    }
+    this.#volumes =
+      tables &&
+      (this.#tables?.volumes ??
+        new SkyVolumes(tables.uniforms, tables.transmittance.target, tables.diffuseLight.target))
+    const { material } = this
+    material.name = 'Welkin.AtmosphereShell'
+    material.side = BackSide
+    material.transparent = true
+    material.depthWrite = false
+    material.blending = CustomBlending
+    material.blendSrc = material.blendSrcAlpha = OneFactor
+    material.blendDst = material.blendDstAlpha = OneMinusSrcAlphaFactor
+    // The colour is premultiplied already: three would do it again.
+    material.premultipliedAlpha = false
+    material.fog = false
+    material.lights = false
+    material.fragmentNode = new ShellNode(
+      this,
+      shellColor(air, place, this.#light(air, this.#volumes))
+    )
+    material.depthNode = shellDepth(air, place)
+    // Its depth is written by the fragments: let neither plane of the frustum clip it.
+    const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
+    material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
+  }
+
+  #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
+    if (volumes === null) return ({ ray, sight }) => singleScatteringShell(air, ray, sight)
+    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
+    const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
+    const isMarched = this.#isMarched.greaterThan(0) as Bool
+    return ({ ray, sight }) => {
+      const radiance = vec4(0).toVar()
+      const depth = vec4(0).toVar()
+      If(isMarched, () => {
+        const shell = tableShell(air, ray, sight.length, TABLE_STEPS)
+        radiance.assign(shell.radiance)
+        depth.assign(shell.depth)
+      }).Else(() => {
+        const shell = volumeShell(air.uniforms, textures, this.#eye, sight)
+        radiance.assign(shell.radiance)
+        depth.assign(shell.depth)
+      })
+      return { radiance, depth }
+    }
+  }
+
+  /** No ray hits air. */
+  override raycast(): void {}
+
+  /** Bakes the tables if they are stale. Drawing does this by itself. */
+  bake(renderer: NonNullable<NodeFrame['renderer']>): void {
+    const { parameters } = this
+    if (this.#lender !== null) {
+      const { luminanceScale, bakeStepsPerFrame, tables } = this.#lender
+      tables.update(renderer, parameters, luminanceScale, bakeStepsPerFrame)
+    } else if (this.#tables !== null) {
+      this.#tables.update(renderer, parameters, SCALE, Infinity)
+    } else if (this.#version !== parameters.version) {
+      this.#uniforms.update(parameters, SCALE)
+      this.#version = parameters.version
+    }
+  }
+
+  /** Sees where camera, body and sun are. Drawing does this by itself. */
+  follow(camera: Camera): void {
+    const { bottomRadius } = this.parameters
+    _inverse.copy(this.matrixWorld).invert()
+    const scale = bottomRadius / this.bodyRadius
+    const up = this.#up.value.setFromMatrixPosition(camera.matrixWorld)
+    up.applyMatrix4(_inverse).multiplyScalar(scale)
+    const radius = up.length()
+    this.#height.value = radius - bottomRadius
+    if (radius > 0) up.divideScalar(radius)
+    else up.set(0, 0, 1)
+    this.#viewToMapped.value.setFromMatrix4(_inverse.clone().multiply(camera.matrixWorld))
+    this.#viewToMapped.value.multiplyScalar(scale)
+    this.#followSun()
+  }
+
+  /**
+   * Sees that there is a sky volume for a camera, and follows it. Drawing does this by itself, after
+   * {@link bake}.
+   */
+  see(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
+    this.follow(camera)
+    const tables = this.#lender?.tables ?? this.#tables
+    if (this.#volumes === null || tables === null) return
+    const { parameters } = this
+    const height = this.#height.value
+    // Rays of an orthographic camera do not start where it is.
+    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
+    const isFar = height > FAR * parameters.bottomRadius
+    const isMarched = isOrthographic || isFar || tables.version === 0
+    this.#isMarched.value = isMarched ? 1 : 0
+    if (isMarched) return
+    const cosSun = Math.min(Math.max(this.#up.value.dot(this.#sunDirection.value), -1), 1)
+    const eye = eyeScalars(parameters, height, cosSun)
+    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, tables.version).slot)
+  }
+
+  #followSun(): void {
+    const { sun } = this
+    const direction = this.#sunDirection.value
+    const tint = this.#tint.value.setScalar(1)
+    _point.setFromMatrixPosition(this.matrixWorld)
+    if (isAtmosphere(sun)) {
+      direction.copy(sun.sunDirection)
+      if (this.#lender !== sun) tint.setScalar(sun.luminanceScale / SCALE)
+    } else if (isLight(sun)) {
+      direction.setFromMatrixPosition(sun.matrixWorld)
+      const { color, intensity } = sun as Light
+      const white = sunWhite(this.parameters)
+      tint.set(color.r / white[0], color.g / white[1], color.b / white[2])
+      tint.multiplyScalar(intensity / SCALE)
+      if ('target' in sun) direction.sub(_other.setFromMatrixPosition(sun.target.matrixWorld))
+      else {
+        direction.sub(_point)
+        tint.divideScalar(direction.lengthSq() || 1)
+      }
+    } else {
+      direction.copy(sun)
+      tint.setScalar(this.luminanceScale / SCALE)
+    }
+    // The inverse of a matrix takes directions back; normals are not meant.
+    direction.transformDirection(_inverse)
+    if (!(direction.lengthSq() > 0)) direction.set(0, 1, 0)
+  }
+
+  /** Frees its geometry, material and own tables. */
+  override dispose(): void {
+    this.geometry.dispose()
+    this.material.dispose()
+    const owned = this.#tables ?? this.#volumes
+    owned?.dispose()
+  }
+}
+
+/**
+ * A planet's air as a mesh, see {@link AtmosphereShell}; null for a body without air.
+ *
+ * @param parameters - What the air is made of.
+ * @param bodyRadius - Of the body, in units of the object that the shell is added to.
+ * @throws If an argument is missing or out of its range.
+ */
+export const atmosphereShell = (
+  parameters: AtmosphereParameters,
+  bodyRadius: number,
+  options: AtmosphereShellOptions = {}
+): AtmosphereShell | null => {
+  const isBare = parameters instanceof AtmosphereParameters && isAirless(parameters)
+  return isBare ? null : new AtmosphereShell(parameters, bodyRadius, options)
+}

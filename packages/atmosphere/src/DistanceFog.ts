@@ -1,0 +1,83 @@
+import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import type { AtmosphereView } from './AtmosphereView'
+import type { Sightline, SkyLayer, Veil } from './SkyLayer'
+import { scatteredRadiance } from './tsl/scattering'
+import { sampleSky } from './tsl/skyVolume'
+import type { Bool, Float } from './tsl-types'
+
+/** Options of {@link DistanceFog}. */
+export interface DistanceFogOptions {
+  /** Of three's `FogExp2`: what is at 1/density has e⁻¹ of its light left, ≥ 0 [1/m]. */
+  density?: number
+  /** Altitudes of the camera between which the fog fades away, rising [m]. */
+  fade?: readonly [number, number]
+}
+
+/**
+ * Fog by distance alone, exp(−(density × distance)²) as three's `FogExp2`, in the light of the sky: what is
+ * far away takes the colour that the sky has behind it at the horizon, and so vanishes into it at any time
+ * of the day. It hides where a scene ends. The sky itself stays clear.
+ *
+ * ```ts
+ * atmosphere.add(distanceFog({ density: 1 / 4000 }))
+ * ```
+ */
+export class DistanceFog implements SkyLayer {
+  /** See {@link DistanceFogOptions} [1/m]. */
+  density: number
+  readonly fade: readonly [number, number]
+  readonly #density = uniform(0).setGroup(renderGroup)
+
+  /** @throws If an option is out of range. */
+  constructor({ density = 1e-4, fade = [5000, 15_000] }: DistanceFogOptions = {}) {
+    if (!(density >= 0 && density <= 100)) {
+      throw new Error(`DistanceFog: density must be in [0, 100], got ${density}`)
+    }
+    if (!(fade[1] > fade[0])) {
+      throw new Error(`DistanceFog: fade must rise, got [${fade[0]}, ${fade[1]}]`)
+    }
+    this.density = density
+    this.fade = [...fade]
+  }
+
+  update(view: AtmosphereView): void {
+    const [low, high] = this.fade
+    const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
+    const density = this.density * (1 - x * x * (3 - 2 * x))
+    this.#density.value = density > 0 ? density : 0
+  }
+
+  veil({ view, cosView, cosViewSun, distance }: Sightline, air: Veil): Veil {
+    if (distance === undefined) return air
+    const depth = vec4(air.depth).toVar()
+    const light = vec4(air.light).toVar()
+    If(this.#density.greaterThan(0), () => {
+      const { uniforms } = view.air
+      const { eye, source } = view
+      // The same azimuth, a little above the horizon where the way leads lower.
+      const cosRaised = cosView.max(eye.cosHorizon.add(CLEARANCE)).min(1).toConst() as Float
+      const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
+      const turned = sine(cosRaised).div(sine(cosView).max(1e-4))
+      const cosRaisedSun = cosRaised
+        .mul(eye.cosSun)
+        .add(cosViewSun.sub(cosView.mul(eye.cosSun)).mul(turned))
+        .clamp(-1, 1)
+        .toConst() as Float
+      const isGround = float(0).greaterThan(1) as Bool
+      const sky = sampleSky(uniforms, view.volume, eye, cosRaised, cosRaisedSun, isGround)
+      const color = scatteredRadiance(uniforms, sky, cosRaisedSun).mul(source.irradiance)
+      const root = distance.mul(this.#density)
+      const fog = root.mul(root).min(80).toConst()
+      const through = fog.negate().exp().toConst()
+      light.assign(air.light.mul(through).add(color.mul(through.oneMinus())))
+      depth.addAssign(fog)
+    })
+    return { depth: depth, light: light }
+  }
+}
+
+/** Sine of an angle above the horizon, about that of a pixel. */
+const CLEARANCE = 1e-3
+
+/** Fog by distance alone: see {@link DistanceFog}. */
+export const distanceFog = (options?: DistanceFogOptions): DistanceFog => new DistanceFog(options)

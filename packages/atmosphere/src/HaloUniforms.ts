@@ -1,0 +1,44 @@
+import { renderGroup, uniform } from 'three/tsl'
+
+/** Light that an eye or a lens spreads around something bright, in two lobes. */
+export interface FlareOptions {
+  /** Power of the tight inner lobe, cosⁿ of the angle: the larger, the tighter; > 0. */
+  innerPower?: number
+  /** Part of the light that the inner lobe gets, ≥ 0. */
+  innerStrength?: number
+  /** Power of the broad outer lobe, > 0. */
+  outerPower?: number
+  /** Part of the light that the outer lobe gets, ≥ 0. */
+  outerStrength?: number
+}
+
+const scalar = (value: number) => uniform(value).setGroup(renderGroup)
+
+/** A halo's figures as shader uniforms; they may be changed at any time. */
+export class HaloUniforms {
+  readonly innerPower = scalar(0)
+  readonly innerStrength = scalar(0)
+  readonly outerPower = scalar(0)
+  readonly outerStrength = scalar(0)
+
+  /** @param owner - Names the class in errors. */
+  constructor(
+    private readonly owner: string,
+    options: Required<FlareOptions>
+  ) {
+    this.set(options)
+  }
+
+  /** @throws If a figure is out of its range; then nothing has changed. */
+  set(options: FlareOptions): void {
+    const entries = Object.entries(options) as [keyof FlareOptions, number | undefined][]
+    for (const [name, value] of entries) {
+      const isOk = name.endsWith('Power') ? value! > 0 : value! >= 0
+      if (value !== undefined && !(isOk && value < Infinity)) {
+        const rule = name.endsWith('Power') ? 'positive and finite' : 'finite and ≥ 0'
+        throw new Error(`${this.owner}: ${name} must be ${rule}, got ${value}`)
+      }
+    }
+    for (const [name, value] of entries) if (value !== undefined) this[name].value = value
+  }
+}

@@ -1,0 +1,355 @@
+import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
+import type { Quaternion } from 'three'
+import { If, renderGroup, texture, uniform, vec4, mix } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import type { Spectrum } from './AtmosphereParameters'
+import type { AtmosphereView } from './AtmosphereView'
+import { CORONA, eclipsedSun } from './cpu/eclipse'
+import { earthshine, MOON_RADIUS, moonIrradiance, surfacePhase } from './cpu/moonlight'
+import { visibleSun } from './cpu/transmittance'
+import { HaloUniforms, type FlareOptions } from './HaloUniforms'
+import { LightSource } from './LightSource'
+import { MoonPlace, type MoonGeometry } from './moonGeometry'
+import { MoonSurface } from './MoonSurface'
+import { MoonlitAir } from './MoonlitAir'
+import { MoonVolumes } from './MoonVolumes'
+import type { SkyLayer, SkyRay } from './SkyLayer'
+import { haloRadiance } from './tsl/halo'
+import { corona, moonDisc } from './tsl/moonDisc'
+import type { Vec3, Vec4 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+
+/** Options of {@link Moon}. */
+export interface MoonOptions {
+  /** To the moon in world space, any length; null follows the date. */
+  direction?: Vector3 | null
+  /** 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new again; null follows the geometry. */
+  phase?: number | null
+  /** From the observer [m]; null follows the date, or is the mean distance without one. */
+  distance?: number | null
+  /** Of the moon [m]. Its light grows with its area. */
+  radius?: number
+  /** Factor for the light of the disc and by it, ≥ 0. */
+  strength?: number
+  /** Whether it lights the air: glow of the sky, and haze. */
+  lightsAir?: boolean
+  /** Its halo; the strengths are of its light, and so wane with it. */
+  flare?: FlareOptions
+  /** Width of the map of its ground, a power of two [texels]. */
+  mapSize?: number
+}
+
+/** The moon from somewhere. */
+export interface MoonAppearance {
+  /** World, unit length. */
+  direction: Vector3
+  /** From the observer to its centre [m]. */
+  distance: number
+  /** [rad] */
+  angularRadius: number
+  /** Between sun and observer, as seen from the moon: 0 full, π new [rad]. */
+  phaseAngle: number
+  /** Part of the disc that the sun lights, in [0, 1]. */
+  litFraction: number
+}
+
+const FLARE = { innerPower: 12_000, innerStrength: 0.02, outerPower: 500, outerStrength: 0.006 }
+
+const _position = new Vector3()
+const _matrix = new Matrix4()
+
+const vector = () => uniform(new Vector3()).setGroup(renderGroup)
+const spectrum = () => uniform(new Vector4()).setGroup(renderGroup)
+
+/**
+ * The moon: its disc, halo and light in the air, and eclipses of the sun by it.
+ *
+ * ```ts
+ * const luna = moon(atmosphere)
+ * atmosphere.add(luna)
+ * scene.add(new MoonDirectionalLight(atmosphere, luna), new SkyLightProbe(atmosphere, luna.source))
+ * ```
+ *
+ * With `atmosphere.date` set, direction (with the camera's parallax), distance, phase and libration
+ * follow the date. Without a date, the moon is as far from the sun as `phase` says, by default opposite
+ * it and full. `direction`, `phase` and `distance` can be set by hand at any time; a moon whose direction
+ * is set by hand turns its near side to the camera, north up.
+ *
+ * Once added, it eclipses the sun where its disc is before the sun's: light, sky and haze dim as they do
+ * at the camera, and the corona shows. Refraction and eclipses of the moon itself are left out.
+ */
+export class Moon implements SkyLayer {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  /** The moon as a source of light, for lights and probes. */
+  readonly source: LightSource
+  /** Whether it lights the air: glow of the sky, and haze. Set it before the first render. */
+  readonly lightsAir: boolean
+  #byHand: Vector3 | null = null
+  #phase: number | null = null
+  #distance: number | null = null
+  #radius = MOON_RADIUS
+  #strength = 1
+  readonly #place = new MoonPlace()
+  readonly #air: MoonlitAir
+  readonly #surface: MoonSurface
+  readonly #halo = new HaloUniforms('Moon', FLARE)
+
+  readonly #direction = vector()
+  readonly #light = vector()
+  readonly #toFixed = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly #angularRadius = uniform(0).setGroup(renderGroup)
+  readonly #sunlit = spectrum()
+  readonly #earthlit = spectrum()
+  readonly #flare = spectrum()
+  /** 0 while the sun's disc is all covered, else 1. */
+  readonly #sunShows = uniform(1).setGroup(renderGroup)
+
+  /** @throws If an argument is of the wrong kind or out of its range. */
+  constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
+    if (!atmosphere?.isAtmosphere) {
+      throw new Error(`Moon: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
+    }
+    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+    if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
+      throw new Error(`Moon: mapSize must be a power of two in [16, 8192], got ${mapSize}`)
+    }
+    this.atmosphere = atmosphere
+    this.lightsAir = lightsAir
+    this.direction = options.direction ?? null
+    this.phase = options.phase ?? null
+    this.distance = options.distance ?? null
+    this.radius = options.radius ?? MOON_RADIUS
+    this.strength = options.strength ?? 1
+    this.setFlare(flare)
+    this.#surface = new MoonSurface(mapSize)
+    const { uniforms, transmittance, diffuseLight } = atmosphere.tables
+    const volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
+    this.source = new LightSource(
+      (_, target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
+      volumes
+    )
+    this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
+    this.#air = new MoonlitAir(atmosphere, this.source, volumes)
+    this.#eclipse()
+  }
+
+  /** To the moon in world space, unit length, a copy; null while it follows the date. */
+  get direction(): Vector3 | null {
+    return this.#byHand?.clone() ?? null
+  }
+
+  set direction(value: Vector3 | null) {
+    if (value !== null && !(value.lengthSq() > 0 && value.lengthSq() < Infinity)) {
+      const { x, y, z } = value
+      throw new Error(`Moon: direction must be finite and not zero, got (${x}, ${y}, ${z})`)
+    }
+    this.#byHand = value?.clone().normalize() ?? null
+  }
+
+  /** 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new again; null follows the geometry. */
+  get phase(): number | null {
+    return this.#phase
+  }
+
+  set phase(value: number | null) {
+    if (value !== null && !(value >= 0 && value <= 1)) {
+      throw new Error(`Moon: phase must be in [0, 1] or null, got ${value}`)
+    }
+    this.#phase = value
+  }
+
+  /** From the observer to its centre [m]; null follows the date, or is the mean distance without one. */
+  get distance(): number | null {
+    return this.#distance
+  }
+
+  set distance(value: number | null) {
+    if (value !== null) checkPositive('distance', value)
+    this.#distance = value
+  }
+
+  /** Of the moon [m]. Its light grows with its area. */
+  get radius(): number {
+    return this.#radius
+  }
+
+  set radius(value: number) {
+    checkPositive('radius', value)
+    this.#radius = value
+  }
+
+  /** Factor for the light of the disc and by it, ≥ 0. */
+  get strength(): number {
+    return this.#strength
+  }
+
+  set strength(value: number) {
+    if (!(value >= 0 && value < Infinity)) {
+      throw new Error(`Moon: strength must be finite and ≥ 0, got ${value}`)
+    }
+    this.#strength = value
+  }
+
+  /**
+   * Changes powers and strengths of the halo.
+   *
+   * @throws If one is out of its range; then nothing has changed.
+   */
+  setFlare(options: FlareOptions): this {
+    this.#halo.set(options)
+    return this
+  }
+
+  /**
+   * The moon as someone sees it.
+   *
+   * @param position - World.
+   */
+  seenFrom(position: Vector3): MoonAppearance {
+    const geometry = this.#seenFrom(position)
+    const { distance, phaseAngle } = geometry
+    return {
+      direction: this.#toWorld(geometry.direction),
+      distance,
+      angularRadius: this.#angularRadiusOf(geometry),
+      phaseAngle,
+      litFraction: (1 + Math.cos(phaseAngle)) / 2
+    }
+  }
+
+  #seenFrom(position: Vector3): MoonGeometry {
+    return this.#place.seenFrom(this.atmosphere, this, position)
+  }
+
+  #toWorld(ecef: Vector3): Vector3 {
+    return ecef.clone().transformDirection(_matrix.copy(this.atmosphere.worldToECEF).invert())
+  }
+
+  #worldDirection(from: Vector3): Vector3 {
+    return this.#byHand ?? this.#toWorld(this.#seenFrom(from).direction)
+  }
+
+  #angularRadiusOf({ distance, scale }: MoonGeometry): number {
+    return Math.asin(Math.min((scale * this.#radius) / distance, 1))
+  }
+
+  #irradiance({ phaseAngle, distance }: MoonGeometry): Spectrum {
+    const light = moonIrradiance(phaseAngle, distance, this.#radius)
+    return light.map(value => value * this.#strength) as unknown as Spectrum
+  }
+
+  /** Takes from the sun what this moon hides of it, besides what others do. */
+  #eclipse(): void {
+    const { atmosphere } = this
+    const before = atmosphere.sun.irradianceAt
+    atmosphere.sun.irradianceAt = position => {
+      const light = before(position)
+      if (!atmosphere.layers.includes(this)) return light
+      const geometry = this.#seenFrom(position)
+      const sun = atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF)
+      const { sunAngularRadius, limbDarkening } = atmosphere.parameters
+      const radius = this.#angularRadiusOf(geometry)
+      const left = eclipsedSun(
+        geometry.direction.angleTo(sun),
+        sunAngularRadius,
+        radius,
+        limbDarkening
+      )
+      return light.map((value, i) => value * left[i]) as unknown as Spectrum
+    }
+  }
+
+  prepare(renderer: Renderer, view: AtmosphereView): void {
+    this.#surface.prepare(renderer)
+    if (this.lightsAir && this.#strength > 0) this.#air.prepare(renderer, view)
+  }
+
+  update(view: AtmosphereView): void {
+    const { parameters, space } = this.atmosphere
+    const geometry = this.#seenFrom(_position.setFromMatrixPosition(view.camera.matrixWorld))
+    const { distance, phaseAngle } = geometry
+    // ECEF's axes are the mapped space's, but for 0.3 % of squeezing along them.
+    space.direction(this.#toWorld(geometry.direction), this.#direction.value)
+    this.#light.value.copy(geometry.light)
+    setRotation(this.#toFixed.value, geometry.axes.clone().invert())
+    const angularRadius = this.#angularRadiusOf(geometry)
+    this.#angularRadius.value = angularRadius
+    this.#sunShows.value = view.irradiance[1] < 1.001 * CORONA ? 0 : 1
+    // A full disc has the Lommel–Seeliger factor ½ all over: twice the mean gives the irradiance.
+    const full = moonIrradiance(0, distance, this.#radius).map(
+      value => (value * this.#strength) / (Math.PI * angularRadius ** 2)
+    )
+    const shine = earthshine(phaseAngle, distance, parameters.bottomRadius)
+    const bright = surfacePhase(phaseAngle)
+    this.#sunlit.value.fromArray(full.map(value => 2 * value * bright))
+    this.#earthlit.value.fromArray(full.map((value, i) => value * shine[i]))
+    const radius = parameters.bottomRadius + Math.max(view.height, 0)
+    const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
+    this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
+    this.#air.update(view)
+  }
+
+  beyond(ray: SkyRay, farther: Vec4): Vec4 {
+    const { direction, pixel, view } = ray
+    const { uniforms } = view.air
+    const light = farther.toVar()
+    const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
+    // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
+    const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
+    If(sunDistance.lessThan(nearDisc), () => {
+      light.mulAssign(this.#sunShows)
+    })
+    If(sunDistance.lessThan(12), () => {
+      light.addAssign(corona(uniforms, sunDistance))
+    })
+    const reach = this.#angularRadius.add(pixel)
+    If(direction.sub(this.#direction).length().lessThan(reach), () => {
+      const disc = moonDisc(
+        {
+          direction: this.#direction,
+          light: this.#light,
+          toFixed: this.#toFixed,
+          angularRadius: this.#angularRadius,
+          sunlit: this.#sunlit,
+          earthlit: this.#earthlit,
+          map: texture(this.#surface.target.texture)
+        },
+        direction,
+        pixel
+      )
+      light.assign(mix(light, disc.radiance, disc.coverage))
+    })
+    const halo = haloRadiance(this.#halo, direction, this.#direction)
+    return light.add(this.#flare.mul(halo))
+  }
+
+  glow(ray: SkyRay): Vec4 {
+    return this.lightsAir ? this.#air.glow(ray) : vec4(0)
+  }
+
+  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
+    return this.lightsAir ? this.#air.haze(view, displacementView) : vec4(0)
+  }
+
+  /** Frees GPU memory. The moon can be used again. */
+  dispose(): void {
+    this.#surface.dispose()
+    this.#air.dispose()
+  }
+}
+
+function checkPositive(name: string, value: number): void {
+  if (!(value > 0 && value < Infinity)) {
+    throw new Error(`Moon: ${name} must be positive and finite, got ${value}`)
+  }
+}
+
+function setRotation(target: Matrix3, rotation: Quaternion): void {
+  target.setFromMatrix4(_matrix.makeRotationFromQuaternion(rotation))
+}
+
+/** The moon: see {@link Moon}. */
+export const moon = (atmosphere: Atmosphere, options: MoonOptions = {}): Moon =>
+  new Moon(atmosphere, options)

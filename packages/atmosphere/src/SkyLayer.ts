@@ -1,0 +1,80 @@
+import type { Renderer } from 'three/webgpu'
+import type { AtmosphereView } from './AtmosphereView'
+import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
+import type { ViewNodes } from './ViewNodes'
+
+/** Air this many times as bright as something faint in the sky hides it: less than half a grey level. */
+export const DROWNS = 10_000
+
+/** A line of sight into the sky, as shader nodes. */
+export interface SkyRay {
+  readonly view: ViewNodes
+  /** Unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** Against the zenith of the eye. */
+  readonly cosView: Float
+  /** Against the sun. */
+  readonly cosViewSun: Float
+  /** Whether the planet is in the way. */
+  readonly hitsGround: Bool
+  /** Whether there is air in this direction. */
+  readonly meetsAir: Bool
+  /** Angle that a pixel covers [rad]. */
+  readonly pixel: Float
+  /** Light of the air and of layers in it so far: what is far fainter need not be drawn. */
+  readonly airlight: Vec4
+}
+
+/** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */
+export interface Sightline extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewSun'> {
+  /** To a point [m]; absent for the sky. */
+  readonly distance?: Float
+  /** For the sky: whether the planet is in the way. */
+  readonly hitsGround?: Bool
+}
+
+/** What all that is in the air does to light on a {@link Sightline}. */
+export interface Veil {
+  /** Optical depth; for the sky that of layers alone. */
+  readonly depth: Vec4
+  /** Light added; for the sky its own. */
+  readonly light: Vec4
+}
+
+/**
+ * Something in the sky besides air and sun: moon, stars, airglow. `atmosphere.add(layer)` shows it in
+ * every node that draws this atmosphere's sky and haze.
+ *
+ * All light is radiance over `solarIrradiance` at the four wavelengths [1/sr], as sunlight that a white
+ * plane reflects is.
+ */
+export interface SkyLayer {
+  /** Whether {@link beyond} only adds light and hides nothing. */
+  readonly isAdditive?: boolean
+  /** Bakes what the layer needs. Called before a render. */
+  prepare?(renderer: Renderer, view: AtmosphereView): void
+  /** Sets uniforms for the camera that renders. */
+  update?(view: AtmosphereView): void
+  /**
+   * Light from beyond the air, given what is farther; the air dims what is returned.
+   * Called inside a branch in which the ray does not hit the ground: no derivatives.
+   */
+  beyond?(ray: SkyRay, farther: Vec4): Vec4
+  /**
+   * Sunlight from the whole way to the ground and the ground itself, given the model's of even albedo;
+   * for rays that do not hit the ground what is given. Before `glow`; no derivatives.
+   */
+  ground?(ray: SkyRay, model: Vec4): Vec4
+  /** Light that the air itself sends from this direction, all of the way. */
+  glow?(ray: SkyRay): Vec4
+  /**
+   * Light that the air adds between the eye and a point.
+   *
+   * @param displacementView - From the camera to the point, in view space [world units].
+   */
+  haze?(view: ViewNodes, displacementView: Vec3): Vec4
+  /** Dims and lights a way, in front of the sky too, given what the air and the layers before do. */
+  veil?(line: Sightline, air: Veil): Veil
+  /** Frees GPU memory. */
+  dispose?(): void
+}

@@ -1,0 +1,123 @@
+import { DataTexture, FloatType, NearestFilter, RGBAFormat, Vector4 } from 'three'
+import type { Matrix4 } from 'three'
+import type { Atmosphere } from './Atmosphere'
+import type { AtmosphereView } from './AtmosphereView'
+import { CelestialFrame } from './CelestialFrame'
+import type { SkyLayer, SkyRay } from './SkyLayer'
+import { CELL_COLUMNS, COLOR_STEPS, starCells } from './stars/starCells'
+import type { Star } from './stars/starCode'
+import { MAGNITUDE_ZERO_ILLUMINANCE, starIrradiance } from './stars/starColor'
+import { starField } from './tsl/starField'
+import type { Vec4 } from './tsl-types'
+import { vec4Array } from './tsl-types'
+import { If, renderGroup, uniform } from 'three/tsl'
+
+/** Options of {@link Stars}. */
+export interface StarsOptions {
+  /** Leaves the drawing to `starsOverlay`, after post-processing. Default false. */
+  overlay?: boolean
+  /** Rotation from the stars' frame to ECEF; by default what the atmosphere's date makes it. */
+  orientation?: Matrix4 | null
+}
+
+/**
+ * Fixed stars: points of light that are as bright as their magnitudes say, dimmed and reddened by the
+ * air that they are seen through.
+ *
+ * ```ts
+ * atmosphere.add(stars())
+ * ```
+ *
+ * A star covers about a pixel whatever the picture's size, and its pixels add up to its illuminance: the
+ * finer the picture, the brighter the star against the sky, as in a telescope. By day it is there, but
+ * the sky is a thousand times as bright. Places are those of J2000 turned by precession, nutation and
+ * the Earth's rotation; proper motion, aberration (20″) and refraction (34′ at the horizon, nothing
+ * else of the sky has it) are left out.
+ */
+export class Stars implements SkyLayer {
+  /** For type testing. */
+  readonly isStars = true
+  readonly isAdditive = true
+  /** What is drawn. */
+  readonly catalogue: readonly Star[]
+  /** Whether `starsOverlay` draws them and the sky does not. */
+  readonly overlay: boolean
+  /** Multiplies the physical brightness, ≥ 0. */
+  intensity = 1
+  readonly #frame = new CelestialFrame()
+  readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
+  readonly #cells: DataTexture
+  /** A hundred times the irradiance of the brightest star, over `solarIrradiance`. */
+  readonly #brightest = uniform(0).setGroup(renderGroup)
+  #paletteOf = ''
+
+  /** @throws If a star has a number that is not finite. */
+  constructor(catalogue: readonly Star[], { overlay = false, orientation }: StarsOptions = {}) {
+    catalogue.forEach((star, i) => {
+      for (const [name, value] of Object.entries(star)) {
+        if (!Number.isFinite(value)) {
+          throw new Error(`Stars: ${name} of star ${i} must be finite, got ${value}`)
+        }
+      }
+    })
+    this.catalogue = catalogue
+    this.overlay = overlay
+    this.orientation = orientation ?? null
+    const texels = starCells(catalogue)
+    const rows = texels.length / 4 / CELL_COLUMNS
+    this.#cells = new DataTexture(texels, CELL_COLUMNS, rows, RGBAFormat, FloatType)
+    this.#cells.name = 'Stars.cells'
+    this.#cells.minFilter = this.#cells.magFilter = NearestFilter
+    this.#cells.needsUpdate = true
+  }
+
+  /** Rotation from the stars' frame to ECEF; null to follow the atmosphere's date. */
+  get orientation(): Matrix4 | null {
+    return this.#frame.orientation
+  }
+
+  set orientation(value: Matrix4 | null) {
+    this.#frame.orientation = value
+  }
+
+  update(view: AtmosphereView): void {
+    this.#frame.update(view)
+    this.#updatePalette(view.atmosphere)
+  }
+
+  #updatePalette({ parameters }: Atmosphere): void {
+    const { wavelengths, solarIrradiance, spectralToXYZ } = parameters
+    const state = [this.intensity, wavelengths, solarIrradiance, spectralToXYZ].join(' ')
+    if (state === this.#paletteOf) return
+    this.#paletteOf = state
+    const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * Math.max(this.intensity, 0)
+    const magnitude = this.catalogue.reduce((least, star) => Math.min(least, star.magnitude), 9)
+    const [, green] = starIrradiance(parameters, 0, illuminance * 10 ** (-0.4 * magnitude))
+    this.#brightest.value = 100 * green
+    this.#palette.array.forEach((color, step) => {
+      const colorIndex = COLOR_STEPS.min + step * COLOR_STEPS.step
+      color.fromArray(starIrradiance(parameters, colorIndex, illuminance))
+    })
+  }
+
+  /** Light of the stars in a direction, above the air [1/sr]. */
+  light(ray: SkyRay): Vec4 {
+    const direction = this.#frame.toCelestial(ray.direction).toConst()
+    return starField(this.#cells, this.#palette, direction, ray.pixel)
+  }
+
+  beyond(ray: SkyRay, farther: Vec4): Vec4 {
+    if (this.overlay) return farther
+    const light = farther.toVar()
+    // By day even the brightest star is less than a hundredth of the sky.
+    const drowns = ray.pixel.mul(ray.pixel).mul(ray.airlight.y)
+    If(drowns.lessThan(this.#brightest), () => {
+      light.addAssign(this.light(ray))
+    })
+    return light
+  }
+
+  dispose(): void {
+    this.#cells.dispose()
+  }
+}

@@ -1,0 +1,60 @@
+import type { Star } from './starCode'
+
+/** Options of {@link proceduralStars}. */
+export interface ProceduralStarsOptions {
+  /** How many stars, an integer in [1, 50000]. */
+  count?: number
+  /** Magnitude of the faintest, in [−10, 20]. */
+  faintest?: number
+  /** The same number gives the same sky. */
+  seed?: number
+}
+
+/** Stars to magnitude m grow as 10^(0.51 m) in the naked eye's range. Allen, Astrophysical Quantities. */
+const GROWTH = 0.51
+
+/** None is brighter than Sirius by more than a little. */
+const BRIGHTEST_SPAN = 7.5
+
+/**
+ * A sky of stars of no particular place, with the real sky's numbers by magnitude and its colours: for
+ * other worlds, and where the catalogue's 47 kB are too much.
+ *
+ * @throws If an option is out of range.
+ */
+export function proceduralStars({
+  count = 5000,
+  faintest = 6,
+  seed = 1
+}: ProceduralStarsOptions = {}): Star[] {
+  if (!(Number.isInteger(count) && count >= 1 && count <= 50_000)) {
+    throw new Error(`proceduralStars: count must be an integer in [1, 50000], got ${count}`)
+  }
+  if (!(faintest >= -10 && faintest <= 20)) {
+    throw new Error(`proceduralStars: faintest must be in [-10, 20], got ${faintest}`)
+  }
+  if (!Number.isFinite(seed)) {
+    throw new Error(`proceduralStars: seed must be finite, got ${seed}`)
+  }
+  const next = random(seed)
+  return Array.from({ length: count }, () => {
+    const ascension = 2 * Math.PI * next()
+    const declination = Math.asin(2 * next() - 1)
+    const magnitude = faintest + Math.max(Math.log10(1 - next()) / GROWTH, -BRIGHTEST_SPAN)
+    // Two humps: stars like Sirius and Vega, and orange giants.
+    const spread = (next() + next() + next() - 1.5) * 0.5
+    const colorIndex = (next() < 0.55 ? 0.1 : 1.1) + spread
+    return { ascension, declination, magnitude, colorIndex }
+  })
+}
+
+/** Mulberry32: pseudo-random numbers in [0, 1). */
+function random(seed: number): () => number {
+  let state = Math.floor(seed) | 0
+  return () => {
+    state = (state + 0x6d2b79f5) | 0
+    let x = Math.imul(state ^ (state >>> 15), 1 | state)
+    x = (x + Math.imul(x ^ (x >>> 7), 61 | x)) ^ x
+    return ((x ^ (x >>> 14)) >>> 0) / 4294967296
+  }
+}

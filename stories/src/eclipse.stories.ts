@@ -1,0 +1,43 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { createEclipse } from './eclipse.scene'
+import type { MoonArgs } from './moon.scene'
+import moonMeta from './moon.stories'
+import { mount } from './mount'
+
+const meta: Meta<MoonArgs> = {
+  title: 'Eclipse',
+  render: mount(createEclipse),
+  argTypes: moonMeta.argTypes,
+  args: {
+    ...moonMeta.args,
+    longitude: -96.797,
+    latitude: 32.777,
+    day: Date.UTC(2024, 3, 8),
+    hour: 18.71,
+    target: 'sun',
+    fieldOfView: 2.5,
+    exposure: 1,
+    mapSize: 256
+  }
+}
+
+export default meta
+
+type Story = StoryObj<MoonArgs>
+
+/** Dallas, 8 April 2024, 18:42:38 UTC: the corona. */
+export const Totality: Story = { tags: ['screenshot'] }
+
+/** Ten seconds before totality. */
+export const DiamondRing: Story = { args: { hour: 18.675, exposure: 1 }, tags: ['screenshot'] }
+
+/** Half an hour before, through a dark filter. */
+export const Partial: Story = {
+  args: { hour: 18.2, fieldOfView: 1, exposure: -14 },
+  tags: ['screenshot']
+}
+
+/** The land a minute before totality: a hundredth of the sun lights it, as it still stands high. */
+export const LastLight: Story = {
+  args: { hour: 18.66, fieldOfView: 60, lower: 60, exposure: 5, lights: 'sun' }
+}

@@ -1,0 +1,196 @@
+import {
+  aerialPerspective,
+  aerialPerspectiveFog,
+  Atmosphere,
+  AtmosphereParameters,
+  skyBackground,
+  skyEnvironment,
+  SkyLightProbe,
+  SunDirectionalLight
+} from '@welkin/atmosphere'
+import {
+  BoxGeometry,
+  IcosahedronGeometry,
+  Mesh,
+  MeshPhysicalMaterial,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  Scene,
+  SphereGeometry
+} from 'three'
+import type { Material } from 'three'
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { pass } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { createWater } from './environment/water'
+import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface EnvironmentArgs extends RendererArgs {
+  /** Of the sun above the horizon [degrees]. */
+  elevation: number
+  /** Of the sun, clockwise from north [degrees]. The camera looks north. */
+  azimuth: number
+  /** Mean square slope of the water, in thousandths. */
+  ripples: number
+  /** [stops], 0 for daylight. */
+  exposure: number
+}
+
+/** Past the horizon of a camera a few metres up [m]. */
+const SEA_RADIUS = 20_000
+/** Of the sea, at the four wavelengths: little, and that bluish. */
+const SEA_ALBEDO = [0.07, 0.06, 0.05, 0.04] as const
+
+/** A stone slab in calm water, with metals from polished to matt in front and glass behind. */
+function populate(scene: Scene): Mesh[] {
+  const meshes: Mesh[] = []
+  const add = (mesh: Mesh, x: number, y: number, z: number): void => {
+    mesh.position.set(x, y, z)
+    mesh.castShadow = mesh.receiveShadow = true
+    meshes.push(mesh)
+  }
+  const stone = new MeshStandardMaterial({ color: '#8c877d', roughness: 0.85 })
+  add(new Mesh(new BoxGeometry(13, 0.5, 5), stone), 0, 0, 0)
+
+  const ball = new SphereGeometry(0.75, 64, 48)
+  for (let i = 0; i < 7; i++) {
+    const roughness = i / 6
+    const steel = new MeshStandardMaterial({ color: '#e8e8ea', metalness: 1, roughness })
+    add(new Mesh(ball, steel), (i - 3) * 1.75, 1, 1.2)
+  }
+  const gold = new MeshStandardMaterial({ color: '#f0b840', metalness: 1, roughness: 0.18 })
+  const paint = new MeshPhysicalMaterial({ color: '#7a1410', roughness: 0.5, clearcoat: 1 })
+  const glass = new MeshPhysicalMaterial({
+    roughness: 0,
+    transmission: 1,
+    thickness: 2.3,
+    attenuationColor: '#c8e6dc',
+    attenuationDistance: 3,
+    ior: 1.5
+  })
+  add(new Mesh(ball, gold), -4.4, 1, -1)
+  add(new Mesh(ball, paint), -2.2, 1, -1)
+  add(new Mesh(new SphereGeometry(1.15, 64, 48), glass), 0.4, 1.4, -1)
+  add(new Mesh(new BoxGeometry(1.7, 2.4, 0.2), glass), 3, 1.45, -1)
+  add(new Mesh(new IcosahedronGeometry(0.9), glass), 5, 1, -1)
+  meshes[meshes.length - 2].rotation.y = -0.5
+  scene.add(...meshes)
+  return meshes
+}
+
+/** What materials mirror: the sky itself, as a scene's environment. */
+export async function createEnvironment(
+  canvas: HTMLCanvasElement,
+  args: EnvironmentArgs
+): Promise<SceneHandle<EnvironmentArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(44, 1, 0.1, 2 * SEA_RADIUS)
+  camera.position.set(-1.5, 2.6, 12)
+  const controls = new OrbitControls(camera, args.frame ? null : canvas)
+  controls.target.set(0, 1.5, 0)
+  controls.maxPolarAngle = Math.PI * 0.52
+  controls.enableDamping = true
+  controls.update()
+
+  const current = { ...args }
+  const parameters = AtmosphereParameters.earth()
+  parameters.set({ groundAlbedo: [...SEA_ALBEDO] })
+  const atmosphere = new Atmosphere({ parameters })
+  const meshes = populate(scene)
+  const water = createWater(SEA_RADIUS)
+  scene.add(water.mesh)
+
+  const environment = skyEnvironment(atmosphere)
+  scene.environmentNode = environment
+  const sun = new SunDirectionalLight(atmosphere, 50)
+  const sky = new SkyLightProbe(atmosphere)
+  scene.add(sun, sun.target, sky)
+  sun.castShadow = true
+  sun.shadow.mapSize.setScalar(2048)
+  sun.shadow.camera.left = sun.shadow.camera.bottom = -10
+  sun.shadow.camera.right = sun.shadow.camera.top = 10
+  sun.shadow.camera.far = 100
+  sun.shadow.normalBias = 0.02
+
+  let pipeline: RenderPipeline | undefined
+  if (args.path === 'forward') {
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+  } else {
+    const scenePass = pass(scene, camera, { samples: 0 })
+    const color = scenePass.getTextureNode()
+    const depth = scenePass.getTextureNode('depth')
+    pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
+  }
+
+  const apply = (): void => {
+    atmosphere.setSunAngles(current.elevation, current.azimuth)
+    water.setSlope(current.ripples / 1000)
+    renderer.toneMappingExposure = exposureOf(current.exposure)
+    // One frame must show it all; a running scene draws it over seven.
+    if (current.frame) environment.needsRedraw = true
+  }
+  apply()
+
+  const draw = (): void => {
+    if (pipeline === undefined) {
+      renderer.render(scene, camera)
+    } else {
+      pipeline.render()
+    }
+  }
+  let ready: Promise<void> = Promise.resolve()
+  const warmUp = async (): Promise<void> => {
+    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
+      draw()
+    }
+  }
+  const start = performance.now()
+
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render() {
+      if (!current.frame) {
+        controls.update()
+        water.setTime((performance.now() - start) / 1000)
+      }
+      draw()
+    },
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      camera.updateProjectionMatrix()
+      ready = warmUp()
+    },
+    update(changes) {
+      Object.assign(current, changes)
+      apply()
+    },
+    dispose() {
+      if (controls.domElement !== null) {
+        controls.dispose()
+      }
+      sun.dispose()
+      sky.dispose()
+      environment.dispose()
+      pipeline?.dispose()
+      atmosphere.dispose()
+      water.dispose()
+      for (const { geometry, material } of meshes) {
+        geometry.dispose()
+        ;(material as Material).dispose()
+      }
+      void renderer.dispose()
+    }
+  }
+}

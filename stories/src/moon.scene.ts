@@ -1,0 +1,196 @@
+import {
+  aerialPerspective,
+  aerialPerspectiveFog,
+  Atmosphere,
+  moon,
+  MoonDirectionalLight,
+  skyBackground,
+  SkyLightProbe,
+  SunDirectionalLight,
+  sunFlare
+} from '@welkin/atmosphere'
+import {
+  BoxGeometry,
+  CircleGeometry,
+  ConeGeometry,
+  Mesh,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  Scene,
+  SphereGeometry,
+  Vector3
+} from 'three'
+import { pass } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { randomSequence } from './random'
+import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface MoonArgs extends RendererArgs {
+  /** [degrees] */
+  longitude: number
+  /** [degrees] */
+  latitude: number
+  /** A moment of the day [ms since 1970]. */
+  day: number
+  /** Hour of that day, UTC [h]. */
+  hour: number
+  /** Whether the phase is `phase`, not that of the date. */
+  setPhase: boolean
+  /** 0 new, 0.5 full, 1 new. */
+  phase: number
+  /** What the camera looks at. */
+  target: 'moon' | 'sun'
+  /** How far below that the middle of the picture is [degrees]. */
+  lower: number
+  /** Vertical field of view [degrees]. */
+  fieldOfView: number
+  /** [stops], 0 for daylight. */
+  exposure: number
+  /** What lights the land; none leaves the sky alone. Takes effect when the scene is made. */
+  lights: 'sun' | 'moon' | 'both' | 'none'
+  /** Width of the map of the moon's ground [texels]. */
+  mapSize: number
+}
+
+const GROUND_RADIUS = 15_000
+
+/** From what casts shadows to the light [m]. */
+const SHADOW_DISTANCE = 150
+
+/** A meadow with trees and a hut. */
+function populate(scene: Scene): Mesh[] {
+  const ground = new Mesh(
+    new CircleGeometry(GROUND_RADIUS, 96).rotateX(-Math.PI / 2),
+    new MeshStandardMaterial({ color: '#6c7058', roughness: 0.95 })
+  )
+  const meshes: Mesh[] = [ground]
+  const next = randomSequence(7)
+  const needles = new MeshStandardMaterial({ color: '#3d4a33', roughness: 1 })
+  const cone = new ConeGeometry(1, 3, 9)
+  for (let i = 0; i < 90; i++) {
+    const tree = new Mesh(cone, needles)
+    const size = 2 + 3 * next()
+    const [angle, distance] = [2 * Math.PI * next(), 40 + 260 * next() ** 1.5]
+    tree.position.set(distance * Math.sin(angle), size * 1.5, distance * Math.cos(angle))
+    tree.scale.setScalar(size)
+    meshes.push(tree)
+  }
+  const wall = new MeshStandardMaterial({ color: '#d8d4c8', roughness: 0.9 })
+  const hut = new Mesh(new BoxGeometry(7, 4, 5), wall)
+  hut.position.set(14, 2, 22)
+  const ball = new Mesh(new SphereGeometry(1.5, 48, 32), wall)
+  ball.position.set(-8, 1.5, 16)
+  meshes.push(hut, ball)
+  for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
+  ground.castShadow = false
+  scene.add(...meshes)
+  return meshes
+}
+
+export async function createMoon(
+  canvas: HTMLCanvasElement,
+  args: MoonArgs
+): Promise<SceneHandle<MoonArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(40, 1, 0.5, 2 * GROUND_RADIUS)
+  camera.position.set(0, 1.8, 0)
+  const meshes = args.lights === 'none' ? [] : populate(scene)
+  const current = { ...args }
+  const atmosphere = new Atmosphere()
+  const luna = moon(atmosphere, { mapSize: args.mapSize, lightsAir: args.lights !== 'sun' })
+  atmosphere.add(sunFlare(atmosphere), luna)
+  const lights: SunDirectionalLight[] = []
+  if (args.lights === 'sun' || args.lights === 'both') {
+    lights.push(new SunDirectionalLight(atmosphere, SHADOW_DISTANCE))
+    scene.add(new SkyLightProbe(atmosphere))
+  }
+  if (args.lights === 'moon' || args.lights === 'both') {
+    lights.push(new MoonDirectionalLight(atmosphere, luna, SHADOW_DISTANCE))
+    scene.add(new SkyLightProbe(atmosphere, luna.source))
+  }
+  for (const light of lights) {
+    const { shadow } = light
+    light.castShadow = true
+    shadow.mapSize.setScalar(1024)
+    shadow.camera.left = shadow.camera.bottom = -60
+    shadow.camera.right = shadow.camera.top = 60
+    shadow.camera.far = 2 * SHADOW_DISTANCE
+    shadow.normalBias = 0.1
+    scene.add(light, light.target)
+  }
+  let pipeline: RenderPipeline | undefined
+  if (args.path === 'forward') {
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+  } else {
+    const scenePass = pass(scene, camera, { samples: 0 })
+    const color = scenePass.getTextureNode()
+    const depth = scenePass.getTextureNode('depth')
+    pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
+  }
+  const draw = (): void => {
+    if (pipeline === undefined) renderer.render(scene, camera)
+    else pipeline.render()
+  }
+
+  const aim = new Vector3()
+  const apply = (): void => {
+    atmosphere.place(current)
+    atmosphere.date = dateOf(current.day, current.hour)
+    luna.phase = current.setPhase ? current.phase : null
+    const { direction } = luna.seenFrom(camera.position)
+    aim.copy(current.target === 'moon' ? direction : atmosphere.sunDirection)
+    const level = Math.hypot(aim.x, aim.z)
+    const elevation = Math.atan2(aim.y, level) - (current.lower * Math.PI) / 180
+    const [east, south] = [aim.x / level, aim.z / level]
+    const across = Math.cos(elevation)
+    aim.set(east * across, Math.sin(elevation), south * across)
+    camera.lookAt(aim.add(camera.position))
+    camera.fov = current.fieldOfView
+    camera.updateProjectionMatrix()
+    renderer.toneMappingExposure = exposureOf(current.exposure)
+  }
+  apply()
+
+  let ready: Promise<void> = Promise.resolve()
+  const warmUp = async (): Promise<void> => {
+    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
+  }
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render() {
+      draw()
+    },
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      camera.updateProjectionMatrix()
+      ready = warmUp()
+    },
+    update(next) {
+      Object.assign(current, next)
+      apply()
+      ready = warmUp()
+    },
+    dispose() {
+      for (const light of lights) light.dispose()
+      pipeline?.dispose()
+      atmosphere.dispose()
+      for (const { geometry, material } of meshes) {
+        geometry.dispose()
+        ;(material as MeshStandardMaterial).dispose()
+      }
+      void renderer.dispose()
+    }
+  }
+}

@@ -1,0 +1,69 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { createNight } from './night.scene'
+import type { NightArgs } from './night.scene'
+import { CONSTELLATIONS } from './night/constellations'
+import { rendererArgTypes } from './storyArgs'
+
+const meta: Meta<NightArgs> = {
+  title: 'Starry night',
+  render: mount(createNight),
+  argTypes: {
+    constellation: {
+      name: 'Constellation',
+      options: Object.keys(CONSTELLATIONS),
+      control: {
+        type: 'select',
+        labels: Object.fromEntries(
+          Object.entries(CONSTELLATIONS).map(([name, { label }]) => [name, label])
+        )
+      }
+    },
+    fieldOfView: {
+      name: 'Field of view [°]',
+      control: { type: 'range', min: 1, max: 100, step: 1 },
+      description: 'Vertical'
+    },
+    chart: {
+      name: 'Chart',
+      control: 'boolean',
+      description: 'Lines of a star chart, from places of its own'
+    },
+    exposure: {
+      name: 'Exposure [stops]',
+      control: { type: 'range', min: -6, max: 6, step: 0.25 },
+      description: '0 as exposureFor says'
+    },
+    ...rendererArgTypes
+  },
+  args: {
+    constellation: 'orion',
+    fieldOfView: 40,
+    chart: true,
+    exposure: 0,
+    forceWebGL: false,
+    path: 'forward',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<NightArgs>
+
+/** Two hours before midnight in January, 45° north. */
+export const Orion: Story = { tags: ['screenshot'] }
+
+export const UrsaMajor: Story = { args: { constellation: 'ursaMajor' }, tags: ['screenshot'] }
+
+export const Cassiopeia: Story = { args: { constellation: 'cassiopeia' }, tags: ['screenshot'] }
+
+/** The middle of the Milky Way beside it, from 25° south. */
+export const Scorpius: Story = { args: { constellation: 'scorpius' }, tags: ['screenshot'] }
+
+export const Crux: Story = { args: { constellation: 'crux' }, tags: ['screenshot'] }
+
+/** The whole arch of the Milky Way, a stop and a half brighter than the eye sees it. */
+export const Wide: Story = {
+  args: { constellation: 'scorpius', fieldOfView: 95, chart: false, exposure: 1.5 }
+}

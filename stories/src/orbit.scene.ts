@@ -1,0 +1,94 @@
+import {
+  airglow,
+  Atmosphere,
+  exposureFor,
+  milkyWay,
+  skyBackground,
+  stars
+} from '@welkin/atmosphere'
+import { Ellipsoid } from '@welkin/geo'
+import { PerspectiveCamera, Scene, Vector3 } from 'three'
+import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface OrbitArgs extends RendererArgs {
+  /** Above the ellipsoid [km]. */
+  altitude: number
+  /** Along the orbit from where the sun is at the nadir's zenith [degrees]. */
+  angle: number
+  /** Vertical [degrees]. */
+  fieldOfView: number
+  /** [stops], 0 as `exposureFor` says. */
+  exposure: number
+}
+
+/** Out of a space station's window, around the Earth: night side, airglow, stars, sunrise. */
+export async function createOrbit(
+  canvas: HTMLCanvasElement,
+  args: OrbitArgs
+): Promise<SceneHandle<OrbitArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(args.fieldOfView, 1, 10, 1e8)
+  const current = { ...args }
+  const atmosphere = new Atmosphere()
+  atmosphere.frame = 'ecef'
+  atmosphere.date = new Date('2026-06-20T23:00:00Z')
+  atmosphere.add(milkyWay(), stars(), airglow())
+  scene.backgroundNode = skyBackground(atmosphere)
+
+  const apply = (): void => {
+    const angle = (current.angle * Math.PI) / 180
+    // A circle through the point under the sun, 35° from the equator's direction.
+    const start = atmosphere.sunDirection
+    const side = new Vector3(0.57, 0, 0.82).cross(start).normalize()
+    const ahead = side.clone().cross(start).normalize()
+    const up = start.clone().multiplyScalar(Math.cos(angle)).addScaledVector(ahead, Math.sin(angle))
+    const forward = ahead.multiplyScalar(Math.cos(angle)).addScaledVector(start, -Math.sin(angle))
+    const height = current.altitude * 1000
+    camera.position.copy(up).multiplyScalar(Ellipsoid.WGS84.radii.x + height)
+    camera.up.copy(up)
+    // At the limb.
+    const dip = Math.acos(Ellipsoid.WGS84.radii.x / (Ellipsoid.WGS84.radii.x + height))
+    const target = forward.multiplyScalar(Math.cos(dip)).addScaledVector(up, -Math.sin(dip))
+    camera.lookAt(camera.position.clone().addScaledVector(target, 1e6))
+    camera.fov = current.fieldOfView
+    camera.updateProjectionMatrix()
+    camera.updateMatrixWorld()
+    atmosphere.luminanceScale =
+      1e-4 * exposureFor(atmosphere, camera) * exposureOf(current.exposure)
+  }
+  apply()
+
+  const draw = (): void => renderer.render(scene, camera)
+  let ready: Promise<void> = Promise.resolve()
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render: draw,
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      camera.updateProjectionMatrix()
+      ready = (async () => {
+        await atmosphere.bake(renderer)
+        apply()
+        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
+      })()
+    },
+    update(changes) {
+      Object.assign(current, changes)
+      apply()
+    },
+    dispose() {
+      atmosphere.dispose()
+      void renderer.dispose()
+    }
+  }
+}

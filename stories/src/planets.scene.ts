@@ -1,0 +1,163 @@
+import {
+  airlessBody,
+  Atmosphere,
+  AtmosphereParameters,
+  marsAtmosphere,
+  planetGround,
+  titanAtmosphere,
+  venusAtmosphere
+} from '@welkin/atmosphere'
+import { Ellipsoid } from '@welkin/geo'
+import { PerspectiveCamera, RepeatWrapping, Scene, SRGBColorSpace, TextureLoader } from 'three'
+import type { Texture } from 'three'
+import { Air } from './air'
+import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export type PlanetName = 'earth' | 'made-up' | 'mars' | 'titan' | 'venus' | 'moon'
+
+export interface PlanetsArgs extends RendererArgs {
+  planet: PlanetName
+  /** Of the camera above the ground [m]. */
+  height: number
+  /** [degrees] */
+  longitude: number
+  /** [degrees] */
+  latitude: number
+  /** Of the sun above the horizon [degrees]. */
+  sunElevation: number
+  /** Of the sun from where the camera looks, clockwise [degrees]. */
+  sunAzimuth: number
+  /** Of the line of sight above the horizontal [degrees]. */
+  pitch: number
+  /** Vertical field of view [degrees]. */
+  fieldOfView: number
+  /** [stops], 0 for daylight. */
+  exposure: number
+  /** Optical depth of Mars's dust. */
+  dust: number
+}
+
+/** Light of the sun there, over that on the Earth, is evened out: like a photographer's exposure. */
+function daylight(parameters: AtmosphereParameters): number {
+  return new AtmosphereParameters().solarIrradiance[1] / parameters.solarIrradiance[1]
+}
+
+function parametersOf({ planet, dust }: PlanetsArgs): AtmosphereParameters {
+  switch (planet) {
+    case 'mars':
+      return marsAtmosphere({ dust })
+    case 'titan':
+      return titanAtmosphere()
+    case 'venus':
+      return venusAtmosphere()
+    case 'moon':
+      return airlessBody()
+    default:
+      return new AtmosphereParameters()
+  }
+}
+
+/** The Earth's colours, water and night lights. */
+async function earthPictures(): Promise<Record<'surface' | 'water' | 'nightLights', Texture>> {
+  const folder = new URL('world-data/earth/', document.baseURI).href
+  const load = async (name: string, isColor: boolean): Promise<Texture> => {
+    const picture = await new TextureLoader().loadAsync(folder + name)
+    if (isColor) picture.colorSpace = SRGBColorSpace
+    picture.wrapS = RepeatWrapping
+    picture.anisotropy = 8
+    return picture
+  }
+  const [surface, water, nightLights] = await Promise.all([
+    load('earth-blue-marble.jpg', true),
+    load('earth-water.png', false),
+    load('earth-night.jpg', true)
+  ])
+  return { surface, water, nightLights }
+}
+
+/** A planet's sky and ground from 2 m to orbit, with nothing else in the scene. */
+export async function createPlanets(
+  canvas: HTMLCanvasElement,
+  args: PlanetsArgs
+): Promise<SceneHandle<PlanetsArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(60, 1, 1, 1e9)
+  const pictures = await earthPictures()
+  const current = { ...args }
+  let aspect = 1
+  let shown: { air: Air; atmosphere: Atmosphere; key: string } | undefined
+  let ready: Promise<void> = Promise.resolve()
+
+  const show = async (): Promise<void> => {
+    const parameters = parametersOf(current)
+    const { bottomRadius } = parameters
+    const isEarth = current.planet === 'earth'
+    const ellipsoid = isEarth ? Ellipsoid.WGS84 : new Ellipsoid(bottomRadius, bottomRadius)
+    const atmosphere = new Atmosphere({ parameters, ellipsoid })
+    if (isEarth || current.planet === 'made-up') {
+      const ground = planetGround(isEarth ? pictures : { seed: 3 })
+      atmosphere.add(ground)
+      parameters.set({ groundAlbedo: await ground.meanAlbedo(renderer, parameters) })
+    }
+    shown?.air.dispose()
+    const air = new Air(renderer, scene, camera, args.path, atmosphere)
+    shown = { air, atmosphere, key: keyOf(current) }
+    apply()
+  }
+
+  const keyOf = ({ planet, dust }: PlanetsArgs): string => `${planet} ${dust}`
+
+  const apply = (): void => {
+    if (shown === undefined) return
+    const { atmosphere } = shown
+    const radians = Math.PI / 180
+    atmosphere.place({ longitude: current.longitude, latitude: current.latitude })
+    atmosphere.setSunAngles(current.sunElevation, current.sunAzimuth)
+    camera.position.y = current.height
+    camera.rotation.x = current.pitch * radians
+    camera.fov = current.fieldOfView
+    camera.aspect = aspect
+    camera.updateProjectionMatrix()
+    camera.updateMatrixWorld()
+    renderer.toneMappingExposure = exposureOf(current.exposure) * daylight(atmosphere.parameters)
+  }
+
+  const draw = (): void => shown?.air.render()
+
+  const load = (): void => {
+    ready = (shown?.key === keyOf(current) ? Promise.resolve() : show()).then(() => {
+      apply()
+      for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
+    })
+    // A failure is reported to whoever awaits `ready`.
+    ready.catch(() => {})
+  }
+
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render: draw,
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      aspect = width / height
+      load()
+    },
+    update(changes) {
+      Object.assign(current, changes)
+      load()
+    },
+    dispose() {
+      shown?.air.dispose()
+      for (const picture of Object.values(pictures)) picture.dispose()
+      void renderer.dispose()
+    }
+  }
+}

@@ -1,0 +1,168 @@
+import {
+  airlessBody,
+  AtmosphereParameters,
+  atmosphereShell,
+  marsAtmosphere,
+  titanAtmosphere
+} from '@welkin/atmosphere'
+import type { AtmosphereShell } from '@welkin/atmosphere'
+import {
+  BoxGeometry,
+  Color,
+  DirectionalLight,
+  Group,
+  Mesh,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  Scene,
+  SphereGeometry,
+  Vector3
+} from 'three'
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface ShellArgs extends RendererArgs {
+  /** A map of a few bodies, or the view out of a cockpit. */
+  view: 'map' | 'cockpit'
+  model: 'tables' | 'single-scattering'
+  /** Of the sun above the cockpit's horizon, or around the map [degrees]. */
+  sun: number
+  /** Of the cockpit above the ground [m]. */
+  height: number
+  /** [stops], 0 for daylight. */
+  exposure: number
+}
+
+/** Sunlight on a plane that faces it [lx], as bright as the sky's tables have it at scale 1e-4. */
+const SUNLIGHT = 13
+
+/** A kilometre in the cockpit's world [world units]. */
+const KILOMETER = 1
+
+/** Bodies with shells of air, and no sky, no background, no post pass. */
+export async function createShell(
+  canvas: HTMLCanvasElement,
+  args: ShellArgs
+): Promise<SceneHandle<ShellArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  scene.background = new Color(0x000000)
+  const camera = new PerspectiveCamera(45, 1, 0.001, 1e5)
+  const light = new DirectionalLight(0xffffff, SUNLIGHT)
+  scene.add(light, light.target)
+  const meshes: Mesh[] = []
+  const shells: AtmosphereShell[] = []
+
+  const add = (
+    parameters: AtmosphereParameters,
+    radius: number,
+    position: Vector3,
+    color: string
+  ): void => {
+    const ball = new Mesh(
+      args.view === 'map' ? new SphereGeometry(1, 128, 64) : new SphereGeometry(1, 512, 256),
+      new MeshStandardMaterial({ color, roughness: 1 })
+    )
+    ball.scale.setScalar(radius)
+    ball.position.copy(position)
+    meshes.push(ball)
+    scene.add(ball)
+    const shell = atmosphereShell(parameters, 1, { sun: light, model: args.model })
+    if (shell === null) return
+    shells.push(shell)
+    ball.add(shell)
+  }
+
+  const cockpit = new Group()
+  const build = (): void => {
+    if (args.view === 'map') {
+      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#24445c')
+      add(marsAtmosphere(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
+      add(titanAtmosphere(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
+      add(airlessBody(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
+      return
+    }
+    add(
+      new AtmosphereParameters(),
+      6378.137 * KILOMETER,
+      new Vector3(0, -6378.137 * KILOMETER, 0),
+      '#2b4a2a'
+    )
+    const frame = new MeshStandardMaterial({ color: '#1b1d20', roughness: 0.6 })
+    for (const [x, y, z, width, height, turn] of [
+      [0, -0.5, -0.9, 2.6, 0.35, 0],
+      [-0.62, 0.1, -0.9, 0.06, 1.3, 0.35],
+      [0.62, 0.1, -0.9, 0.06, 1.3, -0.35]
+    ]) {
+      const part = new Mesh(new BoxGeometry(width, height, 0.05), frame)
+      part.position.set(x, y, z)
+      part.rotation.z = turn
+      meshes.push(part)
+      cockpit.add(part)
+    }
+    // Metres in a world of kilometres.
+    cockpit.scale.setScalar(1e-3 * KILOMETER)
+    scene.add(cockpit)
+  }
+  build()
+
+  const controls = new OrbitControls(camera, args.frame || args.view === 'cockpit' ? null : canvas)
+  const current = { ...args }
+  const apply = (): void => {
+    const angle = (current.sun * Math.PI) / 180
+    if (args.view === 'map') light.position.set(Math.sin(angle), 0.3, Math.cos(angle))
+    else light.position.set(0.4 * Math.cos(angle), Math.sin(angle), -Math.cos(angle))
+    if (args.view === 'cockpit') {
+      camera.near = 2e-4
+      camera.position.set(0, 1e-3 * current.height * KILOMETER, 0)
+      cockpit.position.copy(camera.position)
+      light.position.multiplyScalar(1e4)
+    }
+    renderer.toneMappingExposure = exposureOf(current.exposure)
+    camera.updateProjectionMatrix()
+    camera.updateMatrixWorld()
+  }
+  if (args.view === 'map') camera.position.set(0, 0.8, 4.2)
+  else camera.rotation.x = -0.04
+  if (args.view === 'map') controls.update()
+  apply()
+
+  let ready: Promise<void> = Promise.resolve()
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render() {
+      if (controls.domElement !== null) controls.update()
+      renderer.render(scene, camera)
+    },
+    resize(width, height, pixelRatio) {
+      renderer.setPixelRatio(pixelRatio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      camera.updateProjectionMatrix()
+      ready = Promise.resolve().then(() => {
+        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) renderer.render(scene, camera)
+      })
+    },
+    update(changes) {
+      Object.assign(current, changes)
+      apply()
+    },
+    dispose() {
+      if (controls.domElement !== null) controls.dispose()
+      for (const shell of shells) shell.dispose()
+      for (const { geometry, material } of meshes) {
+        geometry.dispose()
+        ;(material as MeshStandardMaterial).dispose()
+      }
+      light.dispose()
+      void renderer.dispose()
+    }
+  }
+}

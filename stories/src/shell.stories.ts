@@ -1,0 +1,65 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { createShell } from './shell.scene'
+import type { ShellArgs } from './shell.scene'
+import { rendererArgTypes } from './storyArgs'
+
+const meta: Meta<ShellArgs> = {
+  title: 'Shell',
+  render: mount(createShell),
+  argTypes: {
+    view: { name: 'View', table: { disable: true } },
+    model: {
+      name: 'Model',
+      description: 'From tables, or a short march without any; takes effect on reload',
+      options: ['tables', 'single-scattering'],
+      control: 'inline-radio'
+    },
+    sun: {
+      name: 'Sun [°]',
+      description: "Above the cockpit's horizon, or around the map",
+      control: { type: 'range', min: -180, max: 180, step: 1 }
+    },
+    height: {
+      name: 'Height [m]',
+      description: 'Of the cockpit above the ground',
+      control: { type: 'range', min: 100, max: 400_000, step: 100 }
+    },
+    exposure: {
+      name: 'Exposure [stops]',
+      description: 'One more is twice as bright',
+      control: { type: 'range', min: -4, max: 10, step: 0.25 }
+    },
+    ...rendererArgTypes,
+    path: { table: { disable: true } }
+  },
+  args: {
+    view: 'map',
+    model: 'tables',
+    sun: 60,
+    height: 11_000,
+    exposure: -1,
+    forceWebGL: false,
+    path: 'forward',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<ShellArgs>
+
+/** Three bodies with air and one without. */
+export const Map: Story = {}
+
+/** From inside: the cockpit is not hazed, the ground is. */
+export const Cockpit: Story = { args: { view: 'cockpit', sun: 12 }, tags: ['screenshot'] }
+
+export const CockpitInSpace: Story = {
+  args: { view: 'cockpit', sun: 20, height: 300_000 }
+}
+
+export const SingleScattering: Story = {
+  args: { model: 'single-scattering' },
+  tags: ['screenshot']
+}

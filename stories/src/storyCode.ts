@@ -1,0 +1,12 @@
+import { codeRegion } from './codeRegion'
+
+const sources = import.meta.glob<string>(['./quickStart.ts', './*.scene.ts'], {
+  query: '?raw',
+  import: 'default',
+  eager: true
+})
+
+/** The code of a story, as `mount` shows it: the region NAME of a file beside this one. */
+export function storyCode(file: string, name: string): string {
+  return codeRegion(sources[`./${file}`] ?? '', name)
+}
