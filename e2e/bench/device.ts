@@ -93,10 +93,15 @@ export class BenchDevice {
 export async function gpuMilliseconds(renderer: WebGPURenderer): Promise<number> {
   await renderer.resolveTimestampsAsync(TimestampQuery.RENDER)
   // The renderer's own total leaves out passes that ran inside another.
+  return gpuPasses(renderer).reduce((sum, value) => sum + value, 0)
+}
+
+/** The same for each pass, in the order in which they began; after `gpuMilliseconds`. */
+export function gpuPasses(renderer: WebGPURenderer): number[] {
   const { timestampQueryPool } = renderer.backend as unknown as {
     timestampQueryPool: { render: { timestamps: Map<string, number> } }
   }
-  return [...timestampQueryPool.render.timestamps.values()].reduce((sum, value) => sum + value, 0)
+  return [...timestampQueryPool.render.timestamps.values()]
 }
 
 /** Waits until the GPU has done all that was asked of it. */

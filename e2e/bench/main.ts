@@ -1,6 +1,7 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
 import type { Atmosphere } from '@welkin/atmosphere'
+import { timeClouds } from './clouds'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
 import { timeEnvironment } from './environment'
 import { addSunMoonAndStars, benchScene, setSun, type Path } from './scene'
@@ -165,6 +166,13 @@ async function timeFirstFrame(): Promise<number> {
 
 const bake = await timeBake()
 const environment = await timeEnvironment(device, [width, height], 10)
+const cloudCosts = await timeClouds(device, [width, height], Math.min(frames, 10))
+for (const { view, quality, ms, passes, psnr } of cloudCosts) {
+  const each = passes.map(pass => pass.toFixed(2)).join(' ')
+  log(
+    `clouds, ${view.padEnd(7)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})   PSNR ${psnr.toFixed(1)} dB`
+  )
+}
 const result = {
   device: device.name,
   cases,
@@ -175,6 +183,7 @@ const result = {
   gpuBytes: bake.bytes,
   firstFrameMs,
   environment,
+  clouds: cloudCosts,
   cpuMsPerFrame: median(cpuCosts)
 }
 log(`

@@ -22,7 +22,8 @@ const quality: CloudQuality = {
   stepGrowth: 0.06,
   shortestStep: 40,
   layerSteps: 6,
-  sunSteps: 2
+  sunSteps: 2,
+  block: 2
 }
 const presets: CloudPresetName[] = ['fairWeather', 'overcast', 'cumulonimbus', 'mixed']
 

@@ -1,6 +1,6 @@
 import { aerialPerspective, Atmosphere } from '@welkin/atmosphere'
 import { cloudPreset, clouds } from '@welkin/clouds'
-import type { CloudPresetName, CloudQualityName, CloudsNode } from '@welkin/clouds'
+import type { CloudPresetName, CloudQualityName, CloudsDebug, CloudsNode } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
@@ -28,10 +28,12 @@ export interface CloudsArgs extends RendererArgs {
   /** Of the lowest layer, in [0, 1]; −1 for the preset's. */
   coverage: number
   quality: CloudQualityName
+  /** What is shown instead of the clouds. */
+  debug: CloudsDebug | 'off'
 }
 
-/** Time of a reproducible frame [s]. */
-const STILL = 0
+/** Time of a reproducible frame [s], and frames that fill what pixels remember. */
+const STILL = { time: 0, frames: 48 }
 
 export async function createClouds(
   canvas: HTMLCanvasElement,
@@ -71,18 +73,28 @@ export async function createClouds(
     camera.updateMatrixWorld()
     if (node === undefined) return
     node.quality = current.quality
-    node.time = current.frame ? STILL : null
+    node.debugView = current.debug === 'off' ? null : current.debug
+    node.time = current.frame ? STILL.time : null
     const { coverage } = cloudPreset(current.preset).at(0).parameters
     node.field.layers.at(0).set({ coverage: current.coverage < 0 ? coverage : current.coverage })
   }
   choose()
   apply()
 
+  let ready: Promise<void> = Promise.resolve()
+  const settle = async (): Promise<void> => {
+    for (let i = 0; i < STILL.frames; i++) {
+      await new Promise(requestAnimationFrame)
+      pipeline.render()
+    }
+  }
   return {
     renderer,
     scene,
     camera,
-    ready: Promise.resolve(),
+    get ready() {
+      return ready
+    },
     progress: 1,
     render: () => pipeline.render(),
     resize(width, height, pixelRatio) {
@@ -90,6 +102,7 @@ export async function createClouds(
       renderer.setSize(width, height, false)
       camera.aspect = width / height
       camera.updateProjectionMatrix()
+      if (current.frame) ready = settle()
     },
     update(changes) {
       const { preset } = current

@@ -23,6 +23,11 @@ const meta: Meta<CloudsArgs> = {
       description: 'Of the lowest layer; below 0 the preset’s'
     },
     quality: { name: 'Quality', options: Object.keys(cloudQualities), control: 'inline-radio' },
+    debug: {
+      name: 'Show',
+      options: ['off', 'opacity', 'steps', 'distance', 'history'],
+      control: 'select'
+    },
     altitude: {
       name: 'Altitude [m]',
       control: { type: 'number', min: 0, max: 1e8 },
@@ -44,6 +49,7 @@ const meta: Meta<CloudsArgs> = {
     preset: 'fairWeather',
     coverage: -1,
     quality: 'medium',
+    debug: 'off',
     altitude: 2,
     heading: 60,
     pitch: 14,

@@ -80,6 +80,8 @@ export class CloudField {
   readonly turns: readonly Quaternion[] = Array.from({ length: CloudLayers.maxLayers }, (_, i) =>
     layerTurn(i)
   )
+  /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
+  readonly drifts: readonly Vector3[] = this.turns.map(() => new Vector3())
   #seconds: number | null = null
 
   /**
@@ -129,6 +131,7 @@ export class CloudField {
     _position.copy(view.up).multiplyScalar(bottomRadius + view.height)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
+      this.drifts[i].set(0, 0, 0)
       if (Number.isFinite(elapsed) && elapsed !== 0) this.#drift(i, view.up, elapsed)
       this.#write(i)
     }
@@ -142,6 +145,8 @@ export class CloudField {
     const { wind, baseAltitude } = this.layers.at(index).parameters
     const radius = this.atmosphere.parameters.bottomRadius + baseAltitude
     this.turns[index].multiply(windTurn(wind, up, elapsed, radius, _turn)).normalize()
+    _point.copy(up).multiplyScalar(radius)
+    this.drifts[index].copy(_point).sub(_point.applyQuaternion(_turn))
   }
 
   /** Copies a layer's parameters, and its anchors for the eye and the point of the ground below it. */
@@ -149,7 +154,7 @@ export class CloudField {
     const { parameters } = this.layers.at(index)
     const periods = layerPeriods(parameters)
     const slots = this.values.slice(index * LAYER_STRIDE, (index + 1) * LAYER_STRIDE)
-    const { baseAltitude, topAltitude, coverage, density } = parameters
+    const { baseAltitude, topAltitude, coverage, density, shadow } = parameters
     slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
     const { profileExponent, shapeAmount, detailAmount } = parameters
     slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
@@ -182,6 +187,7 @@ export class CloudField {
     const again = periods.weather * WEATHER_AGAIN.period
     anchor(10, _foot, latticeRotation.weatherAgain, again)
     anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
+    slots[7].w = shadow ? 1 : 0
   }
 
   /** Draws missing noise: `CloudNoise.update`. */

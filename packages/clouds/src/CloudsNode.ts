@@ -1,34 +1,23 @@
-import { aerialPerspectiveTo, AtmosphereNode, linearSRGB } from '@welkin/atmosphere'
+import { AtmosphereNode } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
 import { Vector2 } from 'three'
 import type { Camera, PerspectiveCamera, Texture } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  getViewPosition,
-  isBackgroundDepth,
-  logarithmicDepthToViewZ,
-  screenCoordinate,
-  uniform,
-  uv,
-  vec2,
-  vec4
-} from 'three/tsl'
+import { Fn, If, exp2, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
 import { CloudField } from './CloudField'
 import type { CloudLayers } from './CloudLayers'
 import { CloudLightTable } from './CloudLightTable'
 import type { CloudNoise } from './CloudNoise'
+import { CloudRenderer } from './CloudRenderer'
+import { CloudShadowMap } from './CloudShadowMap'
+import { FrameUniforms } from './FrameUniforms'
 import {
   QualityUniforms,
   resolveQuality,
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import { marchClouds } from './tsl/march'
-import { FAR_AWAY } from './tsl/shells'
-import type { Float, Vec3, Vec4 } from './tsl-types'
+import type { LevelTexture, Vec2, Vec4 } from './tsl-types'
 
 const _size = new Vector2()
 
@@ -44,6 +33,25 @@ export interface CloudsOptions {
   light?: CloudLightTable
 }
 
+/** What the picture shows instead of clouds, for looking into them: white is most. */
+export type CloudsDebug =
+  /** How opaque they are. */
+  | 'opacity'
+  /** Steps of the last ray marched nearby, of 256. */
+  | 'steps'
+  /** Distance, by its logarithm: black at 100 m, white at 1000 km. */
+  | 'distance'
+  /** Looks that a pixel remembers, of 32. */
+  | 'history'
+
+const debugViews: readonly (CloudsDebug | null)[] = [
+  null,
+  'opacity',
+  'steps',
+  'distance',
+  'history'
+]
+
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
  * atmosphere's sun, sky and ground, with the air in front of them.
@@ -54,6 +62,9 @@ export interface CloudsOptions {
  * const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
  * pipeline.outputNode = clouds(air, depth, camera, atmosphere, cloudPreset('fairWeather'))
  * ```
+ *
+ * A frame marches a part of the pixels and takes the others from the frames before, looked up where the
+ * clouds were: draw with one node per camera, and give `depth` as a texture node.
  *
  * Layers may be changed at any time. What is transparent and writes no depth is taken to be where the
  * things behind it are. Knows standard, reversed and logarithmic depth.
@@ -71,13 +82,19 @@ export class CloudsNode extends AtmosphereNode {
   readonly camera: PerspectiveCamera
   readonly field: CloudField
   readonly light: CloudLightTable
+  /** Optical depths towards the sun about the camera. */
+  readonly shadows: CloudShadowMap
   /** Time, by which clouds drift [s]; null for the renderer's clock. */
   time: number | null = null
+  /** Whether pixels remember what was marched before; without, pictures are coarse. */
+  accumulates = true
   readonly #ownsLight: boolean
   readonly #uniforms = new QualityUniforms()
-  readonly #projectionInverse
-  readonly #near = uniform(0.1)
-  readonly #far = uniform(1000)
+  readonly #frame = new FrameUniforms()
+  #renderer: CloudRenderer | undefined
+  readonly #current = uniform(0)
+  readonly #exposure = uniform(1)
+  readonly #debug = uniform(0)
   #quality: CloudQuality
 
   /** @throws If an argument is missing or of the wrong kind. */
@@ -105,7 +122,7 @@ export class CloudsNode extends AtmosphereNode {
     this.field = new CloudField(atmosphere, layers, this.view, { worldMap, noise })
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
-    this.#projectionInverse = uniform(camera.projectionMatrixInverse)
+    this.shadows = new CloudShadowMap(this.field)
   }
 
   /** How finely clouds are marched. */
@@ -118,67 +135,109 @@ export class CloudsNode extends AtmosphereNode {
     this.#quality = resolveQuality(quality)
   }
 
-  override updateBefore(frame: NodeFrame): undefined {
-    super.updateBefore(frame)
-    if (frame.renderer !== null) this.field.bake(frame.renderer)
-    this.light.bake()
+  /** What is shown instead of clouds; null, the default, for clouds. */
+  get debugView(): CloudsDebug | null {
+    return debugViews[this.#debug.value]
   }
 
-  override update(frame: NodeFrame): undefined {
-    super.update(frame)
+  /** @throws If there is no such view. */
+  set debugView(view: CloudsDebug | null) {
+    const index = debugViews.indexOf(view)
+    if (index < 0) {
+      const names = debugViews.slice(1).join(', ')
+      throw new Error(`CloudsNode: debugView must be null or one of ${names}, got ${view}`)
+    }
+    this.#debug.value = index
+  }
+
+  /** Size of the pictures on the GPU, without noise and light table [bytes]. */
+  get bytes(): number {
+    return this.shadows.bytes + (this.#renderer?.bytes ?? 0)
+  }
+
+  override updateBefore(frame: NodeFrame): undefined {
+    super.updateBefore(frame)
     const { camera, field } = this
-    this.#near.value = camera.near
-    this.#far.value = camera.far
+    const { renderer } = frame
+    if (renderer === null) return
+    field.bake(renderer)
+    this.light.bake()
+    // What is drawn here and now reads the view too.
+    const view = this.view.update(frame)
+    if (view === undefined) return
+    const { width, height } = sizeOf(renderer)
     this.#uniforms.set(this.#quality)
-    if (frame.renderer !== null) field.pixelAngle.value = pixelAngle(frame.renderer, camera)
-    const view = this.atmosphere.viewOf(camera)
-    if (view !== undefined) field.update(view, this.time ?? frame.time)
+    field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
+    field.update(view, this.time ?? frame.time)
+    this.shadows.update(renderer, view)
+    this.#renderer ??= this.#createRenderer(renderer)
+    this.#renderer.setSize(width, height, this.#quality.block)
+    this.#frame.next(camera, view, field, this.#quality.block, this.accumulates)
+    this.#renderer.render(renderer)
+    this.#current.value = this.#renderer.current
+    this.#exposure.value = 1 / this.#frame.gain.value
+  }
+
+  #createRenderer(renderer: Renderer): CloudRenderer {
+    const { logarithmicDepthBuffer: isLogarithmic } = renderer as Renderer & {
+      logarithmicDepthBuffer: boolean
+    }
+    return new CloudRenderer({
+      field: this.field,
+      light: this.light.nodes,
+      shadows: this.shadows.nodes,
+      quality: this.#uniforms,
+      sights: {
+        field: this.field,
+        frame: this.#frame,
+        isLogarithmic,
+        depthAt: at => {
+          const depth = this.depthNode as unknown as LevelTexture<Vec2> & Vec4
+          return (
+            typeof depth.sample === 'function' ? (depth.sample(at) as unknown as Vec4) : depth
+          ).r
+        }
+      }
+    })
   }
 
   override setup(builder: NodeBuilder): Node {
-    const { logarithmicDepthBuffer: isLogarithmic } = builder.renderer as Renderer & {
-      logarithmicDepthBuffer: boolean
-    }
-    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this.#projectionInverse)
-
+    this.#renderer ??= this.#createRenderer(builder.renderer)
+    const { pictures } = this.#renderer
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
-      const depth = float((this.depthNode as Vec4).r).toConst() as Float
-      // Any depth that is neither near nor far gives the direction.
-      const middle = position(float(0.5)).toConst() as Vec3
-      const direction = this.view.toMapped(middle).normalize().toConst() as Vec3
-      const end = float(FAR_AWAY).toVar()
-      If(isBackgroundDepth(depth).not(), () => {
-        const at = isLogarithmic
-          ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
-          : position(depth)
-        end.assign(this.view.toMapped(at).length())
-      })
-      const marched = marchClouds(this.field, this.light.nodes, this.#uniforms, {
-        direction,
-        end,
-        jitter: interleavedNoise()
-      })
-      const opacity = marched.transmittance.oneMinus().toConst()
-      const result = color.toVar()
-      If(opacity.greaterThan(0), () => {
-        const reach = marched.distance.div(this.view.toMapped(middle).length())
-        const air = aerialPerspectiveTo(this.view, middle.mul(reach))
-        const light = linearSRGB(this.view.air.uniforms, marched.radiance)
-        const added = light.mul(air.transmittance).add(air.inScatter.mul(opacity))
-        result.assign(
-          vec4(
-            color.rgb.mul(marched.transmittance).add(added),
-            color.a.mul(marched.transmittance).add(opacity)
-          )
-        )
+      const isFirst = this.#current.equal(0)
+      const at = uv() as unknown as Vec2
+      const [first, second] = pictures.map(({ light }) => light.sample(at).level(0).toConst())
+      const clouds = isFirst.select(first, second).toConst() as Vec4
+      const light = clouds.rgb.mul(this.#exposure)
+      const result = vec4(
+        color.rgb.mul(clouds.a).add(light),
+        color.a.mul(clouds.a).add(clouds.a.oneMinus())
+      ).toVar()
+      If(this.#debug.greaterThan(0), () => {
+        const places = pictures.map(({ place }) => place.sample(at).level(0).toConst())
+        const place = isFirst.select(places[0], places[1]).toConst() as Vec4
+        const views = [
+          clouds.a.oneMinus(),
+          place.w,
+          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)),
+          place.z.div(32)
+        ]
+        views.forEach((view, i) => {
+          If(this.#debug.equal(i + 1), () => {
+            result.assign(vec4(vec3(view), 1))
+          })
+        })
       })
       return result
     })()
   }
 
-  /** Frees the noise and the light table if they are the node's own. */
+  /** Frees its pictures and maps, and the noise and the light table if they are the node's own. */
   override dispose(): void {
+    this.#renderer?.dispose()
+    this.shadows.dispose()
     this.field.dispose()
     if (this.#ownsLight) this.light.dispose()
     super.dispose()
@@ -189,21 +248,10 @@ function isPerspective(camera: Camera): camera is PerspectiveCamera {
   return (camera as PerspectiveCamera).isPerspectiveCamera
 }
 
-/** Angle between the lines of sight of neighbouring pixels in the middle of the picture [rad]. */
-function pixelAngle(renderer: Renderer, camera: PerspectiveCamera): number {
-  const target = renderer.getRenderTarget()
-  const height = target === null ? renderer.getDrawingBufferSize(_size).y : target.height
-  return 2 / (camera.projectionMatrix.elements[5] * Math.max(height, 1))
-}
-
-/**
- * A pattern of [0, 1) in which any 3×3 pixels are evenly spread.
- *
- * @see Jimenez 2014, "Next generation post processing in Call of Duty: Advanced Warfare"
- */
-function interleavedNoise(): Float {
-  const across = screenCoordinate.xy.floor().dot(vec2(0.06711056, 0.00583715))
-  return across.fract().mul(52.9829189).fract().toConst()
+/** Of what is drawn into [pixels]. */
+function sizeOf(renderer: Renderer): { width: number; height: number } {
+  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
+  return { width: Math.max(width, 1), height: Math.max(height, 1) }
 }
 
 /** Volumetric clouds as a post effect: see {@link CloudsNode}. */

@@ -11,8 +11,13 @@ export interface CloudQuality {
   readonly shortestStep: number
   /** Least number of steps through a layer, in [1, 256]. */
   readonly layerSteps: number
-  /** Samples of the march towards the sun, in [1, 16]. */
+  /** Samples of the clouds towards the sun, near each lit place, in [1, 16]. */
   readonly sunSteps: number
+  /**
+   * A frame marches one pixel of each block of so many by so many, 1, 2, 3 or 4; what was marched before
+   * fills the rest.
+   */
+  readonly block: number
 }
 
 /** Names of {@link cloudQualities}. */
@@ -20,10 +25,10 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 
 /** Well-tried qualities. */
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
-  low: { steps: 64, stepGrowth: 0.05, shortestStep: 40, layerSteps: 8, sunSteps: 3 },
-  medium: { steps: 96, stepGrowth: 0.035, shortestStep: 30, layerSteps: 12, sunSteps: 4 },
-  high: { steps: 160, stepGrowth: 0.022, shortestStep: 20, layerSteps: 20, sunSteps: 5 },
-  ultra: { steps: 320, stepGrowth: 0.01, shortestStep: 10, layerSteps: 40, sunSteps: 7 }
+  low: { steps: 64, stepGrowth: 0.05, shortestStep: 50, layerSteps: 8, sunSteps: 1, block: 4 },
+  medium: { steps: 96, stepGrowth: 0.035, shortestStep: 35, layerSteps: 12, sunSteps: 2, block: 4 },
+  high: { steps: 128, stepGrowth: 0.025, shortestStep: 25, layerSteps: 16, sunSteps: 2, block: 3 },
+  ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 12, layerSteps: 32, sunSteps: 4, block: 2 }
 }
 
 const ranges: Record<keyof CloudQuality, readonly [number, number]> = {
@@ -31,7 +36,8 @@ const ranges: Record<keyof CloudQuality, readonly [number, number]> = {
   stepGrowth: [1e-3, 1],
   shortestStep: [0.1, 1000],
   layerSteps: [1, 256],
-  sunSteps: [1, 16]
+  sunSteps: [1, 16],
+  block: [1, 4]
 }
 
 /**
@@ -52,6 +58,9 @@ export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQ
       `CloudsNode: quality.${name} must be a number in [${lowest}, ${highest}], got ${String(value)}`
     )
   }
+  if (!Number.isInteger(quality.block)) {
+    throw new Error(`CloudsNode: quality.block must be 1, 2, 3 or 4, got ${quality.block}`)
+  }
   return Object.freeze({ ...quality })
 }
 
@@ -60,14 +69,15 @@ const number = (): UniformNode<'float', number> => uniform(1).setGroup(renderGro
 
 /** A {@link CloudQuality} as shader uniforms. */
 export class QualityUniforms {
-  readonly steps = whole()
+  /** Half as many as steps. */
+  readonly pairs = whole()
   readonly stepGrowth = number()
   readonly shortestStep = number()
   readonly layerSteps = number()
   readonly sunSteps = whole()
 
   set(quality: CloudQuality): void {
-    this.steps.value = Math.round(quality.steps)
+    this.pairs.value = Math.ceil(quality.steps / 2)
     this.stepGrowth.value = quality.stepGrowth
     this.shortestStep.value = quality.shortestStep
     this.layerSteps.value = quality.layerSteps

@@ -1,5 +1,10 @@
 // What @types/three 0.187 lacks or gets wrong, in one place.
-import { Loop as threeLoop, uniformArray as threeUniformArray } from 'three/tsl'
+import {
+  Loop as threeLoop,
+  outputStruct,
+  property,
+  uniformArray as threeUniformArray
+} from 'three/tsl'
 import type { Vector4 } from 'three'
 import type { Node } from 'three/webgpu'
 
@@ -10,6 +15,7 @@ export type Vec2 = Node<'vec2'>
 export type Vec3 = Node<'vec3'>
 export type Vec4 = Node<'vec4'>
 export type Mat3 = Node<'mat3'>
+export type Mat4 = Node<'mat4'>
 
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {
@@ -31,4 +37,17 @@ export const vec4Array = (values: Vector4[]): Vec4Array =>
 /** A texture node that is read at an explicit level, wherever the control flow is. */
 export interface LevelTexture<UV> extends Node {
   sample(uv: UV): { level(level: Float | number): Vec4 }
+}
+
+/** A shader with two outputs: `color` assigns the properties that `output` is a struct of. */
+export interface TwoOutputs {
+  color: Vec4
+  output: Node
+}
+
+/** Two outputs from a function that assigns them. */
+export function twoOutputs(assign: (outputs: [Vec4, Vec4]) => Vec4): TwoOutputs {
+  const first = property('vec4') as unknown as Vec4
+  const second = property('vec4') as unknown as Vec4
+  return { color: assign([first, second]), output: outputStruct(first, second) }
 }

@@ -140,6 +140,35 @@ export interface CloudAmbientNodes {
 }
 
 /**
+ * Light of sky and ground scattered into the direction that is looked in, any number of times: radiance
+ * per scaled extinction, for a mean radiance of 1 of the upper or of the lower hemisphere.
+ */
+export function cloudAmbientShares(
+  light: CloudLight,
+  { depthAbove, depthBelow, layered, cosView }: CloudAmbientNodes
+): { sky: Float; ground: Float } {
+  const openness = layered
+    .mul(1 - PUFF_DEPTH)
+    .add(PUFF_DEPTH)
+    .toConst()
+  const above = depthAbove.max(0).mul(openness).toConst()
+  const below = depthBelow.max(0).mul(openness).toConst()
+  const place = slabPlace(above, above.add(below)).toConst()
+  const at = (uv: Vec2): Vec4 =>
+    light.table
+      .sample(vec3(uv, (2 * suns + 0.5) / CLOUD_LIGHT_LAYERS))
+      .level(0)
+      .toConst()
+  const fromSky = at(place)
+  // The same slab seen from below.
+  const fromGround = at(vec2(place.x.oneMinus(), place.y))
+  const second = cosView.mul(cosView).mul(1.5).sub(0.5).toConst()
+  const sky = fromSky.x.add(fromSky.y.mul(cosView)).add(fromSky.z.mul(second)).max(0)
+  const ground = fromGround.x.sub(fromGround.y.mul(cosView)).add(fromGround.z.mul(second)).max(0)
+  return { sky: sky.toConst(), ground: ground.toConst() }
+}
+
+/**
  * Light of sky and ground scattered into the direction that is looked in, any number of times:
  * radiance per scaled extinction. Twin: cpu/cloudLight.ts
  *
@@ -148,32 +177,12 @@ export interface CloudAmbientNodes {
  */
 export function cloudAmbient(
   light: CloudLight,
-  { depthAbove, depthBelow, layered, cosView }: CloudAmbientNodes,
+  sample: CloudAmbientNodes,
   sky: Vec4,
   ground: Vec4
 ): Vec4 {
   return Fn(() => {
-    const openness = layered
-      .mul(1 - PUFF_DEPTH)
-      .add(PUFF_DEPTH)
-      .toConst()
-    const above = depthAbove.max(0).mul(openness).toConst()
-    const below = depthBelow.max(0).mul(openness).toConst()
-    const place = slabPlace(above, above.add(below)).toConst()
-    const at = (uv: Vec2): Vec4 =>
-      light.table
-        .sample(vec3(uv, (2 * suns + 0.5) / CLOUD_LIGHT_LAYERS))
-        .level(0)
-        .toConst()
-    const fromSky = at(place)
-    // The same slab seen from below.
-    const fromGround = at(vec2(place.x.oneMinus(), place.y))
-    const second = cosView.mul(cosView).mul(1.5).sub(0.5).toConst()
-    const skyShare = fromSky.x.add(fromSky.y.mul(cosView)).add(fromSky.z.mul(second)).max(0)
-    const groundShare = fromGround.x
-      .sub(fromGround.y.mul(cosView))
-      .add(fromGround.z.mul(second))
-      .max(0)
-    return sky.mul(skyShare).add(ground.mul(groundShare))
+    const shares = cloudAmbientShares(light, sample)
+    return sky.mul(shares.sky).add(ground.mul(shares.ground))
   })()
 }

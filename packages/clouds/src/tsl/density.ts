@@ -1,11 +1,11 @@
-import { If, float, int, log2, smoothstep } from 'three/tsl'
+import { If, float, int, log2, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import { CURL_AMOUNT, CURL_PERIOD, densityShape, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
-import { loop, type Float, type Vec3 } from '../tsl-types'
-import { layerAt, rotate, type LayerNodes } from './layer'
+import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { forLayers, layerAt, rotate, type LayerNodes } from './layer'
 import { footOffset, weatherAt, type CloudWeather } from './weather'
 
 /** A place in the air, as seen from the field's camera. */
@@ -19,6 +19,15 @@ export interface CloudSample {
   /** From the camera [m]: sets the level of detail. */
   distance: Float
 }
+
+/** Farther than any cloud [m]. */
+const NOWHERE = 1e6
+
+/**
+ * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
+ * periods of the weather, and where its shape is besides, in periods of the shape.
+ */
+const STEEPEST = { weather: 0.03, shape: 0.05 }
 
 const { carvedSharpness, erosion, farFill, leastCarving, smoothSharpness } = densityShape
 
@@ -38,16 +47,16 @@ function sharpnessOf({ shapeAmount }: LayerNodes): Float {
 const levelOf = (footprint: Float, texel: Float | number): Float =>
   log2(footprint.div(texel).max(1e-3)).max(0)
 
-/** What shape and detail carve out of a filled part of a layer. */
+/** What shape and detail leave of a filled part of a layer, and what the shape alone takes. */
 function carving(
   field: CloudField,
   layer: LayerNodes,
-  weather: CloudWeather,
+  weather: Pick<CloudWeather, 'shapeWarp' | 'detailWarp'>,
   sample: CloudSample,
   height: Float,
   filled: Float,
   detail: boolean
-): Float {
+): { left: Float; carved: Float } {
   const { shape, detail: frayed } = field.textures
   const turned = layer.turn(sample.offset).toConst()
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
@@ -57,11 +66,10 @@ function carving(
   const level = levelOf(footprint, float(1 / NOISE_SIZE.shape).div(layer.perShapePeriod))
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x.add(noise.y.sub(0.5).mul(0.3))
-  const left = filled
-    .sub(layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)))
-    .toVar() as Float & { subAssign: (n: Float) => void }
+  const carved = layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)).toConst() as Float
+  const left = filled.sub(carved).toVar() as Float & { subAssign: (n: Float) => void }
   const most = layer.detailAmount.mul(erosion).toConst() as Float
-  if (!detail) return left.sub(most.mul(0.5))
+  if (!detail) return { left: left.sub(most.mul(0.5)), carved }
   // Deep inside, the most that detail takes away changes nothing.
   If(left.greaterThan(0).and(left.lessThan(most.add(sharpnessOf(layer).reciprocal()))), () => {
     const fine = rotate(latticeRotation.detail, turned.add(weather.detailWarp))
@@ -76,16 +84,24 @@ function carving(
     const wispy = smoothstep(0.1, 0.35, height)
     left.subAssign(most.mul(wispy.mix(fray, fray.oneMinus())))
   })
-  return left
+  return { left, carved }
 }
 
 /** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(layer: LayerNodes, weather: CloudWeather): Float {
+export function spreadDensity(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
   const depth = layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst() as Float
-  const blocked = weather.cover.mul(depth.negate().exp().oneMinus())
+  const blocked = cover.mul(depth.negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
   return blocked.oneMinus().max(1e-30).log().negate().div(depth)
 }
+
+/** Height in a layer from 0 to 1. */
+const heightIn = (layer: LayerNodes, altitude: Float): Float =>
+  altitude.sub(layer.baseAltitude).mul(layer.perThickness).toConst()
+
+/** Whether clouds of a layer may be at a height in it. */
+const mayHold = (layer: LayerNodes, height: Float): Bool =>
+  height.greaterThan(0).and(height.lessThan(1)).and(layer.coverage.greaterThan(0))
 
 /** Calls back for each layer whose altitudes include the sample's. */
 function eachLayer(
@@ -94,17 +110,167 @@ function eachLayer(
   body: (layer: LayerNodes, weather: CloudWeather, height: Float) => void
 ): void {
   const foot = footOffset(field, sample).toConst()
-  loop('cloudLayer', field.layers.length, index => {
+  forLayers(field, 'cloudLayer', index => {
     const layer = layerAt(field, index)
-    const height = sample.altitude
-      .sub(layer.baseAltitude)
-      .mul(layer.perThickness)
-      .toConst() as Float
-    const isInside = height
-      .greaterThan(0)
-      .and(height.lessThan(1))
-      .and(layer.coverage.greaterThan(0))
-    If(isInside, () => body(layer, weatherAt(field, layer, foot, sample), height))
+    const height = heightIn(layer, sample.altitude)
+    If(mayHold(layer, height), () => {
+      body(layer, weatherAt(field, layer, foot, sample), height)
+    })
+  })
+}
+
+/** Weather without what only the region has to say. */
+type LocalWeather = Pick<CloudWeather, 'fill' | 'cover' | 'spread' | 'shapeWarp' | 'detailWarp'>
+
+/** What there is of a layer at a place. */
+interface CloudMatter {
+  /** [1/m], at least 0. */
+  readonly extinction: Float
+  /** Distance in which there is nothing of the layer, within its altitudes; 0 in clouds [m]. */
+  readonly clearance: Float
+}
+
+/**
+ * One layer in a given weather.
+ *
+ * @param height - In the layer, in (0, 1).
+ */
+function layerMatter(
+  field: CloudField,
+  layer: LayerNodes,
+  weather: LocalWeather,
+  sample: CloudSample,
+  height: Float,
+  detail: boolean
+): CloudMatter {
+  const profile = heightProfile(layer, height)
+  const { fill, spread, cover } = weather
+  const filled = fill.clamp(0, 1.3).mul(profile).toConst() as Float
+  const density = float(0).toVar()
+  const least = layer.shapeAmount.mul(leastCarving).toConst() as Float
+  // Whatever the height: profiles are steep.
+  const clearance = least
+    .sub(fill)
+    .mul(STEEPEST.weather)
+    .div(layer.perWeatherPeriod)
+    .toVar() as Float
+  If(filled.greaterThan(least), () => {
+    const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
+    density.assign(left.mul(sharpnessOf(layer)).clamp(0, 1))
+    clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
+  })
+  If(spread.mul(cover).greaterThan(0), () => {
+    density.assign(spread.mix(density, spreadDensity(layer, weather).mul(profile)))
+    clearance.assign(float(0))
+  })
+  return {
+    extinction: layer.density.mul(density).toConst(),
+    clearance: clearance.max(0).toConst()
+  }
+}
+
+/** The weather of a place, kept for places nearby: of the layer that is densest there. */
+export interface KeptWeather {
+  /** Fill, cover, spread, and the layer's index. */
+  readonly values: Vec4
+  readonly shapeWarp: Vec3
+}
+
+/** What a march learns of two places. */
+export interface PairMatter {
+  /** At the first and at the second place [1/m]. */
+  readonly extinction: Vec2
+  /** From the second, if there is no cloud at either: see `CloudMatter` [m]. */
+  readonly clearance: Float
+  readonly weather: KeptWeather
+}
+
+/**
+ * Clouds at two places near each other, with detail, in the weather in the middle between them: looking
+ * that up takes longer than the rest, and it is kilometres wide.
+ */
+export function pairMatter(
+  field: CloudField,
+  middle: CloudSample,
+  samples: readonly [CloudSample, CloudSample]
+): PairMatter {
+  const sum = vec2(0).toVar() as Vec2
+  const clearance = float(NOWHERE).toVar()
+  const values = vec4(0).toVar() as Vec4
+  const shapeWarp = vec3(0).toVar() as Vec3
+  const most = float(0).toVar()
+  const foot = footOffset(field, middle).toConst()
+  forLayers(field, 'pairLayer', index => {
+    const layer = layerAt(field, index)
+    const heights = samples.map(({ altitude }) => heightIn(layer, altitude))
+    const mayHoldAny = mayHold(layer, heights[0]).or(mayHold(layer, heights[1]))
+    If(mayHoldAny, () => {
+      const weather = weatherAt(field, layer, foot, middle)
+      const found = vec2(0).toVar() as Vec2
+      samples.forEach((sample, i) => {
+        If(mayHold(layer, heights[i]), () => {
+          const matter = layerMatter(field, layer, weather, sample, heights[i], true)
+          found.addAssign(i === 0 ? vec2(matter.extinction, 0) : vec2(0, matter.extinction))
+          if (i === 1) clearance.assign(clearance.min(matter.clearance))
+        })
+      })
+      sum.addAssign(found)
+      const both = found.x.add(found.y).toConst() as Float
+      If(both.greaterThan(most), () => {
+        most.assign(both)
+        values.assign(vec4(weather.fill, weather.cover, weather.spread, float(index)))
+        shapeWarp.assign(weather.shapeWarp)
+      })
+    })
+  })
+  return { extinction: sum, clearance, weather: { values, shapeWarp } }
+}
+
+/**
+ * Extinction near a place whose weather was kept, of its densest layer, without detail [1/m]: a single
+ * texture read. Good as far as the weather is the same.
+ */
+export function extinctionNearby(
+  field: CloudField,
+  { values, shapeWarp }: KeptWeather,
+  sample: CloudSample
+): Float {
+  const isOne = field.layers.length === 1
+  const layer = layerAt(field, isOne ? int(0) : values.w.toInt())
+  const height = heightIn(layer, sample.altitude)
+  const extinction = float(0).toVar()
+  If(height.greaterThan(0).and(height.lessThan(1)), () => {
+    const weather = {
+      fill: values.x,
+      cover: values.y,
+      spread: values.z,
+      shapeWarp,
+      detailWarp: shapeWarp
+    }
+    extinction.assign(layerMatter(field, layer, weather, sample, height, false).extinction)
+  })
+  return extinction
+}
+
+/**
+ * Two samples of a layer near each other, without detail, in the weather in the middle between them.
+ *
+ * @param add - Takes each sample's extinction [1/m].
+ */
+export function layerPair(
+  field: CloudField,
+  layer: LayerNodes,
+  middle: CloudSample,
+  samples: readonly [CloudSample, CloudSample],
+  add: (extinction: Float, index: number) => void
+): void {
+  const foot = footOffset(field, middle).toConst()
+  const weather = weatherAt(field, layer, foot, middle)
+  samples.forEach((sample, i) => {
+    const height = heightIn(layer, sample.altitude)
+    If(mayHold(layer, height), () => {
+      add(layerMatter(field, layer, weather, sample, height, false).extinction, i)
+    })
   })
 }
 
@@ -117,15 +283,7 @@ function eachLayer(
 export function cloudExtinction(field: CloudField, sample: CloudSample, detail: boolean): Float {
   const sum = float(0).toVar()
   eachLayer(field, sample, (layer, weather, height) => {
-    const profile = heightProfile(layer, height)
-    const filled = weather.fill.mul(profile).toConst() as Float
-    const near = float(0).toVar()
-    If(filled.greaterThan(layer.shapeAmount.mul(leastCarving)), () => {
-      const left = carving(field, layer, weather, sample, height, filled, detail)
-      near.assign(left.mul(sharpnessOf(layer)).clamp(0, 1))
-    })
-    const far = spreadDensity(layer, weather).mul(profile)
-    sum.addAssign(layer.density.mul(weather.spread.mix(near, far)))
+    sum.addAssign(layerMatter(field, layer, weather, sample, height, detail).extinction)
   })
   return sum
 }
@@ -139,7 +297,7 @@ export function cloudExtinction(field: CloudField, sample: CloudSample, detail: 
 export function cloudBound(field: CloudField, sample: CloudSample): Float {
   const most = float(0).toVar()
   eachLayer(field, sample, (layer, weather, height) => {
-    const filled = weather.fill.mul(heightProfile(layer, height))
+    const filled = weather.fill.clamp(0, 1.3).mul(heightProfile(layer, height))
     const near = filled.sub(layer.shapeAmount.mul(leastCarving)).mul(sharpnessOf(layer)).clamp(0, 1)
     const far = weather.spread.greaterThan(0).select(weather.cover, float(0))
     most.assign(most.max(near).max(far))
@@ -155,11 +313,42 @@ export function cloudBound(field: CloudField, sample: CloudSample): Float {
 export function cloudColumn(field: CloudField, sample: CloudSample): Float {
   const foot = footOffset(field, sample).toConst()
   const sum = float(0).toVar()
-  loop('cloudColumnLayer', field.layers.length, index => {
-    const layer = layerAt(field, int(index))
+  forLayers(field, 'cloudColumnLayer', index => {
+    const layer = layerAt(field, index)
     const weather = weatherAt(field, layer, foot, sample)
     const depth = layer.density.mul(layer.thickness).mul(farFill)
     sum.addAssign(depth.mul(spreadDensity(layer, weather)))
+  })
+  return sum
+}
+
+/** A sun lower than this does not make its rays through a layer any longer. */
+const LOWEST_COSINE = 0.1
+
+/**
+ * Optical depth from a place to the sun of all clouds that cast shadows, from the weather alone: one
+ * look-up a layer, where the ray crosses its middle.
+ */
+export function columnTowardsSun(field: CloudField, sample: CloudSample): Float {
+  const { view } = field
+  const sum = float(0).toVar()
+  const cosSun = sample.up.dot(view.sunDirection).toConst() as Float
+  const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
+  forLayers(field, 'sunColumnLayer', index => {
+    const layer = layerAt(field, index)
+    const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
+    const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float
+    If(above.mul(layer.shadow).mul(layer.coverage).greaterThan(0), () => {
+      const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
+      const way = middle.sub(sample.altitude).max(0).div(slope)
+      const offset = sample.offset.add(view.sunDirection.mul(way)).toConst() as Vec3
+      const { altitude, up } = view.place(offset)
+      const there = { offset, altitude, up, distance: sample.distance }
+      const foot = footOffset(field, there).toConst()
+      const weather = weatherAt(field, layer, foot, there)
+      const depth = layer.density.mul(layer.thickness).mul(farFill)
+      sum.addAssign(depth.mul(spreadDensity(layer, weather)).mul(above).div(slope))
+    })
   })
   return sum
 }

@@ -2,7 +2,7 @@ import { int, vec3 } from 'three/tsl'
 import type { Matrix3 } from 'three'
 import type { CloudField } from '../CloudField'
 import { LAYER_STRIDE } from '../layerUniforms'
-import type { Float, Int, Vec3, Vec4 } from '../tsl-types'
+import { loop, type Float, type Int, type Vec3, type Vec4 } from '../tsl-types'
 
 /** A vector turned by a constant rotation. */
 export const rotate = (rotation: Matrix3, v: Vec3): Vec3 => {
@@ -23,6 +23,8 @@ export interface LayerNodes {
   profileExponent: Float
   shapeAmount: Float
   detailAmount: Float
+  /** 1 if the layer casts shadows, or 0. */
+  shadow: Float
   /** [1/m]. */
   perShapePeriod: Float
   /** [1/m]. */
@@ -58,6 +60,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     profileExponent: form.x,
     shapeAmount: form.y,
     detailAmount: form.z,
+    shadow: read(7).w,
     perShapePeriod: form.w,
     weights: read(2),
     perWeatherPeriod: weather.w,
@@ -71,4 +74,10 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
       return vec3(x, y, z)
     }
   }
+}
+
+/** Calls back for each layer, with code for one if there is one. */
+export function forLayers(field: CloudField, name: string, body: (index: Int) => void): void {
+  if (field.layers.length === 1) body(int(0))
+  else loop(name, field.layers.length, body)
 }

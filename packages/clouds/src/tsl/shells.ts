@@ -1,7 +1,7 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { loop, type Float } from '../tsl-types'
-import { layerAt } from './layer'
+import type { Float } from '../tsl-types'
+import { forLayers, layerAt } from './layer'
 
 /** Farther than anything [m]. */
 export const FAR_AWAY = 1e12
@@ -44,7 +44,7 @@ export function nextShell(field: CloudField, cosView: Float, distance: Float): F
   const consider = (at: Float): void => {
     next.assign(at.greaterThan(distance).select(next.min(at), next))
   }
-  loop('shellLayer', field.layers.length, index => {
+  forLayers(field, 'shellLayer', index => {
     const { baseAltitude, thickness } = layerAt(field, index)
     for (const altitude of [baseAltitude, baseAltitude.add(thickness)]) {
       const { near, far } = crossings(field, cosView, altitude)
@@ -73,7 +73,7 @@ export function surroundings(field: CloudField, altitude: Float): Surroundings {
   const base = float(FAR_AWAY).toVar()
   const top = float(-FAR_AWAY).toVar()
   const coverage = float(0).toVar()
-  loop('surroundingLayer', field.layers.length, index => {
+  forLayers(field, 'surroundingLayer', index => {
     const layer = layerAt(field, index)
     const layerTop = layer.baseAltitude.add(layer.thickness).toConst()
     const isInside = altitude

@@ -122,14 +122,15 @@ export function weatherAt(
   const spread = smoothstep(0.5, 4.5, level).toConst() as Float
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
+  const fill = layer.shapeAmount
+    .mul(meanEdge)
+    .add(above.div(edgeWidth))
+    .add(surely)
+    .toConst() as Float
+  const cover = above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst() as Float
   return {
-    fill: layer.shapeAmount
-      .mul(meanEdge)
-      .add(above.div(edgeWidth))
-      .add(surely)
-      .clamp(0, 1.3)
-      .toConst(),
-    cover: above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst(),
+    fill,
+    cover,
     spread,
     shapeWarp: warp.add(detailWarp).toConst(),
     detailWarp

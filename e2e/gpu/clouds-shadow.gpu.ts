@@ -1,0 +1,104 @@
+import { Atmosphere, SunDirectionalLight } from '@welkin/atmosphere'
+import { CloudLightTable, CloudNoise, cloudPreset, cloudShadow, clouds } from '@welkin/clouds'
+import { Mesh, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene } from 'three'
+import { float, vec4 } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { cloudExtinction } from '../../packages/clouds/src/tsl/density'
+import { loop, type Vec3 } from '../../packages/clouds/src/tsl-types'
+import { drawToFloat } from './harness/atmosphere'
+import { evaluateOnGpu } from './harness/evaluate'
+import { expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+import { nextFrame } from './harness/graphics'
+
+const size = { width: 48, height: 48 }
+/** Of the march towards the sun that shadows are held to. */
+const STEPS = 64
+
+gpuTest('clouds cast their shadows on the ground', async t => {
+  const renderer = await t.createRenderer(size)
+  renderer.shadowMap.enabled = true
+  const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 }).setSunAngles(50, 130)
+  const camera = new PerspectiveCamera(90, 1, 1, 1e5)
+  camera.position.set(0, 900, 0)
+  camera.rotation.set(-Math.PI / 2, 0, 0)
+  camera.updateMatrixWorld()
+  const scene = new Scene()
+  const ground = new Mesh(new PlaneGeometry(1e4, 1e4), new MeshLambertMaterial())
+  ground.rotation.x = -Math.PI / 2
+  ground.receiveShadow = true
+  const sun = new SunDirectionalLight(atmosphere)
+  scene.add(ground, sun)
+  const layers = cloudPreset('fairWeather')
+  layers.at(0).set({ coverage: 0.55 })
+  const [noise, light] = [new CloudNoise(), new CloudLightTable()]
+  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
+    quality: 'low',
+    noise,
+    light
+  })
+  node.time = 0
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputNode = node
+  const draw = () => t.render(renderer, scene, camera, size)
+
+  const open = await draw()
+  for (let i = 0; i < 4; i++) {
+    await nextFrame()
+    await drawToFloat(renderer, () => pipeline.render())
+  }
+  sun.castShadow = true
+  Object.assign(sun.shadow, { shadowNode: cloudShadow(node) })
+  const shaded = await draw()
+
+  const places: [number, number, number, number][] = []
+  const got: number[] = []
+  for (let y = 0; y < size.height; y++) {
+    for (let x = 0; x < size.width; x++) {
+      const across = ((2 * x + 1) / size.width - 1) * 900
+      const down = ((2 * y + 1) / size.height - 1) * 900
+      // Where the camera sees it, in view space.
+      places.push([across, -down, -900, 0])
+      got.push(shaded.at(x, y)[1] / open.at(x, y)[1])
+    }
+  }
+  const { field } = node
+  const depths = await evaluateOnGpu(renderer, places, input => {
+    const depth = float(0).toVar()
+    const start = field.view.toMapped(input.xyz).toConst()
+    const length = 3500 / STEPS
+    loop('step', STEPS, index => {
+      const way = float(index).add(0.5).mul(length)
+      const offset = start.add(field.view.sunDirection.mul(way)).toConst() as Vec3
+      const { altitude, up } = field.view.place(offset)
+      const sample = { offset, altitude, up, distance: float(1000).toConst() }
+      depth.addAssign(cloudExtinction(field, sample, false).mul(length))
+    })
+    return depth.mul(light.nodes.depthScale)
+  })
+  const expected = places.map((_, i) => Math.exp(-depths[4 * i]))
+  const mean = (values: readonly number[]): number =>
+    values.reduce((sum, value) => sum + value, 0) / values.length
+  const apart = mean(got.map((value, i) => Math.abs(value - expected[i])))
+  t.note(
+    `passing ${mean(got).toFixed(3)}, marched ${mean(expected).toFixed(3)}, apart ${apart.toFixed(3)}`
+  )
+  const [least, most] = [Math.min(...expected), Math.max(...expected)]
+  expectTrue(least < 0.1 && most > 0.9, `there are no shadows to compare: ${least} to ${most}`)
+  expectTrue(Math.abs(mean(got) - mean(expected)) < 0.03, `the mean is ${mean(got)}`)
+  expectTrue(apart < 0.06, `shadows are off by ${apart} in the mean`)
+
+  layers.at(0).set({ shadow: false })
+  for (let i = 0; i < 4; i++) {
+    await nextFrame()
+    await drawToFloat(renderer, () => pipeline.render())
+  }
+  const unshaded = await draw()
+  const lost = open.data.findIndex((value, i) => unshaded.data[i] < 0.999 * value)
+  expectTrue(lost < 0, `a layer without shadow takes light from channel ${lost}`)
+  pipeline.dispose()
+  node.dispose()
+  noise.dispose()
+  light.dispose()
+  atmosphere.dispose()
+})

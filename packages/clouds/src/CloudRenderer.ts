@@ -1,0 +1,131 @@
+import { aerialPerspectiveTo, FragmentPass, linearSRGB } from '@welkin/atmosphere'
+import { HalfFloatType, LinearFilter, RenderTarget } from 'three'
+import { Fn, If, float, texture, uv, vec4 } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
+import type { CloudField } from './CloudField'
+import type { CloudLight } from './CloudLightTable'
+import type { CloudShadows } from './CloudShadowMap'
+import type { FrameUniforms } from './FrameUniforms'
+import type { QualityUniforms } from './quality'
+import { marchClouds } from './tsl/march'
+import { interleavedNoise } from './tsl/noisePattern'
+import { sightAt, type SightNodes } from './tsl/sight'
+import { encodeDistance, upscale, type CloudPictures } from './tsl/upscale'
+import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from './tsl-types'
+
+/** What the pictures of clouds are made from. */
+export interface CloudScene {
+  readonly field: CloudField
+  readonly light: CloudLight
+  readonly shadows: CloudShadows
+  readonly quality: QualityUniforms
+  readonly sights: SightNodes
+}
+
+function pictureTarget(name: string): RenderTarget {
+  const target = new RenderTarget(1, 1, {
+    count: 2,
+    type: HalfFloatType,
+    depthBuffer: false,
+    minFilter: LinearFilter,
+    magFilter: LinearFilter
+  })
+  for (const [i, part] of ['light', 'place'].entries()) target.textures[i].name = `${name}.${part}`
+  return target
+}
+
+function picturesOf({ textures }: RenderTarget): CloudPictures {
+  const [light, place] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
+  return { light, place }
+}
+
+/** Marches one pixel of each block: light with the air in front of it, and where it is. */
+function marchPixels({ field, light, shadows, quality, sights }: CloudScene): TwoOutputs {
+  const { frame } = sights
+  const { view } = field
+  return twoOutputs(([color, place]) =>
+    Fn(() => {
+      const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
+      const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
+      const { direction, directionView, end } = sightAt(
+        sights,
+        pixel.add(0.5).div(frame.size).toConst()
+      )
+      const marched = marchClouds(field, light, shadows, quality, {
+        direction,
+        end,
+        jitter: interleavedNoise(block, frame.noiseShift)
+      })
+      const opacity = marched.transmittance.oneMinus().toConst()
+      color.assign(vec4(0, 0, 0, marched.transmittance))
+      If(opacity.greaterThan(0), () => {
+        const air = aerialPerspectiveTo(view, directionView.mul(marched.distance))
+        const spectral = linearSRGB(view.air.uniforms, marched.radiance)
+        const seen = spectral.mul(air.transmittance).add(air.inScatter.mul(opacity))
+        color.assign(vec4(seen.mul(frame.gain), marched.transmittance))
+      })
+      const distance = encodeDistance(marched.distance)
+      place.assign(vec4(distance, encodeDistance(end), float(0), marched.steps.div(256)))
+      return vec4(0)
+    })()
+  )
+}
+
+/**
+ * Draws the clouds of a camera: marches a part of the pixels in each frame, and puts them together with
+ * those of the frames before.
+ */
+export class CloudRenderer {
+  readonly #frame: FrameUniforms
+  readonly #marched = pictureTarget('Welkin.CloudsMarched')
+  /** The picture, and that of the last frame, in turns. */
+  readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`))
+  readonly #march: FragmentPass
+  readonly #upscale: readonly FragmentPass[]
+  /** Both pictures: the shader chooses by {@link current}. */
+  readonly pictures: readonly CloudPictures[] = this.#accumulated.map(picturesOf)
+  /** Which one is the latest. */
+  current = 0
+
+  constructor(scene: CloudScene) {
+    this.#frame = scene.sights.frame
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
+    const marched = picturesOf(this.#marched)
+    this.#upscale = this.#accumulated.map((_, i) => {
+      const history = picturesOf(this.#accumulated[1 - i])
+      const output = upscale(scene.field, scene.sights, marched, history)
+      return new FragmentPass('Welkin.CloudsUpscale', output)
+    })
+  }
+
+  /** Size on the GPU [bytes]. */
+  get bytes(): number {
+    const targets = [this.#marched, ...this.#accumulated]
+    return targets.reduce((sum, { width, height }) => sum + 16 * width * height, 0)
+  }
+
+  /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */
+  setSize(width: number, height: number, block: number): void {
+    const [first] = this.#accumulated
+    if (first.width !== width || first.height !== height) {
+      for (const target of this.#accumulated) target.setSize(width, height)
+      this.#frame.reset()
+    }
+    this.#marched.setSize(Math.ceil(width / block), Math.ceil(height / block))
+    this.#frame.size.value.set(width, height)
+    this.#frame.marchedSize.value.set(this.#marched.width, this.#marched.height)
+  }
+
+  /** Draws a frame; `FrameUniforms.next` goes first. */
+  render(renderer: Renderer): void {
+    this.#march.render(renderer, this.#marched)
+    this.current = 1 - this.current
+    this.#upscale[this.current].render(renderer, this.#accumulated[this.current])
+  }
+
+  /** Frees the pictures. */
+  dispose(): void {
+    for (const target of [this.#marched, ...this.#accumulated]) target.dispose()
+    for (const pass of [this.#march, ...this.#upscale]) pass.dispose()
+  }
+}

@@ -1,0 +1,268 @@
+import { FragmentPass } from '@welkin/atmosphere'
+import type { AtmosphereView } from '@welkin/atmosphere'
+import { HalfFloatType, LinearFilter, RenderTarget, Vector3, Vector4 } from 'three'
+import { renderGroup, texture, uniform } from 'three/tsl'
+import type { Renderer, UniformNode } from 'three/webgpu'
+import type { CloudField } from './CloudField'
+import { shadowRay } from './tsl/shadowMap'
+import type { LevelTexture, Vec2 } from './tsl-types'
+
+/** Texels along an edge of a cascade. */
+const SIZE = 256
+
+/** Half widths of the cascades for a camera near the ground [m]. */
+const HALF_WIDTHS = [5000, 20_000, 80_000] as const
+
+/** Cascades double in width with each doubling of the camera's height above this [m]. */
+const WIDENING_HEIGHT = 6000
+
+/** Highest camera for which maps are drawn [m]: farther away the clouds are a thin skin. */
+const HIGHEST = 150_000
+
+/** Sine of the least angle between sun rays and the plane that the map lies in. */
+const LEAST_SLOPE = 0.2
+
+/** Cosine of the angle about the planet's centre after which the plane's origin follows the camera. */
+const ANCHOR_COSINE = Math.cos(0.005)
+
+/** Change of the sun's direction, or of the place in widths, that has all cascades drawn at once. */
+const JUMP = { sun: 0.01, place: 0.5 }
+
+const vector3 = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
+const vector4 = (): UniformNode<'vec4', Vector4> => uniform(new Vector4()).setGroup(renderGroup)
+const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
+
+/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane. */
+export interface CascadeNodes {
+  readonly u: UniformNode<'vec4', Vector4>
+  readonly v: UniformNode<'vec4', Vector4>
+  readonly w: UniformNode<'vec4', Vector4>
+  /** 1 once it is drawn. */
+  readonly isDrawn: UniformNode<'float', number>
+  /** [m]. */
+  readonly halfWidth: UniformNode<'float', number>
+}
+
+/** A shadow map as shaders see it. */
+export interface CloudShadows {
+  readonly map: LevelTexture<Vec2>
+  readonly cascades: readonly CascadeNodes[]
+  readonly count: number
+}
+
+/** What the shader of a cascade reads. Vectors are in the mapped space, from the camera [m]. */
+export interface ShadowRayUniforms {
+  /** Middle of the cascade in its plane. */
+  readonly origin: UniformNode<'vec3', Vector3>
+  /** Edges of the cascade. */
+  readonly across: UniformNode<'vec3', Vector3>
+  readonly along: UniformNode<'vec3', Vector3>
+  readonly halfWidth: UniformNode<'float', number>
+  /** Texels along an edge. */
+  readonly size: number
+}
+
+/** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
+class Cascade {
+  readonly nodes: CascadeNodes = {
+    u: vector4(),
+    v: vector4(),
+    w: vector4(),
+    isDrawn: number(),
+    halfWidth: number()
+  }
+  readonly target: RenderTarget
+  isDrawn = false
+  halfWidth = 0
+  readonly anchor = new Vector3()
+  readonly sun = new Vector3()
+  /** The plane's normal over its cosine to the sun. */
+  readonly normal = new Vector3()
+  readonly across = new Vector3()
+  /** Measures the plane's second axis along sun rays. */
+  readonly measure = new Vector3()
+  readonly along = new Vector3()
+  /** Of the middle [m]. */
+  readonly center = { u: 0, v: 0 }
+
+  constructor(target: RenderTarget) {
+    this.target = target
+  }
+}
+
+const _foot = new Vector3()
+const _offset = new Vector3()
+const _normal = new Vector3()
+
+/**
+ * Beer shadow maps of clouds: optical depth towards the sun, in three cascades about the camera.
+ *
+ * A texel is a sun ray. It is named by where it crosses a plane among the clouds, level unless the sun
+ * is low, so that texels are spread over the ground whatever the sun's height. Each cascade's middle
+ * moves by whole texels; after the first frame one cascade is drawn a frame, the nearest every other.
+ */
+export class CloudShadowMap {
+  readonly field: CloudField
+  readonly target: RenderTarget
+  readonly nodes: CloudShadows
+  readonly #cascades: readonly Cascade[]
+  readonly #ray: ShadowRayUniforms
+  readonly #pass: FragmentPass
+  /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
+  readonly camera = new Vector3()
+  readonly #anchor = new Vector3()
+  #turn = 0
+
+  constructor(field: CloudField) {
+    this.field = field
+    const count = HALF_WIDTHS.length
+    this.target = new RenderTarget(SIZE * count, SIZE, {
+      type: HalfFloatType,
+      depthBuffer: false,
+      minFilter: LinearFilter,
+      magFilter: LinearFilter
+    })
+    this.target.texture.name = 'Welkin.CloudShadows'
+    this.#cascades = HALF_WIDTHS.map(() => new Cascade(this.target))
+    this.nodes = {
+      map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
+      cascades: this.#cascades.map(cascade => cascade.nodes),
+      count
+    }
+    this.#ray = {
+      origin: vector3(),
+      across: vector3(),
+      along: vector3(),
+      halfWidth: number(),
+      size: SIZE
+    }
+    this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray))
+  }
+
+  /** Size on the GPU [bytes]. */
+  get bytes(): number {
+    return 8 * this.target.width * this.target.height
+  }
+
+  /**
+   * Draws a cascade, or all where none fits any longer. The field must be up to date.
+   *
+   * @param view - Of the field's camera, up to date.
+   */
+  update(renderer: Renderer, view: AtmosphereView): void {
+    const radius = this.field.radius.value
+    this.camera.copy(view.up).multiplyScalar(radius + view.height)
+    if (view.height > HIGHEST) {
+      for (const cascade of this.#cascades) cascade.isDrawn = false
+    } else {
+      this.#draw(renderer, view, radius)
+    }
+    this.#follow()
+  }
+
+  #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
+    _foot.copy(view.up).multiplyScalar(radius + this.#middle())
+    if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
+      this.#anchor.copy(_foot)
+    }
+    const scale = 2 ** Math.max(Math.ceil(Math.log2(view.height / WIDENING_HEIGHT)), 0)
+    this.#turn = (this.#turn + 1) % 4
+    // The nearest cascade changes most.
+    const next = [0, 1, 0, 2][this.#turn]
+    for (const [index, cascade] of this.#cascades.entries()) {
+      const halfWidth = HALF_WIDTHS[index] * scale
+      if (index !== next && this.#fits(cascade, view.sunDirection, halfWidth)) continue
+      this.#place(cascade, view, halfWidth)
+      this.#setRay(cascade)
+      const { viewport, scissor } = this.target
+      viewport.set(index * SIZE, 0, SIZE, SIZE)
+      scissor.copy(viewport)
+      this.target.scissorTest = true
+      this.#pass.render(renderer, this.target)
+      cascade.isDrawn = true
+    }
+  }
+
+  /** An altitude in the middle of the thickest clouds [m]. */
+  #middle(): number {
+    let [middle, most] = [0, 0]
+    for (const { parameters } of this.field.layers) {
+      const { baseAltitude, topAltitude, coverage, density } = parameters
+      const depth = coverage === 0 ? 0 : density * (topAltitude - baseAltitude)
+      if (depth > most) [most, middle] = [depth, 0.6 * baseAltitude + 0.4 * topAltitude]
+    }
+    return middle
+  }
+
+  #fits(cascade: Cascade, sun: Vector3, halfWidth: number): boolean {
+    if (!cascade.isDrawn || cascade.halfWidth !== halfWidth) return false
+    if (cascade.sun.distanceToSquared(sun) > JUMP.sun ** 2) return false
+    _offset.copy(_foot).sub(cascade.anchor)
+    const u = cascade.across.dot(_offset) - cascade.center.u
+    const v = cascade.measure.dot(_offset) - cascade.center.v
+    return Math.max(Math.abs(u), Math.abs(v)) < JUMP.place * halfWidth
+  }
+
+  /** Puts a cascade's middle on the texel nearest to the camera. */
+  #place(cascade: Cascade, { sunDirection: sun }: AtmosphereView, halfWidth: number): void {
+    const { anchor, across, along, measure, normal, center } = cascade
+    anchor.copy(this.#anchor)
+    cascade.sun.copy(sun)
+    cascade.halfWidth = halfWidth
+    // Level, but leant towards a low sun.
+    _normal.copy(anchor).normalize()
+    across.crossVectors(sun, _normal)
+    if (across.lengthSq() < 1e-12) across.set(_normal.z, _normal.x, _normal.y).cross(_normal)
+    across.normalize()
+    const slope = sun.dot(_normal)
+    if (Math.abs(slope) < LEAST_SLOPE) {
+      const level = along.copy(sun).addScaledVector(_normal, -slope).normalize()
+      // n = up sin a + level cos a with n·s = LEAST_SLOPE, to the sun's side of the plane.
+      const sign = slope < 0 ? -1 : 1
+      const lean = Math.asin(LEAST_SLOPE) - Math.asin(Math.abs(slope))
+      _normal.multiplyScalar(Math.cos(lean)).addScaledVector(level, sign * Math.sin(lean))
+    }
+    along.crossVectors(_normal, across)
+    normal.copy(_normal).divideScalar(_normal.dot(sun))
+    measure.copy(along).addScaledVector(normal, -along.dot(sun))
+    _offset.copy(_foot).sub(anchor)
+    const texel = (2 * halfWidth) / SIZE
+    center.u = Math.round(across.dot(_offset) / texel) * texel
+    center.v = Math.round(measure.dot(_offset) / texel) * texel
+  }
+
+  #setRay({ anchor, across, along, center, halfWidth }: Cascade): void {
+    const ray = this.#ray
+    ray.origin.value
+      .copy(anchor)
+      .sub(this.camera)
+      .addScaledVector(across, center.u)
+      .addScaledVector(along, center.v)
+    ray.across.value.copy(across).multiplyScalar(2 * halfWidth)
+    ray.along.value.copy(along).multiplyScalar(2 * halfWidth)
+    ray.halfWidth.value = halfWidth
+  }
+
+  /** Sets what look-ups need, for the camera where it is now. */
+  #follow(): void {
+    for (const cascade of this.#cascades) {
+      const { nodes, halfWidth, anchor, across, measure, normal, center } = cascade
+      nodes.isDrawn.value = cascade.isDrawn ? 1 : 0
+      if (!cascade.isDrawn) continue
+      nodes.halfWidth.value = halfWidth
+      _offset.copy(this.camera).sub(anchor)
+      const row = (target: Vector4, axis: Vector3, shift: number, width: number): void => {
+        target.set(axis.x, axis.y, axis.z, axis.dot(_offset) + shift).divideScalar(width)
+      }
+      row(nodes.u.value, across, halfWidth - center.u, 2 * halfWidth)
+      row(nodes.v.value, measure, halfWidth - center.v, 2 * halfWidth)
+      row(nodes.w.value, normal, 0, 1)
+    }
+  }
+
+  /** Frees the map. */
+  dispose(): void {
+    this.target.dispose()
+    this.#pass.dispose()
+  }
+}

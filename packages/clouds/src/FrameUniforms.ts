@@ -1,0 +1,160 @@
+import { Matrix4, Vector2, Vector3, Vector4 } from 'three'
+import type { PerspectiveCamera } from 'three'
+import type { AtmosphereView } from '@welkin/atmosphere'
+import { renderGroup, uniform } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
+import type { CloudField } from './CloudField'
+import { CloudLayers } from './CloudLayers'
+import { vec4Array } from './tsl-types'
+
+const number = (value = 0): UniformNode<'float', number> => uniform(value).setGroup(renderGroup)
+const vector2 = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
+const matrix4 = (): UniformNode<'mat4', Matrix4> => uniform(new Matrix4()).setGroup(renderGroup)
+
+/** Order in which the pixels of a block are marched: neighbours in time are far apart. */
+const ORDERS: Readonly<Record<number, readonly number[]>> = {
+  1: [0],
+  2: [0, 3, 1, 2],
+  3: [4, 0, 8, 2, 6, 1, 7, 3, 5],
+  4: [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12]
+}
+
+/** Mean distance of consecutive noise is the greatest for multiples of this. */
+const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
+
+/** Frames whose light a pixel remembers while the view or the clouds move. */
+const MOVING_FRAMES = 24
+
+/** Looks that a pixel remembers even then. */
+const MOVING_LOOKS = 4
+
+/** Looks that a pixel remembers in a picture that stands still. */
+const STILL_LOOKS = 256
+
+/** How far history may be from its surroundings, in standard deviations. */
+const CLIPPING = { moving: 1.25, still: 8 }
+
+/** A move of the camera within a frame after which it is somewhere else: in heights, and at least [m]. */
+const CUT = { heights: 0.3, metres: 300 }
+
+/** A move of the clouds within a frame after which they are others [m]. */
+const CLOUD_CUT = 500
+
+/** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
+const NIGHT = { orders: 5, sine: 0.3 }
+
+const _projection = new Matrix4()
+const _delta = new Vector3()
+const _position = new Vector3()
+
+/** What changes from frame to frame: sizes, jitter, and where the last frame's pixels were. */
+export class FrameUniforms {
+  /** Of the picture [pixels]. */
+  readonly size = vector2()
+  /** Of what is marched in a frame [pixels]. */
+  readonly marchedSize = vector2()
+  /** Pixels of the picture along an edge of the blocks of which a frame marches one. */
+  readonly block = number(1)
+  /** Which one [pixels]. */
+  readonly jitter = vector2()
+  /** Shifts the noise of steps, in [0, 1). */
+  readonly noiseShift = number()
+  readonly projectionInverse: UniformNode<'mat4', Matrix4> = matrix4()
+  readonly near = number()
+  readonly far = number()
+  /** From an offset in the mapped space [m] to clip space of the last frame. */
+  readonly toPrevious: UniformNode<'mat4', Matrix4> = matrix4()
+  /** How far each layer has moved since, xyz [m]. */
+  readonly drifts: Vector4[] = Array.from({ length: CloudLayers.maxLayers }, () => new Vector4())
+  readonly driftArray = vec4Array(this.drifts)
+  /** 0 where there is no last frame. */
+  readonly hasHistory = number()
+  /** Most looks that a pixel remembers. */
+  readonly memory = number(1)
+  readonly clipping = number(1)
+  /** Stored light per light, and what light of the last frame has to be multiplied with. */
+  readonly gain = number(1)
+  readonly gainChange = number(1)
+  #count = 0
+  #camera: Vector3 | null = null
+  readonly #sun = new Vector3()
+  readonly #projection = new Matrix4()
+  /** Displacements in the mapped space to view space of the last frame. */
+  readonly #fromMapped = new Matrix4()
+  #state: number[] = []
+
+  /** Has the next frame start anew. */
+  reset(): void {
+    this.#camera = null
+  }
+
+  /**
+   * Goes on to the next frame. Field and view must be up to date.
+   *
+   * @param usesHistory - Whether frames are accumulated.
+   */
+  next(
+    camera: PerspectiveCamera,
+    view: AtmosphereView,
+    field: CloudField,
+    block: number,
+    usesHistory: boolean
+  ): void {
+    const order = ORDERS[block]
+    const index = order[this.#count % order.length]
+    this.jitter.value.set(index % block, Math.floor(index / block))
+    if (this.block.value !== block) this.reset()
+    this.block.value = block
+    this.noiseShift.value = usesHistory ? (this.#count * GOLDEN_RATIO) % 1 : 0
+    this.#count++
+    this.projectionInverse.value.copy(camera.projectionMatrixInverse)
+    this.near.value = camera.near
+    this.far.value = camera.far
+    this.#raiseLight(view)
+
+    _position.copy(view.up).multiplyScalar(field.radius.value + view.height)
+    const last = this.#camera
+    const isCut = last === null || !usesHistory || this.#isCut(view, field, last)
+    this.hasHistory.value = isCut ? 0 : 1
+    let isStill = !isCut
+    if (last !== null) {
+      _delta.copy(_position).sub(last)
+      _projection
+        .makeTranslation(_delta)
+        .premultiply(this.#fromMapped)
+        .premultiply(this.#projection)
+      this.toPrevious.value.copy(_projection)
+      isStill &&= _delta.lengthSq() < 1e-12
+    }
+    field.drifts.forEach((drift, i) => {
+      this.drifts[i].set(drift.x, drift.y, drift.z, 0)
+      isStill &&= drift.lengthSq() === 0
+    })
+    const state = field.values.flatMap((value, i) => (i % 11 < 3 ? value.toArray() : []))
+    state.push(...view.viewToMapped.elements, ...camera.projectionMatrix.elements)
+    isStill &&= state.every((value, i) => value === this.#state[i])
+    isStill &&= this.#sun.distanceToSquared(view.sunDirection) < 1e-12
+    this.memory.value = isStill ? STILL_LOOKS : Math.max(MOVING_FRAMES / order.length, MOVING_LOOKS)
+    this.clipping.value = isStill ? CLIPPING.still : CLIPPING.moving
+
+    this.#state = state
+    this.#sun.copy(view.sunDirection)
+    this.#projection.copy(camera.projectionMatrix)
+    this.#fromMapped.setFromMatrix3(view.viewToMapped).invert()
+    this.#camera = (last ?? new Vector3()).copy(_position)
+  }
+
+  #isCut(view: AtmosphereView, field: CloudField, last: Vector3): boolean {
+    const reach = Math.max(CUT.heights * Math.abs(view.height), CUT.metres)
+    if (!(last.distanceTo(_position) < reach)) return true
+    return field.drifts.some(drift => !(drift.length() < CLOUD_CUT))
+  }
+
+  /** Half floats hold the light of nights as well if it is raised. */
+  #raiseLight(view: AtmosphereView): void {
+    const sine = Math.min(Math.max(-view.up.dot(view.sunDirection) / NIGHT.sine, 0), 1)
+    const gain = 10 ** (NIGHT.orders * sine)
+    this.gainChange.value = gain / this.gain.value
+    this.gain.value = gain
+  }
+}

@@ -1,0 +1,166 @@
+import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
+import { float, int, smoothstep, vec4 } from 'three/tsl'
+import type { CloudField } from '../CloudField'
+import type { CloudLight } from '../CloudLightTable'
+import type { CloudShadows } from '../CloudShadowMap'
+import type { QualityUniforms } from '../quality'
+import { loop, type Float, type Int, type Vec3, type Vec4 } from '../tsl-types'
+import { cloudAmbientShares, cloudSource } from './cloudLight'
+import { extinctionNearby, type CloudSample, type KeptWeather } from './density'
+import { sampleShadows } from './shadowMap'
+import { surroundings, type Surroundings } from './shells'
+
+/** A sun lower than this does not make its rays any longer. */
+const LOWEST_COSINE = 0.12
+
+/** How far towards the sun clouds are looked at themselves: per distance, at least and at most [m]. */
+const NEAR_REACH = { growth: 0.02, least: 60, most: 600 }
+
+/** Under a low sun, rays stay among clouds for longer: cosines that count, reach [m], and more samples. */
+const LOW_SUN = { from: 0.35, to: 0.12, reach: 700, samples: 2 }
+
+/** Part of the way to the top at which the cloud above is looked at. */
+const UPWARDS = 0.35
+
+/** Transmittance below which nothing is seen. */
+export const OPAQUE = 0.01
+
+/** Optical depths about a sample, not scaled. */
+interface Depths {
+  toSun: Float
+  /** Of all clouds on the sun ray through the sample. */
+  through: Float
+  above: Float
+  below: Float
+}
+
+/**
+ * Optical depths about a sample: a few samples near it, which see what is smaller than the shadow map's
+ * texels, and the map beyond. Where there is no map, the cloud is taken to be as dense as it is near.
+ */
+function depthsAbout(
+  field: CloudField,
+  shadows: CloudShadows,
+  quality: QualityUniforms,
+  kept: KeptWeather,
+  sample: CloudSample,
+  cosSun: Float,
+  { base, top }: Surroundings,
+  dither: Float
+): Depths {
+  const rise = top.sub(sample.altitude).max(1).toConst()
+  const fall = sample.altitude.sub(base).max(1).toConst()
+  const slant = cosSun.abs().max(LOWEST_COSINE).reciprocal().toConst()
+  const toTop = cosSun.greaterThan(0).select(rise, fall).mul(slant).toConst() as Float
+  const { growth, least, most } = NEAR_REACH
+  const lowness = smoothstep(-LOW_SUN.from, -LOW_SUN.to, cosSun.abs().negate()).toConst() as Float
+  const reach = sample.distance
+    .mul(growth)
+    .clamp(least, most)
+    .max(lowness.mul(LOW_SUN.reach))
+    .min(toTop)
+    .toConst() as Float
+  /** Nearest, sum towards the sun, upwards. */
+  const found = vec4(0).toVar() as Vec4
+  const more = lowness.mul(LOW_SUN.samples).ceil().toInt()
+  const count = quality.sunSteps.add(more).toConst() as Int
+  // One instance of the density for both directions: shaders stay short.
+  loop('probe', count.add(int(1)), index => {
+    const isUpwards = index.equal(count).toConst()
+    // Steps grow from the sample on: (i/n)² of the way.
+    const from = float(index).div(float(count)).toConst() as Float
+    const to = float(index).add(1).div(float(count)).toConst() as Float
+    const [start, end] = [from.mul(from).mul(reach), to.mul(to).mul(reach)]
+    const middle = isUpwards.select(rise.mul(UPWARDS), start.add(end).mul(0.5)).toConst() as Float
+    const direction = isUpwards.select(sample.up, field.view.sunDirection) as Vec3
+    const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
+    const { altitude, up } = field.view.place(offset)
+    const { distance } = sample
+    const extinction = extinctionNearby(field, kept, { offset, altitude, up, distance })
+    found.addAssign(
+      isUpwards.select(
+        vec4(0, 0, extinction, 0),
+        vec4(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+      )
+    )
+  })
+  const beyond = sample.offset.add(field.view.sunDirection.mul(reach)).toConst() as Vec3
+  const far = sampleShadows(shadows, beyond, dither)
+  // Where no map is: as near, thinning out towards the top.
+  const density = found.y.div(reach).toConst()
+  const guess = density.mul(toTop.sub(reach)).toConst()
+  const toSun = found.y.add(far.known.mix(guess, far.toSun)).toConst() as Float
+  const behind = cosSun.greaterThan(0).select(fall, rise).mul(slant).mul(density)
+  const through = far.known.mix(toSun.add(behind), far.through.max(toSun)).toConst() as Float
+  const above = rise.mul(found.x.mul(UPWARDS / 2).add(found.z.mul(0.5)))
+  return { toSun, through, above, below: fall.mul(found.x).mul(0.7) }
+}
+
+/** Shares of light in a place's source function: per scaled extinction [1/sr, 1, 1]. */
+export interface CloudShares {
+  /** Of the sun's irradiance. */
+  sun: Float
+  /** Of the mean radiance of the upper and the lower hemisphere. */
+  sky: Float
+  ground: Float
+}
+
+/**
+ * What a place sends towards the eye of the light that reaches it.
+ *
+ * @param dither - Noise in [0, 1), in which cascades of the shadow map meet.
+ */
+export function sourceAt(
+  field: CloudField,
+  light: CloudLight,
+  shadows: CloudShadows,
+  quality: QualityUniforms,
+  kept: KeptWeather,
+  sample: CloudSample,
+  direction: Vec3,
+  transmittance: Float,
+  dither: Float
+): CloudShares {
+  const { view } = field
+  const about = surroundings(field, sample.altitude)
+  const cosSun = sample.up.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
+  const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
+  const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
+  const depths = depthsAbout(field, shadows, quality, kept, sample, cosSun, about, dither)
+  const scale = light.depthScale
+  const layered = about.layered.toConst() as Float
+  const depthThrough = depths.through.mul(scale).toConst() as Float
+  const sun = cloudSource(light, {
+    depthToSun: depths.toSun.mul(scale).toConst(),
+    depthThrough,
+    depthAcross: depthThrough,
+    depthToEye: transmittance.max(OPAQUE).log().negate().toConst(),
+    layered,
+    cosSun,
+    cosView,
+    cosViewSun
+  })
+  const ambient = cloudAmbientShares(light, {
+    depthAbove: depths.above.mul(scale),
+    depthBelow: depths.below.mul(scale),
+    layered,
+    cosView
+  })
+  return { sun, sky: ambient.sky, ground: ambient.ground }
+}
+
+/**
+ * Spectral radiance of clouds about a place, of unit irradiance of the sun above the air [1/sr].
+ *
+ * @param shares - Sums of `CloudShares`.
+ */
+export function lightUp(field: CloudField, { altitude, up }: CloudSample, shares: Vec3): Vec4 {
+  const { view } = field
+  const { uniforms, transmittance, diffuse } = view.air
+  const cosSun = up.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
+  const sun = transmittanceToSun(uniforms, transmittance, altitude, cosSun).mul(shares.x)
+  if (diffuse === null) return sun.mul(view.source.irradiance)
+  const irradiance = horizontalIrradiance(uniforms, diffuse, altitude, cosSun)
+  const ambient = irradiance.up.mul(shares.y).add(irradiance.down.mul(shares.z))
+  return sun.add(ambient.div(Math.PI)).mul(view.source.irradiance)
+}
