@@ -132,7 +132,9 @@ export class FrameUniforms {
     })
     const state = field.values.flatMap((value, i) => (i % 11 < 3 ? value.toArray() : []))
     state.push(...view.viewToMapped.elements, ...camera.projectionMatrix.elements)
-    isStill &&= state.every((value, i) => value === this.#state[i])
+    isStill &&= state.every(
+      (value, i) => Math.abs(value - this.#state[i]) <= 1e-9 * Math.abs(value)
+    )
     isStill &&= this.#sun.distanceToSquared(view.sunDirection) < 1e-12
     this.memory.value = isStill ? STILL_LOOKS : Math.max(MOVING_FRAMES / order.length, MOVING_LOOKS)
     this.clipping.value = isStill ? CLIPPING.still : CLIPPING.moving

@@ -7,7 +7,7 @@ import { forLayers, layerAt, type LayerNodes } from './layer'
 import { FAR_AWAY } from './shells'
 
 /** Samples of a ray through a layer. */
-const STEPS = 14
+const STEPS = 12
 
 /** Rays end this far from a cascade's plane, in its half widths: under a low sun they are long. */
 const REACH = 1.2

@@ -38,10 +38,10 @@ export function sightAt({ field, frame, depthAt, isLogarithmic }: SightNodes, uv
     const at = isLogarithmic
       ? middle.mul(logarithmicDepthToViewZ(depth, frame.near, frame.far).div(middle.z))
       : getViewPosition(uv, depth, inverse)
-    end.assign(view.toMapped(at).length())
+    end.assign(end.min(view.toMapped(at).length()))
   })
   return {
-    direction: mapped.div(length).toConst(),
+    direction,
     directionView: middle.div(length).toConst(),
     end
   }

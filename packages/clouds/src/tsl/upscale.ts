@@ -44,6 +44,9 @@ const STANDING = 0.02
 /** Transmittance above which there is no cloud. */
 const CLEAR = 0.999
 
+/** Moves within a frame after which history counts for one look [pixels]. */
+const FAST = 20
+
 /**
  * What history may differ from its surroundings besides: what is smaller than a block is not seen in
  * every frame, and is kept while the picture hardly moves.
@@ -238,7 +241,10 @@ function remembered(
   return {
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
     moved: way,
-    weight: about.z.mul(valid).toConst()
+    weight: about.z
+      .min(frame.memory.mul(way.div(FAST).oneMinus()).max(1))
+      .mul(valid)
+      .toConst()
   }
 }
 
