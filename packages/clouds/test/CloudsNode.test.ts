@@ -2,7 +2,7 @@ import { Atmosphere } from '@welkin/atmosphere'
 import { OrthographicCamera, PerspectiveCamera } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, test } from 'vitest'
-import { cloudQualities, CloudLayers, clouds } from '../src'
+import { cloudQualities, CloudLayers, cloudShadow, clouds } from '../src'
 
 const atmosphere = new Atmosphere()
 const [color, depth, camera] = [vec4(0), float(0), new PerspectiveCamera()]
@@ -25,9 +25,31 @@ describe('CloudsNode', () => {
     expect(() => (node.quality = 'best' as never)).toThrow(/one of low, medium, high, ultra/)
     const wrong = { ...cloudQualities.high, steps: NaN }
     expect(() => (node.quality = wrong)).toThrow(/quality\.steps must be a number in \[1, 1024\]/)
+    const between = { ...cloudQualities.high, block: 2.5 }
+    expect(() => (node.quality = between)).toThrow(/quality\.block must be 1, 2, 3 or 4, got 2\.5/)
     expect(node.quality).toBe(cloudQualities.low)
     node.quality = { ...cloudQualities.high, steps: 20 }
     expect(node.quality).toEqual({ ...cloudQualities.high, steps: 20 })
     node.dispose()
+  })
+
+  test('shows a debug view of those it has', () => {
+    const node = make()
+    expect(node.debugView).toBe(null)
+    node.debugView = 'history'
+    expect(node.debugView).toBe('history')
+    expect(() => (node.debugView = 'density' as never)).toThrow(
+      'CloudsNode: debugView must be null or one of opacity, steps, distance, history, got density'
+    )
+    expect(node.debugView).toBe('history')
+    node.dispose()
+  })
+})
+
+describe('cloudShadow', () => {
+  test('refuses what are no clouds', () => {
+    expect(() => cloudShadow(new CloudLayers() as never)).toThrow(
+      'CloudShadowNode: clouds must be a CloudsNode, got object'
+    )
   })
 })

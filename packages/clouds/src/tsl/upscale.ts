@@ -44,8 +44,9 @@ const STANDING = 0.02
 /** Transmittance above which there is no cloud. */
 const CLEAR = 0.999
 
-/** Moves within a frame after which history counts for one look [pixels]. */
+/** Moves within a frame after which history is no more than a stopgap, and what it counts then [pixels, looks]. */
 const FAST = 20
+const LEAST_MEMORY = 0.1
 
 /**
  * What history may differ from its surroundings besides: what is smaller than a block is not seen in
@@ -242,7 +243,7 @@ function remembered(
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
     moved: way,
     weight: about.z
-      .min(frame.memory.mul(way.div(FAST).oneMinus()).max(1))
+      .min(frame.memory.mul(way.div(FAST).oneMinus()).max(LEAST_MEMORY))
       .mul(valid)
       .toConst()
   }

@@ -1,0 +1,242 @@
+import { Atmosphere, aerialPerspective } from '@welkin/atmosphere'
+import { CloudLightTable, CloudNoise, cloudPreset, cloudQualities, clouds } from '@welkin/clouds'
+import type { CloudsNode } from '@welkin/clouds'
+import { BoxGeometry, Mesh, MeshBasicMaterial, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { pass } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { drawToFloat } from './harness/atmosphere'
+import { expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+import type { GpuContext } from './harness/context'
+import { nextFrame } from './harness/graphics'
+import type { Picture } from './harness/picture'
+
+const [width, height] = [64, 36]
+/** Blocks of so many pixels are compared where the noise of single ones is not what is looked for. */
+const BLOCK = 4
+
+/** What the skies of a test share. */
+interface Shared {
+  readonly renderer: WebGPURenderer
+  readonly noise: CloudNoise
+  readonly light: CloudLightTable
+}
+
+/** A view up at broken cumulus, on WGS84 at sea level, y up. */
+class Sky {
+  readonly node: CloudsNode
+  readonly camera = new PerspectiveCamera(20, width / height, 0.1, 1e6)
+  readonly scene = new Scene()
+  readonly atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
+  readonly #renderer: WebGPURenderer
+  readonly #pipeline: RenderPipeline
+  readonly #dispose: () => void
+
+  constructor({ renderer, noise, light }: Shared) {
+    this.#renderer = renderer
+    this.atmosphere.setSunAngles(40, 150)
+    // Sunlit clouds are a little darker than white.
+    this.atmosphere.luminanceScale = 3e-5
+    this.camera.position.set(0, 2, 0)
+    this.turn(0)
+    const scenePass = pass(this.scene, this.camera, { samples: 0 })
+    const depth = scenePass.getTextureNode('depth')
+    const color = scenePass.getTextureNode()
+    const air = aerialPerspective(color, depth, this.camera, this.atmosphere)
+    const layers = cloudPreset('fairWeather')
+    layers.at(0).set({ coverage: 0.45 })
+    this.node = clouds(air, depth, this.camera, this.atmosphere, layers, { noise, light })
+    this.node.quality = { ...cloudQualities.medium, shortestStep: 60, block: 2 }
+    this.node.time = 0
+    this.#pipeline = new RenderPipeline(renderer)
+    this.#pipeline.outputColorTransform = false
+    this.#pipeline.outputNode = this.node
+    this.#dispose = () => {
+      this.#pipeline.dispose()
+      scenePass.dispose()
+    }
+  }
+
+  /** Looks a little up, towards a heading [°]. */
+  turn(heading: number): void {
+    this.camera.rotation.set(0.6, (-heading * Math.PI) / 180, 0, 'YXZ')
+    this.camera.updateMatrixWorld()
+  }
+
+  /** Draws frames; the last is read back. */
+  async draw(frames = 1): Promise<Picture> {
+    for (let i = 1; i < frames; i++) {
+      await nextFrame()
+      this.#pipeline.render()
+    }
+    await nextFrame()
+    return drawToFloat(this.#renderer, () => this.#pipeline.render())
+  }
+
+  dispose(): void {
+    this.#dispose()
+    this.node.dispose()
+    this.atmosphere.dispose()
+  }
+}
+
+/** What a screen shows, in [0, 1]. */
+const shown = (value: number): number => Math.min(value, 1) ** (1 / 2.2)
+
+/** Differences of colour as it is shown: of each pixel the largest. */
+function differences(a: Picture, b: Picture): number[] {
+  const result: number[] = []
+  for (let i = 0; i < a.data.length; i += 4) {
+    const apart = [0, 1, 2].map(k => Math.abs(shown(a.data[i + k]) - shown(b.data[i + k])))
+    result.push(Math.max(...apart))
+  }
+  return result
+}
+
+/** Means of blocks of pixels, RGB. */
+function blockMeans({ data }: Picture): number[] {
+  const [columns, rows] = [width / BLOCK, height / BLOCK]
+  const sums = Array.from({ length: 3 * columns * rows }, () => 0)
+  for (let i = 0; i < width * height; i++) {
+    const block = Math.floor(i / width / BLOCK) * columns + Math.floor((i % width) / BLOCK)
+    for (let k = 0; k < 3; k++) sums[3 * block + k] += Math.min(data[4 * i + k], 1) / BLOCK ** 2
+  }
+  return sums
+}
+
+const mean = (values: readonly number[]): number =>
+  values.reduce((sum, value) => sum + value, 0) / values.length
+
+async function withShared(t: GpuContext, body: (shared: Shared) => Promise<void>): Promise<void> {
+  const renderer = await t.createRenderer({ width, height })
+  const shared = { renderer, noise: new CloudNoise(), light: new CloudLightTable() }
+  await body(shared)
+  shared.noise.dispose()
+  shared.light.dispose()
+}
+
+gpuTest(
+  'a picture that stands still comes to rest',
+  t =>
+    withShared(t, async shared => {
+      const sky = new Sky(shared)
+      let before = await sky.draw(420)
+      let most = 0
+      for (let i = 0; i < 5; i++) {
+        const now = await sky.draw()
+        most = Math.max(most, ...differences(now, before))
+        before = now
+      }
+      t.note(`changes by ${(most * 255).toFixed(2)}/255 at most in a frame`)
+      expectTrue(most < 1 / 255, `changes by ${most} in a frame`)
+      sky.dispose()
+    }),
+  { timeoutSeconds: 300 }
+)
+
+gpuTest(
+  'turning by 90° a second leaves no trail',
+  t =>
+    withShared(t, async shared => {
+      const still = new Sky(shared)
+      const settled = await still.draw(80)
+      still.dispose()
+      const sky = new Sky(shared)
+      for (let i = 20; i > 0; i--) {
+        sky.turn(-1.5 * i)
+        await sky.draw()
+      }
+      sky.turn(0)
+      await sky.draw()
+      const found: number[] = []
+      const expected = blockMeans(settled)
+      for (let i = 0; i < 6; i++) {
+        const got = blockMeans(await sky.draw())
+        found.push(mean(got.map((value, k) => Math.abs(value - expected[k]))))
+      }
+      const level = mean(expected)
+      const part = found[5] / level
+      t.note(`off by ${found.map(value => ((100 * value) / level).toFixed(2)).join(', ')} %`)
+      expectTrue(part < 0.02, `six frames after a turn pictures are off by ${100 * part} %`)
+      sky.dispose()
+    }),
+  { timeoutSeconds: 300 }
+)
+
+gpuTest(
+  'a pole that sweeps across leaves no halo',
+  t =>
+    withShared(t, async shared => {
+      const empty = new Sky(shared)
+      const without = await empty.draw(60)
+      empty.dispose()
+      const sky = new Sky(shared)
+      const pole = new Mesh(new BoxGeometry(0.25, 40, 0.1), new MeshBasicMaterial({ color: 0 }))
+      sky.scene.add(pole)
+      await sky.draw(40)
+      let here: Picture | undefined
+      for (let i = 0; i < 12; i++) {
+        pole.position.set(-1.2 + i * 0.15, 10, -8)
+        here = await sky.draw()
+      }
+      const picture = here!
+      const isPole = (x: number, y: number): boolean => picture.at(x, y)[0] < 0.05
+      const near: number[] = []
+      for (let y = 0; y < height; y++) {
+        for (let x = 3; x < width - 3; x++) {
+          const about = [-3, -2, -1, 1, 2, 3].map(step => isPole(x + step, y))
+          if (isPole(x, y) || !about.includes(true)) continue
+          const bright = (rgb: readonly number[]): number =>
+            mean(rgb.slice(0, 3).map(value => Math.min(value, 1)))
+          near.push(bright(picture.at(x, y)) - bright(without.at(x, y)))
+        }
+      }
+      const [halo, apart] = [mean(near), mean(near.map(Math.abs))]
+      t.note(
+        `${near.length} pixels beside the pole: brighter by ${halo.toFixed(4)}, off by ${apart.toFixed(4)}`
+      )
+      expectTrue(near.length > 50, `only ${near.length} pixels are beside the pole`)
+      expectTrue(Math.abs(halo) < 0.02, `pixels beside the pole are brighter by ${halo}`)
+      expectTrue(apart < 0.06, `pixels beside the pole are off by ${apart} in the mean`)
+      pole.geometry.dispose()
+      pole.material.dispose()
+      sky.dispose()
+    }),
+  { timeoutSeconds: 300 }
+)
+
+gpuTest(
+  'moving the origin of the world moves no cloud; a jump of the camera starts anew',
+  t =>
+    withShared(t, async shared => {
+      const sky = new Sky(shared)
+      const before = await sky.draw(100)
+      const shift = new Vector3(12_000, 300, -40_000)
+      sky.camera.position.sub(shift)
+      sky.camera.updateMatrixWorld()
+      const { worldToECEF } = sky.atmosphere
+      const e = worldToECEF.elements
+      for (let row = 0; row < 3; row++) {
+        e[12 + row] += e[row] * shift.x + e[4 + row] * shift.y + e[8 + row] * shift.z
+      }
+      const after = await sky.draw()
+      const most = Math.max(...differences(before, after))
+      t.note(`moving the origin changes ${(most * 255).toFixed(2)}/255 at most`)
+      expectTrue(most < 3 / 255, `moving the origin changes ${most}`)
+
+      sky.camera.position.y += 5000
+      sky.camera.updateMatrixWorld()
+      const jumped = await sky.draw()
+      const fresh = new Sky(shared)
+      fresh.camera.position.copy(sky.camera.position)
+      fresh.camera.updateMatrixWorld()
+      fresh.atmosphere.worldToECEF.copy(worldToECEF)
+      const first = await fresh.draw(1)
+      const apart = mean(differences(jumped, first))
+      t.note(`after a jump the picture is off by ${apart.toFixed(4)} from a first one`)
+      expectTrue(apart < 0.04, `after a jump the picture is off by ${apart}`)
+      sky.dispose()
+      fresh.dispose()
+    }),
+  { timeoutSeconds: 300 }
+)
