@@ -1,6 +1,6 @@
 import { Atmosphere, aerialPerspective } from '@welkin/atmosphere'
 import { CloudLightTable, CloudNoise, cloudPreset, cloudQualities, clouds } from '@welkin/clouds'
-import type { CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
+import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import {
   ACESFilmicToneMapping,
@@ -43,7 +43,13 @@ export interface CloudCost {
 /** Frames that fill the history of every pixel. */
 const WARM_UP = 40
 
-/** A view of broken cumulus over a globe. */
+function brokenCumulus(): CloudLayers {
+  const layers = cloudPreset('fairWeather')
+  layers.at(0).set({ coverage: 0.4 })
+  return layers
+}
+
+/** A view of clouds over a globe. */
 export class CloudBench {
   readonly node: CloudsNode
   readonly #renderer: WebGPURenderer
@@ -60,7 +66,11 @@ export class CloudBench {
   readonly #light = new CloudLightTable()
   #frame = 0
 
-  constructor(renderer: WebGPURenderer, [width, height]: readonly [number, number]) {
+  constructor(
+    renderer: WebGPURenderer,
+    [width, height]: readonly [number, number],
+    layers: CloudLayers = brokenCumulus()
+  ) {
     this.#renderer = renderer
     renderer.toneMapping = ACESFilmicToneMapping
     const atmosphere = this.#atmosphere
@@ -71,8 +81,6 @@ export class CloudBench {
     const scenePass = pass(new Scene().add(this.#globe), camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
     this.#air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
-    const layers = cloudPreset('fairWeather')
-    layers.at(0).set({ coverage: 0.4 })
     const options = { noise: this.#noise, light: this.#light }
     this.node = clouds(this.#air, depth, camera, atmosphere, layers, options)
     this.#pipeline = new RenderPipeline(renderer)

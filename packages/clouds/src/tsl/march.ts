@@ -20,7 +20,7 @@ export interface CloudRay {
   direction: Vec3
   /** Where it ends, at the ground at the latest [m]. */
   end: Float
-  /** Where in its steps a ray is sampled, in [0, 1). */
+  /** How the steps of a ray are shifted, in [0, 1). */
   jitter: Float
 }
 
@@ -68,6 +68,8 @@ export function marchClouds(
   const shell = float(0).toVar()
   const longest = float(FAR_AWAY).toVar()
   const entry = float(0).toVar()
+  /** Of the next pair's length: the first one of a row is cut short, by chance, so that no layers show. */
+  const part = jitter.toVar()
   const sampleAt = (distance: Float): CloudSample => {
     const at = distance.toConst() as Float
     const offset = direction.mul(at).toConst() as Vec3
@@ -95,6 +97,7 @@ export function marchClouds(
         .min(end)
         .toConst()
       shell.assign(next)
+      part.assign(jitter)
       const { altitude } = view.place(direction.mul(position.add(next).mul(0.5)))
       const { base, top } = surroundings(field, altitude)
       const span = next.sub(position).toConst()
@@ -113,8 +116,10 @@ export function marchClouds(
     }).Else(() => {
       const growing = position.mul(quality.stepGrowth).max(quality.shortestStep)
       const left = shell.sub(position).toConst()
-      const length = growing.min(longest).min(left.mul(0.5)).max(0.01).toConst() as Float
-      const ahead = [0, 1].map(i => length.mul(jitter.add(i)).toConst() as Float)
+      const whole = growing.min(longest).toConst() as Float
+      const length = whole.mul(part).min(left.mul(0.5)).max(0.01).toConst() as Float
+      part.assign(1)
+      const ahead = [0.5, 1.5].map(at => length.mul(at).toConst() as Float)
       const [first, second] = ahead.map(distance => sampleAt(position.add(distance)))
       const matter = pairMatter(field, sampleAt(position.add(length)), [first, second])
       const depth = matter.extinction.mul(light.depthScale).mul(length).toConst() as Vec2
@@ -149,7 +154,9 @@ export function marchClouds(
         transmittance.mulAssign(through.x.mul(through.y))
         position.addAssign(length.mul(2))
       }).Else(() => {
-        position.addAssign(length.mul(2).max(ahead[1].add(matter.clearance).min(left)))
+        const clear = ahead[1].add(matter.clearance).toConst() as Float
+        part.assign(clear.greaterThan(whole.mul(2)).select(jitter, 1))
+        position.addAssign(length.mul(2).max(clear.min(left)))
       })
     })
   })
@@ -157,15 +164,15 @@ export function marchClouds(
 
   const opacity = transmittance.oneMinus().toConst()
   // What is as good as opaque is opaque: nothing bright may shine through.
-  const whole = transmittance
+  const passed = transmittance
     .sub(OPAQUE)
     .max(0)
     .div(1 - OPAQUE)
     .toConst() as Float
   const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY))
   return {
-    radiance: radiance.mul(whole.oneMinus().div(opacity.max(1e-6))).toConst(),
-    transmittance: whole,
+    radiance: radiance.mul(passed.oneMinus().div(opacity.max(1e-6))).toConst(),
+    transmittance: passed,
     distance: opacity
       .greaterThan(1e-4)
       .select(weightedDistance.div(opacity.max(1e-6)), nothing)

@@ -1,4 +1,4 @@
-import { Fn, If, exp2, float, log2, mix, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, exp2, float, log2, mix, smoothstep, uv, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import {
   twoOutputs,
@@ -45,14 +45,15 @@ const STANDING = 0.02
 const CLEAR = 0.999
 
 /** Moves within a frame after which history is no more than a stopgap, and what it counts then [pixels, looks]. */
-const FAST = 20
+const FAST = 10
 const LEAST_MEMORY = 0.1
 
 /**
  * What history may differ from its surroundings besides: what is smaller than a block is not seen in
- * every frame, and is kept while the picture hardly moves.
+ * every frame, and is kept while the picture hardly moves. Not what has been seen in too few looks: it may
+ * be left over from a move.
  */
-const SLACK = { standing: 1, moving: 0.01 }
+const SLACK = { standing: 1, moving: 0.01, young: 1.5, old: 4 }
 
 /** Error of the reprojection at which history is forgotten [pixels]. */
 const PARALLAX = 4
@@ -93,52 +94,48 @@ interface Estimate {
   steps: Float
 }
 
-/** The marched pixel nearest to a pixel, and its neighbours. */
-const CROSS = [
+/** The marched pixels around a pixel. */
+const CORNERS = [
   [0, 0],
-  [-1, 0],
   [1, 0],
-  [0, -1],
-  [0, 1]
+  [0, 1],
+  [1, 1]
 ] as const
 
 /** A marched pixel near a pixel. */
 interface Neighbour {
-  /** From the nearest one [marched pixels]. */
-  readonly step: readonly [number, number]
+  /** Which corner. */
+  readonly step: readonly [0 | 1, 0 | 1]
   /** Texture coordinates. */
   readonly place: Vec2
   readonly color: Vec4
 }
 
-/** The marched pixels around a pixel; and where the nearest is from it [marched pixels]. */
+/** The marched pixels around a pixel; and where it is between them, in [0, 1). */
 function neighbours(
   { frame }: SightNodes,
   marched: CloudPictures,
   pixel: Vec2
-): { shift: Vec2; list: Neighbour[] } {
-  const at = pixel.sub(frame.jitter).div(frame.block).toConst() as Vec2
-  const nearest = at.add(0.5).floor().toConst()
-  const list = CROSS.map(step => {
-    const index = nearest.add(vec2(...step)).clamp(vec2(0), frame.marchedSize.sub(1))
-    const place = index.add(0.5).div(frame.marchedSize).toConst() as Vec2
+): { part: Vec2; list: Neighbour[] } {
+  const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst()
+  const corner = at.floor().toConst()
+  const list = CORNERS.map(step => {
+    const index = corner.add(vec2(...step)).clamp(vec2(0), frame.marchedSize.sub(1))
+    const place = index.add(0.5).div(frame.marchedSize).toConst()
     return { step, place, color: marched.light.sample(place).level(0).toConst() }
   })
-  return { shift: nearest.sub(at).toConst(), list }
+  return { part: at.sub(corner).toConst(), list }
 }
 
 /** What this frame's marched pixels say about a pixel that sees as far as `end`. */
 function estimate(
   { frame }: SightNodes,
   marched: CloudPictures,
-  { shift, list }: { shift: Vec2; list: readonly Neighbour[] },
+  { part, list }: { part: Vec2; list: readonly Neighbour[] },
   end: Float
 ): Estimate {
-  const squares = [-1, 0, 1].map(step => {
-    const away = shift.add(step).toConst() as Vec2
-    return away.mul(away).toConst()
-  })
-  const spreads = squares.map(square => square.mul(-SPREADING).exp().toConst() as Vec2)
+  const squares = [part.mul(part).toConst(), part.oneMinus().mul(part.oneMinus()).toConst()]
+  const spreads = squares.map(square => square.mul(-SPREADING).exp().toConst())
   const light = vec4(0).toVar() as Vec4
   const first = vec4(0).toVar() as Vec4
   const second = vec4(0).toVar() as Vec4
@@ -154,16 +151,13 @@ function estimate(
   } of list) {
     const about = marched.place.sample(place).level(0).toConst() as Vec4
     const fit = fits(end, about).toConst() as Float
-    const weight = spreads[x + 1].x
-      .mul(spreads[y + 1].y)
-      .mul(fit)
-      .toConst() as Float
+    const weight = spreads[x].x.mul(spreads[y].y).mul(fit).toConst() as Float
     const seen = weight.mul(color.w.oneMinus().add(1e-3)).toConst()
     light.addAssign(color.mul(weight))
     first.addAssign(color.mul(fit))
     second.addAssign(color.mul(color).mul(fit))
     sums.addAssign(vec4(weight, fit, about.x.mul(seen), seen))
-    const squared = squares[x + 1].x.add(squares[y + 1].y)
+    const squared = squares[x].x.add(squares[y].y)
     apart.assign(apart.min(fit.greaterThan(0).select(squared, 100)))
     if (x === 0 && y === 0) steps.assign(about.w)
   }
@@ -294,7 +288,10 @@ export function upscale(
         If(frame.hasHistory.greaterThan(0), () => {
           const last = remembered(field, sights, history, pixel, direction, end, now.distance)
           If(last.weight.greaterThan(0), () => {
-            const slack = last.moved.oneMinus().max(0).mul(SLACK.standing).max(SLACK.moving)
+            const standing = last.moved.oneMinus().max(0).mul(SLACK.standing)
+            const slack = smoothstep(SLACK.young, SLACK.old, last.weight)
+              .mul(standing)
+              .max(SLACK.moving)
             const clipped = clip(last.light, now, frame.clipping, slack)
             // What is known well does not learn from marched pixels that are not its own.
             const isOwn = now.look.greaterThan(OWN_LOOK).or(last.weight.lessThan(1))
