@@ -120,7 +120,7 @@ gpuTest(
   t =>
     withShared(t, async shared => {
       const sky = new Sky(shared)
-      let before = await sky.draw(420)
+      let before = await sky.draw(480)
       let most = 0
       for (let i = 0; i < 5; i++) {
         const now = await sky.draw()

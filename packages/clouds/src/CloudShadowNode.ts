@@ -19,8 +19,8 @@ const position = (view: AtmosphereView, target: Vector3): Vector3 =>
  * ```ts
  * const sun = new SunDirectionalLight(atmosphere)
  * sun.castShadow = renderer.shadowMap.enabled = true
- * sun.shadow.shadowNode = cloudShadow(cloudsNode, shadow(sun)) // with the shadow map of the light
- * sun.shadow.shadowNode = cloudShadow(cloudsNode)              // without
+ * // With three's shadow map of the light; `cloudShadow(cloudsNode)` is of clouds alone.
+ * Object.assign(sun.shadow, { shadowNode: cloudShadow(cloudsNode, shadow(sun)) })
  * ```
  *
  * It falls on what has `receiveShadow`. Near the camera it is read from the clouds' shadow maps, which

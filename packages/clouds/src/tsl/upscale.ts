@@ -187,17 +187,18 @@ function estimate(
   }
 }
 
-/** How far the layers at an altitude have moved since the last frame [m]. */
+/** How far the layers at an altitude have moved since the last frame, or all if none is there [m]. */
 function driftAt(field: CloudField, { frame }: SightNodes, altitude: Float): Vec3 {
   const sum = vec4(0).toVar() as Vec4
   forLayers(field, 'driftLayer', index => {
     const { baseAltitude, thickness } = layerAt(field, index)
-    const above = altitude.sub(baseAltitude)
-    If(above.greaterThanEqual(0).and(above.lessThanEqual(thickness)), () => {
-      sum.addAssign(vec4(frame.driftArray.element(index).xyz, 1))
-    })
+    const half = thickness.mul(0.5).toConst()
+    // Rays that meet nothing are taken to end where they enter the layer: at its very edge.
+    const isHere = altitude.sub(baseAltitude).sub(half).abs().lessThan(half.mul(1.1))
+    const weight = isHere.select(1, 1e-3)
+    sum.addAssign(vec4(frame.driftArray.element(index).xyz, 1).mul(weight))
   })
-  return sum.xyz.div(sum.w.max(1))
+  return sum.xyz.div(sum.w)
 }
 
 /** What the last frame had where the clouds of a pixel were, and how many looks it is worth. */
