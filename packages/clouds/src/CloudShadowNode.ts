@@ -5,7 +5,7 @@ import type { NodeFrame, UniformNode } from 'three/webgpu'
 import { viewNodes } from '@welkin/atmosphere'
 import type { AtmosphereView, ViewNodes } from '@welkin/atmosphere'
 import type { CloudsNode } from './CloudsNode'
-import { columnTowardsSun } from './tsl/density'
+import { columnTowardsSun } from './tsl/columns'
 import { sampleShadows } from './tsl/shadowMap'
 import type { Float, Vec3 } from './tsl-types'
 

@@ -1,0 +1,57 @@
+import { If, float } from 'three/tsl'
+import type { CloudField } from '../CloudField'
+import { densityShape } from '../layerUniforms'
+import type { Float, Vec3 } from '../tsl-types'
+import { spreadDensity, type CloudSample } from './density'
+import { forLayers, layerAt } from './layer'
+import { footOffset, weatherAt } from './weather'
+
+const { farFill } = densityShape
+
+/**
+ * Vertical optical depth of all clouds above or below a place of the ground, from the weather alone.
+ *
+ * @param sample - Any altitude: that is not looked at, but `offset` must agree with it.
+ */
+export function cloudColumn(field: CloudField, sample: CloudSample): Float {
+  const foot = footOffset(field, sample).toConst()
+  const sum = float(0).toVar()
+  forLayers(field, 'cloudColumnLayer', index => {
+    const layer = layerAt(field, index)
+    const weather = weatherAt(field, layer, foot, sample)
+    const depth = layer.density.mul(layer.thickness).mul(farFill)
+    sum.addAssign(depth.mul(spreadDensity(layer, weather)))
+  })
+  return sum
+}
+
+/** A sun lower than this does not make its rays through a layer any longer. */
+const LOWEST_COSINE = 0.1
+
+/**
+ * Optical depth from a place to the sun of all clouds that cast shadows, from the weather alone: one
+ * look-up a layer, where the ray crosses its middle.
+ */
+export function columnTowardsSun(field: CloudField, sample: CloudSample): Float {
+  const { view } = field
+  const sum = float(0).toVar()
+  const cosSun = sample.up.dot(view.sunDirection).toConst() as Float
+  const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
+  forLayers(field, 'sunColumnLayer', index => {
+    const layer = layerAt(field, index)
+    const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
+    const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float
+    If(above.mul(layer.shadow).mul(layer.coverage).greaterThan(0), () => {
+      const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
+      const way = middle.sub(sample.altitude).max(0).div(slope)
+      const offset = sample.offset.add(view.sunDirection.mul(way)).toConst() as Vec3
+      const { altitude, up } = view.place(offset)
+      const there = { offset, altitude, up, distance: sample.distance }
+      const foot = footOffset(field, there).toConst()
+      const weather = weatherAt(field, layer, foot, there)
+      const depth = layer.density.mul(layer.thickness).mul(farFill)
+      sum.addAssign(depth.mul(spreadDensity(layer, weather)).mul(above).div(slope))
+    })
+  })
+  return sum
+}
