@@ -3,7 +3,6 @@ import {
   AtmosphereParameters,
   SunDirectionalLight,
   airlessBody,
-  flatAtmosphere,
   marsAtmosphere,
   planetGround,
   skyBackground,
@@ -305,7 +304,7 @@ gpuTest('keeps two atmospheres in one scene apart', async t => {
 
 gpuTest('keeps up and the sky of a flat world wherever the camera goes', async t => {
   const renderer = await t.createRenderer({ width: 32, height: 18 })
-  const atmosphere = flatAtmosphere().setSunAngles(5, 60)
+  const atmosphere = new Atmosphere({ flat: true }).setSunAngles(5, 60)
   const scene = new Scene()
   const camera = new PerspectiveCamera(60, 32 / 18, 1, 1e7)
   const pictures = []

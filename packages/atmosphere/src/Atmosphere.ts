@@ -25,6 +25,8 @@ export interface AtmosphereOptions {
   parameters?: AtmosphereParameters
   /** The planet's figure; by default WGS84. */
   ellipsoid?: Ellipsoid
+  /** See {@link Atmosphere.flat}; by default false. */
+  flat?: boolean
 }
 
 /** How the scene's world space lies on the planet. */
@@ -80,7 +82,8 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** @throws If an option is of the wrong kind. */
   constructor({
     parameters = new AtmosphereParameters(),
-    ellipsoid = Ellipsoid.WGS84
+    ellipsoid = Ellipsoid.WGS84,
+    flat = false
   }: AtmosphereOptions = {}) {
     super()
     if (!(parameters instanceof AtmosphereParameters)) {
@@ -95,7 +98,28 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     }
     this.parameters = parameters
     this.ellipsoid = ellipsoid
+    this.flat = flat
     this.#updateFrame()
+  }
+
+  /**
+   * Whether the world is flat: up is +Y wherever the camera goes, and height is y. For scenes with no
+   * planet, however far they reach.
+   *
+   * It looks just as it does at the origin of a round world, the horizon's dip and the reddening of a
+   * low sun included. What the camera sees is hazed and lit as if the ground fell away from it with the
+   * planet's curve: over 10 km by 8 m and 0.1° of the sun's height.
+   */
+  get flat(): boolean {
+    return this.#space.flat
+  }
+
+  set flat(value: boolean) {
+    if (typeof value !== 'boolean') fail('Atmosphere', 'flat must be true or false', value)
+    if (value && this.#frame === 'ecef') {
+      fail('Atmosphere', "flat must be false in the frame 'ecef'", value)
+    }
+    this.#space.flat = value
   }
 
   /** Output of every node per luminance, > 0 [1/(cd/m²)]. */
@@ -148,6 +172,9 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   set frame(value: AtmosphereFrame) {
     if (value !== 'local' && value !== 'ecef') {
       fail('Atmosphere', "frame must be 'local' or 'ecef'", value)
+    }
+    if (value === 'ecef' && this.flat) {
+      fail('Atmosphere', "frame must be 'local' where the world is flat", value)
     }
     this.#frame = value
     this.#updateFrame()
