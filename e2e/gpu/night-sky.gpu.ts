@@ -19,13 +19,13 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { float, pass } from 'three/tsl'
+import { float, pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { glowGain } from '../../packages/atmosphere/src/cpu/airglow'
 import { starDirection } from '../../packages/atmosphere/src/stars/starCells'
 import { glowGains } from '../../packages/atmosphere/src/tsl/airglow'
-import { drawToFloat, expectLight } from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
+import { drawToFloat, expectLight, relativeDifferences } from './harness/atmosphere'
+import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
 import type { Picture } from './harness/picture'
 
@@ -248,6 +248,29 @@ gpuTest('lights a level plane at night as much as told', async t => {
   expectTrue(Math.abs((got * Math.PI) / 1e-3 - 1) < 0.01, `${got} cd/m²`)
   plane.geometry.dispose()
   plane.material.dispose()
+  atmosphere.dispose()
+})
+
+gpuTest('dims what is beyond the air deep in the night as at dusk', async t => {
+  const renderer = await t.createRenderer({ width: 32, height: 32 })
+  const atmosphere = new Atmosphere()
+  atmosphere.add({ beyond: (_, farther) => farther.add(vec4(1)) })
+  const camera = new PerspectiveCamera(60, 1, 0.1, 100)
+  camera.position.y = 100
+  camera.rotation.x = 0.5
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere)
+  const draw = (): Promise<Picture> => drawToFloat(renderer, () => renderer.render(scene, camera))
+  await atmosphere.bake(renderer)
+  // Night first: no hour before it has left anything behind.
+  atmosphere.setSunAngles(-60, 180)
+  const night = await draw()
+  atmosphere.setSunAngles(-20, 180)
+  const dusk = await draw()
+  const [zenith, horizon] = [night.at(16, 0), night.at(16, 31)].map(luminance)
+  t.note(`towards the horizon ${(horizon / zenith).toFixed(3)} of what comes from above`)
+  expectTrue(horizon < 0.7 * zenith, `${horizon} at the horizon, ${zenith} above`)
+  expectClose(Math.max(...relativeDifferences(night, dusk)), 0, { absolute: 1e-3 }, 'difference')
   atmosphere.dispose()
 })
 

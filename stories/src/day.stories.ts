@@ -3,10 +3,17 @@ import { createDay } from './day.scene'
 import type { DayArgs } from './day.scene'
 import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('day.scene.ts', 'day')}
+
+${storyCode('day.scene.ts', 'each frame')}`
 
 const meta: Meta<DayArgs> = {
   title: '24 hours',
-  render: mount(createDay),
+  render: mount(createDay, code),
   argTypes: {
     latitude: { name: 'Latitude [°]', control: { type: 'range', min: -90, max: 90, step: 1 } },
     season: {

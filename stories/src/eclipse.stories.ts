@@ -3,10 +3,15 @@ import { createEclipse } from './eclipse.scene'
 import type { MoonArgs } from './moon.scene'
 import moonMeta from './moon.stories'
 import { mount } from './mount'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('moon.scene.ts', 'moon')}`
 
 const meta: Meta<MoonArgs> = {
   title: 'Eclipse',
-  render: mount(createEclipse),
+  render: mount(createEclipse, code),
   argTypes: moonMeta.argTypes,
   args: {
     ...moonMeta.args,

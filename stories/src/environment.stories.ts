@@ -3,10 +3,15 @@ import { createEnvironment } from './environment.scene'
 import type { EnvironmentArgs } from './environment.scene'
 import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('environment.scene.ts', 'environment')}`
 
 const meta: Meta<EnvironmentArgs> = {
   title: 'Environment',
-  render: mount(createEnvironment),
+  render: mount(createEnvironment, code),
   argTypes: {
     elevation: {
       name: "Sun's elevation [°]",

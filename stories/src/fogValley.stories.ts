@@ -3,10 +3,15 @@ import { createFogValley, VIEWS } from './fogValley.scene'
 import type { FogValleyArgs } from './fogValley.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('fogValley.scene.ts', 'fog')}`
 
 const meta: Meta<FogValleyArgs> = {
   title: 'Fog valley',
-  render: mount(createFogValley),
+  render: mount(createFogValley, code),
   argTypes: {
     view: {
       name: 'Camera',

@@ -3,10 +3,15 @@ import { createMoon } from './moon.scene'
 import type { MoonArgs } from './moon.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('moon.scene.ts', 'moon')}`
 
 const meta: Meta<MoonArgs> = {
   title: 'Moon phases',
-  render: mount(createMoon),
+  render: mount(createMoon, code),
   argTypes: {
     longitude: {
       name: 'Longitude [°]',

@@ -4,10 +4,15 @@ import { createNight } from './night.scene'
 import type { NightArgs } from './night.scene'
 import { CONSTELLATIONS } from './night/constellations'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('night.scene.ts', 'night')}
+
+${storyCode('night.scene.ts', 'night exposure')}`
 
 const meta: Meta<NightArgs> = {
   title: 'Starry night',
-  render: mount(createNight),
+  render: mount(createNight, code),
   argTypes: {
     constellation: {
       name: 'Constellation',
@@ -34,7 +39,8 @@ const meta: Meta<NightArgs> = {
       control: { type: 'range', min: -6, max: 6, step: 0.25 },
       description: '0 as exposureFor says'
     },
-    ...rendererArgTypes
+    ...rendererArgTypes,
+    path: { table: { disable: true } }
   },
   args: {
     constellation: 'orion',

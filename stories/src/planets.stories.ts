@@ -3,6 +3,7 @@ import { mount } from './mount'
 import { createPlanets } from './planets.scene'
 import type { PlanetsArgs } from './planets.scene'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 
 const range = (name: string, min: number, max: number, step: number, description: string) => ({
   name,
@@ -10,9 +11,13 @@ const range = (name: string, min: number, max: number, step: number, description
   control: { type: 'range' as const, min, max, step }
 })
 
+const code = `${storyCode('planets.scene.ts', 'planets')}
+
+${storyCode('planets.scene.ts', "planet's ground")}`
+
 const meta: Meta<PlanetsArgs> = {
   title: 'Planets',
-  render: mount(createPlanets),
+  render: mount(createPlanets, code),
   argTypes: {
     planet: {
       name: 'Planet',

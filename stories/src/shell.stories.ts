@@ -3,10 +3,11 @@ import { mount } from './mount'
 import { createShell } from './shell.scene'
 import type { ShellArgs } from './shell.scene'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 
 const meta: Meta<ShellArgs> = {
   title: 'Shell',
-  render: mount(createShell),
+  render: mount(createShell, storyCode('shell.scene.ts', 'shell')),
   argTypes: {
     view: { name: 'View', table: { disable: true } },
     model: {
