@@ -57,10 +57,13 @@ export default meta
 type Story = StoryObj<DayArgs>
 
 /** A day and a night in a minute. */
-export const Minute: Story = { name: 'In a minute', tags: ['screenshot'] }
+export const Minute: Story = { name: 'In a minute', tags: ['screenshot', 'webgpu-only'] }
 
 /** Half an hour after sunset. */
-export const Dusk: Story = { args: { hour: 19.4, paused: true }, tags: ['screenshot'] }
+export const Dusk: Story = {
+  args: { hour: 19.4, paused: true },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** No moon. */
 export const Night: Story = { args: { hour: 1, paused: true }, tags: ['screenshot'] }

@@ -34,12 +34,15 @@ type Story = StoryObj<MoonArgs>
 export const Totality: Story = { tags: ['screenshot'] }
 
 /** Ten seconds before totality. */
-export const DiamondRing: Story = { args: { hour: 18.675, exposure: 1 }, tags: ['screenshot'] }
+export const DiamondRing: Story = {
+  args: { hour: 18.675, exposure: 1 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** Half an hour before, through a dark filter. */
 export const Partial: Story = {
   args: { hour: 18.2, fieldOfView: 1, exposure: -14 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The land a minute before totality: a hundredth of the sun lights it, as it still stands high. */

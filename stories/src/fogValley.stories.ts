@@ -66,11 +66,11 @@ export const Sunrise: Story = { tags: ['screenshot'] }
 /** In the middle of it. */
 export const Inside: Story = {
   args: { view: 'floor', base: 342, density: 8, falloff: 25, hour: 12.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The same by the post effect. */
-export const Post: Story = { args: { path: 'post' }, tags: ['screenshot'] }
+export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }
 
 /** Only ridges stand out. */
 export const FromAbove: Story = { args: { view: 'high', hour: 14, exposure: 0 } }

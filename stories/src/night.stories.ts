@@ -58,16 +58,22 @@ export default meta
 type Story = StoryObj<NightArgs>
 
 /** Two hours before midnight in January, 45° north. */
-export const Orion: Story = { tags: ['screenshot'] }
+export const Orion: Story = { tags: ['screenshot', 'webgpu-only'] }
 
-export const UrsaMajor: Story = { args: { constellation: 'ursaMajor' }, tags: ['screenshot'] }
+export const UrsaMajor: Story = {
+  args: { constellation: 'ursaMajor' },
+  tags: ['screenshot', 'webgpu-only']
+}
 
-export const Cassiopeia: Story = { args: { constellation: 'cassiopeia' }, tags: ['screenshot'] }
+export const Cassiopeia: Story = {
+  args: { constellation: 'cassiopeia' },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** The middle of the Milky Way beside it, from 25° south. */
 export const Scorpius: Story = { args: { constellation: 'scorpius' }, tags: ['screenshot'] }
 
-export const Crux: Story = { args: { constellation: 'crux' }, tags: ['screenshot'] }
+export const Crux: Story = { args: { constellation: 'crux' }, tags: ['screenshot', 'webgpu-only'] }
 
 /** The whole arch of the Milky Way, a stop and a half brighter than the eye sees it. */
 export const Wide: Story = {

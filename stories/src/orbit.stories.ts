@@ -55,4 +55,7 @@ type Story = StoryObj<OrbitArgs>
 export const Night: Story = { tags: ['screenshot'] }
 
 /** The sun is about to rise ahead. */
-export const Dawn: Story = { args: { angle: 248, exposure: -6 }, tags: ['screenshot'] }
+export const Dawn: Story = {
+  args: { angle: 248, exposure: -6 },
+  tags: ['screenshot', 'webgpu-only']
+}

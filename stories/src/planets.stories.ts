@@ -67,7 +67,7 @@ export default meta
 
 type Story = StoryObj<PlanetsArgs>
 
-export const MarsNoon: Story = { tags: ['screenshot'] }
+export const MarsNoon: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Dust throws blue light closer to the sun than red. */
 export const MarsSunset: Story = {
@@ -77,7 +77,7 @@ export const MarsSunset: Story = {
 
 export const Titan: Story = {
   args: { planet: 'titan', height: 6e6, pitch: -90, sunElevation: 10, exposure: -0.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const TitanGround: Story = { args: { planet: 'titan', sunElevation: 40, exposure: 1 } }
@@ -91,7 +91,7 @@ export const MoonGround: Story = { args: { planet: 'moon', sunElevation: 15, sun
 /** Land and sea from pictures; the sun glints on the sea. */
 export const Earth: Story = {
   args: { planet: 'earth', height: 1.2e7, pitch: -90, sunElevation: 35, exposure: -1 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const EarthNight: Story = {
@@ -116,5 +116,5 @@ export const LowOrbit: Story = {
 /** No picture at all: continents are made up. */
 export const MadeUp: Story = {
   args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -1 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }

@@ -54,7 +54,10 @@ type Story = StoryObj<ShellArgs>
 export const Map: Story = {}
 
 /** From inside: the cockpit is not hazed, the ground is. */
-export const Cockpit: Story = { args: { view: 'cockpit', sun: 12 }, tags: ['screenshot'] }
+export const Cockpit: Story = {
+  args: { view: 'cockpit', sun: 12 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 export const CockpitInSpace: Story = {
   args: { view: 'cockpit', sun: 20, height: 300_000 }
