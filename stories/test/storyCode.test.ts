@@ -46,3 +46,12 @@ it('leaves no region unseen', () => {
     )
   expect(new Set(storyFiles.flatMap(shownBy))).toEqual(new Set(marked))
 })
+
+it('takes every scene with a screenshot on WebGL at least once', () => {
+  for (const file of storyFiles) {
+    const tags = [...read(file).matchAll(/tags: \[([^\]]*)\]/g)].map(([, list]) => list)
+    const shot = tags.filter(list => list.includes("'screenshot'"))
+    expect(shot.length, file).toBeGreaterThan(0)
+    expect(shot.filter(list => !list.includes("'webgpu-only'")).length, file).toBeGreaterThan(0)
+  }
+})
