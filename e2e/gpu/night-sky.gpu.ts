@@ -19,13 +19,13 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { float, pass } from 'three/tsl'
+import { float, pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { glowGain } from '../../packages/atmosphere/src/cpu/airglow'
 import { starDirection } from '../../packages/atmosphere/src/stars/starCells'
 import { glowGains } from '../../packages/atmosphere/src/tsl/airglow'
-import { drawToFloat, expectLight } from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
+import { drawToFloat, expectLight, relativeDifferences } from './harness/atmosphere'
+import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
 import type { Picture } from './harness/picture'
 
@@ -34,23 +34,24 @@ const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 
 /** Illuminance by a star of magnitude 0 [lx]. */
 const VEGA = 2.54e-6
 
-/** A camera far above the air, where the frame of the stars is ECEF: the atmosphere has no date. */
-function inSpace(
-  fov: number,
-  towards: Star
-): { atmosphere: Atmosphere; camera: PerspectiveCamera } {
+/** Without a date, so that the frame of the stars is ECEF; its light is in cd/m². */
+function stellarAtmosphere(): Atmosphere {
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef'
   atmosphere.luminanceScale = 1
+  return atmosphere
+}
+
+/** A camera far above the air, planet and sun behind it. */
+function inSpace(atmosphere: Atmosphere, fov: number, towards: Star): PerspectiveCamera {
   const camera = new PerspectiveCamera(fov, 64 / 36, 1, 1e9)
   const direction = new Vector3(...starDirection(towards))
-  // The planet and the sun are behind.
   atmosphere.sunDirection = direction.clone().negate()
   camera.position.copy(direction).multiplyScalar(1e8)
   camera.up.set(0.3, 0.5, 0.8).normalize()
   camera.lookAt(direction.clone().multiplyScalar(2e8))
   camera.updateMatrixWorld()
-  return { atmosphere, camera }
+  return camera
 }
 
 /** Illuminance of a plane that faces the middle of a picture, by all that is in it [lx]. */
@@ -84,19 +85,19 @@ gpuTest(
   'gives each star its illuminance and place, whatever the picture’s size and field',
   async t => {
     const vega = brightStars().find(({ ascension }) => Math.abs(ascension - 4.87356) < 1e-3) as Star
+    const renderer = await t.createRenderer()
+    const atmosphere = stellarAtmosphere().add(new Stars([{ ...vega, colorIndex: 0 }]))
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
     for (const [width, height, fov] of [
       [64, 36, 20],
       [160, 90, 20],
       [128, 72, 1],
       [96, 54, 5]
     ]) {
-      const renderer = await t.createRenderer({ width, height })
-      const { atmosphere, camera } = inSpace(fov, vega)
+      renderer.setSize(width, height)
+      const camera = inSpace(atmosphere, fov, vega)
       camera.setViewOffset(width, height, 0.31, -0.22, width, height)
-      const field = new Stars([{ ...vega, colorIndex: 0 }])
-      atmosphere.add(field)
-      const scene = new Scene()
-      scene.backgroundNode = skyBackground(atmosphere)
       const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
       expectLight(picture, `${width}×${height}`)
       const ratio = illuminance(picture, fov) / (VEGA * 10 ** (-0.4 * vega.magnitude))
@@ -107,13 +108,16 @@ gpuTest(
       expectTrue(Math.abs(ratio - 1) < 0.02, `illuminance is ${ratio} of what it should be`)
       const off = Math.hypot(x - width / 2 + 0.31, y - height / 2 - 0.22)
       expectTrue(off < 0.05, `it is ${off} pixels from its place`)
-      atmosphere.dispose()
     }
+    atmosphere.dispose()
   }
 )
 
 gpuTest('has the light of the whole catalogue', async t => {
   const renderer = await t.createRenderer({ width: 128, height: 128 })
+  const atmosphere = stellarAtmosphere().add(stars())
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere)
   // 90° square, six of them: the whole sky.
   let sum = 0
   const size = 90
@@ -127,14 +131,11 @@ gpuTest('has the light of the whole catalogue', async t => {
   ]) {
     const ascension = Math.atan2(y, x)
     const towards = { ascension, declination: (z * Math.PI) / 2, magnitude: 0, colorIndex: 0 }
-    const { atmosphere, camera } = inSpace(size, towards)
+    const camera = inSpace(atmosphere, size, towards)
     camera.aspect = 1
     camera.up.set(0, z === 0 ? 0 : 1, z === 0 ? 1 : 0)
     camera.lookAt(camera.position.clone().multiplyScalar(2))
     camera.updateProjectionMatrix()
-    atmosphere.add(stars())
-    const scene = new Scene()
-    scene.backgroundNode = skyBackground(atmosphere)
     const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
     // On a plane that faces each star, not the face's middle.
     const side = 2 / picture.height
@@ -144,8 +145,8 @@ gpuTest('has the light of the whole catalogue', async t => {
       const [r, g, b] = picture.data.subarray(i, i + 3)
       sum += (luminance([r, g, b]) * side * side) / (1 + u * u + v * v) ** 1.5
     }
-    atmosphere.dispose()
   }
+  atmosphere.dispose()
   const expected = brightStars().reduce(
     (total, star) => total + VEGA * 10 ** (-0.4 * star.magnitude),
     0
@@ -159,7 +160,8 @@ gpuTest('draws the same stars after post-processing, behind what was drawn', asy
   const renderer = await t.createRenderer({ width, height })
   const orion = { ascension: 1.46, declination: 0, magnitude: 0, colorIndex: 0 }
   const draw = async (overlay: boolean): Promise<Picture> => {
-    const { atmosphere, camera } = inSpace(fov, orion)
+    const atmosphere = stellarAtmosphere()
+    const camera = inSpace(atmosphere, fov, orion)
     atmosphere.add(milkyWay(), stars({ overlay }))
     const scene = new Scene()
     scene.backgroundNode = skyBackground(atmosphere)
@@ -248,6 +250,29 @@ gpuTest('lights a level plane at night as much as told', async t => {
   expectTrue(Math.abs((got * Math.PI) / 1e-3 - 1) < 0.01, `${got} cd/m²`)
   plane.geometry.dispose()
   plane.material.dispose()
+  atmosphere.dispose()
+})
+
+gpuTest('dims what is beyond the air deep in the night as at dusk', async t => {
+  const renderer = await t.createRenderer({ width: 32, height: 32 })
+  const atmosphere = new Atmosphere()
+  atmosphere.add({ beyond: (_, farther) => farther.add(vec4(1)) })
+  const camera = new PerspectiveCamera(60, 1, 0.1, 100)
+  camera.position.y = 100
+  camera.rotation.x = 0.55
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere)
+  const draw = (): Promise<Picture> => drawToFloat(renderer, () => renderer.render(scene, camera))
+  await atmosphere.bake(renderer)
+  // Night first: no hour before it has left anything behind.
+  atmosphere.setSunAngles(-60, 180)
+  const night = await draw()
+  atmosphere.setSunAngles(-20, 180)
+  const dusk = await draw()
+  const [zenith, horizon] = [night.at(16, 0), night.at(16, 31)].map(luminance)
+  t.note(`towards the horizon ${(horizon / zenith).toFixed(3)} of what comes from above`)
+  expectTrue(horizon < 0.7 * zenith, `${horizon} at the horizon, ${zenith} above`)
+  expectClose(Math.max(...relativeDifferences(night, dusk)), 0, { absolute: 1e-3 }, 'difference')
   atmosphere.dispose()
 })
 

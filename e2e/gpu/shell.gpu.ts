@@ -89,21 +89,21 @@ const FAR_VIEW = [25, -Math.PI / 2, 6] as const
 gpuTest('looks the same for bodies of any size, on any world scale', async t => {
   const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
   const sun = new Vector3(1, 0.6, 0.4)
-  for (const [distance, pitch] of VIEWS) {
-    let first: Picture | undefined
-    for (const scale of [1, 1e-3, 1e-6]) {
-      const { scene, dispose } = body(RADIUS * scale, { sun })
+  const first: Picture[] = []
+  for (const scale of [1, 1e-3, 1e-6]) {
+    const { scene, dispose } = body(RADIUS * scale, { sun })
+    for (const [i, [distance, pitch]] of VIEWS.entries()) {
       const picture = await draw(renderer, scene, cameraAt(distance, RADIUS * scale, pitch))
       expectLight(picture, `scale ${scale}`)
-      if (first === undefined) first = picture
-      const differences = relativeDifferences(first, picture)
+      expectTrue(Math.max(...picture.data) > 0.05, `${distance} radii: nothing to be seen`)
+      first[i] ??= picture
+      const differences = relativeDifferences(first[i], picture)
       // The last pixels are the silhouette's.
       const most = differences[Math.floor(0.98 * differences.length)]
       t.note(`${distance} radii, ${scale}: ${most.toExponential(1)}`)
       expectTrue(most < 5e-3, `${distance} radii, scale ${scale}: pixels differ by ${most}`)
-      dispose()
     }
-    expectTrue(Math.max(...first!.data) > 0.05, `${distance} radii: nothing to be seen`)
+    dispose()
   }
 })
 
@@ -158,23 +158,26 @@ gpuTest(
   async t => {
     const renderer = await t.createRenderer(size)
     const sun = new Vector3(0.3, 1, 0.2)
-    for (const [distance, pitch] of VIEWS) {
-      const camera = cameraAt(distance, 1, pitch)
-      const means: number[] = []
-      for (const model of ['tables', 'single-scattering'] as const) {
-        const { scene, globe, dispose } = body(1, { sun, model })
-        globe.material.visible = false
-        const { data } = await draw(renderer, scene, camera)
-        means.push(data.reduce((sum, value, i) => (i % 4 === 1 ? sum + value : sum), 0))
-        dispose()
+    const lightIn = async (model: 'tables' | 'single-scattering'): Promise<number[]> => {
+      const { scene, globe, dispose } = body(1, { sun, model })
+      globe.material.visible = false
+      const sums: number[] = []
+      for (const [distance, pitch] of VIEWS) {
+        const { data } = await draw(renderer, scene, cameraAt(distance, 1, pitch))
+        sums.push(data.reduce((sum, value, i) => (i % 4 === 1 ? sum + value : sum), 0))
       }
-      const part = means[1] / means[0]
+      dispose()
+      return sums
+    }
+    const [all, once] = [await lightIn('tables'), await lightIn('single-scattering')]
+    VIEWS.forEach(([distance], i) => {
+      const part = once[i] / all[i]
       t.note(`${distance} radii: ${part.toFixed(2)} of all light`)
       expectTrue(
         part > 0.4 && part < 0.95,
         `${distance} radii: single scattering is ${part} of all`
       )
-    }
+    })
     const { scene, dispose } = body(1, { sun: new Vector3(0, -1, 0), model: 'single-scattering' })
     const night = await draw(renderer, scene, cameraAt(1.0005, 1, 0.5))
     expectTrue(
@@ -272,8 +275,15 @@ function depthRenderer(kind: string) {
 for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
   gpuTest(`hides behind what is near and hazes what is far, with ${depth} depth`, async t => {
     const renderer = await t.createRenderer(depthRenderer(depth))
+    const { scene, dispose } = body(RADIUS, { sun: new Vector3(0, 1, 0.3) }, 0x000000)
+    // A ship between the eye and the air, before the globe's left half.
+    const ship = new Mesh(
+      new PlaneGeometry(2 * RADIUS, 4 * RADIUS).rotateX(-Math.PI / 2),
+      new MeshBasicMaterial({ color: 0x808080 })
+    )
+    ship.position.set(-RADIUS, 1.2 * RADIUS, 0)
+    scene.add(ship)
     for (const isOrthographic of [false, true]) {
-      const { scene, dispose } = body(RADIUS, { sun: new Vector3(0, 1, 0.3) }, 0x000000)
       const camera = isOrthographic
         ? new OrthographicCamera(-9e6, 9e6, 5e6, -5e6)
         : new PerspectiveCamera(50, 64 / 36)
@@ -286,13 +296,6 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
       })
       if (isOrthographic) Object.assign(camera, { near: 0.1 * RADIUS, far: 4 * RADIUS })
       camera.updateProjectionMatrix()
-      // A ship between the eye and the air, before the globe's left half.
-      const ship = new Mesh(
-        new PlaneGeometry(2 * RADIUS, 4 * RADIUS).rotateX(-Math.PI / 2),
-        new MeshBasicMaterial({ color: 0x808080 })
-      )
-      ship.position.set(-RADIUS, 1.2 * RADIUS, 0)
-      scene.add(ship)
       const picture = await draw(renderer, scene, camera)
       const bare = luminance([0.2159, 0.2159, 0.2159])
       const [onShip, onGlobe] = [luminance(picture.at(28, 18)), luminance(picture.at(36, 18))]
@@ -300,10 +303,10 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
       t.note(`${kind}: ship ${onShip.toFixed(3)}, globe ${onGlobe.toFixed(3)}`)
       expectClose(onShip, bare, { relative: 0.01 }, `${kind}, the ship`)
       expectTrue(onGlobe > 0.02, `${kind}: the globe has no haze, ${onGlobe}`)
-      ship.geometry.dispose()
-      ship.material.dispose()
-      dispose()
     }
+    ship.geometry.dispose()
+    ship.material.dispose()
+    dispose()
   })
 }
 

@@ -3,10 +3,17 @@ import { createDay } from './day.scene'
 import type { DayArgs } from './day.scene'
 import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('day.scene.ts', 'day')}
+
+${storyCode('day.scene.ts', 'each frame')}`
 
 const meta: Meta<DayArgs> = {
   title: '24 hours',
-  render: mount(createDay),
+  render: mount(createDay, code),
   argTypes: {
     latitude: { name: 'Latitude [°]', control: { type: 'range', min: -90, max: 90, step: 1 } },
     season: {
@@ -50,10 +57,13 @@ export default meta
 type Story = StoryObj<DayArgs>
 
 /** A day and a night in a minute. */
-export const Minute: Story = { name: 'In a minute', tags: ['screenshot'] }
+export const Minute: Story = { name: 'In a minute', tags: ['screenshot', 'webgpu-only'] }
 
 /** Half an hour after sunset. */
-export const Dusk: Story = { args: { hour: 19.4, paused: true }, tags: ['screenshot'] }
+export const Dusk: Story = {
+  args: { hour: 19.4, paused: true },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** No moon. */
 export const Night: Story = { args: { hour: 1, paused: true }, tags: ['screenshot'] }

@@ -1,6 +1,6 @@
 import type { TilesRenderer } from '3d-tiles-renderer'
 import { GlobeControls } from '3d-tiles-renderer'
-import { Atmosphere, distanceFog, heightFog } from '@welkin/atmosphere'
+import { distanceFog, heightFog } from '@welkin/atmosphere'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
 import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
@@ -11,7 +11,7 @@ import type { Place } from './globe/places'
 import { moveCamera } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
 import { createTerrain } from './globe/terrain'
-import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
+import { createRenderer, dateOf, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 /** Where the camera stands and looks. */
@@ -85,12 +85,14 @@ export async function createFogValley(
   land.add(surface.tiles.group, terrain.tiles.group)
   scene.add(land)
 
-  const atmosphere = new Atmosphere()
-  atmosphere.frame = 'ecef'
-  const mist = heightFog()
-  const murk = distanceFog()
-  atmosphere.add(murk, mist)
-  const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  const air = new Air(renderer, scene, camera, args.path)
+  const { atmosphere } = air
+  // #region fog
+  atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
+  const mist = heightFog({ base: 300, falloff: 40, density: 0.006 }) // metres, 1/m: in the valleys
+  const murk = distanceFog({ density: 1 / 8000 }) // 1/m: where the scene ends
+  atmosphere.add(murk, mist) // before the first render
+  // #endregion
   prepareShadow(air.sun)
 
   const controls = new GlobeControls(land, camera, args.frame ? undefined : canvas)
@@ -169,10 +171,7 @@ export async function createFogValley(
       draw()
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       for (const tiles of tilesets) {
         tiles.setResolution(camera, width * pixelRatio, height * pixelRatio)
       }

@@ -8,7 +8,7 @@ import {
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface OrbitArgs extends RendererArgs {
@@ -31,11 +31,13 @@ export async function createOrbit(
   const scene = new Scene()
   const camera = new PerspectiveCamera(args.fieldOfView, 1, 10, 1e8)
   const current = { ...args }
+  // #region orbit
   const atmosphere = new Atmosphere()
-  atmosphere.frame = 'ecef'
+  atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
   atmosphere.date = new Date('2026-06-20T23:00:00Z')
-  atmosphere.add(milkyWay(), stars(), airglow())
+  atmosphere.add(milkyWay(), stars(), airglow()) // far before near
   scene.backgroundNode = skyBackground(atmosphere)
+  // #endregion
 
   const apply = (): void => {
     const angle = (current.angle * Math.PI) / 180
@@ -55,8 +57,10 @@ export async function createOrbit(
     camera.fov = current.fieldOfView
     camera.updateProjectionMatrix()
     camera.updateMatrixWorld()
-    atmosphere.luminanceScale =
-      1e-4 * exposureFor(atmosphere, camera) * exposureOf(current.exposure)
+    // #region orbit exposure
+    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // as the camera moves
+    // #endregion
+    atmosphere.luminanceScale *= exposureOf(current.exposure)
   }
   apply()
 
@@ -72,10 +76,7 @@ export async function createOrbit(
     progress: 1,
     render: draw,
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = (async () => {
         await atmosphere.bake(renderer)
         apply()

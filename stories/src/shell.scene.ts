@@ -19,7 +19,7 @@ import {
   Vector3
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface ShellArgs extends RendererArgs {
@@ -51,6 +51,7 @@ export async function createShell(
   const camera = new PerspectiveCamera(45, 1, 0.001, 1e5)
   const light = new DirectionalLight(0xffffff, SUNLIGHT)
   scene.add(light, light.target)
+  const { model } = args
   const meshes: Mesh[] = []
   const shells: AtmosphereShell[] = []
 
@@ -68,10 +69,11 @@ export async function createShell(
     ball.position.copy(position)
     meshes.push(ball)
     scene.add(ball)
-    const shell = atmosphereShell(parameters, 1, { sun: light, model: args.model })
-    if (shell === null) return
-    shells.push(shell)
-    ball.add(shell)
+    // #region shell
+    const shell = atmosphereShell(parameters, 1, { sun: light, model }) // null for a body without air
+    if (shell !== null) ball.add(shell) // a mesh whose geometry has radius 1, of any scale
+    // #endregion
+    if (shell !== null) shells.push(shell)
   }
 
   const cockpit = new Group()
@@ -142,10 +144,7 @@ export async function createShell(
       renderer.render(scene, camera)
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = Promise.resolve().then(() => {
         for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) renderer.render(scene, camera)
       })

@@ -10,18 +10,17 @@ import {
   PerspectiveCamera,
   Vector3
 } from 'three'
-import type { Texture } from 'three'
 import { Fn, positionWorldDirection, renderGroup, uniform, vec4 } from 'three/tsl'
-import { CubeRenderTarget, NodeMaterial, PMREMGenerator, RendererUtils } from 'three/webgpu'
-import type { Renderer } from 'three/webgpu'
+import { CubeRenderTarget, NodeMaterial, RendererUtils } from 'three/webgpu'
+import type { Node, Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
+import { PrefilteredCube } from './PrefilteredCube'
 import { skyColor } from './tsl/sky'
 import type { Vec3 } from './tsl-types'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
-/** Faces of the cube, and the filter. */
-export const SKY_CUBE_STEPS = 7
+const FACES = 6
 
 /**
  * Texels below the horizon over which the sky goes on, so that three's filter, which blurs even what
@@ -33,8 +32,8 @@ const _position = new Vector3()
 const _rotation = new Matrix3()
 
 /**
- * Sky and ground about a place as three's prefiltered environment map, in the world's axes. Drawn in
- * {@link SKY_CUBE_STEPS} steps, always into the same two cubes.
+ * Sky and ground about a place as three's prefiltered environment map, in the world's axes. Drawn face
+ * by face and then filtered part by part, always into the same cubes.
  */
 export class SkyCube {
   /** Stands where the sky is seen from, with the world's axes. */
@@ -46,9 +45,9 @@ export class SkyCube {
   /** Zenith in world space. */
   readonly #up = uniform(new Vector3()).setGroup(renderGroup)
   readonly #box: Mesh<BoxGeometry, NodeMaterial>
-  #generator: PMREMGenerator | null = null
-  #renderer: Renderer | null = null
-  #filtered: CubeRenderTarget | null = null
+  readonly #filtered: PrefilteredCube
+  /** Faces drawn; null while it rests. */
+  #drawn: number | null = null
 
   /** @param size - Texels along the edge of a face, a power of two. */
   constructor(atmosphere: Atmosphere, size: number) {
@@ -61,6 +60,7 @@ export class SkyCube {
       generateMipmaps: false
     })
     this.#faces.texture.name = 'SkyEnvironment'
+    this.#filtered = new PrefilteredCube(this.#faces.texture)
     const material = new NodeMaterial()
     material.name = 'Welkin.SkyEnvironment'
     material.side = BackSide
@@ -77,34 +77,53 @@ export class SkyCube {
     this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }
 
-  /** The filtered map, once there is one. */
-  get texture(): Texture | null {
-    return this.#filtered?.texture ?? null
+  /** What materials mirror, once there is anything. */
+  get node(): Node | null {
+    return this.#filtered.node
   }
 
-  /** Looks from a camera's place at the sky as it is now; the steps that follow draw that. */
+  /** Whether nothing is half done. */
+  get isIdle(): boolean {
+    return this.#drawn === null
+  }
+
+  /** Looks from a camera's place at the sky as it is now; what is drawn from now on shows that. */
   aim(renderer: Renderer, from: PerspectiveCamera['matrixWorld']): void {
     this.camera.matrixWorld.setPosition(_position.setFromMatrixPosition(from))
     const { up, viewToMapped } = this.#atmosphere.update(renderer, this.camera)
     this.#up.value.copy(up).applyMatrix3(_rotation.copy(viewToMapped).transpose()).normalize()
+    this.#drawn = 0
+    this.#filtered.restart()
   }
 
   /**
-   * Draws a face, or filters all of them.
+   * Draws the next face, or filters the next part, or does all that is left.
    *
-   * @param step - In [0, {@link SKY_CUBE_STEPS}), in that order.
+   * @returns Whether it is complete.
    */
-  draw(renderer: Renderer, step: number): void {
+  draw(renderer: Renderer, isWhole: boolean): boolean {
     const view = this.#atmosphere.viewOf(this.camera)
-    if (view === undefined || view.eye === null) return
+    if (this.#drawn === null || view === undefined || view.eye === null) return false
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     const isPresenting = renderer.xr.enabled
     renderer.xr.enabled = false
     renderer.setMRT(null)
-    if (step < 6) this.#drawFace(renderer, view, step)
-    else this.#filter(renderer)
+    let isComplete = false
+    if (isWhole) {
+      while (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
+      this.#filtered.filterAll(renderer)
+      isComplete = true
+    } else if (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
+    else isComplete = this.#filtered.filterNext(renderer)
+    if (isComplete) this.#drawn = null
     renderer.xr.enabled = isPresenting
     RendererUtils.restoreRendererState(renderer, state)
+    return isComplete
+  }
+
+  /** Has materials see what was completed last. */
+  show(): void {
+    this.#filtered.show()
   }
 
   #drawFace(renderer: Renderer, view: AtmosphereView, face: number): void {
@@ -122,21 +141,11 @@ export class SkyCube {
     renderer.render(this.#box, this.#cameras.children[face] as PerspectiveCamera)
   }
 
-  #filter(renderer: Renderer): void {
-    if (this.#renderer !== renderer) {
-      this.#generator?.dispose()
-      this.#generator = new PMREMGenerator(renderer)
-      this.#renderer = renderer
-    }
-    this.#filtered = this.#generator!.fromCubemap(this.#faces.texture, this.#filtered)
-  }
-
   /** Frees GPU memory; it can be drawn again. */
   dispose(): void {
     this.#faces.dispose()
-    this.#filtered?.dispose()
-    this.#generator?.dispose()
-    this.#generator = this.#renderer = null
+    this.#filtered.dispose()
+    this.#drawn = null
     this.#box.geometry.dispose()
     this.#box.material.dispose()
   }

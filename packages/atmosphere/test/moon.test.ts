@@ -1,7 +1,14 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
-import { Vector3 } from 'three'
-import { Atmosphere, Moon, moon, MoonDirectionalLight, moonIlluminanceAt } from '@welkin/atmosphere'
+import { PerspectiveCamera, Vector3 } from 'three'
+import {
+  Atmosphere,
+  DayCycle,
+  Moon,
+  moon,
+  MoonDirectionalLight,
+  moonIlluminanceAt
+} from '@welkin/atmosphere'
 import { SearchLocalSolarEclipse, Observer } from 'astronomy-engine'
 import { Ellipsoid, moonPositionECEF } from '@welkin/geo'
 import { coveredSun } from '../src/cpu/eclipse'
@@ -132,6 +139,39 @@ describe('Moon', () => {
       expect(seen.direction.angleTo(atmosphere.sunDirection)).toBeCloseTo(elongation, 6)
       expect(seen.litFraction).toBeCloseTo(lit, 9)
     }
+  })
+
+  it('waxes and wanes as a day cycle runs, and exposure follows its light', () => {
+    const atmosphere = new Atmosphere().place({ longitude: 0, latitude: 35 })
+    const luna = moon(atmosphere)
+    const sources = [luna.source]
+    // Almanac: new on 16 May 2026 at 20:01 UTC, quarters on 23 May at 11:11 and 8 June at 10:00,
+    // full on 31 May at 08:45, new on 15 June at 02:54.
+    const date = new Date('2026-05-16T20:01:00Z')
+    const [lit, dark] = [{ sources }, {}].map(
+      exposure => new DayCycle(atmosphere, { date, rate: 86_400, adaptation: 0, exposure })
+    )
+    const camera = new PerspectiveCamera()
+    const fractions = [0, 6.63, 7.9, 8.05, 6.7].map(days => {
+      lit.update(days)
+      return luna.seenFrom(origin).litFraction
+    })
+    const [first, quarter, full, last, next] = fractions
+    for (const value of [first, next]) expect(value).toBeLessThan(0.005)
+    for (const value of [quarter, last]) expect(Math.abs(value - 0.5)).toBeLessThan(0.03)
+    expect(full).toBeGreaterThan(0.99)
+
+    const midnight = Date.UTC(2026, 4, 31)
+    const exposures = [lit, dark].map(cycle => {
+      cycle.time = midnight
+      cycle.update(0, camera)
+      return cycle.exposure
+    })
+    expect(exposures[1] / exposures[0]).toBeGreaterThan(10)
+    // A fortnight later there is no moon at midnight.
+    lit.time = Date.UTC(2026, 5, 15)
+    lit.update(0, camera)
+    expect(lit.exposure / exposures[1]).toBeCloseTo(1, 2)
   })
 
   it('takes no wrong argument', () => {
