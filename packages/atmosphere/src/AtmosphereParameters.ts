@@ -204,7 +204,7 @@ export class AtmosphereParameters {
   }
 
   /**
-   * The Earth's atmosphere from two everyday numbers.
+   * The Earth's atmosphere from two everyday numbers. `standardAtmosphere()` is as bright as the real one.
    *
    * @param options - `turbidity` in [1, 20]: haziness as aerosol optical depth, 1 none, 2 the clear
    *   air of the default, growing in proportion; `ozone` in [0, 1000] [Dobson units], default 300.
