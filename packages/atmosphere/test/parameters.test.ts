@@ -8,6 +8,26 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
   [{ topRadius: NaN }, /AtmosphereParameters: topRadius .*NaN/],
   [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry.* got 1/],
   [{ rayleighScaleHeight: 0 }, /AtmosphereParameters: rayleighScaleHeight .*0/],
+  [{ rayleighLayers: [[1e4, 0]] }, /AtmosphereParameters: rayleighLayers\[0\]\[1\] .* got 0/],
+  [{ rayleighLayers: [[-1, 7e3]] }, /AtmosphereParameters: rayleighLayers\[0\]\[0\] .* got -1/],
+  [
+    {
+      rayleighLayers: [
+        [4e4, 7e3],
+        [1e4, 6e3]
+      ]
+    },
+    /AtmosphereParameters: rayleighLayers\[1\]\[0\] must be .* in \[40000, 1000000\], got 10000/
+  ],
+  [
+    { rayleighLayers: [1, 2, 3, 4].map(i => [1e4 * i, 7e3] as const) },
+    /AtmosphereParameters: rayleighLayers must be an array of at most 3 layers/
+  ],
+  [
+    { rayleighLayers: [[1e4]] } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: rayleighLayers\[0\] .*2 values/
+  ],
+  [{ rayleighLayers: undefined }, /AtmosphereParameters: rayleighLayers .*3 layers.*undefined/],
   [{ groundAlbedo: [0, 0, 1.5, 0] }, /AtmosphereParameters: groundAlbedo\[2\] .*1\.5/],
   [
     { mieExtinction: [0, -1e-6, 0, 0] },

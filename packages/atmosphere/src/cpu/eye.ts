@@ -1,5 +1,6 @@
 import type { AtmosphereParameters } from '../AtmosphereParameters'
 import type { EyeScalars } from '../tsl/eye'
+import { homogeneousHeight } from './medium'
 
 /** How much faster than the density of molecules the steps grow along a ray. */
 const STEP_GROWTH = 0.4
@@ -7,8 +8,8 @@ const STEP_GROWTH = 0.4
 /** Eyes lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */
 export const LOWEST_EYE = 1
 
-function exponent(rise: number, scaleHeight: number): number {
-  const value = Math.min(Math.max((STEP_GROWTH * rise) / scaleHeight, -4), 4)
+function exponent(rise: number, height: number): number {
+  const value = Math.min(Math.max((STEP_GROWTH * rise) / height, -4), 4)
   return Math.sign(value || 1) * Math.max(Math.abs(value), 0.05)
 }
 
@@ -23,7 +24,7 @@ export function eyeScalars(
   altitude: number,
   cosSun: number
 ): EyeScalars<number> {
-  const { bottomRadius, topRadius, rayleighScaleHeight } = parameters
+  const { bottomRadius, topRadius } = parameters
   const thickness = topRadius - bottomRadius
   const h = Math.max(altitude, LOWEST_EYE)
   const radius = bottomRadius + h
@@ -32,8 +33,9 @@ export function eyeScalars(
   const above =
     radius > topRadius ? Math.asin(topRadius / radius) - Math.asin(sinHorizon) : Math.PI / 2 + dip
   const start = Math.min(h, thickness)
-  const groundExponent = exponent(-start, rayleighScaleHeight)
-  const skyExponent = exponent(thickness - start, rayleighScaleHeight)
+  const height = homogeneousHeight(parameters)
+  const groundExponent = exponent(-start, height)
+  const skyExponent = exponent(thickness - start, height)
   return {
     altitude: h,
     cosSun,

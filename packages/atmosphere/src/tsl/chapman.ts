@@ -15,7 +15,12 @@ const scaledErfc = (z: Vec2): Vec2 => z.mul(A).add(1).div(z.mul(C).add(B).mul(z)
 /** d/w of a point on the middle of the absorber's layer along its horizon, (3/8)²: see {@link absorberColumn}. */
 const WITHIN = 9 / 64
 
-/** Divisors and factors of an atmosphere that every point on a ray needs: made once, outside of loops. */
+/**
+ * Divisors and factors of an atmosphere that every point on a ray needs: made once, outside of loops.
+ *
+ * Molecules in layers are taken for a single one of as many: at 50 km of the standard atmosphere that is
+ * 3.1 times their density; overhead of the ground they are as many.
+ */
 export interface ProfileConstants {
   /** 1/H of molecules and aerosols [1/m]. */
   slopes: Vec2
@@ -31,8 +36,8 @@ export interface ProfileConstants {
 
 /** Makes {@link ProfileConstants}. */
 export function profileConstants(uniforms: AtmosphereUniforms): ProfileConstants {
-  const { bottomRadius, rayleighScaleHeight, mieScaleHeight, absorptionHalfWidth } = uniforms
-  const heights = vec2(rayleighScaleHeight, mieScaleHeight).toConst() as Vec2
+  const { bottomRadius, homogeneousHeight, mieScaleHeight, absorptionHalfWidth } = uniforms
+  const heights = vec2(homogeneousHeight, mieScaleHeight).toConst() as Vec2
   const slopes = vec2(1).div(heights).toConst() as Vec2
   const steepness = slopes.mul(bottomRadius).mul(0.5).sqrt().toConst() as Vec2
   return {
@@ -93,7 +98,7 @@ function absorberColumn(
  *
  * With an exponential density that of a ray that ascends is n √(π r H/2) e^{z²} erfc z, z = μ √(r/2H);
  * one that descends to an altitude h_t has twice the horizontal one there less that backwards.
- * Molecules and aerosols are within 1.5 %, air above `topRadius` included; the absorber is within 5 %
+ * Molecules and aerosols are within 1.5 % of exponentials, air above `topRadius` included; the absorber is within 5 %
  * from below its layer, and within 30 % along the horizon from within it.
  *
  * @param altitude - h, in the air [m].

@@ -142,11 +142,11 @@ function sunlitPoint(
  * the ground, which have no thin air to cross, least if they start low.
  */
 function singleScatteringSteps(
-  { rayleighScaleHeight }: AtmosphereUniforms,
+  { homogeneousHeight }: AtmosphereUniforms,
   { altitude }: Ray,
   hitsGround: Bool
 ): Int {
-  const isLow = altitude.lessThan(rayleighScaleHeight.mul(1.25))
+  const isLow = altitude.lessThan(homogeneousHeight.mul(1.25))
   return int(hitsGround.select(isLow.select(2, 3), 4)).toConst()
 }
 
