@@ -126,7 +126,8 @@ export async function createMoon(
     camera.lookAt(aim.add(camera.position))
     camera.fov = current.fieldOfView
     camera.updateProjectionMatrix()
-    renderer.toneMappingExposure = exposureOf(current.exposure)
+    // Not in the tone mapping: half floats hold neither a night's light nor the sun's disc.
+    atmosphere.luminanceScale = 1e-4 * exposureOf(current.exposure)
   }
   apply()
 
