@@ -38,7 +38,7 @@ export async function createOrbit(
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
   atmosphere.date = new Date('2026-06-20T23:00:00Z')
-  const ground = planetGround({ ...pictures, nightLuminance: 0.05 }) // surface, water, nightLights
+  const ground = planetGround({ ...pictures, nightLuminance: 0.02 }) // surface, water, nightLights
   atmosphere.add(milkyWay(), stars(), ground, airglow()) // far before near
   scene.backgroundNode = skyBackground(atmosphere)
   // #endregion
