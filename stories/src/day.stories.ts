@@ -19,7 +19,8 @@ const meta: Meta<DayArgs> = {
     season: {
       name: 'Season [part of a year]',
       control: { type: 'range', min: 0, max: 0.99, step: 0.01 },
-      description: '0 the equinox of March, 0.25 the solstice of June'
+      description:
+        '0 the equinox of March 2026, 0.25 the solstice of June; the moon is as of the date'
     },
     hour: {
       name: 'Hour [h]',
@@ -65,5 +66,11 @@ export const Dusk: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** No moon. */
-export const Night: Story = { args: { hour: 1, paused: true }, tags: ['screenshot'] }
+/** The moon, full the day before, has risen. */
+export const Moonrise: Story = { args: { hour: 21, paused: true }, tags: ['screenshot'] }
+
+/** A fortnight later there is no moon. */
+export const Night: Story = {
+  args: { season: 0.237, hour: 1, paused: true },
+  tags: ['screenshot', 'webgpu-only']
+}

@@ -21,8 +21,7 @@ const meta: Meta<MoonArgs> = {
     hour: 18.71,
     target: 'sun',
     fieldOfView: 2.5,
-    exposure: 1,
-    mapSize: 256
+    exposure: 1
   }
 }
 
@@ -41,7 +40,7 @@ export const DiamondRing: Story = {
 
 /** Half an hour before, through a dark filter. */
 export const Partial: Story = {
-  args: { hour: 18.2, fieldOfView: 1, exposure: -14 },
+  args: { hour: 18.2, fieldOfView: 1, exposure: -16 },
   tags: ['screenshot', 'webgpu-only']
 }
 

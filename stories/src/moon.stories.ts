@@ -78,19 +78,19 @@ type Story = StoryObj<MoonArgs>
 
 /** The first quarter of May 2026 in a telescope, libration and tilt as they were. */
 export const FirstQuarter: Story = {
-  args: { exposure: 2.5, mapSize: 256 },
+  args: { exposure: 2.5 },
   tags: ['screenshot', 'webgpu-only']
 }
 
 /** Full, 5 days later: flat, without a dark limb. */
 export const Full: Story = {
-  args: { day: Date.UTC(2026, 4, 31), hour: 23, exposure: 1, mapSize: 256 },
+  args: { day: Date.UTC(2026, 4, 31), hour: 23, exposure: 1 },
   tags: ['screenshot', 'webgpu-only']
 }
 
 /** Three days old: the dark part is lit by the Earth. */
 export const Earthshine: Story = {
-  args: { day: Date.UTC(2026, 4, 19), hour: 20.25, exposure: 9.5, mapSize: 256 },
+  args: { day: Date.UTC(2026, 4, 19), hour: 20.25, exposure: 9.5 },
   tags: ['screenshot', 'webgpu-only']
 }
 
@@ -102,8 +102,7 @@ export const MoonlitNight: Story = {
     fieldOfView: 50,
     lower: 12,
     exposure: 17,
-    lights: 'moon',
-    mapSize: 256
+    lights: 'moon'
   },
   tags: ['screenshot']
 }

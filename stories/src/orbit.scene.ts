@@ -3,11 +3,13 @@ import {
   Atmosphere,
   exposureFor,
   milkyWay,
+  planetGround,
   skyBackground,
   stars
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
+import { earthPictures } from './globe/earthPictures'
 import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -31,11 +33,13 @@ export async function createOrbit(
   const scene = new Scene()
   const camera = new PerspectiveCamera(args.fieldOfView, 1, 10, 1e8)
   const current = { ...args }
+  const pictures = await earthPictures()
   // #region orbit
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
   atmosphere.date = new Date('2026-06-20T23:00:00Z')
-  atmosphere.add(milkyWay(), stars(), airglow()) // far before near
+  const ground = planetGround({ ...pictures, nightLuminance: 0.02 }) // surface, water, nightLights
+  atmosphere.add(milkyWay(), stars(), ground, airglow()) // far before near
   scene.backgroundNode = skyBackground(atmosphere)
   // #endregion
 
@@ -89,6 +93,7 @@ export async function createOrbit(
     },
     dispose() {
       atmosphere.dispose()
+      for (const picture of Object.values(pictures)) picture.dispose()
       void renderer.dispose()
     }
   }

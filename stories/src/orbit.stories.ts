@@ -56,6 +56,6 @@ export const Night: Story = { tags: ['screenshot'] }
 
 /** The sun is about to rise ahead. */
 export const Dawn: Story = {
-  args: { angle: 248, exposure: -6 },
+  args: { angle: 248, exposure: -9.5, fieldOfView: 30 },
   tags: ['screenshot', 'webgpu-only']
 }

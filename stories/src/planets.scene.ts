@@ -8,9 +8,9 @@ import {
   venusAtmosphere
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
-import { PerspectiveCamera, RepeatWrapping, Scene, SRGBColorSpace, TextureLoader } from 'three'
-import type { Texture } from 'three'
+import { PerspectiveCamera, Scene } from 'three'
 import { Air } from './air'
+import { earthPictures } from './globe/earthPictures'
 import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -41,24 +41,6 @@ export interface PlanetsArgs extends RendererArgs {
 /** Light of the sun there, over that on the Earth, is evened out: like a photographer's exposure. */
 function daylight(parameters: AtmosphereParameters): number {
   return new AtmosphereParameters().solarIrradiance[1] / parameters.solarIrradiance[1]
-}
-
-/** The Earth's colours, water and night lights. */
-async function earthPictures(): Promise<Record<'surface' | 'water' | 'nightLights', Texture>> {
-  const folder = new URL('world-data/earth/', document.baseURI).href
-  const load = async (name: string, isColor: boolean): Promise<Texture> => {
-    const picture = await new TextureLoader().loadAsync(folder + name)
-    if (isColor) picture.colorSpace = SRGBColorSpace
-    picture.wrapS = RepeatWrapping
-    picture.anisotropy = 8
-    return picture
-  }
-  const [surface, water, nightLights] = await Promise.all([
-    load('earth-blue-marble.jpg', true),
-    load('earth-water.png', false),
-    load('earth-night.jpg', true)
-  ])
-  return { surface, water, nightLights }
 }
 
 /** A planet's sky and ground from 2 m to orbit, with nothing else in the scene. */

@@ -40,6 +40,11 @@ const SUNLIGHT = 13
 /** A kilometre in the cockpit's world [world units]. */
 const KILOMETER = 1
 
+/** A sphere of radius 1 within flat faces: where the air ends at it, there is ground. */
+function globeGeometry(segments: number): SphereGeometry {
+  return new SphereGeometry(1 / Math.cos(Math.PI / segments) ** 2, segments, segments / 2)
+}
+
 /** Bodies with shells of air, and no sky, no background, no post pass. */
 export async function createShell(
   canvas: HTMLCanvasElement,
@@ -62,7 +67,7 @@ export async function createShell(
     color: string
   ): void => {
     const ball = new Mesh(
-      args.view === 'map' ? new SphereGeometry(1, 128, 64) : new SphereGeometry(1, 512, 256),
+      globeGeometry(args.view === 'map' ? 128 : 512),
       new MeshStandardMaterial({ color, roughness: 1 })
     )
     ball.scale.setScalar(radius)
@@ -94,8 +99,8 @@ export async function createShell(
     const frame = new MeshStandardMaterial({ color: '#1b1d20', roughness: 0.6 })
     for (const [x, y, z, width, height, turn] of [
       [0, -0.5, -0.9, 2.6, 0.35, 0],
-      [-0.62, 0.1, -0.9, 0.06, 1.3, 0.35],
-      [0.62, 0.1, -0.9, 0.06, 1.3, -0.35]
+      [-0.62, 0.1, -0.91, 0.06, 1.3, 0.35],
+      [0.62, 0.1, -0.91, 0.06, 1.3, -0.35]
     ]) {
       const part = new Mesh(new BoxGeometry(width, height, 0.05), frame)
       part.position.set(x, y, z)

@@ -54,9 +54,9 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     this.updateType = NodeUpdateType.RENDER
   }
 
-  // Layers are part of the shader.
+  // Layers are part of the shader; the id tells a scene that one sky has taken another's place.
   override customCacheKey(): number {
-    return this.atmosphere.layers.length
+    return 64 * super.customCacheKey() + this.atmosphere.layers.length
   }
 
   override updateBefore(frame: NodeFrame): undefined {
