@@ -30,9 +30,11 @@ import { eyeScalars } from './cpu/eye'
 import { sunWhite } from './cpu/reflectance'
 import { isAirless } from './planets'
 import { EyeUniforms, SkyVolumes } from './SkyVolumes'
+import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from './tsl/scattering'
-import { shellColor, shellDepth, type ShellPlace, type Way } from './tsl/shell'
-import { singleScatteringShell, tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import { shellFragment, type ShellPlace, type Way } from './tsl/shell'
+import { tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import { singleScatteringShell } from './tsl/singleScattering'
 import type { Bool, Vec4 } from './tsl-types'
 
 /** Where a shell's light comes from. */
@@ -157,6 +159,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly #volumes: SkyVolumes | null
   readonly #eye = new EyeUniforms()
   readonly #isMarched = uniform(1)
+  readonly #profile = new ProfileUniforms()
   #version = -1
   readonly #height = uniform(0)
   readonly #up = uniform(new Vector3())
@@ -241,30 +244,28 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     material.premultipliedAlpha = false
     material.fog = false
     material.lights = false
-    material.fragmentNode = new ShellNode(
-      this,
-      shellColor(air, place, this.#light(air, this.#volumes))
-    )
-    material.depthNode = shellDepth(air, place)
+    const { color, depth } = shellFragment(air, place, this.#light(air, this.#volumes))
+    material.fragmentNode = new ShellNode(this, color)
+    material.depthNode = depth
     // Its depth is written by the fragments: let neither plane of the frustum clip it.
     const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
     material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
   }
 
   #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
-    if (volumes === null) return ({ ray, sight }) => singleScatteringShell(air, ray, sight)
+    if (volumes === null) return way => singleScatteringShell(air, this.#profile, way)
     const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
     const isMarched = this.#isMarched.greaterThan(0) as Bool
-    return ({ ray, sight }) => {
+    return way => {
       const radiance = vec4(0).toVar()
       const depth = vec4(0).toVar()
       If(isMarched, () => {
-        const shell = tableShell(air, ray, sight.length, TABLE_STEPS)
+        const shell = tableShell(air, way, TABLE_STEPS)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       }).Else(() => {
-        const shell = volumeShell(air.uniforms, textures, this.#eye, sight)
+        const shell = volumeShell(air.uniforms, textures, this.#eye, way.sight)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       })
@@ -285,6 +286,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       this.#tables.update(renderer, parameters, SCALE, Infinity)
     } else if (this.#version !== parameters.version) {
       this.#uniforms.update(parameters, SCALE)
+      this.#profile.update(parameters)
       this.#version = parameters.version
     }
   }
