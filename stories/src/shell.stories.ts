@@ -50,7 +50,7 @@ export default meta
 type Story = StoryObj<ShellArgs>
 
 /** Three bodies with air and one without. */
-export const Map: Story = {}
+export const Map: Story = { tags: ['screenshot'] }
 
 /** From inside: the cockpit is not hazed, the ground is. */
 export const Cockpit: Story = { args: { view: 'cockpit', sun: 12 }, tags: ['screenshot'] }

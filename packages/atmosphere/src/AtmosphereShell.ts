@@ -8,6 +8,7 @@ import {
   OneFactor,
   OneMinusSrcAlphaFactor,
   Plane,
+  Vector2,
   Vector3
 } from 'three'
 import type { Camera, DirectionalLight, Light, PointLight, BufferGeometry } from 'three'
@@ -72,6 +73,7 @@ const SCALE = 1e-4
 const _inverse = new Matrix4()
 const _point = new Vector3()
 const _other = new Vector3()
+const _size = new Vector2()
 
 /** A ball of triangles around the unit sphere: none of them cuts it. */
 function ballAround(radius: number): BufferGeometry {
@@ -134,8 +136,9 @@ class ShellNode extends Node<'vec4'> {
  * Works for perspective and orthographic cameras and every kind of depth buffer.
  *
  * The way through the air ends at the body's sphere, not at the scene's depth: what stands in front of
- * the middle of the way through the air, a ship or a cockpit, is drawn without haze, and what is
- * behind it with all of it. One alpha dims all colours of what is behind alike.
+ * the middle of the way through the air (from outside, of the way to the ground or the lowest point), a
+ * ship or a cockpit, is drawn without haze, and what is behind it with all of it; multisampling bares no
+ * ground. One alpha dims all colours of what is behind alike.
  *
  * An eclipse of its sun does not dim it.
  *
@@ -166,6 +169,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly #sunDirection = uniform(new Vector3())
   readonly #viewToMapped = uniform(new Matrix3())
   readonly #tint = uniform(new Vector3(1, 1, 1))
+  readonly #pixel = uniform(new Vector2())
 
   /**
    * @param parameters - What the air is made of. `bottomRadius` in metres is what `bodyRadius` stands for.
@@ -226,7 +230,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       up: this.#up,
       sunDirection: this.#sunDirection,
       viewToMapped: this.#viewToMapped,
-      tint: this.#tint
+      tint: this.#tint,
+      pixel: this.#pixel
     }
     this.#volumes =
       tables &&
@@ -313,12 +318,17 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
    */
   see(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
     this.follow(camera)
+    // Rays of an orthographic camera do not start where it is.
+    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
+    const rows = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(_size).y
+    const pixel = Math.SQRT2 / (camera.projectionMatrix.elements[5] * rows)
+    const [x, y, z] = this.#viewToMapped.value.elements
+    if (isOrthographic) this.#pixel.value.set(0, pixel * Math.hypot(x, y, z))
+    else this.#pixel.value.set(pixel, 0)
     const tables = this.#lender?.tables ?? this.#tables
     if (this.#volumes === null || tables === null) return
     const { parameters } = this
     const height = this.#height.value
-    // Rays of an orthographic camera do not start where it is.
-    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
     const isFar = height > FAR * parameters.bottomRadius
     const isMarched = isOrthographic || isFar || tables.version === 0
     this.#isMarched.value = isMarched ? 1 : 0

@@ -33,7 +33,17 @@ export interface ProfileConstants {
   steepness: Vec2
   /** √(π r_bottom H/2), column along the horizon over density [m]. */
   horizon: Vec2
+  /**
+   * How the logarithm of a march's steps grows with altitude [1/m]: slower than density falls, slower
+   * still in thick air, which light leaves from high up.
+   */
+  growth: Float
 }
+
+/** Growth of steps that suits thin air, over that of density. */
+const GROWTH = 0.35
+/** Optical depth to the zenith that halves it. */
+const THICK = 10
 
 /** {@link ProfileConstants} as uniforms. */
 export class ProfileUniforms implements ProfileConstants {
@@ -42,6 +52,7 @@ export class ProfileUniforms implements ProfileConstants {
   readonly absorberWidth = uniform(0)
   readonly steepness = uniform(new Vector2())
   readonly horizon = uniform(new Vector2())
+  readonly growth = uniform(0)
 
   update(parameters: AtmosphereParameters): void {
     const { bottomRadius, rayleighScaleHeight, mieScaleHeight, absorptionHalfWidth } = parameters
@@ -51,6 +62,13 @@ export class ProfileUniforms implements ProfileConstants {
     this.horizon.value.set(
       ...map(heights, height => Math.sqrt((Math.PI * bottomRadius * height) / 2))
     )
+    const depths = parameters.rayleighScattering.map(
+      (molecules, i) =>
+        molecules * rayleighScaleHeight +
+        parameters.mieExtinction[i] * mieScaleHeight +
+        parameters.absorptionExtinction[i] * absorptionHalfWidth
+    )
+    this.growth.value = GROWTH / (1 + Math.max(...depths) / THICK) / Math.max(...heights)
     this.absorberSlope.value = 1 / absorptionHalfWidth
     this.absorberWidth.value = (2 * absorptionHalfWidth) / bottomRadius
   }

@@ -12,7 +12,7 @@ import {
 } from 'three/tsl'
 import type { Node, NodeBuilder, Renderer } from 'three/webgpu'
 import { WebGLCoordinateSystem } from 'three'
-import type { Bool, Float, Mat3, Vec3, Vec4 } from '../tsl-types'
+import type { Bool, Float, Mat3, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { linearSRGB, transmittanceRGB } from './color'
 import type { Air } from './scattering'
 import { screenRay } from './screenRay'
@@ -31,13 +31,21 @@ export interface ShellPlace {
   viewToMapped: Mat3
   /** Factors for the linear-sRGB components of scattered light. */
   tint: Vec3
+  /** Half the diagonal of a pixel: over the distance, and for an orthographic camera [m]. */
+  pixel: Vec2
 }
+
+/** Part of the eye's height up to which rays that turn pass close to the ground. */
+const BESIDE = 0.1
 
 /** A fragment's way through the air of a shell. */
 export interface Way extends ShellRay {
   /** The same from the camera. Its length is 0 if it misses the air. */
   sight: Sight
-  /** Half of the way, in view space [world units]. */
+  /**
+   * Half of the way to the ground, the lowest point or out of the air, from outside no farther than the
+   * nearest ground in the pixel; in view space [world units].
+   */
   middleView: Vec3
 }
 
@@ -100,8 +108,18 @@ function wayThrough(air: Air, place: ShellPlace): Way {
   const misses = isOutside.and(miss.greaterThanEqual(top).or(cosView.greaterThan(0)))
   const inAir = hitsGround.select(product.div(end), end)
   const length = misses.select(0, inAir).toConst() as Float
-  const entry = isOutside.select(fromNearest.negate().sub(half).max(0), 0)
-  const lowest = radial.lessThan(0).select(miss.sub(bottomRadius).max(0), altitude)
+  const entry = isOutside.select(fromNearest.negate().sub(half).max(0), 0).toConst() as Float
+  const turns = hitsGround.not().and(radial.lessThan(0)).toConst() as Bool
+  const lowest = turns.select(miss.sub(bottomRadius).max(0), altitude).toConst() as Float
+  const isBeside = turns.and(isOutside.or(lowest.lessThan(altitude.mul(BESIDE))))
+  const reach = isBeside.select(radial.negate().min(length), length).toConst() as Float
+  const halfway = entry.add(reach.mul(0.5)).toConst() as Float
+  // Corners of a pixel may show ground that is nearer by more than the air is thick.
+  const nearestInPixel = miss.sub(entry.add(reach).mul(place.pixel.x).add(place.pixel.y)).max(0)
+  const corner = nearestInPixel.toConst() as Float
+  const bulge = bottomRadius.sub(corner).mul(bottomRadius.add(corner)).max(0).sqrt()
+  const nearer = bulge.sub(hitsGround.select(root, 0)).max(0)
+  const compared = isOutside.select(halfway.sub(nearer).max(0), halfway)
   return {
     altitude,
     radius: isOutside.select(top, radius).toConst(),
@@ -112,7 +130,7 @@ function wayThrough(air: Air, place: ShellPlace): Way {
     hitsGround,
     length,
     sight: { cosView, sinView, cosViewSun, hitsGround, length },
-    middleView: origin.add(directionView.mul(entry.add(length.mul(0.5)).mul(perMeter)))
+    middleView: origin.add(directionView.mul(compared.mul(perMeter)))
   }
 }
 
@@ -150,7 +168,7 @@ const withBuilder = Fn as unknown as (
  *
  * @param lightOf - What the air along a way gives and takes.
  * @returns Premultiplied colour: light of the air, and how much of what is behind it that hides; and
- *   the depth at which a shell is compared with what was drawn: half of the way through the air.
+ *   the depth at which a shell is compared with what was drawn: half of the way.
  */
 export function shellFragment(
   air: Air,

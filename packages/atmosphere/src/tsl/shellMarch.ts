@@ -34,19 +34,19 @@ export interface ShellRay {
  * Divides a way through the air at its lowest point, and both parts into segments that are short there,
  * where the air is dense: a march of few steps hits a thin limb as well as the ground.
  *
- * @param growth - How much faster segments grow than those of other marches.
+ * @param exponentOf - κ by the altitudes that a part spans [m], > 0.
  */
 export function marchFromLowest(
   uniforms: AtmosphereUniforms,
   { altitude, radial, lowest: floor, hitsGround, length }: ShellRay,
   steps: number | Int,
-  growth: number,
+  exponentOf: (rise: Float) => Float,
   visit: (start: Float, end: Float) => void
 ): void {
   const lowest = radial.negate().clamp(0, length).toConst() as Float
   const ceiling = hitsGround.select(0, uniforms.thickness)
-  const falling = stepExponent(uniforms, altitude.sub(floor).max(0).mul(growth)).toConst()
-  const rising = stepExponent(uniforms, ceiling.sub(floor).max(0).mul(growth)).toConst()
+  const falling = exponentOf(altitude.sub(floor).max(0)).toConst()
+  const rising = exponentOf(ceiling.sub(floor).max(0)).toConst()
   // Distance from the lowest point at a part y of the steps: (e^{κy} − 1)/(e^κ − 1) of the way.
   const descent = lowest.negate().div(falling.exp().sub(1)).toConst()
   const ascent = length.sub(lowest).div(rising.exp().sub(1)).toConst()
@@ -81,7 +81,8 @@ export function tableShell(air: Air, way: ShellRay, steps: number): Shell {
   const molecular = vec4(0).toVar()
   const aerosol = vec4(0).toVar()
   const depth = vec4(0).toVar()
-  marchFromLowest(air.uniforms, way, steps, 1, (start, end) => {
+  const exponentOf = (rise: Float): Float => stepExponent(air.uniforms, rise)
+  marchFromLowest(air.uniforms, way, steps, exponentOf, (start, end) => {
     const segment = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
     const through = depth.negate().exp().toConst()
     molecular.addAssign(segment.molecular.mul(through))

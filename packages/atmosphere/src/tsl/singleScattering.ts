@@ -1,7 +1,7 @@
 import { If, float, int, vec3, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
 import { gaussLegendre, weightsTo } from '../cpu/quadrature'
-import type { Float, Vec2, Vec3 } from '../tsl-types'
+import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import {
   absorberAbove,
   columnsToSpace,
@@ -12,7 +12,7 @@ import {
 } from './chapman'
 import { extinction } from './medium'
 import { miePhase, rayleighPhase } from './phase'
-import { stepExponent, type Air } from './scattering'
+import type { Air } from './scattering'
 import { marchFromLowest, type Shell, type ShellRay } from './shellMarch'
 
 const weighted = (values: readonly Vec3[], weights: readonly number[]): Vec3 =>
@@ -95,8 +95,29 @@ function sunlitPoint(
   }
 }
 
-/** How much faster segments grow than those of a march on the tables. */
-const GROWTH = 7 / 6
+/** κ of steps over a range of altitudes: never 0, where they would be 0/0. */
+const exponentOf =
+  ({ growth }: ProfileConstants) =>
+  (rise: Float): Float =>
+    growth.mul(rise).clamp(0.05, 4)
+
+/** Optical depth behind which nothing is seen. */
+const OPAQUE = 7
+
+/** A way as far as it is seen: not beyond the lowest point of one that turns in thick air. */
+function seenWay(
+  uniforms: AtmosphereUniforms,
+  constants: ProfileConstants,
+  way: ShellRay,
+  turns: Bool
+): ShellRay {
+  const { density } = profileAt(uniforms, constants, way.lowest)
+  const columns = vec3(constants.horizon.mul(density.xy), 0) as Vec3
+  const depth = extinction(uniforms, columns).toConst() as Vec4
+  const isOpaque = depth.x.min(depth.y).min(depth.z.min(depth.w)).greaterThan(OPAQUE)
+  const length = turns.and(isOpaque).select(way.radial.negate().clamp(0, way.length), way.length)
+  return { ...way, length: length.toConst() }
+}
 
 /** Sums the light of any way under any sun, in segments of three points. */
 function marchAny(
@@ -107,10 +128,12 @@ function marchAny(
 ): void {
   const { altitude, radial, hitsGround } = way
   const isShort = altitude.lessThan(uniforms.rayleighScaleHeight.mul(1.25))
-  const overGround = radial.lessThan(0).select(4, 3)
+  const turns = hitsGround.not().and(radial.lessThan(0)).toConst() as Bool
+  const overGround = turns.select(4, 3)
   const steps = int(hitsGround.select(isShort.select(1, 3), overGround)).toConst()
+  const seen = seenWay(uniforms, constants, way, turns)
   const { nodes, weights } = gaussLegendre(3)
-  marchFromLowest(uniforms, way, steps, GROWTH, (start, end) => {
+  marchFromLowest(uniforms, seen, steps, exponentOf(constants), (start, end) => {
     const step = end.sub(start).toConst() as Float
     const scaled = step.mul(UNIT).toConst()
     const points = nodes.map(node =>
@@ -184,7 +207,7 @@ function marchSunny(
   const u0 = dense.altitude.mul(half).mul(dense.altitude).add(dense.altitude).toConst() as Float
   const u1 = dense.radial.mul(perRadius).toConst() as Float
   const rise = hitsGround.select(altitude, thickness.sub(altitude)).max(0)
-  const exponent = stepExponent(uniforms, rise).toConst() as Float
+  const exponent = exponentOf(constants)(rise).toConst() as Float
   // κ/(e^κ − 1)
   const slope = exponent
     .mul(exponent.mul(exponent.mul(1 / 24).add(1 / 6)).add(0.5))
