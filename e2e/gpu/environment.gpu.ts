@@ -251,7 +251,7 @@ gpuTest(
       evaluateOnGpu(renderer, rays, ray => {
         // Not a texture any more, of which the context would ask the level.
         const { xyz, w } = ray.toVar()
-        return map.context({ getUV: () => xyz, getTextureLevel: () => w })
+        return (map as Node<'vec3'>).context({ getUV: () => xyz, getTextureLevel: () => w })
       })
     const whole = await look(pmremTexture(expected.texture))
     const inParts = await look(filtered.node!)

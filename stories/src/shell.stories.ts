@@ -51,7 +51,7 @@ export default meta
 type Story = StoryObj<ShellArgs>
 
 /** Three bodies with air and one without. */
-export const Map: Story = {}
+export const Map: Story = { tags: ['screenshot'] }
 
 /** From inside: the cockpit is not hazed, the ground is. */
 export const Cockpit: Story = {

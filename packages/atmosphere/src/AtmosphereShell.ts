@@ -8,6 +8,7 @@ import {
   OneFactor,
   OneMinusSrcAlphaFactor,
   Plane,
+  Vector2,
   Vector3
 } from 'three'
 import type { Camera, DirectionalLight, Light, PointLight, BufferGeometry } from 'three'
@@ -30,9 +31,11 @@ import { eyeScalars } from './cpu/eye'
 import { sunWhite } from './cpu/reflectance'
 import { isAirless } from './planets'
 import { EyeUniforms, SkyVolumes } from './SkyVolumes'
+import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from './tsl/scattering'
-import { shellColor, shellDepth, type ShellPlace, type Way } from './tsl/shell'
-import { singleScatteringShell, tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import { shellFragment, type ShellPlace, type Way } from './tsl/shell'
+import { tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import { singleScatteringShell } from './tsl/singleScattering'
 import type { Bool, Vec4 } from './tsl-types'
 
 /** Where a shell's light comes from. */
@@ -70,6 +73,7 @@ const SCALE = 1e-4
 const _inverse = new Matrix4()
 const _point = new Vector3()
 const _other = new Vector3()
+const _size = new Vector2()
 
 /** A ball of triangles around the unit sphere: none of them cuts it. */
 function ballAround(radius: number): BufferGeometry {
@@ -132,8 +136,9 @@ class ShellNode extends Node<'vec4'> {
  * Works for perspective and orthographic cameras and every kind of depth buffer.
  *
  * The way through the air ends at the body's sphere, not at the scene's depth: what stands in front of
- * the middle of the way through the air, a ship or a cockpit, is drawn without haze, and what is
- * behind it with all of it. One alpha dims all colours of what is behind alike.
+ * the middle of the way through the air (from outside, of the way to the ground or the lowest point), a
+ * ship or a cockpit, is drawn without haze, and what is behind it with all of it; multisampling bares no
+ * ground. One alpha dims all colours of what is behind alike.
  *
  * An eclipse of its sun does not dim it.
  *
@@ -157,12 +162,14 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly #volumes: SkyVolumes | null
   readonly #eye = new EyeUniforms()
   readonly #isMarched = uniform(1)
+  readonly #profile = new ProfileUniforms()
   #version = -1
   readonly #height = uniform(0)
   readonly #up = uniform(new Vector3())
   readonly #sunDirection = uniform(new Vector3())
   readonly #viewToMapped = uniform(new Matrix3())
   readonly #tint = uniform(new Vector3(1, 1, 1))
+  readonly #pixel = uniform(new Vector2())
 
   /**
    * @param parameters - What the air is made of. `bottomRadius` in metres is what `bodyRadius` stands for.
@@ -223,7 +230,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       up: this.#up,
       sunDirection: this.#sunDirection,
       viewToMapped: this.#viewToMapped,
-      tint: this.#tint
+      tint: this.#tint,
+      pixel: this.#pixel
     }
     this.#volumes =
       tables &&
@@ -241,30 +249,28 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     material.premultipliedAlpha = false
     material.fog = false
     material.lights = false
-    material.fragmentNode = new ShellNode(
-      this,
-      shellColor(air, place, this.#light(air, this.#volumes))
-    )
-    material.depthNode = shellDepth(air, place)
+    const { color, depth } = shellFragment(air, place, this.#light(air, this.#volumes))
+    material.fragmentNode = new ShellNode(this, color)
+    material.depthNode = depth
     // Its depth is written by the fragments: let neither plane of the frustum clip it.
     const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
     material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
   }
 
   #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
-    if (volumes === null) return ({ ray, sight }) => singleScatteringShell(air, ray, sight)
+    if (volumes === null) return way => singleScatteringShell(air, this.#profile, way)
     const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
     const isMarched = this.#isMarched.greaterThan(0) as Bool
-    return ({ ray, sight }) => {
+    return way => {
       const radiance = vec4(0).toVar()
       const depth = vec4(0).toVar()
       If(isMarched, () => {
-        const shell = tableShell(air, ray, sight.length, TABLE_STEPS)
+        const shell = tableShell(air, way, TABLE_STEPS)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       }).Else(() => {
-        const shell = volumeShell(air.uniforms, textures, this.#eye, sight)
+        const shell = volumeShell(air.uniforms, textures, this.#eye, way.sight)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       })
@@ -285,6 +291,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       this.#tables.update(renderer, parameters, SCALE, Infinity)
     } else if (this.#version !== parameters.version) {
       this.#uniforms.update(parameters, SCALE)
+      this.#profile.update(parameters)
       this.#version = parameters.version
     }
   }
@@ -311,12 +318,17 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
    */
   see(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
     this.follow(camera)
+    // Rays of an orthographic camera do not start where it is.
+    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
+    const rows = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(_size).y
+    const pixel = Math.SQRT2 / (camera.projectionMatrix.elements[5] * rows)
+    const [x, y, z] = this.#viewToMapped.value.elements
+    if (isOrthographic) this.#pixel.value.set(0, pixel * Math.hypot(x, y, z))
+    else this.#pixel.value.set(pixel, 0)
     const tables = this.#lender?.tables ?? this.#tables
     if (this.#volumes === null || tables === null) return
     const { parameters } = this
     const height = this.#height.value
-    // Rays of an orthographic camera do not start where it is.
-    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
     const isFar = height > FAR * parameters.bottomRadius
     const isMarched = isOrthographic || isFar || tables.version === 0
     this.#isMarched.value = isMarched ? 1 : 0

@@ -12,7 +12,7 @@ interface Part {
   to: number
 }
 
-/** Texels of a level that a part draws by three's 256 samples each: 2 ms are worth about three times as many. */
+/** Texels of a level, of 256 samples each, that a part draws: 0.8 ms of an H100. */
 const TEXELS = 2 * 128 * 128
 
 /** The cheapest that has the GPU make a map. */
