@@ -9,6 +9,7 @@ import { scatteredRadiance } from '../../../packages/atmosphere/src/tsl/scatteri
 import {
   rayLimits,
   rayTargets,
+  aimAt,
   sampleSky,
   sampleVolume
 } from '../../../packages/atmosphere/src/tsl/skyVolume'
@@ -33,17 +34,17 @@ function skyRadiance({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes)
   const { cosView, cosViewSun } = ray
   const { uniforms } = air
   if (path === 'volume') {
-    const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
-    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
+    const { hitsGround, meetsAir } = rayTargets(eye, cosView)
+    const light = sampleSky(uniforms, volume, eye, aimAt(eye, cosView, hitsGround), cosViewSun)
     return scatteredRadiance(uniforms, light, cosViewSun).mul(meetsAir.select(1, 0))
   }
-  const limits = rayLimits(uniforms, eye, cosView)
+  const limits = rayLimits(eye, cosView)
   return marchedSky(air, eye, cosView, cosViewSun, limits, MARCH_STEPS)
 }
 
 function airInSegment({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes) {
   const { cosView, cosViewSun, distance } = ray
-  const limits = rayLimits(air.uniforms, eye, cosView)
+  const limits = rayLimits(eye, cosView)
   return path === 'volume'
     ? sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
     : marchedAir(air, eye, cosView, cosViewSun, limits, distance, MARCH_STEPS)

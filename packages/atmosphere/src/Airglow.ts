@@ -1,12 +1,11 @@
 import { Vector4 } from 'three'
-import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
-import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
+import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from './SkyLayer'
 import { ofLuminance } from './stars/starColor'
-import { glowGains } from './tsl/airglow'
-import { skyTransmittance } from './tsl/skyVolume'
-import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
+import { glowGains, overheadGain } from './tsl/airglow'
+import type { Bool, Float, Vec4 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 
 /** Options of {@link Airglow}. */
@@ -35,6 +34,9 @@ const DOME = 1.71
  * the mean over all directions of a dome that is {@link DOME} times as bright, and of dark ground.
  */
 const SCATTERED = DOME / 2
+
+/** Standard deviations below its middle from where the layer is as thin as a shell, within 0.4 %. */
+const MARGIN = 10
 
 /**
  * Airglow: the upper air's own light. From the ground a faint even light that brightens towards the
@@ -99,42 +101,50 @@ export class Airglow implements SkyLayer {
     return airlight.y.lessThan(this.#radiance.y.mul(DROWNS))
   }
 
+  /** Whether the layer is all in front of the eye: from below it, with room to spare. */
+  #isAbove({ height }: ViewNodes): Bool {
+    return height.lessThan(this.#altitude.sub(this.#width.mul(MARGIN)))
+  }
+
   /** The layer beyond the air below it. */
   beyond({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
     const light = farther.toVar()
     If(this.#isSeen(airlight), () => {
-      light.addAssign(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
+      const gain = float(0).toVar()
+      If(this.#isAbove(view), () => {
+        const layer = { altitude: this.#altitude as Float, width: this.#width as Float }
+        gain.assign(overheadGain(layer, view.height, cosView, view.air.uniforms.bottomRadius))
+      }).Else(() => {
+        gain.assign(this.#gains(view, cosView, null).up)
+      })
+      light.addAssign(vec4(this.#radiance.mul(gain)))
     })
     return light
   }
 
-  /** The layer in front of that air, from above; its light scattered in the air, and the ground in it. */
-  glow({ view, cosView, hitsGround, airlight }: SkyRay): Vec4 {
+  /** The layer in front of that air, from above. */
+  glow({ view, cosView, airlight }: SkyRay): Vec4 {
     const light = vec4(0).toVar()
-    If(this.#isSeen(airlight), () => {
-      const { down } = this.#gains(view, cosView, null)
-      const { uniforms } = view.air
-      const through = skyTransmittance(
-        uniforms,
-        view.volume,
-        view.eye,
-        cosView,
-        hitsGround
-      ).toConst()
-      const ground = uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
-      const air = through.oneMinus().mul(SCATTERED)
-      light.assign(vec4(this.#radiance.mul(ground.mul(through).add(air).add(down))))
+    If(this.#isAbove(view).not().and(this.#isSeen(airlight)), () => {
+      light.assign(vec4(this.#radiance.mul(this.#gains(view, cosView, null).down)))
     })
     return light
   }
 
-  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
+  /** Its light scattered in the air, and the ground in it. */
+  below({ view, hitsGround, airlight }: SkyRay): ReturnType<NonNullable<SkyLayer['below']>> {
+    const bright = hitsGround.select(view.air.uniforms.groundAlbedo.mul(DOME), vec4(0))
+    return {
+      isSeen: this.#isSeen(airlight),
+      // The ground's through the air, and the air's.
+      light: through => vec4(bright.sub(SCATTERED).mul(through).add(SCATTERED).mul(this.#radiance))
+    }
+  }
+
+  haze({ view, cosView, distance }: HazeLine): Vec4 {
     const light = vec4(0).toVar()
     // From below there is none of it in front of anything.
-    If(view.height.greaterThan(this.#altitude.sub(this.#width.mul(8))), () => {
-      const offset = view.toMapped(displacementView).toConst()
-      const distance = offset.length().max(1e-3).toConst() as Float
-      const cosView = offset.dot(view.up).div(distance).clamp(-1, 1).toConst() as Float
+    If(this.#isAbove(view).not(), () => {
       const { down, up } = this.#gains(view, cosView, distance)
       light.assign(vec4(this.#radiance.mul(down.add(up))))
     })

@@ -2,7 +2,7 @@ import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { AtmosphereView } from './AtmosphereView'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
 import { scatteredRadiance } from './tsl/scattering'
-import { sampleSky } from './tsl/skyVolume'
+import { aimAt, sampleSky } from './tsl/skyVolume'
 import type { Bool, Float } from './tsl-types'
 
 /** Options of {@link DistanceFog}. */
@@ -64,7 +64,13 @@ export class DistanceFog implements SkyLayer {
         .clamp(-1, 1)
         .toConst() as Float
       const isGround = float(0).greaterThan(1) as Bool
-      const sky = sampleSky(uniforms, view.volume, eye, cosRaised, cosRaisedSun, isGround)
+      const sky = sampleSky(
+        uniforms,
+        view.volume,
+        eye,
+        aimAt(eye, cosRaised, isGround),
+        cosRaisedSun
+      )
       const color = scatteredRadiance(uniforms, sky, cosRaisedSun).mul(source.irradiance)
       const root = distance.mul(this.#density)
       const fog = root.mul(root).min(80).toConst()

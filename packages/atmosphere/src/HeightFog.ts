@@ -114,7 +114,7 @@ export class HeightFog implements SkyLayer {
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = line.view.air
       const { eye, source } = line.view
-      const limits = rayLimits(uniforms, eye, line.cosView, line.hitsGround)
+      const limits = rayLimits(eye, line.cosView, line.hitsGround)
       const distance = line.distance ?? limits.length
       const radius = uniforms.bottomRadius.add(line.view.height).toConst() as Float
       const layer = { density: this.#density as Float, falloff: this.#falloff as Float }

@@ -14,11 +14,10 @@ import { MoonPlace, type MoonGeometry } from './moonGeometry'
 import { MoonSurface } from './MoonSurface'
 import { MoonlitAir } from './MoonlitAir'
 import { MoonVolumes } from './MoonVolumes'
-import type { SkyLayer, SkyRay } from './SkyLayer'
+import type { HazeLine, SkyLayer, SkyRay } from './SkyLayer'
 import { haloRadiance } from './tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
-import type { Vec3, Vec4 } from './tsl-types'
-import type { ViewNodes } from './ViewNodes'
+import type { Float, Vec4 } from './tsl-types'
 
 /** Options of {@link Moon}. */
 export interface MoonOptions {
@@ -53,6 +52,9 @@ export interface MoonAppearance {
   /** Part of the disc that the sun lights, in [0, 1]. */
   litFraction: number
 }
+
+/** How far out the corona is drawn, in radii of the sun. */
+const CORONA_RADII = 12
 
 const FLARE = { innerPower: 12_000, innerStrength: 0.02, outerPower: 500, outerStrength: 0.006 }
 
@@ -103,6 +105,8 @@ export class Moon implements SkyLayer {
   readonly #sunlit = spectrum()
   readonly #earthlit = spectrum()
   readonly #flare = spectrum()
+  /** Cosine of the angle from the sun within which there is something of it. */
+  readonly #nearSun = uniform(1).setGroup(renderGroup)
   /** 0 while the sun's disc is all covered, else 1. */
   readonly #sunShows = uniform(1).setGroup(renderGroup)
 
@@ -288,6 +292,11 @@ export class Moon implements SkyLayer {
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
     this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
+    this.#halo.update(this.#flare.value.y > 0)
+    // Pixels of 2° and more are added on either side.
+    this.#nearSun.value = Math.cos(
+      Math.min(2 * CORONA_RADII * parameters.sunAngularRadius, Math.PI)
+    )
     this.#air.update(view)
   }
 
@@ -295,33 +304,45 @@ export class Moon implements SkyLayer {
     const { direction, pixel, view } = ray
     const { uniforms } = view.air
     const light = farther.toVar()
-    const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
-    // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
-    const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
-    If(sunDistance.lessThan(nearDisc), () => {
-      light.mulAssign(this.#sunShows)
+    If(ray.cosViewSun.greaterThan(this.#nearSun), () => {
+      const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
+      // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
+      const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
+      If(sunDistance.lessThan(nearDisc), () => {
+        light.mulAssign(this.#sunShows)
+      })
+      If(sunDistance.lessThan(CORONA_RADII), () => {
+        light.addAssign(corona(uniforms, sunDistance))
+      })
     })
-    If(sunDistance.lessThan(12), () => {
-      light.addAssign(corona(uniforms, sunDistance))
-    })
-    const reach = this.#angularRadius.add(pixel)
-    If(direction.sub(this.#direction).length().lessThan(reach), () => {
-      const disc = moonDisc(
-        {
-          direction: this.#direction,
-          light: this.#light,
-          toFixed: this.#toFixed,
-          angularRadius: this.#angularRadius,
-          sunlit: this.#sunlit,
-          earthlit: this.#earthlit,
-          map: texture(this.#surface.target.texture)
-        },
-        direction,
-        pixel
-      )
-      light.assign(mix(light, disc.radiance, disc.coverage))
-    })
-    const halo = haloRadiance(this.#halo, direction, this.#direction)
+    const cosMoon = direction.dot(this.#direction).toConst() as Float
+    // cos x > 1 − x²/2, and no more than that by far.
+    const reach = this.#angularRadius.add(pixel).toConst()
+    If(
+      cosMoon.greaterThan(
+        reach
+          .mul(reach)
+          .mul(-0.5)
+          .add(1 - 1e-6)
+      ),
+      () => {
+        const disc = moonDisc(
+          {
+            direction: this.#direction,
+            light: this.#light,
+            toFixed: this.#toFixed,
+            angularRadius: this.#angularRadius,
+            sunlit: this.#sunlit,
+            earthlit: this.#earthlit,
+            map: texture(this.#surface.target.texture)
+          },
+          direction,
+          pixel
+        )
+        light.assign(mix(light, disc.radiance, disc.coverage))
+      }
+    )
+    const halo = haloRadiance(this.#halo, direction, this.#direction, cosMoon)
     return light.add(this.#flare.mul(halo))
   }
 
@@ -329,8 +350,8 @@ export class Moon implements SkyLayer {
     return this.lightsAir ? this.#air.glow(ray) : vec4(0)
   }
 
-  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
-    return this.lightsAir ? this.#air.haze(view, displacementView) : vec4(0)
+  haze(line: HazeLine): Vec4 {
+    return this.lightsAir ? this.#air.haze(line) : vec4(0)
   }
 
   /** Frees GPU memory. The moon can be used again. */

@@ -182,7 +182,7 @@ export class PlanetGround implements SkyLayer {
     const { uniforms } = air
     const radiance = model.toVar()
     If(hitsGround, () => {
-      const limits = rayLimits(uniforms, eye, cosView, hitsGround)
+      const limits = rayLimits(eye, cosView, hitsGround)
       const distance = limits.start.add(limits.length).toConst() as Float
       const foot = view.up.mul(uniforms.bottomRadius.add(eye.altitude)).add(direction.mul(distance))
       const up = foot.normalize().toConst() as Vec3

@@ -50,11 +50,15 @@ export class SunFlare implements SkyLayer {
     const { parameters } = this.atmosphere
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     this.#visible.value = visibleSun(parameters, radius, view.up.dot(view.sunDirection))
+    this.#halo.update(this.#visible.value > 0)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
-    const light = ray.view.source.irradiance.mul(this.#visible)
-    return farther.add(light.mul(haloRadiance(this.#halo, ray.direction, ray.view.sunDirection)))
+    const { direction, cosViewSun, view } = ray
+    const light = view.source.irradiance.mul(this.#visible)
+    return farther.add(
+      light.mul(haloRadiance(this.#halo, direction, view.sunDirection, cosViewSun))
+    )
   }
 }
 

@@ -1,4 +1,4 @@
-import { float } from 'three/tsl'
+import { If, float } from 'three/tsl'
 import type { Float, Vec3 } from '../tsl-types'
 
 /** Lobes of light that an eye or a lens spreads around something bright. */
@@ -9,6 +9,8 @@ export interface Halo {
   innerStrength: Float
   outerPower: Float
   outerStrength: Float
+  /** Cosine of the angle from its middle where it ends. */
+  cosReach: Float
 }
 
 /**
@@ -19,18 +21,27 @@ export interface Halo {
  *
  * @param direction - Of view, unit length.
  * @param centre - Unit length, same frame.
+ * @param cosCentre - Cosine of the angle between them.
  */
-export function haloRadiance(halo: Halo, direction: Vec3, centre: Vec3): Float {
-  const apart = direction.sub(centre).toConst()
-  const square = apart.dot(apart).toConst()
-  const lobe = (power: Float, strength: Float): Float =>
-    square
-      .mul(power)
-      .mul(-0.5)
-      .exp()
-      .mul(power.add(1).mul(strength))
-      .div(2 * Math.PI)
-  return float(lobe(halo.innerPower, halo.innerStrength)).add(
-    lobe(halo.outerPower, halo.outerStrength)
-  )
+export function haloRadiance(
+  halo: Halo,
+  direction: Vec3,
+  centre: Vec3,
+  cosCentre = direction.dot(centre) as Float
+): Float {
+  const radiance = float(0).toVar()
+  If(cosCentre.greaterThan(halo.cosReach), () => {
+    const apart = direction.sub(centre).toConst()
+    const square = apart.dot(apart).toConst()
+    const lobe = (power: Float, strength: Float): Float =>
+      square
+        .mul(power)
+        .mul(-0.5)
+        .exp()
+        .mul(power.add(1).mul(strength))
+        .div(2 * Math.PI)
+    radiance.assign(lobe(halo.innerPower, halo.innerStrength))
+    radiance.addAssign(lobe(halo.outerPower, halo.outerStrength))
+  })
+  return radiance
 }
