@@ -5,7 +5,6 @@ import type { Node, WebGPURenderer } from 'three/webgpu'
 import { eyeScalars } from '../../../packages/atmosphere/src/cpu/eye'
 import { groundIrradiance } from '../../../packages/atmosphere/src/tsl/diffuseLight'
 import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/tsl/marchedAir'
-import { scatteredRadiance } from '../../../packages/atmosphere/src/tsl/scattering'
 import {
   rayLimits,
   rayTargets,
@@ -36,7 +35,7 @@ function skyRadiance({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes)
   if (path === 'volume') {
     const { hitsGround, meetsAir } = rayTargets(eye, cosView)
     const light = sampleSky(uniforms, volume, eye, aimAt(eye, cosView, hitsGround), cosViewSun)
-    return scatteredRadiance(uniforms, light, cosViewSun).mul(meetsAir.select(1, 0))
+    return light.mul(meetsAir.select(1, 0))
   }
   const limits = rayLimits(eye, cosView)
   return marchedSky(air, eye, cosView, cosViewSun, limits, MARCH_STEPS)
@@ -74,9 +73,7 @@ async function evaluateRays(
     )
   const batches = {
     sky: batch(sky, ray => skyRadiance(view, path, ray)),
-    inscatter: batch(segments, ray =>
-      scatteredRadiance(view.air.uniforms, airInSegment(view, path, ray), ray.cosViewSun)
-    ),
+    inscatter: batch(segments, ray => airInSegment(view, path, ray).radiance),
     transmittance: batch(segments, ray => airInSegment(view, path, ray).depth.negate().exp())
   }
   eyes.forEach(({ altitude, cosSun }, i) => {

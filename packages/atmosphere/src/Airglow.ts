@@ -57,10 +57,13 @@ export class Airglow implements SkyLayer {
   /** Luminance straight through the layer [cd/m²]. */
   readonly luminance: number
   readonly #spectrum: Spectrum
-  readonly #altitude
-  readonly #width
+  readonly #layer
   /** Radiance straight through the layer, over `solarIrradiance`. */
   readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
+  /** Green light of the air that hides it. */
+  readonly #drowns = uniform(0).setGroup(renderGroup)
+  /** 0 where all of the layer is far above the eye, else 1. */
+  readonly #isAround = uniform(0).setGroup(renderGroup)
   /** Multiplies the physical brightness, ≥ 0. */
   intensity = 1
 
@@ -80,30 +83,29 @@ export class Airglow implements SkyLayer {
     spectrum.forEach((value, i) => check(`spectrum[${i}]`, value, 0, 1e9))
     this.luminance = luminance
     this.#spectrum = spectrum
-    this.#altitude = uniform(altitude).setGroup(renderGroup)
-    this.#width = uniform(width).setGroup(renderGroup)
+    this.#layer = {
+      altitude: uniform(altitude).setGroup(renderGroup),
+      width: uniform(width).setGroup(renderGroup)
+    }
   }
 
-  update({ atmosphere: { parameters } }: AtmosphereView): void {
+  update({ atmosphere: { parameters }, height }: AtmosphereView): void {
     const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
     const luminance = this.luminance * Math.max(this.intensity, 0)
     this.#radiance.value.fromArray(ofLuminance(parameters, values, luminance))
+    this.#drowns.value = this.#radiance.value.y * DROWNS
+    const { altitude, width } = this.#layer
+    this.#isAround.value = height < altitude.value - MARGIN * width.value ? 0 : 1
   }
 
   #gains(view: ViewNodes, cosView: Float, distance: Float | null): { down: Float; up: Float } {
-    const layer = { altitude: this.#altitude as Float, width: this.#width as Float }
     const { bottomRadius } = view.air.uniforms
-    return glowGains(layer, view.height, cosView, bottomRadius, distance)
+    return glowGains(this.#layer, view.height, cosView, bottomRadius, distance)
   }
 
   /** By day it is less than a thousandth of the sky. */
   #isSeen(airlight: Vec4): Bool {
-    return airlight.y.lessThan(this.#radiance.y.mul(DROWNS))
-  }
-
-  /** Whether the layer is all in front of the eye: from below it, with room to spare. */
-  #isAbove({ height }: ViewNodes): Bool {
-    return height.lessThan(this.#altitude.sub(this.#width.mul(MARGIN)))
+    return airlight.y.lessThan(this.#drowns)
   }
 
   /** The layer beyond the air below it. */
@@ -111,42 +113,44 @@ export class Airglow implements SkyLayer {
     const light = farther.toVar()
     If(this.#isSeen(airlight), () => {
       const gain = float(0).toVar()
-      If(this.#isAbove(view), () => {
-        const layer = { altitude: this.#altitude as Float, width: this.#width as Float }
-        gain.assign(overheadGain(layer, view.height, cosView, view.air.uniforms.bottomRadius))
+      If(this.#isAround.equal(0), () => {
+        const { bottomRadius } = view.air.uniforms
+        gain.assign(overheadGain(this.#layer, view.height, cosView, bottomRadius))
       }).Else(() => {
         gain.assign(this.#gains(view, cosView, null).up)
       })
-      light.addAssign(vec4(this.#radiance.mul(gain)))
+      light.addAssign(this.#radiance.mul(gain))
     })
     return light
   }
 
   /** The layer in front of that air, from above. */
-  glow({ view, cosView, airlight }: SkyRay): Vec4 {
-    const light = vec4(0).toVar()
-    If(this.#isAbove(view).not().and(this.#isSeen(airlight)), () => {
-      light.assign(vec4(this.#radiance.mul(this.#gains(view, cosView, null).down)))
+  glow({ view, cosView, airlight }: SkyRay, without: Vec4): Vec4 {
+    const light = without.toVar()
+    If(this.#isAround.greaterThan(0).and(this.#isSeen(airlight)), () => {
+      light.addAssign(this.#radiance.mul(this.#gains(view, cosView, null).down))
     })
     return light
   }
 
   /** Its light scattered in the air, and the ground in it. */
   below({ view, hitsGround, airlight }: SkyRay): ReturnType<NonNullable<SkyLayer['below']>> {
-    const bright = hitsGround.select(view.air.uniforms.groundAlbedo.mul(DOME), vec4(0))
     return {
       isSeen: this.#isSeen(airlight),
       // The ground's through the air, and the air's.
-      light: through => vec4(bright.sub(SCATTERED).mul(through).add(SCATTERED).mul(this.#radiance))
+      light: through => {
+        const ground = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
+        return vec4(ground.sub(SCATTERED).mul(through).add(SCATTERED).mul(this.#radiance))
+      }
     }
   }
 
-  haze({ view, cosView, distance }: HazeLine): Vec4 {
-    const light = vec4(0).toVar()
+  haze({ view, cosView, distance }: HazeLine, without: Vec4): Vec4 {
+    const light = without.toVar()
     // From below there is none of it in front of anything.
-    If(this.#isAbove(view).not(), () => {
+    If(this.#isAround.greaterThan(0), () => {
       const { down, up } = this.#gains(view, cosView, distance)
-      light.assign(vec4(this.#radiance.mul(down.add(up))))
+      light.addAssign(this.#radiance.mul(down.add(up)))
     })
     return light
   }

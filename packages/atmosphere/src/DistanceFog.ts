@@ -1,7 +1,6 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { AtmosphereView } from './AtmosphereView'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
-import { scatteredRadiance } from './tsl/scattering'
 import { aimAt, sampleSky } from './tsl/skyVolume'
 import type { Bool, Float } from './tsl-types'
 
@@ -71,7 +70,7 @@ export class DistanceFog implements SkyLayer {
         aimAt(eye, cosRaised, isGround),
         cosRaisedSun
       )
-      const color = scatteredRadiance(uniforms, sky, cosRaisedSun).mul(source.irradiance)
+      const color = sky.mul(source.irradiance)
       const root = distance.mul(this.#density)
       const fog = root.mul(root).min(80).toConst()
       const through = fog.negate().exp().toConst()

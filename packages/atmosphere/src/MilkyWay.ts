@@ -48,6 +48,8 @@ export class MilkyWay implements SkyLayer {
   readonly #frame = new CelestialFrame(new Matrix3().set(...CELESTIAL_TO_GALACTIC))
   readonly #target: RenderTarget = tableTarget('MilkyWay', SIZE, SIZE)
   readonly #color = uniform(new Vector4()).setGroup(renderGroup)
+  /** Green light of the air that hides it. */
+  readonly #drowns = uniform(0).setGroup(renderGroup)
   readonly #map
   #pass: FragmentPass | null = null
   #renderer: Renderer | null = null
@@ -87,12 +89,13 @@ export class MilkyWay implements SkyLayer {
     const luminance = UNIT * Math.max(this.intensity, 0)
     const color = starIrradiance(view.atmosphere.parameters, COLOR_INDEX, luminance)
     this.#color.value.fromArray(color)
+    this.#drowns.value = this.#color.value.y * DROWNS
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
     const sum = farther.toVar()
     // By day it is less than a thousandth of the sky.
-    If(ray.airlight.y.lessThan(this.#color.y.mul(DROWNS)), () => {
+    If(ray.airlight.y.lessThan(this.#drowns), () => {
       const point = octahedralPoint(this.#frame.turn(ray.direction).toConst())
       const light = sampleLevel0(this.#map, point.mul(0.5 / EDGE).add(0.5))
       sum.addAssign(vec4(light.mul(this.#color)))

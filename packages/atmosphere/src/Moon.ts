@@ -1,6 +1,6 @@
 import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import type { Quaternion } from 'three'
-import { If, renderGroup, texture, uniform, vec4, mix } from 'three/tsl'
+import { If, renderGroup, texture, uniform, mix } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { Spectrum } from './AtmosphereParameters'
@@ -15,9 +15,9 @@ import { MoonSurface } from './MoonSurface'
 import { MoonlitAir } from './MoonlitAir'
 import { MoonVolumes } from './MoonVolumes'
 import type { HazeLine, SkyLayer, SkyRay } from './SkyLayer'
-import { haloRadiance } from './tsl/halo'
+import { addHalo } from './tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
-import type { Float, Vec4 } from './tsl-types'
+import type { Vec4 } from './tsl-types'
 
 /** Options of {@link Moon}. */
 export interface MoonOptions {
@@ -52,6 +52,9 @@ export interface MoonAppearance {
   /** Part of the disc that the sun lights, in [0, 1]. */
   litFraction: number
 }
+
+/** Angle that a pixel of the coarsest picture covers [rad]. */
+const WIDEST_PIXEL = 0.06
 
 /** How far out the corona is drawn, in radii of the sun. */
 const CORONA_RADII = 12
@@ -107,6 +110,8 @@ export class Moon implements SkyLayer {
   readonly #flare = spectrum()
   /** Cosine of the angle from the sun within which there is something of it. */
   readonly #nearSun = uniform(1).setGroup(renderGroup)
+  /** The same of the moon and its halo. */
+  readonly #nearMoon = uniform(1).setGroup(renderGroup)
   /** 0 while the sun's disc is all covered, else 1. */
   readonly #sunShows = uniform(1).setGroup(renderGroup)
 
@@ -293,10 +298,8 @@ export class Moon implements SkyLayer {
     const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
     this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
     this.#halo.update(this.#flare.value.y > 0)
-    // Pixels of 2° and more are added on either side.
-    this.#nearSun.value = Math.cos(
-      Math.min(2 * CORONA_RADII * parameters.sunAngularRadius, Math.PI)
-    )
+    this.#nearSun.value = cosBeyond(CORONA_RADII * parameters.sunAngularRadius)
+    this.#nearMoon.value = Math.min(cosBeyond(angularRadius), this.#halo.cosReach.value)
     this.#air.update(view)
   }
 
@@ -315,17 +318,9 @@ export class Moon implements SkyLayer {
         light.addAssign(corona(uniforms, sunDistance))
       })
     })
-    const cosMoon = direction.dot(this.#direction).toConst() as Float
-    // cos x > 1 − x²/2, and no more than that by far.
-    const reach = this.#angularRadius.add(pixel).toConst()
-    If(
-      cosMoon.greaterThan(
-        reach
-          .mul(reach)
-          .mul(-0.5)
-          .add(1 - 1e-6)
-      ),
-      () => {
+    const cosMoon = direction.dot(this.#direction).toConst()
+    If(cosMoon.greaterThan(this.#nearMoon), () => {
+      If(direction.sub(this.#direction).length().lessThan(this.#angularRadius.add(pixel)), () => {
         const disc = moonDisc(
           {
             direction: this.#direction,
@@ -340,18 +335,18 @@ export class Moon implements SkyLayer {
           pixel
         )
         light.assign(mix(light, disc.radiance, disc.coverage))
-      }
-    )
-    const halo = haloRadiance(this.#halo, direction, this.#direction, cosMoon)
-    return light.add(this.#flare.mul(halo))
+      })
+      addHalo(light, this.#halo, this.#flare, direction, this.#direction, cosMoon)
+    })
+    return light
   }
 
-  glow(ray: SkyRay): Vec4 {
-    return this.lightsAir ? this.#air.glow(ray) : vec4(0)
+  glow(ray: SkyRay, without: Vec4): Vec4 {
+    return this.lightsAir ? this.#air.glow(ray, without) : without
   }
 
-  haze(line: HazeLine): Vec4 {
-    return this.lightsAir ? this.#air.haze(line) : vec4(0)
+  haze(line: HazeLine, without: Vec4): Vec4 {
+    return this.lightsAir ? this.#air.haze(line, without) : without
   }
 
   /** Frees GPU memory. The moon can be used again. */
@@ -360,6 +355,9 @@ export class Moon implements SkyLayer {
     this.#air.dispose()
   }
 }
+
+/** Cosine of an angle and the widest pixels' more [rad]. */
+const cosBeyond = (angle: number): number => Math.cos(Math.min(angle + WIDEST_PIXEL, Math.PI))
 
 function checkPositive(name: string, value: number): void {
   if (!(value > 0 && value < Infinity)) {

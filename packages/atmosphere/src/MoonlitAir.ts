@@ -1,13 +1,12 @@
 import { Vector3 } from 'three'
-import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, renderGroup, uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
 import type { MoonVolumes } from './MoonVolumes'
 import type { HazeLine, SkyRay } from './SkyLayer'
-import { scatteredRadiance } from './tsl/scattering'
-import { lightBetween, sampleSky } from './tsl/skyVolume'
+import { radianceBetween, sampleSky } from './tsl/skyVolume'
 import type { Float, Vec4 } from './tsl-types'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
@@ -55,26 +54,24 @@ export class MoonlitAir {
     }
   }
 
-  glow(ray: SkyRay): Vec4 {
-    const light = vec4(0).toVar()
+  glow(ray: SkyRay, without: Vec4): Vec4 {
+    const light = without.toVar()
     const { air, volume, eye, sunDirection } = this.#nodes(ray.view)
     If(this.#glows.greaterThan(0).and(ray.meetsAir), () => {
       const cosViewMoon = ray.direction.dot(sunDirection).toConst() as Float
       const sky = sampleSky(air.uniforms, volume, eye, ray, cosViewMoon)
-      light.assign(scatteredRadiance(air.uniforms, sky, cosViewMoon).mul(this.source.irradiance))
+      light.addAssign(sky.mul(this.source.irradiance))
     })
     return light
   }
 
-  haze({ view, direction, place }: HazeLine): Vec4 {
-    const light = vec4(0).toVar()
+  haze({ view, direction, place }: HazeLine, without: Vec4): Vec4 {
+    const light = without.toVar()
     const { air, volume, eye, sunDirection } = this.#nodes(view)
     If(this.#glows.greaterThan(0), () => {
       const cosViewMoon = direction.dot(sunDirection).toConst() as Float
-      const between = lightBetween(air.uniforms, volume, eye, place, cosViewMoon)
-      light.assign(
-        scatteredRadiance(air.uniforms, between, cosViewMoon).mul(this.source.irradiance)
-      )
+      const between = radianceBetween(air.uniforms, volume, eye, place, cosViewMoon)
+      light.addAssign(between.mul(this.source.irradiance))
     })
     return light
   }

@@ -24,7 +24,6 @@ import { reflectanceColumns, sunWhite } from './cpu/reflectance'
 import { groundIrradiance } from './tsl/diffuseLight'
 import { orenNayar, seaSlopeVariance, skyGlint, sunGlint } from './tsl/groundReflection'
 import { proceduralGround, type GroundSurface } from './tsl/proceduralGround'
-import { scatteredRadiance } from './tsl/scattering'
 import { rayLimits, sampleVolume } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec2, Vec3, Vec4 } from './tsl-types'
@@ -233,9 +232,7 @@ export class PlanetGround implements SkyLayer {
       }
       const between = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, distance)
       radiance.assign(
-        scatteredRadiance(uniforms, between, cosViewSun)
-          .mul(view.source.irradiance)
-          .add(light.mul(between.depth.negate().exp()))
+        between.radiance.mul(view.source.irradiance).add(light.mul(between.depth.negate().exp()))
       )
     })
     return radiance

@@ -68,15 +68,15 @@ export interface SkyLayer {
    * for rays that do not hit the ground what is given. Before `glow`; no derivatives.
    */
   ground?(ray: SkyRay, model: Vec4): Vec4
-  /** Light that the air itself sends from this direction, all of the way. */
-  glow?(ray: SkyRay): Vec4
+  /** Light of the air from this direction, all of the way, given that without this layer. */
+  glow?(ray: SkyRay, without: Vec4): Vec4
   /**
    * Light that comes by way of the air below the layer and its ground, where it is seen: light is asked
    * for in branches in which it or something beyond the air is, given the air's transmittance.
    */
   below?(ray: SkyRay): { isSeen: Bool; light: (transmittance: Vec4) => Vec4 }
-  /** Light that the air adds between the eye and a point. */
-  haze?(line: HazeLine): Vec4
+  /** Light that the air adds between the eye and a point, given that without this layer. */
+  haze?(line: HazeLine, without: Vec4): Vec4
   /** Dims and lights a way, in front of the sky too, given what the air and the layers before do. */
   veil?(line: Sightline, air: Veil): Veil
   /** Frees GPU memory. */

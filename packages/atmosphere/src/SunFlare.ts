@@ -4,7 +4,7 @@ import type { AtmosphereView } from './AtmosphereView'
 import { visibleSun } from './cpu/transmittance'
 import { HaloUniforms, type FlareOptions } from './HaloUniforms'
 import type { SkyLayer, SkyRay } from './SkyLayer'
-import { haloRadiance } from './tsl/halo'
+import { addHalo } from './tsl/halo'
 import type { Vec4 } from './tsl-types'
 
 const DEFAULTS = { innerPower: 6000, innerStrength: 0.006, outerPower: 150, outerStrength: 0.004 }
@@ -55,10 +55,10 @@ export class SunFlare implements SkyLayer {
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
     const { direction, cosViewSun, view } = ray
-    const light = view.source.irradiance.mul(this.#visible)
-    return farther.add(
-      light.mul(haloRadiance(this.#halo, direction, view.sunDirection, cosViewSun))
-    )
+    const light = farther.toVar()
+    const irradiance = view.source.irradiance.mul(this.#visible)
+    addHalo(light, this.#halo, irradiance, direction, view.sunDirection, cosViewSun)
+    return light
   }
 }
 

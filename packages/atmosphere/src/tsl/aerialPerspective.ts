@@ -3,8 +3,7 @@ import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { Sightline, Veil } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB, transmittanceRGB } from './color'
-import { scatteredRadiance } from './scattering'
-import { lightBetween, placeInVolume, rayLimits } from './skyVolume'
+import { placeInVolume, radianceBetween, rayLimits } from './skyVolume'
 
 /** What the air between the eye and a point does to light from there. */
 export interface AerialPerspective {
@@ -37,15 +36,14 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
   const place = placeInVolume(volume, eye, cosView, limits, distance)
   const sunlit = vec4(0).toVar()
   If(view.isLit.greaterThan(0), () => {
-    const between = lightBetween(air.uniforms, volume, eye, place, cosViewSun)
-    const scattered = scatteredRadiance(air.uniforms, between, cosViewSun)
-    sunlit.assign(scattered.mul(view.source.irradiance))
+    const between = radianceBetween(air.uniforms, volume, eye, place, cosViewSun)
+    sunlit.assign(between.mul(view.source.irradiance))
   })
   const line = { view, direction, cosView, cosViewSun, distance, place }
-  const light = view.atmosphere.layers.reduce<Vec4>((sum, layer) => {
-    const haze = layer.haze?.(line)
-    return haze === undefined ? sum : sum.add(haze)
-  }, sunlit)
+  const light = view.atmosphere.layers.reduce<Vec4>(
+    (without, layer) => layer.haze?.(line, without) ?? without,
+    sunlit
+  )
   const veil = veiled(line, { depth: place.depth, light })
   return {
     transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),

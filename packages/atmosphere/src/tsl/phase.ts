@@ -27,9 +27,10 @@ export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 
     const root = chord.max(1e-4).inverseSqrt().toConst()
     return root.mul(root).mul(root) as unknown as T
   }
-  const phase = vec4(inverse(mieAsymmetry.x)).toVar()
+  const lobes = cosViewSun.mul(cosViewSun).add(1).toConst()
+  const phase = vec4(inverse(mieAsymmetry.x).mul(lobes)).toVar()
   If(mieIsGrey.lessThan(0.5), () => {
-    phase.assign(inverse(mieAsymmetry as Vec4))
+    phase.assign(inverse(mieAsymmetry as Vec4).mul(lobes))
   })
-  return miePhaseFactor.mul(cosViewSun.mul(cosViewSun).add(1)).mul(phase)
+  return miePhaseFactor.mul(phase)
 }

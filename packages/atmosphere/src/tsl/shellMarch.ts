@@ -91,8 +91,7 @@ export function volumeShell(
   eye: Eye,
   sight: Sight
 ): Shell {
-  const air = sampleAir(uniforms, textures, eye, sight)
-  return { radiance: scatteredRadiance(uniforms, air, sight.cosViewSun), depth: air.depth }
+  return sampleAir(uniforms, textures, eye, sight)
 }
 
 /** A point of a ray in the light of the sun. */

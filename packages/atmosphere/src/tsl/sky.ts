@@ -4,7 +4,6 @@ import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 import type { SkyRay } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
-import { scatteredRadiance } from './scattering'
 import { veiled } from './aerialPerspective'
 import { elevationPosition, rayTargets, sampleSky, skyTransmittance } from './skyVolume'
 import { sine } from './trigonometry'
@@ -69,18 +68,19 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
     elevation.assign(elevationPosition(eye, cosView, hitsGround, sinView))
     If(view.isLit.greaterThan(0), () => {
       const light = sampleSky(uniforms, volume, eye, aim, cosViewSun)
-      radiance.assign(scatteredRadiance(uniforms, light, cosViewSun).mul(view.source.irradiance))
+      radiance.assign(light.mul(view.source.irradiance))
     })
   })
   const angles = { direction, cosViewSun, meetsAir, ...aim }
   const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0), airlight: radiance }
   for (const layer of layers) {
     if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
-    if (layer.glow !== undefined) radiance.addAssign(layer.glow(ray))
+    if (layer.glow !== undefined) radiance.assign(layer.glow(ray, radiance))
   }
   const veil = veiled(ray, { depth: vec4(0), light: radiance })
   radiance.assign(veil.light)
   const far = vec4(0).toVar()
+  let isDimmed: Bool | null = null
   if (pixel !== null) {
     // cos x > 1 − x²/2, and no more than that by far.
     const reach = uniforms.sunAngularRadius.add(pixel).toConst()
@@ -90,7 +90,8 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
         .mul(-0.5)
         .add(1 - 1e-6)
     )
-    If(isNear.and(hitsGround.not()), () => {
+    isDimmed = isNear.and(hitsGround.not()).toConst()
+    If(isDimmed, () => {
       far.assign(sunDisc(uniforms, direction, view.sunDirection, pixel))
     })
     for (const layer of layers) {
@@ -98,17 +99,18 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
       If(hitsGround.not(), () => {
         far.assign(layer.beyond!(ray, far))
       })
+      isDimmed = far.dot(vec4(1)).greaterThan(0)
     }
   }
   const below = layers.flatMap(layer => layer.below?.(ray) ?? [])
-  const isDimmed = below.reduce<Bool>(
-    (any, { isSeen }) => any.or(isSeen),
-    far.dot(vec4(1)).greaterThan(0)
-  )
-  If(isDimmed, () => {
-    const through = skyTransmittance(volume, eye, aim)
-    const light = below.reduce<Vec4>((sum, each) => sum.add(each.light(through)), far.mul(through))
-    radiance.addAssign(light.mul(veil.depth.negate().exp()))
-  })
+  for (const { isSeen } of below) isDimmed = isDimmed?.or(isSeen) ?? isSeen
+  if (isDimmed !== null) {
+    If(isDimmed, () => {
+      const through = skyTransmittance(volume, eye, aim)
+      const first: Vec4 = far.mul(through)
+      const light = below.reduce((sum, each) => sum.add(each.light(through)), first)
+      radiance.addAssign(light.mul(veil.depth.negate().exp()))
+    })
+  }
   return linearSRGB(uniforms, radiance).min(BRIGHTEST)
 }

@@ -1,11 +1,11 @@
 import { If, float, mix, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
+import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { spreadCosine, spreadSun } from './diffuseLight'
 import type { Eye } from './eye'
-import type { Scattered } from './scattering'
+import { miePhase } from './phase'
 import { rowAndColumn } from './texels'
 import { sine } from './trigonometry'
 
@@ -228,7 +228,8 @@ function readDepth(
 }
 
 /**
- * Mean extinction from where a ray enters the air to a position among the distances [1/m].
+ * Mean extinction from where a ray enters the air to a position among the distances
+ * [1/{@link EXTINCTION_SCALE} m].
  *
  * Depth over distance varies little from row to row, even just below the horizon, where the distance
  * to the ground varies most.
@@ -243,14 +244,16 @@ export function meanExtinction(
   position: Float
 ): Vec4 {
   const column = position.mul(DEPTH_COLUMNS).max(1).sub(0.5)
-  return readDepth(depth, eye, elevation, hitsGround, column).mul(1 / EXTINCTION_SCALE)
+  return readDepth(depth, eye, elevation, hitsGround, column)
 }
 
 /** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
 export const EXTINCTION_SCALE = 1e5
 
 /** Light scattered between the eye and a point, with the optical depth between them. */
-export interface AirBetween extends Scattered {
+export interface AirBetween {
+  /** For unit irradiance of the sun [1/sr]. */
+  radiance: Vec4
   depth: Vec4
 }
 
@@ -324,33 +327,39 @@ export function placeInVolume(
   const position = slicePosition(eye, limits, inAir).toConst() as Float
   const mean = meanExtinction(textures.depth, eye, aim.elevation, hitsGround, position)
   const isInAir = length.greaterThan(0) as Bool
-  return { ...aim, position, isInAir, depth: mean.mul(inAir).toConst() }
+  return { ...aim, position, isInAir, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
 }
 
-/** Reads the light of the air between the eye and a point from the volume. */
-export function lightBetween(
+/** Reads the light of the air between the eye and a point from the volume, for unit irradiance [1/sr]. */
+export function radianceBetween(
   uniforms: AtmosphereUniforms,
   textures: VolumeTextures,
   eye: Eye,
   place: VolumePlace,
   cosViewSun: Float
-): Scattered {
+): Vec4 {
   const fetch = tileReader(uniforms, eye, place, cosViewSun)
   // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
   const slices = place.position.mul(DISTANCES).toConst()
-  const grown = place.isInAir.select(slices.min(1), 0).toConst()
+  const grown = place.isInAir
+    .select(slices.min(1), 0)
+    .mul(1 / RADIANCE_SCALE)
+    .toConst()
   const slice = slices.sub(1).max(0).toConst()
   const near = slice
     .floor()
     .min(DISTANCES - 2)
     .toConst() as Float
-  const ends = [fetch(near), fetch(near.add(1))]
-  const part = slice.sub(near).toConst()
-  const read = (source: TextureNode): Vec4 => {
-    const [from, to] = ends.map(end => sampleLevel0(source, end))
-    return mix(from, to, part).mul(grown)
-  }
-  return { molecular: read(textures.molecular), aerosol: read(textures.aerosol) }
+  const weight = slice.sub(near).mul(grown).toConst()
+  const phase = miePhase(uniforms, cosViewSun).toConst()
+  const [from, to] = [near, near.add(1)].map(tile => readTile(textures, fetch(tile), phase))
+  return from.mul(grown.sub(weight)).add(to.mul(weight))
+}
+
+/** Adds both parts, times the table's scale. */
+function readTile(textures: VolumeTextures, at: Vec2, phase: Vec4): Vec4 {
+  const light = sampleLevel0(textures.aerosol, at).mul(phase)
+  return light.add(sampleLevel0(textures.molecular, at))
 }
 
 /**
@@ -371,7 +380,10 @@ export function sampleVolume(
   distance: Float
 ): AirBetween {
   const place = placeInVolume(textures, eye, cosView, limits, distance)
-  return { ...lightBetween(uniforms, textures, eye, place, cosViewSun), depth: place.depth }
+  return {
+    radiance: radianceBetween(uniforms, textures, eye, place, cosViewSun),
+    depth: place.depth
+  }
 }
 
 /** Which rays from an eye meet the ground, and which the air at all. */
@@ -387,7 +399,8 @@ export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsA
 }
 
 /**
- * Reads the light of all the air in a direction and of the ground behind it from the volume.
+ * Reads the light of all the air in a direction and of the ground behind it from the volume, for unit
+ * irradiance [1/sr].
  *
  * @param aim - Direction, which meets the air.
  * @param cosViewSun - ν, direction against the sun.
@@ -398,12 +411,9 @@ export function sampleSky(
   eye: Eye,
   aim: Aim,
   cosViewSun: Float
-): Scattered {
+): Vec4 {
   const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE))
-  return {
-    molecular: sampleLevel0(textures.molecular, at),
-    aerosol: sampleLevel0(textures.aerosol, at)
-  }
+  return readTile(textures, at, miePhase(uniforms, cosViewSun)).mul(1 / RADIANCE_SCALE)
 }
 
 /** A line of sight from an eye that meets the air. */
@@ -431,11 +441,8 @@ export function sampleAir(
   // The slice before the ground's ends where the air does.
   const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE - 1))
   const mean = meanExtinction(textures.depth, eye, aim.elevation, hitsGround, float(1))
-  return {
-    molecular: sampleLevel0(textures.molecular, at),
-    aerosol: sampleLevel0(textures.aerosol, at),
-    depth: mean.mul(length)
-  }
+  const light = readTile(textures, at, miePhase(uniforms, cosViewSun))
+  return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }
 
 /** Transmittance of all the air in a direction; 1 where there is none. */
