@@ -31,6 +31,8 @@ export class AtmosphereUniforms {
   readonly mieExtinction = spectrum()
   readonly mieScaleHeight = number()
   readonly mieAsymmetry = spectrum()
+  /** Whether that is the same at the four wavelengths: 1, else 0. */
+  readonly mieIsGrey = number()
   /** 3/(8π) (1 − g²)/(2 + g²), what is constant in the Cornette–Shanks phase function [1/sr]. */
   readonly miePhaseFactor = spectrum()
   /** χ₁ and χ₂, first Legendre coefficients of the aerosols' phase function. */
@@ -69,7 +71,9 @@ export class AtmosphereUniforms {
       this.rayleighLayerSlopes.value.setComponent(i, next - slope)
       slope = next
     }
-    spectrumOf(parameters.mieAsymmetry).forEach((asymmetry, i) => {
+    const asymmetries = spectrumOf(parameters.mieAsymmetry)
+    this.mieIsGrey.value = Number(new Set(asymmetries).size === 1)
+    asymmetries.forEach((asymmetry, i) => {
       const [, moment1, moment2] = asymmetryMoments(asymmetry)
       this.mieAsymmetry.value.setComponent(i, asymmetry)
       this.miePhaseFactor.value.setComponent(i, cornetteShanksFactor(asymmetry))

@@ -1,8 +1,7 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { AtmosphereView } from './AtmosphereView'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
-import { scatteredRadiance } from './tsl/scattering'
-import { sampleSky } from './tsl/skyVolume'
+import { aimAt, sampleSky } from './tsl/skyVolume'
 import type { Bool, Float } from './tsl-types'
 
 /** Options of {@link DistanceFog}. */
@@ -64,8 +63,14 @@ export class DistanceFog implements SkyLayer {
         .clamp(-1, 1)
         .toConst() as Float
       const isGround = float(0).greaterThan(1) as Bool
-      const sky = sampleSky(uniforms, view.volume, eye, cosRaised, cosRaisedSun, isGround)
-      const color = scatteredRadiance(uniforms, sky, cosRaisedSun).mul(source.irradiance)
+      const sky = sampleSky(
+        uniforms,
+        view.volume,
+        eye,
+        aimAt(eye, cosRaised, isGround),
+        cosRaisedSun
+      )
+      const color = sky.mul(source.irradiance)
       const root = distance.mul(this.#density)
       const fog = root.mul(root).min(80).toConst()
       const through = fog.negate().exp().toConst()

@@ -12,6 +12,9 @@ export interface FlareOptions {
   outerStrength?: number
 }
 
+/** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
+const FAINTEST = 1e-6
+
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 
 /** A halo's figures as shader uniforms; they may be changed at any time. */
@@ -20,6 +23,8 @@ export class HaloUniforms {
   readonly innerStrength = scalar(0)
   readonly outerPower = scalar(0)
   readonly outerStrength = scalar(0)
+  /** Cosine of the angle from its middle where a halo ends; above 1 for none. */
+  readonly cosReach = scalar(2)
 
   /** @param owner - Names the class in errors. */
   constructor(
@@ -40,5 +45,16 @@ export class HaloUniforms {
       }
     }
     for (const [name, value] of entries) if (value !== undefined) this[name].value = value
+  }
+
+  /** @param isSeen - Whether there is light to spread. */
+  update(isSeen: boolean): void {
+    const square = (power: number, strength: number): number =>
+      (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * FAINTEST))
+    const widest = Math.max(
+      square(this.innerPower.value, this.innerStrength.value),
+      square(this.outerPower.value, this.outerStrength.value)
+    )
+    this.cosReach.value = isSeen && widest > 0 ? 1 - Math.min(widest, 4) / 2 : 2
   }
 }

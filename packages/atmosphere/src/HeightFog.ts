@@ -9,7 +9,6 @@ import { RADIANCE_SCALE } from './tableSizes'
 import { diffuseMoments } from './tsl/diffuseLight'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from './tsl/moments'
-import { scatteredRadiance } from './tsl/scattering'
 import { rayLimits, sampleVolume } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec4 } from './tsl-types'
@@ -114,7 +113,7 @@ export class HeightFog implements SkyLayer {
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = line.view.air
       const { eye, source } = line.view
-      const limits = rayLimits(uniforms, eye, line.cosView, line.hitsGround)
+      const limits = rayLimits(eye, line.cosView, line.hitsGround)
       const distance = line.distance ?? limits.length
       const radius = uniforms.bottomRadius.add(line.view.height).toConst() as Float
       const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
@@ -137,10 +136,7 @@ export class HeightFog implements SkyLayer {
       const { volume } = line.view
       const { cosView, cosViewSun } = line
       const ahead = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, reach)
-      const front = scatteredRadiance(uniforms, ahead, cosViewSun)
-        .mul(source.irradiance)
-        .min(air.light)
-        .toConst()
+      const front = ahead.radiance.mul(source.irradiance).min(air.light).toConst()
       const place = { line, radius, middle }
       let own = this.#light(place, eye.cosSun, cosViewSun).mul(source.irradiance)
       for (const { direction, irradiance } of this.#lamps) {

@@ -1,6 +1,6 @@
 import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import type { Quaternion } from 'three'
-import { If, renderGroup, texture, uniform, vec4, mix } from 'three/tsl'
+import { If, renderGroup, texture, uniform, mix } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { Spectrum } from './AtmosphereParameters'
@@ -14,11 +14,10 @@ import { MoonPlace, type MoonGeometry } from './moonGeometry'
 import { MoonSurface } from './MoonSurface'
 import { MoonlitAir } from './MoonlitAir'
 import { MoonVolumes } from './MoonVolumes'
-import type { SkyLayer, SkyRay } from './SkyLayer'
-import { haloRadiance } from './tsl/halo'
+import type { HazeLine, SkyLayer, SkyRay } from './SkyLayer'
+import { addHalo } from './tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
-import type { Vec3, Vec4 } from './tsl-types'
-import type { ViewNodes } from './ViewNodes'
+import type { Vec4 } from './tsl-types'
 
 /** Options of {@link Moon}. */
 export interface MoonOptions {
@@ -53,6 +52,12 @@ export interface MoonAppearance {
   /** Part of the disc that the sun lights, in [0, 1]. */
   litFraction: number
 }
+
+/** Angle that a pixel of the coarsest picture covers [rad]. */
+const WIDEST_PIXEL = 0.06
+
+/** How far out the corona is drawn, in radii of the sun. */
+const CORONA_RADII = 12
 
 const FLARE = { innerPower: 12_000, innerStrength: 0.02, outerPower: 500, outerStrength: 0.006 }
 
@@ -103,6 +108,10 @@ export class Moon implements SkyLayer {
   readonly #sunlit = spectrum()
   readonly #earthlit = spectrum()
   readonly #flare = spectrum()
+  /** Cosine of the angle from the sun within which there is something of it. */
+  readonly #nearSun = uniform(1).setGroup(renderGroup)
+  /** The same of the moon and its halo. */
+  readonly #nearMoon = uniform(1).setGroup(renderGroup)
   /** 0 while the sun's disc is all covered, else 1. */
   readonly #sunShows = uniform(1).setGroup(renderGroup)
 
@@ -288,6 +297,9 @@ export class Moon implements SkyLayer {
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
     this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
+    this.#halo.update(this.#flare.value.y > 0)
+    this.#nearSun.value = cosBeyond(CORONA_RADII * parameters.sunAngularRadius)
+    this.#nearMoon.value = Math.min(cosBeyond(angularRadius), this.#halo.cosReach.value)
     this.#air.update(view)
   }
 
@@ -295,42 +307,46 @@ export class Moon implements SkyLayer {
     const { direction, pixel, view } = ray
     const { uniforms } = view.air
     const light = farther.toVar()
-    const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
-    // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
-    const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
-    If(sunDistance.lessThan(nearDisc), () => {
-      light.mulAssign(this.#sunShows)
+    If(ray.cosViewSun.greaterThan(this.#nearSun), () => {
+      const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
+      // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
+      const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
+      If(sunDistance.lessThan(nearDisc), () => {
+        light.mulAssign(this.#sunShows)
+      })
+      If(sunDistance.lessThan(CORONA_RADII), () => {
+        light.addAssign(corona(uniforms, sunDistance))
+      })
     })
-    If(sunDistance.lessThan(12), () => {
-      light.addAssign(corona(uniforms, sunDistance))
+    const cosMoon = direction.dot(this.#direction).toConst()
+    If(cosMoon.greaterThan(this.#nearMoon), () => {
+      If(direction.sub(this.#direction).length().lessThan(this.#angularRadius.add(pixel)), () => {
+        const disc = moonDisc(
+          {
+            direction: this.#direction,
+            light: this.#light,
+            toFixed: this.#toFixed,
+            angularRadius: this.#angularRadius,
+            sunlit: this.#sunlit,
+            earthlit: this.#earthlit,
+            map: texture(this.#surface.target.texture)
+          },
+          direction,
+          pixel
+        )
+        light.assign(mix(light, disc.radiance, disc.coverage))
+      })
+      addHalo(light, this.#halo, this.#flare, direction, this.#direction, cosMoon)
     })
-    const reach = this.#angularRadius.add(pixel)
-    If(direction.sub(this.#direction).length().lessThan(reach), () => {
-      const disc = moonDisc(
-        {
-          direction: this.#direction,
-          light: this.#light,
-          toFixed: this.#toFixed,
-          angularRadius: this.#angularRadius,
-          sunlit: this.#sunlit,
-          earthlit: this.#earthlit,
-          map: texture(this.#surface.target.texture)
-        },
-        direction,
-        pixel
-      )
-      light.assign(mix(light, disc.radiance, disc.coverage))
-    })
-    const halo = haloRadiance(this.#halo, direction, this.#direction)
-    return light.add(this.#flare.mul(halo))
+    return light
   }
 
-  glow(ray: SkyRay): Vec4 {
-    return this.lightsAir ? this.#air.glow(ray) : vec4(0)
+  glow(ray: SkyRay, without: Vec4): Vec4 {
+    return this.lightsAir ? this.#air.glow(ray, without) : without
   }
 
-  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
-    return this.lightsAir ? this.#air.haze(view, displacementView) : vec4(0)
+  haze(line: HazeLine, without: Vec4): Vec4 {
+    return this.lightsAir ? this.#air.haze(line, without) : without
   }
 
   /** Frees GPU memory. The moon can be used again. */
@@ -339,6 +355,9 @@ export class Moon implements SkyLayer {
     this.#air.dispose()
   }
 }
+
+/** Cosine of an angle and the widest pixels' more [rad]. */
+const cosBeyond = (angle: number): number => Math.cos(Math.min(angle + WIDEST_PIXEL, Math.PI))
 
 function checkPositive(name: string, value: number): void {
   if (!(value > 0 && value < Infinity)) {

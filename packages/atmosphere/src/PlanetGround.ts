@@ -24,7 +24,6 @@ import { reflectanceColumns, sunWhite } from './cpu/reflectance'
 import { groundIrradiance } from './tsl/diffuseLight'
 import { orenNayar, seaSlopeVariance, skyGlint, sunGlint } from './tsl/groundReflection'
 import { proceduralGround, type GroundSurface } from './tsl/proceduralGround'
-import { scatteredRadiance } from './tsl/scattering'
 import { rayLimits, sampleVolume } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec2, Vec3, Vec4 } from './tsl-types'
@@ -182,7 +181,7 @@ export class PlanetGround implements SkyLayer {
     const { uniforms } = air
     const radiance = model.toVar()
     If(hitsGround, () => {
-      const limits = rayLimits(uniforms, eye, cosView, hitsGround)
+      const limits = rayLimits(eye, cosView, hitsGround)
       const distance = limits.start.add(limits.length).toConst() as Float
       const foot = view.up.mul(uniforms.bottomRadius.add(eye.altitude)).add(direction.mul(distance))
       const up = foot.normalize().toConst() as Vec3
@@ -233,9 +232,7 @@ export class PlanetGround implements SkyLayer {
       }
       const between = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, distance)
       radiance.assign(
-        scatteredRadiance(uniforms, between, cosViewSun)
-          .mul(view.source.irradiance)
-          .add(light.mul(between.depth.negate().exp()))
+        between.radiance.mul(view.source.irradiance).add(light.mul(between.depth.negate().exp()))
       )
     })
     return radiance

@@ -72,7 +72,8 @@ export class SkyCube {
       const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / size))
       // With the world's axes a direction in view space is one in world space.
       const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
-      return vec4(skyColor(this.#view, raised, null), 1)
+      const mapped = this.#view.toMapped(raised).normalize().toConst() as Vec3
+      return vec4(skyColor(this.#view, mapped, null), 1)
     })()
     this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }

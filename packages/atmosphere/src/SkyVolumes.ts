@@ -16,14 +16,18 @@ const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGro
 /** Uniforms of an eye, and a way to set them all. */
 export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
   readonly altitude = scalar()
+  readonly radius = scalar()
+  readonly toHorizon = scalar()
+  readonly toTop = scalar()
   readonly cosSun = scalar()
+  readonly sinSun = scalar()
   readonly cosHorizon = scalar()
   readonly sinHorizon = scalar()
-  readonly belowSpan = scalar()
-  readonly aboveSpan = scalar()
-  readonly groundExponent = scalar()
+  readonly belowScale = scalar()
+  readonly aboveScale = scalar()
+  readonly groundStretch = scalar()
   readonly groundGrowth = scalar()
-  readonly skyExponent = scalar()
+  readonly skyStretch = scalar()
   readonly skyGrowth = scalar()
   /** Number of the volume in the atlas. */
   readonly slot = scalar()
@@ -62,10 +66,10 @@ export class SkyVolumes {
     ELEVATIONS * TILE_ROWS * VOLUME_SLOTS,
     2
   )
-  /** Mean extinction along rays. */
+  /** Mean extinction along rays, and in the last column transmittance of all the air. */
   readonly depth: RenderTarget = tableTarget(
     'SkyVolume.depth',
-    DEPTH_SIZE[0],
+    DEPTH_SIZE[0] + 1,
     DEPTH_SIZE[1] * VOLUME_SLOTS
   )
   /** Light of each segment alone, before the sum. */

@@ -1,13 +1,13 @@
-import { DataTexture, FloatType, NearestFilter, RGBAFormat, Vector4 } from 'three'
+import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import { CelestialFrame } from './CelestialFrame'
 import type { SkyLayer, SkyRay } from './SkyLayer'
-import { CELL_COLUMNS, COLOR_STEPS, starCells } from './stars/starCells'
+import { COLOR_STEPS, ENTRY_COLUMNS, STAR_LEVELS, starCells } from './stars/starCells'
 import type { Star } from './stars/starCode'
 import { MAGNITUDE_ZERO_ILLUMINANCE, starIrradiance } from './stars/starColor'
-import { starField } from './tsl/starField'
+import { starField, type StarTextures } from './tsl/starField'
 import type { Vec4 } from './tsl-types'
 import { vec4Array } from './tsl-types'
 import { If, renderGroup, uniform } from 'three/tsl'
@@ -46,7 +46,7 @@ export class Stars implements SkyLayer {
   intensity = 1
   readonly #frame = new CelestialFrame()
   readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
-  readonly #cells: DataTexture
+  readonly #textures: StarTextures
   /** A hundred times the irradiance of the brightest star, over `solarIrradiance`. */
   readonly #brightest = uniform(0).setGroup(renderGroup)
   #paletteOf = ''
@@ -63,12 +63,11 @@ export class Stars implements SkyLayer {
     this.catalogue = catalogue
     this.overlay = overlay
     this.orientation = orientation ?? null
-    const texels = starCells(catalogue)
-    const rows = texels.length / 4 / CELL_COLUMNS
-    this.#cells = new DataTexture(texels, CELL_COLUMNS, rows, RGBAFormat, FloatType)
-    this.#cells.name = 'Stars.cells'
-    this.#cells.minFilter = this.#cells.magFilter = NearestFilter
-    this.#cells.needsUpdate = true
+    const { cells, entries } = starCells(catalogue)
+    this.#textures = {
+      cells: dataTexture('Stars.cells', cells, STAR_LEVELS[0].cells, RGFormat),
+      entries: dataTexture('Stars.entries', entries, ENTRY_COLUMNS, RGBAFormat)
+    }
   }
 
   /** Rotation from the stars' frame to ECEF; null to follow the atmosphere's date. */
@@ -102,8 +101,8 @@ export class Stars implements SkyLayer {
 
   /** Light of the stars in a direction, above the air [1/sr]. */
   light(ray: SkyRay): Vec4 {
-    const direction = this.#frame.toCelestial(ray.direction).toConst()
-    return starField(this.#cells, this.#palette, direction, ray.pixel)
+    const direction = this.#frame.turn(ray.direction).toConst()
+    return starField(this.#textures, this.#palette, direction, ray.pixel)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
@@ -118,6 +117,21 @@ export class Stars implements SkyLayer {
   }
 
   dispose(): void {
-    this.#cells.dispose()
+    this.#textures.cells.dispose()
+    this.#textures.entries.dispose()
   }
+}
+
+function dataTexture(
+  name: string,
+  texels: Float32Array<ArrayBuffer>,
+  width: number,
+  format: typeof RGFormat | typeof RGBAFormat
+): DataTexture {
+  const rows = texels.length / width / (format === RGFormat ? 2 : 4)
+  const made = new DataTexture(texels, width, rows, format, FloatType)
+  made.name = name
+  made.minFilter = made.magFilter = NearestFilter
+  made.needsUpdate = true
+  return made
 }

@@ -4,7 +4,7 @@ import type { AtmosphereView } from './AtmosphereView'
 import { visibleSun } from './cpu/transmittance'
 import { HaloUniforms, type FlareOptions } from './HaloUniforms'
 import type { SkyLayer, SkyRay } from './SkyLayer'
-import { haloRadiance } from './tsl/halo'
+import { addHalo } from './tsl/halo'
 import type { Vec4 } from './tsl-types'
 
 const DEFAULTS = { innerPower: 6000, innerStrength: 0.006, outerPower: 150, outerStrength: 0.004 }
@@ -50,11 +50,15 @@ export class SunFlare implements SkyLayer {
     const { parameters } = this.atmosphere
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     this.#visible.value = visibleSun(parameters, radius, view.up.dot(view.sunDirection))
+    this.#halo.update(this.#visible.value > 0)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
-    const light = ray.view.source.irradiance.mul(this.#visible)
-    return farther.add(light.mul(haloRadiance(this.#halo, ray.direction, ray.view.sunDirection)))
+    const { direction, cosViewSun, view } = ray
+    const light = farther.toVar()
+    const irradiance = view.source.irradiance.mul(this.#visible)
+    addHalo(light, this.#halo, irradiance, direction, view.sunDirection, cosViewSun)
+    return light
   }
 }
 

@@ -84,10 +84,10 @@ describe('eye', () => {
         const cosHorizon = -Math.sqrt(height * (2 * earth.bottomRadius + height)) / radius
         expect(Math.abs(eye.cosHorizon - cosHorizon)).toBeLessThan(1e-9)
         expect(Object.values(eye).every(Number.isFinite)).toBe(true)
-        expect(eye.belowSpan).toBeGreaterThan(0)
-        expect(eye.aboveSpan).toBeGreaterThan(0)
-        expect(eye.groundGrowth).toBeCloseTo(Math.exp(eye.groundExponent) - 1, 9)
-        expect(eye.skyGrowth).toBeCloseTo(Math.exp(eye.skyExponent) - 1, 9)
+        expect(eye.belowScale).toBeGreaterThan(0)
+        expect(eye.aboveScale).toBeGreaterThan(0)
+        expect(eye.groundGrowth).toBeCloseTo(Math.exp(1 / eye.groundStretch) - 1, 9)
+        expect(eye.skyGrowth).toBeCloseTo(Math.exp(1 / eye.skyStretch) - 1, 9)
       }),
       runs
     )

@@ -38,14 +38,18 @@ export function eyeScalars(
   const skyExponent = exponent(thickness - start, height)
   return {
     altitude: h,
+    radius,
+    toHorizon: h * (bottomRadius + radius),
+    toTop: (thickness - h) * (topRadius + radius),
     cosSun,
+    sinSun: Math.sqrt(Math.max(1 - cosSun ** 2, 0)),
     cosHorizon: -Math.sin(dip),
     sinHorizon,
-    belowSpan: Math.tan((Math.PI / 2 - dip) / 2),
-    aboveSpan: Math.tan(above / 2),
-    groundExponent,
+    belowScale: 1 / Math.tan((Math.PI / 2 - dip) / 2),
+    aboveScale: 1 / Math.tan(above / 2),
+    groundStretch: 1 / groundExponent,
     groundGrowth: Math.expm1(groundExponent),
-    skyExponent,
+    skyStretch: 1 / skyExponent,
     skyGrowth: Math.expm1(skyExponent)
   }
 }

@@ -100,6 +100,5 @@ export function volumeShell(
   eye: Eye,
   sight: Sight
 ): Shell {
-  const air = sampleAir(uniforms, textures, eye, sight)
-  return { radiance: scatteredRadiance(uniforms, air, sight.cosViewSun), depth: air.depth }
+  return sampleAir(uniforms, textures, eye, sight)
 }

@@ -127,7 +127,7 @@ function marchAny(
   sums: SingleScattering
 ): void {
   const { altitude, radial, hitsGround } = way
-  const isShort = altitude.lessThan(uniforms.rayleighScaleHeight.mul(1.25))
+  const isShort = altitude.lessThan(uniforms.homogeneousHeight.mul(1.25))
   const turns = hitsGround.not().and(radial.lessThan(0)).toConst() as Bool
   const overGround = turns.select(4, 3)
   const steps = int(hitsGround.select(isShort.select(1, 3), overGround)).toConst()
