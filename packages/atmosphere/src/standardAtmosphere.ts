@@ -31,7 +31,7 @@ export const ANGSTROM_EXPONENT = 1.3
  * 550 nm (Hess, Koepke & Schult 1998, OPAC, table 4), and the default's scale height, 1.2 km (Elterman
  * 1968). With the default's optical depth level ground gets the light that the almanac tabulates, within
  * 25 %, wherever the sun stands from the zenith to 12° below the horizon, the night sky's light added;
- * with 0.05 it is up to 32 % brighter.
+ * with 0.05 it is up to 33 % brighter.
  *
  * @param options - `aerosolOpticalDepth`: of aerosols, to the zenith at 550 nm, in [0, 5]; by default
  *   0.12, the world's mean (Kinne et al. 2006, Atmos. Chem. Phys. 6: models 0.11 to 0.14); 0.05 is very
