@@ -90,7 +90,7 @@ export const MoonGround: Story = { args: { planet: 'moon', sunElevation: 15, sun
 
 /** Land and sea from pictures; the sun glints on the sea. */
 export const Earth: Story = {
-  args: { planet: 'earth', height: 1.2e7, pitch: -90, sunElevation: 35, exposure: -1 },
+  args: { planet: 'earth', height: 1.2e7, pitch: -90, sunElevation: 35, exposure: -2 },
   tags: ['screenshot', 'webgpu-only']
 }
 
@@ -108,13 +108,13 @@ export const LowOrbit: Story = {
     pitch: -25,
     sunElevation: 35,
     sunAzimuth: 25,
-    exposure: -1
+    exposure: -2
   },
   tags: ['screenshot']
 }
 
 /** No picture at all: continents are made up. */
 export const MadeUp: Story = {
-  args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -1 },
+  args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -2 },
   tags: ['screenshot', 'webgpu-only']
 }

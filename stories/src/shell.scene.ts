@@ -40,9 +40,11 @@ const SUNLIGHT = 13
 /** A kilometre in the cockpit's world [world units]. */
 const KILOMETER = 1
 
-/** A sphere of radius 1 within flat faces: where the air ends at it, there is ground. */
-function globeGeometry(segments: number): SphereGeometry {
-  return new SphereGeometry(1 / Math.cos(Math.PI / segments) ** 2, segments, segments / 2)
+/** A sphere of radius 1; or what can be seen of it from 400 km over its pole, in faces that are flat to metres. */
+function globeGeometry(view: ShellArgs['view']): SphereGeometry {
+  return view === 'map'
+    ? new SphereGeometry(1, 256, 128)
+    : new SphereGeometry(1, 512, 256, 0, 2 * Math.PI, 0, 0.4)
 }
 
 /** Bodies with shells of air, and no sky, no background, no post pass. */
@@ -67,7 +69,7 @@ export async function createShell(
     color: string
   ): void => {
     const ball = new Mesh(
-      globeGeometry(args.view === 'map' ? 128 : 512),
+      globeGeometry(args.view),
       new MeshStandardMaterial({ color, roughness: 1 })
     )
     ball.scale.setScalar(radius)
