@@ -251,7 +251,7 @@ function marchSunny(
     points.forEach(({ density, inLayer: y, part }, i) => {
       const above = vec3(density.xy, absorberAbove(y))
       const toSun = change.mul(part).add(1).mul(lengths).mul(above)
-      const before = weighted(found, weightsTo(nodes, nodes[i])).mul(sign).add(base)
+      const before = weighted(found, weightsTo(nodes, nodes[i])).mul(sign).add(base).max(0)
       const amount = found[i].xy.mul(length.mul(weights[i])).toConst() as Vec2
       sums.scatter(before.add(toSun).toConst(), amount)
     })
