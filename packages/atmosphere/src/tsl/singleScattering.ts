@@ -153,8 +153,8 @@ function marchAny(
   })
 }
 
-/** μ_s from which on the sun is high, if it does not change by more than half over a way. */
-const STEADY_SUN = 0.15
+/** μ_s from which on the sun is high, if it is not twice as much elsewhere on the way. */
+const STEADY_SUN = 0.06
 
 /** Thickness of air over the planet's radius that {@link marchSunny} is right for. */
 const THIN = 0.2
@@ -169,26 +169,38 @@ interface DenseEnd {
   cosSun: Float
   /** μ_s at the other end. */
   cosSunAbove: Float
+  /** Whether the sun shines on the whole way from about as high up. */
+  isSunny: Bool
+  /** Whether the planet's shadow, which is convex, holds both ends. */
+  isDark: Bool
 }
 
 function denseEnd(
-  { bottomRadius, thickness }: AtmosphereUniforms,
+  { bottomRadius, thickness, sunAngularRadius }: AtmosphereUniforms,
   { altitude, radius, radial, sunward, cosViewSun, hitsGround, length }: ShellRay
 ): DenseEnd {
-  const end = bottomRadius.add(hitsGround.select(0, thickness))
+  const ceiling = hitsGround.select(0, thickness).toConst() as Float
   const first = sunward.div(radius).toConst() as Float
-  const last = cosViewSun.mul(length).add(sunward).div(end).toConst() as Float
+  const along = cosViewSun.mul(length).add(sunward)
+  const last = along.div(bottomRadius.add(ceiling)).toConst() as Float
+  const least = first.min(last).toConst()
+  const isSteady = first.max(last).lessThan(least.mul(2))
+  // sin of the horizon's dip at the higher end, and no dip at the lower.
+  const highest = altitude.max(ceiling).toConst()
+  const dip = highest.mul(bottomRadius.mul(2).add(highest)).sqrt().div(bottomRadius.add(highest))
   return {
     altitude: hitsGround.select(0, altitude).toConst(),
     radial: hitsGround.select(radial.add(length).negate(), radial).toConst(),
     cosSun: hitsGround.select(last, first).toConst(),
-    cosSunAbove: hitsGround.select(first, last).toConst()
+    cosSunAbove: hitsGround.select(first, last).toConst(),
+    isSunny: least.greaterThan(STEADY_SUN).and(isSteady).toConst(),
+    isDark: first.max(last).add(dip).lessThan(sunAngularRadius.mul(-2)).toConst()
   }
 }
 
 /**
- * Sums the light of a way through thin air under a high sun by five points, where most rays of a day are:
- * as right as nine points of {@link marchAny} at half the cost, for there are no roots and divisions.
+ * Sums the light of a way through thin air under a high sun, or in the dark, by five points: as right as
+ * nine of {@link marchAny} at half the cost, for there are no roots and divisions.
  *
  * From the dense end outwards the distance is that to the top times a y + (1 − a) y³, of about the slopes
  * that the steps of other marches have. With u = h + h²/2r_bottom, which is a square of the distance,
@@ -233,13 +245,16 @@ function marchSunny(
   const found = points.map(point => point.found)
   const scaled = length.mul(UNIT).toConst() as Float
   sums.columns.assign(weighted(found, weights).mul(scaled))
-  const sign = hitsGround.select(scaled.negate(), scaled).toConst()
-  const base = hitsGround.select(sums.columns, vec3(0)).toConst()
-  points.forEach(({ density, inLayer: y, part }, i) => {
-    const above = vec3(density.xy, absorberAbove(y))
-    const toSun = change.mul(part).add(1).mul(lengths).mul(above)
-    const before = weighted(found, weightsTo(nodes, nodes[i])).mul(sign).add(base)
-    sums.scatter(before.add(toSun).toConst(), found[i].xy.mul(length.mul(weights[i])))
+  If(dense.isDark.not(), () => {
+    const sign = hitsGround.select(scaled.negate(), scaled).toConst()
+    const base = hitsGround.select(sums.columns, vec3(0)).toConst()
+    points.forEach(({ density, inLayer: y, part }, i) => {
+      const above = vec3(density.xy, absorberAbove(y))
+      const toSun = change.mul(part).add(1).mul(lengths).mul(above)
+      const before = weighted(found, weightsTo(nodes, nodes[i])).mul(sign).add(base).max(0)
+      const amount = found[i].xy.mul(length.mul(weights[i])).toConst() as Vec2
+      sums.scatter(before.add(toSun).toConst(), amount)
+    })
   })
 }
 
@@ -256,11 +271,9 @@ export function singleScatteringShell(
   const sums = new SingleScattering(uniforms)
   const { bottomRadius, thickness } = uniforms
   const dense = denseEnd(uniforms, way)
-  const least = dense.cosSun.min(dense.cosSunAbove).toConst()
-  const isSteady = dense.cosSun.max(dense.cosSunAbove).lessThan(least.mul(1.5))
   const turns = way.hitsGround.not().and(way.radial.lessThan(0))
   const isThin = thickness.lessThan(bottomRadius.mul(THIN))
-  If(least.greaterThan(STEADY_SUN).and(isSteady).and(turns.not()).and(isThin), () => {
+  If(dense.isSunny.or(dense.isDark).and(turns.not()).and(isThin), () => {
     marchSunny(uniforms, constants, way, dense, sums)
   }).Else(() => marchAny(uniforms, constants, way, sums))
   return sums.finish(way.cosViewSun)
