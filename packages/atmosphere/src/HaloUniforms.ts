@@ -13,7 +13,7 @@ export interface FlareOptions {
 }
 
 /** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
-const FAINTEST = 1e-6
+const FAINTEST = 1e-8
 
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 

@@ -22,15 +22,14 @@ export function rayleighPhase(cosViewSun: Float): Float {
  */
 export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 {
   const { mieAsymmetry, mieIsGrey, miePhaseFactor } = uniforms
-  const inverse = <T extends Float | Vec4>(asymmetry: T): T => {
-    const chord = asymmetry.mul(asymmetry.sub(cosViewSun.mul(2))).add(1)
+  const lobes = (asymmetry: Float | Vec4): Vec4 => {
+    const chord = (asymmetry as Float).mul((asymmetry as Float).sub(cosViewSun.mul(2))).add(1)
     const root = chord.max(1e-4).inverseSqrt().toConst()
-    return root.mul(root).mul(root) as unknown as T
+    return vec4(root.mul(root).mul(root).mul(cosViewSun.mul(cosViewSun).add(1)))
   }
-  const lobes = cosViewSun.mul(cosViewSun).add(1).toConst()
-  const phase = vec4(inverse(mieAsymmetry.x).mul(lobes)).toVar()
-  If(mieIsGrey.lessThan(0.5), () => {
-    phase.assign(inverse(mieAsymmetry as Vec4).mul(lobes))
+  const phase = lobes(mieAsymmetry.x).toVar()
+  If(mieIsGrey.equal(0), () => {
+    phase.assign(lobes(mieAsymmetry))
   })
   return miePhaseFactor.mul(phase)
 }

@@ -5,7 +5,7 @@ import type { SkyRay } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
 import { veiled } from './aerialPerspective'
-import { elevationPosition, rayTargets, sampleSky, skyTransmittance } from './skyVolume'
+import { aimAt, rayTargets, sampleSky, skyTransmittance } from './skyVolume'
 import { sine } from './trigonometry'
 
 /**
@@ -40,9 +40,15 @@ export function sunDisc(
 /** Brightest output: half-float targets hold up to 65504, and the sun's disc is brighter. */
 const BRIGHTEST = 60_000
 
-/** Angle between a fragment's line of sight, of unit length, and the next one's [rad]. Not for use in branches. */
+/**
+ * Angle between a fragment's line of sight and that of the one diagonally next to it [rad]. Not for use in
+ * branches.
+ *
+ * @param direction - Of unit length, in any frame.
+ */
 export function pixelAngle(direction: Vec3): Float {
-  return direction.fwidth().length().toConst()
+  const [across, up] = [direction.dFdx().toConst(), direction.dFdy().toConst()]
+  return across.dot(across).add(up.dot(up)).sqrt().toConst()
 }
 
 /**
@@ -59,17 +65,11 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).toConst() as Float
   const { hitsGround, meetsAir } = rayTargets(eye, cosView)
-  const sinView = sine(cosView).toConst() as Float
-  // Out of the air's top where there is none.
-  const elevation = float(1).toVar()
-  const aim = { cosView, sinView, hitsGround, elevation: elevation as unknown as Float }
+  const aim = aimAt(eye, cosView, hitsGround)
   const radiance = vec4(0).toVar()
-  If(meetsAir, () => {
-    elevation.assign(elevationPosition(eye, cosView, hitsGround, sinView))
-    If(view.isLit.greaterThan(0), () => {
-      const light = sampleSky(uniforms, volume, eye, aim, cosViewSun)
-      radiance.assign(light.mul(view.source.irradiance))
-    })
+  If(meetsAir.and(view.isLit.greaterThan(0)), () => {
+    const light = sampleSky(uniforms, volume, eye, aim, cosViewSun)
+    radiance.assign(light.mul(view.source.irradiance))
   })
   const angles = { direction, cosViewSun, meetsAir, ...aim }
   const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0), airlight: radiance }
@@ -94,10 +94,9 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
     If(isDimmed, () => {
       far.assign(sunDisc(uniforms, direction, view.sunDirection, pixel))
     })
-    for (const layer of layers) {
-      if (layer.beyond === undefined) continue
+    if (layers.some(layer => layer.beyond !== undefined)) {
       If(hitsGround.not(), () => {
-        far.assign(layer.beyond!(ray, far))
+        for (const layer of layers) far.assign(layer.beyond?.(ray, far) ?? far)
       })
       isDimmed = far.dot(vec4(1)).greaterThan(0)
     }

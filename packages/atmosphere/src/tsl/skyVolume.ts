@@ -64,12 +64,7 @@ export function rayLimits(eye: Eye, cosView: Float, forcedGround?: Bool): RayLim
  * @param hitsGround - Which half.
  * @param sinView - √(1 − μ²), which from far away is better known than μ tells.
  */
-export function elevationPosition(
-  eye: Eye,
-  cosView: Float,
-  hitsGround: Bool,
-  sinView: Float
-): Float {
+function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool, sinView: Float): Float {
   const across = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
   const along = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
   const scale = hitsGround.select(eye.belowScale, eye.aboveScale)
@@ -214,12 +209,19 @@ function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
   return part.mul(growth).add(1).log().mul(stretch).clamp()
 }
 
+/** A row of the sky volumes. */
+export interface Elevation {
+  /** Whether the ground is in the way. */
+  hitsGround: Bool
+  /** Where the elevation lies in its half, below or above the horizon. */
+  elevation: Float
+}
+
 /** Reads a table of {@link DEPTH_SIZE} at a column, in texels. */
 function readDepth(
   depth: TextureNode,
   eye: Eye,
-  elevation: Float,
-  hitsGround: Bool,
+  { elevation, hitsGround }: Elevation,
   column: Float
 ): Vec4 {
   const row = elevationRow(elevation, hitsGround, DEPTH_ROWS).add(eye.slot.mul(DEPTH_ROWS))
@@ -233,18 +235,14 @@ function readDepth(
  *
  * Depth over distance varies little from row to row, even just below the horizon, where the distance
  * to the ground varies most.
- *
- * @param elevation - Position in the ray's half.
  */
 export function meanExtinction(
   depth: TextureNode,
   eye: Eye,
-  elevation: Float,
-  hitsGround: Bool,
+  elevation: Elevation,
   position: Float
 ): Vec4 {
-  const column = position.mul(DEPTH_COLUMNS).max(1).sub(0.5)
-  return readDepth(depth, eye, elevation, hitsGround, column)
+  return readDepth(depth, eye, elevation, position.mul(DEPTH_COLUMNS).max(1).sub(0.5))
 }
 
 /** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
@@ -258,15 +256,11 @@ export interface AirBetween {
 }
 
 /** A direction from an eye as its sky volumes have it, whatever lights them. */
-export interface Aim {
+export interface Aim extends Elevation {
   /** μ, against the zenith of the eye. */
   cosView: Float
   /** √(1 − μ²). */
   sinView: Float
-  /** Whether the ground is in the way. */
-  hitsGround: Bool
-  /** Where the elevation lies in its half, below or above the horizon. */
-  elevation: Float
 }
 
 /** @param cosView - μ, direction against the zenith of the eye. */
@@ -303,8 +297,6 @@ function tileReader(
 export interface VolumePlace extends Aim {
   /** Among the distances of its ray, in [0, 1]. */
   position: Float
-  /** Whether there is air on the way. */
-  isInAir: Bool
   /** Optical depth up to it. */
   depth: Vec4
 }
@@ -325,9 +317,8 @@ export function placeInVolume(
   const aim = aimAt(eye, cosView, hitsGround)
   const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
   const position = slicePosition(eye, limits, inAir).toConst() as Float
-  const mean = meanExtinction(textures.depth, eye, aim.elevation, hitsGround, position)
-  const isInAir = length.greaterThan(0) as Bool
-  return { ...aim, position, isInAir, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
+  const mean = meanExtinction(textures.depth, eye, aim, position)
+  return { ...aim, position, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
 }
 
 /** Reads the light of the air between the eye and a point from the volume, for unit irradiance [1/sr]. */
@@ -341,8 +332,8 @@ export function radianceBetween(
   const fetch = tileReader(uniforms, eye, place, cosViewSun)
   // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
   const slices = place.position.mul(DISTANCES).toConst()
-  const grown = place.isInAir
-    .select(slices.min(1), 0)
+  const grown = slices
+    .min(1)
     .mul(1 / RADIANCE_SCALE)
     .toConst()
   const slice = slices.sub(1).max(0).toConst()
@@ -440,17 +431,12 @@ export function sampleAir(
   const aim = aimAt(eye, cosView, hitsGround, sinView)
   // The slice before the ground's ends where the air does.
   const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE - 1))
-  const mean = meanExtinction(textures.depth, eye, aim.elevation, hitsGround, float(1))
+  const mean = meanExtinction(textures.depth, eye, aim, float(1))
   const light = readTile(textures, at, miePhase(uniforms, cosViewSun))
   return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }
 
 /** Transmittance of all the air in a direction; 1 where there is none. */
-export function skyTransmittance(
-  textures: VolumeTextures,
-  eye: Eye,
-  { elevation, hitsGround }: Pick<Aim, 'elevation' | 'hitsGround'>
-): Vec4 {
-  const column = float(DEPTH_COLUMNS + 0.5)
-  return readDepth(textures.depth, eye, elevation, hitsGround, column).toConst()
+export function skyTransmittance(textures: VolumeTextures, eye: Eye, elevation: Elevation): Vec4 {
+  return readDepth(textures.depth, eye, elevation, float(DEPTH_COLUMNS + 0.5)).toConst()
 }

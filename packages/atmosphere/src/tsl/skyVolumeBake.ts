@@ -132,7 +132,7 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
     const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
     const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES)).toConst() as Float
     const reached = slice.div(DISTANCES) as Float
-    const before = meanExtinction(depth, eye, position, hitsGround, reached)
+    const before = meanExtinction(depth, eye, { elevation: position, hitsGround }, reached)
     const through = before.mul(start.div(EXTINCTION_SCALE)).negate().exp().toConst()
     const molecular = vec4(0).toVar()
     const aerosol = vec4(0).toVar()
