@@ -1,11 +1,13 @@
 import {
   airglow,
+  Atmosphere,
   DayCycle,
   milkyWay,
   moon,
   MoonDirectionalLight,
   NightLightProbe,
   SkyLightProbe,
+  standardAtmosphere,
   stars
 } from '@welkin/atmosphere'
 import {
@@ -60,9 +62,8 @@ export async function createDay(
   for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
   scene.add(...meshes)
 
-  const air = new Air(renderer, scene, camera, args.path)
-  const { atmosphere } = air
   // #region day
+  const atmosphere = new Atmosphere({ parameters: standardAtmosphere() }) // twilight as it is
   const luna = moon(atmosphere)
   atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near, before the first render
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 50) // 50 m from its target
@@ -76,6 +77,9 @@ export async function createDay(
     exposure: { sources: [luna.source] }
   })
   // #endregion
+  const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  air.sun.castShadow = true
+  air.sun.distance = 50
   for (const { shadow } of [air.sun, moonlight]) {
     shadow.camera.left = shadow.camera.bottom = -25
     shadow.camera.right = shadow.camera.top = 25
