@@ -1,5 +1,5 @@
 import type { Atmosphere } from '@welkin/atmosphere'
-import { gpuMilliseconds, type BenchDevice } from './device'
+import { gpuMilliseconds, release, type BenchDevice } from './device'
 import { benchScene, setSun, type Path } from './scene'
 import { median } from './statistics'
 
@@ -44,6 +44,6 @@ export async function timeFrame(
     }
   }
   scene.dispose()
-  void renderer.dispose()
+  release(renderer)
   return { gpu: median(gpu), cpu: median(cpu) }
 }

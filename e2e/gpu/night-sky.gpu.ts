@@ -7,7 +7,9 @@ import {
   skyBackground,
   Stars,
   stars,
-  starsOverlay
+  starsOverlay,
+  distanceToTop,
+  opticalDepth
 } from '@welkin/atmosphere'
 import type { Star } from '@welkin/atmosphere'
 import {
@@ -23,7 +25,8 @@ import { float, pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { glowGain } from '../../packages/atmosphere/src/cpu/airglow'
 import { starDirection } from '../../packages/atmosphere/src/stars/starCells'
-import { glowGains } from '../../packages/atmosphere/src/tsl/airglow'
+import { luminanceOf, starIrradiance } from '../../packages/atmosphere/src/stars/starColor'
+import { glowGains, overheadGain } from '../../packages/atmosphere/src/tsl/airglow'
 import { drawToFloat, expectLight, relativeDifferences } from './harness/atmosphere'
 import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
@@ -228,7 +231,57 @@ gpuTest('has airglow as bright as its layer is long', async t => {
     const label = `${name}, ${height} m, cos ${cosView}`
     expectTrue(off < 0.02, `${label}: ${gpu[4 * i]}, not ${exact}`)
   })
+  const below = cases.filter(({ name }) => name === 'below')
+  const thin = await t.evaluate(
+    below.map(({ height, cosView }) => [height, cosView, 0, 0]),
+    input => {
+      const nodes = { altitude: float(altitude), width: float(width) }
+      return overheadGain(nodes, input.x, input.y, float(bottomRadius))
+    }
+  )
+  below.forEach(({ height, cosView }, i) => {
+    const exact = glowGain(layer, bottomRadius + height, cosView, bottomRadius, 3e6)
+    const off = Math.abs(thin[4 * i] / exact - 1)
+    worst = Math.max(worst, off)
+    expectTrue(off < 0.01, `shell, ${height} m, cos ${cosView}: ${thin[4 * i]}, not ${exact}`)
+  })
   t.note(`off by ${(100 * worst).toFixed(2)} % at most`)
+})
+
+gpuTest('dims stars by the air in a night that no day came before', async t => {
+  const [width, height, fov] = [96, 54, 5]
+  const renderer = await t.createRenderer({ width, height })
+  for (const elevation of [60, 10, 2]) {
+    const angle = (elevation * Math.PI) / 180
+    // At longitude and latitude 0: the zenith is X of ECEF, which is the stars' frame without a date.
+    const star: Star = {
+      ascension: Math.PI / 2 - angle,
+      declination: 0,
+      magnitude: 1,
+      colorIndex: 0
+    }
+    const atmosphere = new Atmosphere().setSunAngles(-60, 270)
+    atmosphere.luminanceScale = 1
+    atmosphere.add(new Stars([star]))
+    const camera = new PerspectiveCamera(fov, width / height, 1, 1e6)
+    camera.position.y = 2
+    camera.lookAt(new Vector3(Math.cos(angle), Math.sin(angle), 0).add(camera.position))
+    camera.updateMatrixWorld()
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
+    const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+    const { parameters } = atmosphere
+    const radius = parameters.bottomRadius + 2
+    const way = distanceToTop(radius, Math.sin(angle), parameters.topRadius)
+    const depth = opticalDepth(parameters, radius, Math.sin(angle), way)
+    const light = starIrradiance(parameters, 0, VEGA * 10 ** -0.4)
+    const dimmed = light.map((value, i) => value * Math.exp(-depth[i]))
+    const ratio = illuminance(picture, fov) / luminanceOf(parameters, dimmed)
+    const part = luminanceOf(parameters, dimmed) / luminanceOf(parameters, light)
+    t.note(`${elevation}° high: ${(100 * part).toFixed(1)} % is left, ${ratio.toFixed(3)} of that`)
+    expectTrue(Math.abs(ratio - 1) < 0.03, `${elevation}° high: ${ratio} of what it should be`)
+    atmosphere.dispose()
+  }
 })
 
 gpuTest('lights a level plane at night as much as told', async t => {
