@@ -27,7 +27,9 @@ import { glowGain } from '../../packages/atmosphere/src/cpu/airglow'
 import { starDirection } from '../../packages/atmosphere/src/stars/starCells'
 import { luminanceOf, starIrradiance } from '../../packages/atmosphere/src/stars/starColor'
 import { glowGains, overheadGain } from '../../packages/atmosphere/src/tsl/airglow'
+import { milkyWayMap } from '../../packages/atmosphere/src/tsl/milkyWay'
 import { drawToFloat, expectLight, relativeDifferences } from './harness/atmosphere'
+import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
 import type { Picture } from './harness/picture'
@@ -341,4 +343,23 @@ gpuTest('wants sensible airglow', () => {
   fails({ luminance: -1 }, 'Airglow: luminance must be in [0, 1000000000], got -1')
   fails({ altitude: NaN }, 'Airglow: altitude must be in')
   fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must have 4 values, got 3')
+})
+
+gpuTest('folds the map of the Milky Way without a seam', async t => {
+  const renderer = await t.createRenderer({ width: 4, height: 4 })
+  const along = Array.from({ length: 31 }, (_, i) => (i + 1) / 32)
+  // Where an edge is folded its halves are the same directions.
+  const halves = [1, -1].map(half =>
+    along.flatMap(x => [
+      [1, half * x, 0, 0],
+      [-1, half * x, 0, 0],
+      [half * x, 1, 0, 0],
+      [half * x, -1, 0, 0]
+    ])
+  )
+  const [first, second] = await Promise.all(
+    halves.map(points => evaluateOnGpu(renderer, points, point => milkyWayMap(point.xy)))
+  )
+  expectTrue(Math.max(...first) > 1, 'the band is not on the edge')
+  expectClose(first, second, { relative: 1e-3 }, 'halves of the edges')
 })

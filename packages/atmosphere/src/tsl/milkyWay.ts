@@ -50,7 +50,8 @@ const REDDENING = vec4(1.3, 1.08, 0.98, 0.85)
  */
 export function milkyWayMap(point: Vec2): Vec4 {
   const direction = octahedralDirection(point)
-  const l = atan(direction.y, direction.x).toConst()
+  // Where y is −0 some implementations are half a turn off.
+  const l = atan(direction.y.add(1e-7), direction.x).toConst()
   const longitude = l.div(DEGREE).toConst()
   const latitude = direction.z.clamp(-1, 1).asin().div(DEGREE).toConst()
   const noise = (scale: number, octaves: number): Float =>
