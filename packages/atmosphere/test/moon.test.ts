@@ -331,9 +331,9 @@ describe('eclipse', () => {
     expect(atmosphere.sun.irradianceAt(origin)).toEqual(luna.eclipse(origin))
     atmosphere.remove(luna)
     const start = performance.now()
-    for (let i = 0; i < 5000; i++) atmosphere.sun.irradianceAt(origin)
+    for (let i = 0; i < 20_000; i++) atmosphere.sun.irradianceAt(origin)
     // No chain of a thousand functions, which would take longer.
-    expect(performance.now() - start).toBeLessThan(50)
+    expect(performance.now() - start).toBeLessThan(100)
     expect(atmosphere.sun.irradianceAt(origin)).toEqual([1, 1, 1, 1])
     expect(asked).toBe(0)
   })
