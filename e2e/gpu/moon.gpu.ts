@@ -245,6 +245,35 @@ gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
   atmosphere.dispose()
 })
 
+gpuTest('leaves no memory behind when it comes and goes under a sky that stays', async t => {
+  const renderer = await t.createRenderer({ width: 16, height: 16 })
+  const atmosphere = new Atmosphere().setSunAngles(-20, 90)
+  const camera = new PerspectiveCamera()
+  const scene = new Scene()
+  const background = skyBackground(atmosphere)
+  scene.backgroundNode = background
+  const memory = (): string => {
+    renderer.render(scene, camera)
+    const { programs, renderTargets, textures, texturesSize, uniformBuffers } = renderer.info.memory
+    return JSON.stringify({ programs, renderTargets, textures, texturesSize, uniformBuffers })
+  }
+  const [without, withMoon] = [[memory()], Array<string>()]
+  for (let i = 0; i < 4; i++) {
+    const luna = moon(atmosphere, { mapSize: 16 })
+    atmosphere.add(luna)
+    withMoon.push(memory())
+    luna.dispose()
+    without.push(memory())
+  }
+  background.dispose()
+  atmosphere.dispose()
+  t.note(`${without[0]} without, ${withMoon[0]} with it`)
+  expectTrue(withMoon[0] !== without[0], 'a moon takes no memory')
+  // What all moons share stays after the first.
+  expectTrue(new Set(without.slice(1)).size === 1, `without: ${without.join('\n')}`)
+  expectTrue(new Set(withMoon.slice(1)).size === 1, `with: ${withMoon.join('\n')}`)
+})
+
 gpuTest('leaves no memory behind', async t => {
   const renderer = await t.createRenderer({ width: 8, height: 8 })
   const camera = new PerspectiveCamera(60, 1, 1, 1e6)

@@ -65,7 +65,7 @@ export async function createDay(
   // #region day
   const atmosphere = new Atmosphere({ parameters: standardAtmosphere() }) // twilight as it is
   const luna = moon(atmosphere)
-  atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near, before the first render
+  atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 50) // 50 m from its target
   const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
   const night = new NightLightProbe(atmosphere)

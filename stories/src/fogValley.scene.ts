@@ -63,7 +63,7 @@ export const createFogValley = (
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
     const mist = heightFog({ base: 300, falloff: 40, density: 0.006 }) // metres, 1/m: in the valleys
     const murk = distanceFog({ density: 1 / 8000 }) // 1/m: where the scene ends
-    atmosphere.add(murk, mist) // before the first render
+    atmosphere.add(murk, mist)
     // #endregion
     return {
       place: ({ view }) => VIEWS[view],

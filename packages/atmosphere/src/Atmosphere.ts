@@ -10,7 +10,7 @@ import {
   sunDirectionECEF
 } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
-import { AtmosphereParameters } from './AtmosphereParameters'
+import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereView } from './AtmosphereView'
 import { LightSource } from './LightSource'
@@ -31,6 +31,8 @@ export interface AtmosphereOptions {
 
 /** How the scene's world space lies on the planet. */
 export type AtmosphereFrame = 'local' | 'ecef'
+
+const FULL: Spectrum = [1, 1, 1, 1]
 
 const _position = new Vector3()
 const _rotation = new Matrix4()
@@ -76,6 +78,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.tables.volumes
   )
   readonly #layers: SkyLayer[] = []
+  #layersVersion = 0
   readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()
   readonly #space = new SphericalSpace()
 
@@ -99,6 +102,11 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.parameters = parameters
     this.ellipsoid = ellipsoid
     this.flat = flat
+    this.sun.irradianceAt = position =>
+      this.#layers.reduce<Spectrum>((light, layer) => {
+        const left = layer.eclipse?.(position)
+        return left ? (light.map((value, i) => value * left[i]) as unknown as Spectrum) : light
+      }, FULL)
     this.#updateFrame()
   }
 
@@ -293,14 +301,50 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return this.#layers
   }
 
+  /** Grows whenever {@link layers} change. */
+  get layersVersion(): number {
+    return this.#layersVersion
+  }
+
   /**
-   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near, and
-   * all of it before the first render.
+   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near; what is
+   * there already becomes the nearest.
+   *
+   * Background and fog show it from the next frame on, after compiling their shaders anew. A
+   * `RenderPipeline` that has rendered does so when its `needsUpdate` is set to true, and a node of
+   * yours around background or fog when its own is.
+   *
+   * @returns This atmosphere.
+   * @throws If something is no layer, or made for another atmosphere; then nothing is added.
+   */
+  add(...layers: SkyLayer[]): this {
+    for (const layer of layers) {
+      if (typeof layer !== 'object' || layer === null || Array.isArray(layer)) {
+        fail('Atmosphere', 'layer must be a SkyLayer', layer)
+      }
+      if ((layer.atmosphere ?? this) !== this) {
+        fail('Atmosphere', 'layer must be made for this atmosphere', layer)
+      }
+    }
+    this.remove(...layers)
+    this.#layers.push(...new Set(layers))
+    this.#layersVersion++
+    return this
+  }
+
+  /**
+   * Takes layers out of the sky, as {@link add} puts them in; what is not in it is passed over. It frees
+   * no memory: that is for a layer's `dispose`.
    *
    * @returns This atmosphere.
    */
-  add(...layers: SkyLayer[]): this {
-    this.#layers.push(...layers)
+  remove(...layers: SkyLayer[]): this {
+    for (const layer of layers) {
+      const index = this.#layers.indexOf(layer)
+      if (index < 0) continue
+      this.#layers.splice(index, 1)
+      this.#layersVersion++
+    }
     return this
   }
 
@@ -349,10 +393,13 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return this.query(position).skyIlluminance(position, normal)
   }
 
-  /** Frees all GPU memory. The atmosphere can be used again, from nothing. */
+  /** Frees all GPU memory. The atmosphere and its layers can be used again, from nothing. */
   dispose(): void {
     this.tables.dispose()
-    for (const layer of this.#layers) layer.dispose?.()
+    // Out for now: a moon that is disposed removes itself.
+    const layers = this.#layers.splice(0)
+    for (const layer of layers) layer.dispose?.()
+    this.#layers.push(...layers)
     this.dispatchEvent({ type: 'dispose' })
   }
 }

@@ -81,7 +81,7 @@ const spectrum = () => uniform(new Vector4()).setGroup(renderGroup)
  * it and full. `direction`, `phase` and `distance` can be set by hand at any time; a moon whose direction
  * is set by hand turns its near side to the camera, north up.
  *
- * Once added, it eclipses the sun where its disc is before the sun's: light, sky and haze dim as they do
+ * While added, it eclipses the sun where its disc is before the sun's: light, sky and haze dim as they do
  * at the camera, and the corona shows. Refraction and eclipses of the moon itself are left out.
  */
 export class Moon implements SkyLayer {
@@ -141,7 +141,6 @@ export class Moon implements SkyLayer {
     )
     this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
     this.#air = new MoonlitAir(atmosphere, this.source, volumes)
-    this.#eclipse()
   }
 
   /** To the moon in world space, unit length, a copy; null while it follows the date. */
@@ -249,25 +248,16 @@ export class Moon implements SkyLayer {
     return light.map(value => value * this.#strength) as unknown as Spectrum
   }
 
-  /** Takes from the sun what this moon hides of it, besides what others do. */
-  #eclipse(): void {
-    const { atmosphere } = this
-    const before = atmosphere.sun.irradianceAt
-    atmosphere.sun.irradianceAt = position => {
-      const light = before(position)
-      if (!atmosphere.layers.includes(this)) return light
-      const geometry = this.#seenFrom(position)
-      const sun = atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF)
-      const { sunAngularRadius, limbDarkening } = atmosphere.parameters
-      const radius = this.#angularRadiusOf(geometry)
-      const left = eclipsedSun(
-        geometry.direction.angleTo(sun),
-        sunAngularRadius,
-        radius,
-        limbDarkening
-      )
-      return light.map((value, i) => value * left[i]) as unknown as Spectrum
-    }
+  /** Part of the sun's light that this moon leaves at a position in world space. */
+  eclipse(position: Vector3): Spectrum {
+    const { parameters, sunDirection, worldToECEF } = this.atmosphere
+    const geometry = this.#seenFrom(position)
+    return eclipsedSun(
+      geometry.direction.angleTo(sunDirection.transformDirection(worldToECEF)),
+      parameters.sunAngularRadius,
+      this.#angularRadiusOf(geometry),
+      parameters.limbDarkening
+    )
   }
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
@@ -349,8 +339,9 @@ export class Moon implements SkyLayer {
     return this.lightsAir ? this.#air.haze(line, without) : without
   }
 
-  /** Frees GPU memory. The moon can be used again. */
+  /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */
   dispose(): void {
+    this.atmosphere.remove(this)
     this.#surface.dispose()
     this.#air.dispose()
   }

@@ -1,4 +1,7 @@
+import type { Vector3 } from 'three'
 import type { Renderer } from 'three/webgpu'
+import type { Atmosphere } from './Atmosphere'
+import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
 import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
 import type { Aim, VolumePlace } from './tsl/skyVolume'
@@ -54,6 +57,10 @@ export interface Veil {
 export interface SkyLayer {
   /** Whether {@link beyond} only adds light and hides nothing. */
   readonly isAdditive?: boolean
+  /** The only atmosphere that it can be added to; absent if any will do. */
+  readonly atmosphere?: Atmosphere
+  /** Part of the sun's light that it leaves at a position in world space. */
+  eclipse?(position: Vector3): Spectrum
   /** Bakes what the layer needs. Called before a render. */
   prepare?(renderer: Renderer, view: AtmosphereView): void
   /** Sets uniforms for the camera that renders. */

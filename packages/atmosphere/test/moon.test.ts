@@ -185,6 +185,13 @@ describe('Moon', () => {
     expect(() => new Moon(atmosphere, { direction: origin })).toThrow('Moon: direction must be')
     expect(() => new Moon(atmosphere, { flare: { innerPower: 0 } })).toThrow('Moon: innerPower')
     expect(() => new MoonDirectionalLight(atmosphere, null as never)).toThrow('must be a Moon')
+    const other = moon(new Atmosphere())
+    expect(() => new MoonDirectionalLight(atmosphere, other)).toThrow(
+      'MoonDirectionalLight: moon must be made for the same atmosphere, got Moon'
+    )
+    expect(() => atmosphere.add(other)).toThrow(
+      'Atmosphere: layer must be made for this atmosphere, got Moon'
+    )
   })
 })
 
@@ -281,5 +288,53 @@ describe('eclipse', () => {
     atmosphere.date = new Date('2024-04-08T18:42:30Z')
     moon(atmosphere)
     expect(luminance(atmosphere.sunIlluminanceAt(origin))).toBeGreaterThan(1e4)
+  })
+
+  it('ends when the moon is removed or disposed, but not when the atmosphere is disposed', () => {
+    const atmosphere = new Atmosphere().place({ longitude: -96.8, latitude: 32.8 })
+    atmosphere.date = new Date('2024-04-08T18:45:00Z')
+    const left = (): number => luminance(atmosphere.sunIlluminanceAt(origin))
+    const bare = left()
+    const luna = moon(atmosphere)
+    const other = moon(atmosphere, { direction: new Vector3(0, 1, 0) })
+    expect(left()).toBe(bare)
+    atmosphere.add(luna, other)
+    const dim = left()
+    expect(dim / bare).toBeLessThan(0.03)
+    expect(atmosphere.remove(luna).layers).toEqual([other])
+    expect(left()).toBe(bare)
+    atmosphere.add(luna).dispose()
+    expect(atmosphere.layers).toEqual([other, luna])
+    expect(left()).toBe(dim)
+    luna.dispose()
+    expect(atmosphere.layers).toEqual([other])
+    expect(left()).toBe(bare)
+    atmosphere.add(luna)
+    expect(left()).toBe(dim)
+  })
+
+  it('leaves nothing behind of a thousand moons that came and went', () => {
+    const atmosphere = new Atmosphere().place({ longitude: -96.8, latitude: 32.8 })
+    atmosphere.date = new Date('2024-04-08T18:45:00Z')
+    const luna = moon(atmosphere)
+    let asked = 0
+    for (let i = 0; i < 1000; i++) {
+      const guest = moon(atmosphere)
+      guest.eclipse = () => {
+        asked++
+        return [0, 0, 0, 0]
+      }
+      atmosphere.add(guest)
+      atmosphere.remove(guest)
+    }
+    atmosphere.add(luna)
+    expect(atmosphere.sun.irradianceAt(origin)).toEqual(luna.eclipse(origin))
+    atmosphere.remove(luna)
+    const start = performance.now()
+    for (let i = 0; i < 20_000; i++) atmosphere.sun.irradianceAt(origin)
+    // No chain of a thousand functions, which would take longer.
+    expect(performance.now() - start).toBeLessThan(100)
+    expect(atmosphere.sun.irradianceAt(origin)).toEqual([1, 1, 1, 1])
+    expect(asked).toBe(0)
   })
 })
