@@ -222,6 +222,26 @@ gpuTest(
 )
 
 gpuTest(
+  'follows a moving sun with nothing else of the atmosphere in the scene',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const atmosphere = new Atmosphere().setSunAngles(20, 100)
+    const { scene, camera } = ballScene(0.3, 1)
+    const environment = skyEnvironment(atmosphere)
+    scene.environmentNode = environment
+    renderer.render(scene, camera)
+    for (let frame = 1; frame <= FRAMES; frame++) {
+      atmosphere.setSunAngles(20 + 0.5 * frame, 100)
+      renderer.render(scene, camera)
+    }
+    expectTrue(environment.redraws === 2, `${environment.redraws} redraws`)
+    environment.dispose()
+    atmosphere.dispose()
+  },
+  { timeoutSeconds: 120 }
+)
+
+gpuTest(
   'filters a part at a time what three filters at once, unseen until it is complete',
   async t => {
     const renderer = await t.createRenderer(size)

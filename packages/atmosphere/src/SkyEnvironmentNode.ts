@@ -103,10 +103,10 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   }
 
   override updateBefore(frame: NodeFrame): undefined {
+    // The frame is shared: renders that prepare the view leave their camera in it.
+    const { renderer, camera, frameId } = frame
     this.#view.prepare(frame)
-    if (frame.renderer !== null && frame.camera !== null) {
-      this.#follow(frame.renderer, frame.camera, frame.frameId)
-    }
+    if (renderer !== null && camera !== null) this.#follow(renderer, camera, frameId)
   }
 
   // Drawing the sky from another camera set the layers' uniforms for that.
