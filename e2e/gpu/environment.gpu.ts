@@ -222,6 +222,65 @@ gpuTest(
 )
 
 gpuTest(
+  'follows a moving sun with nothing else of the atmosphere in the scene',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const atmosphere = new Atmosphere().setSunAngles(20, 100)
+    const { scene, camera } = ballScene(0.3, 1)
+    const environment = skyEnvironment(atmosphere)
+    scene.environmentNode = environment
+    renderer.render(scene, camera)
+    for (let frame = 1; frame <= FRAMES; frame++) {
+      atmosphere.setSunAngles(20 + 0.5 * frame, 100)
+      renderer.render(scene, camera)
+    }
+    expectTrue(environment.redraws === 2, `${environment.redraws} redraws`)
+    environment.dispose()
+    atmosphere.dispose()
+  },
+  { timeoutSeconds: 120 }
+)
+
+gpuTest(
+  'has the luminance scale of now, whatever it was when a face was drawn',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const atmosphere = new Atmosphere().setSunAngles(20, 100)
+    const { scene, camera } = ballScene(0.1, 1)
+    const environment = skyEnvironment(atmosphere)
+    scene.environmentNode = environment
+    const { luminanceScale } = atmosphere
+    const before = (await draw(renderer, scene, camera)).data
+    const timesBefore = (): number[] =>
+      Array.from(before, (value, i) =>
+        i % 4 === 3 ? value : (value * atmosphere.luminanceScale) / luminanceScale
+      )
+    atmosphere.luminanceScale = 100 * luminanceScale
+    const brighter = (await draw(renderer, scene, camera)).data
+    expectTrue(Math.max(...before) > 0.1, 'the ball is dark')
+    expectClose(brighter, timesBefore(), { relative: 1e-3 }, 'a hundred times as bright')
+    expectTrue(environment.redraws === 1, `drawn ${environment.redraws} times`)
+
+    atmosphere.setSunAngles(40, 100)
+    atmosphere.luminanceScale = luminanceScale / 10
+    for (let frame = 1; frame < FRAMES; frame++) {
+      renderer.render(scene, camera)
+      atmosphere.luminanceScale *= 1.3
+    }
+    atmosphere.luminanceScale = luminanceScale
+    const inSteps = (await draw(renderer, scene, camera)).data
+    expectTrue(environment.redraws === 2, `drawn ${environment.redraws} times`)
+    environment.needsRedraw = true
+    const atOnce = (await draw(renderer, scene, camera)).data
+    expectTrue(environment.redraws === 3, `drawn ${environment.redraws} times`)
+    expectClose(inSteps, atOnce, { relative: 5e-3 }, 'faces drawn at other scales')
+    environment.dispose()
+    atmosphere.dispose()
+  },
+  { timeoutSeconds: 120 }
+)
+
+gpuTest(
   'filters a part at a time what three filters at once, unseen until it is complete',
   async t => {
     const renderer = await t.createRenderer(size)

@@ -46,6 +46,13 @@ export class SkyCube {
   readonly #up = uniform(new Vector3()).setGroup(renderGroup)
   readonly #box: Mesh<BoxGeometry, NodeMaterial>
   readonly #filtered: PrefilteredCube
+  #node: Node | null = null
+  /** Luminance scale that all faces of a cube have; that of the map that was completed last. */
+  #scale = 1
+  #completedScale = 1
+  /** From the luminance scale of now to that of the cube, and from that of the map to now's. */
+  readonly #toCube = uniform(1).setGroup(renderGroup)
+  readonly #fromMap = uniform(1).setGroup(renderGroup)
   /** Faces drawn; null while it rests. */
   #drawn: number | null = null
 
@@ -73,14 +80,16 @@ export class SkyCube {
       // With the world's axes a direction in view space is one in world space.
       const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
       const mapped = this.#view.toMapped(raised).normalize().toConst() as Vec3
-      return vec4(skyColor(this.#view, mapped, null), 1)
+      return vec4(skyColor(this.#view, mapped, null).mul(this.#toCube), 1)
     })()
     this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }
 
   /** What materials mirror, once there is anything. */
   get node(): Node | null {
-    return this.#filtered.node
+    const { node } = this.#filtered
+    if (node !== null) this.#node ??= (node as Vec3).mul(this.#fromMap)
+    return this.#node
   }
 
   /** Whether nothing is half done. */
@@ -93,6 +102,7 @@ export class SkyCube {
     this.camera.matrixWorld.setPosition(_position.setFromMatrixPosition(from))
     const { up, viewToMapped } = this.#atmosphere.update(renderer, this.camera)
     this.#up.value.copy(up).applyMatrix3(_rotation.copy(viewToMapped).transpose()).normalize()
+    this.#scale = this.#atmosphere.luminanceScale
     this.#drawn = 0
     this.#filtered.restart()
   }
@@ -116,19 +126,23 @@ export class SkyCube {
       isComplete = true
     } else if (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
     else isComplete = this.#filtered.filterNext(renderer)
-    if (isComplete) this.#drawn = null
+    if (isComplete) {
+      this.#drawn = null
+      this.#completedScale = this.#scale
+    }
     renderer.xr.enabled = isPresenting
     RendererUtils.restoreRendererState(renderer, state)
     return isComplete
   }
 
-  /** Has materials see what was completed last. */
+  /** Has materials see what was completed last, at the luminance scale of now. */
   show(): void {
     this.#filtered.show()
+    this.#fromMap.value = this.#atmosphere.luminanceScale / this.#completedScale
   }
 
   #drawFace(renderer: Renderer, view: AtmosphereView, face: number): void {
-    const { layers, sun, tables } = this.#atmosphere
+    const { layers, luminanceScale, sun, tables } = this.#atmosphere
     // Another camera may have taken the sky volume since the last face.
     view.slot = sun.volumes.volumeFor(renderer, view.eye!, tables.version).slot
     for (const layer of layers) layer.prepare?.(renderer, view)
@@ -138,6 +152,7 @@ export class SkyCube {
       this.#cameras.coordinateSystem = renderer.coordinateSystem
       this.#cameras.updateCoordinateSystem()
     }
+    this.#toCube.value = this.#scale / luminanceScale
     renderer.setRenderTarget(this.#faces, face)
     renderer.render(this.#box, this.#cameras.children[face] as PerspectiveCamera)
   }

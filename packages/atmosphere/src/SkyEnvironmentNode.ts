@@ -32,6 +32,8 @@ const RADIANS = Math.PI / 180
 const LOW = 500
 /** Change of the sun's irradiance, in an eclipse say, that shows. */
 const DIMMING = 0.02
+/** Factor of the luminance scale up to which half floats resolve a tenth of a grey level. */
+const RESCALING = 1000
 
 /**
  * Sky and ground as what materials mirror: a scene's environment, through three's prefiltered maps.
@@ -103,10 +105,10 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   }
 
   override updateBefore(frame: NodeFrame): undefined {
+    // The frame is shared: renders that prepare the view leave their camera in it.
+    const { renderer, camera, frameId } = frame
     this.#view.prepare(frame)
-    if (frame.renderer !== null && frame.camera !== null) {
-      this.#follow(frame.renderer, frame.camera, frame.frameId)
-    }
+    if (renderer !== null && camera !== null) this.#follow(renderer, camera, frameId)
   }
 
   // Drawing the sky from another camera set the layers' uniforms for that.
@@ -164,6 +166,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
 class DrawnSky {
   #height = NaN
   #tablesVersion = -1
+  #scale = NaN
   readonly #sun = new Vector3()
   readonly #up = new Vector3()
   readonly #axes = new Matrix3()
@@ -179,6 +182,7 @@ class DrawnSky {
   set(view: AtmosphereView): void {
     this.#height = view.height
     this.#tablesVersion = view.atmosphere.tables.version
+    this.#scale = view.atmosphere.luminanceScale
     this.#sun.copy(view.sunDirection)
     this.#up.copy(view.up)
     this.#axes.copy(this.#axesOf(view))
@@ -189,8 +193,10 @@ class DrawnSky {
     const reach = 2 * Math.sin((Math.min(angle, 180) * RADIANS) / 2)
     const axes = this.#axesOf(view).elements
     const scale = Math.hypot(axes[0], axes[1], axes[2]) || 1
+    const { luminanceScale, tables } = view.atmosphere
     return (
-      view.atmosphere.tables.version === this.#tablesVersion &&
+      tables.version === this.#tablesVersion &&
+      Math.abs(Math.log(luminanceScale / this.#scale)) <= Math.log(RESCALING) &&
       this.#sun.distanceTo(view.sunDirection) <= reach &&
       this.#up.distanceTo(view.up) <= reach &&
       this.#axes.elements.every((value, i) => Math.abs(value - axes[i]) <= reach * scale) &&
