@@ -54,6 +54,11 @@ export interface Veil {
 export interface SkyLayer {
   /** Whether {@link beyond} only adds light and hides nothing. */
   readonly isAdditive?: boolean
+  /**
+   * Counts changes by hand to light other than {@link beyond}, such as an option's; what is drawn once and
+   * kept is drawn again. Not what follows camera, sun and date by itself.
+   */
+  readonly version?: number
   /** Bakes what the layer needs. Called before a render. */
   prepare?(renderer: Renderer, view: AtmosphereView): void
   /** Sets uniforms for the camera that renders. */
