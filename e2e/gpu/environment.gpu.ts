@@ -1,5 +1,6 @@
 import {
   Atmosphere,
+  heightFog,
   skyBackground,
   skyEnvironment,
   skyLuminanceAt,
@@ -278,6 +279,41 @@ gpuTest(
     atmosphere.dispose()
   },
   { timeoutSeconds: 120 }
+)
+
+gpuTest(
+  'is drawn again when layers change',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const atmosphere = new Atmosphere().setSunAngles(40, 100)
+    const { scene, camera } = ballScene(0.3, 1)
+    const environment = skyEnvironment(atmosphere)
+    scene.environmentNode = environment
+    const ground = async (): Promise<number> =>
+      luminance((await draw(renderer, scene, camera)).at(16, 27))
+    // In the middle of the fog.
+    camera.position.y = scene.children[0].position.y = 20
+    const bare = await ground()
+    const fog = heightFog({ density: 0.1 })
+    atmosphere.add(fog)
+    expectTrue(settle(renderer, scene, camera, environment) === FRAMES, 'fog comes')
+    const white = await ground()
+    fog.set({ density: 0, albedo: [1, 1, 1, 1] })
+    expectTrue(settle(renderer, scene, camera, environment) === FRAMES, 'fog goes')
+    const cleared = await ground()
+    expectTrue(white > 1.2 * bare, `in fog ${white}, else ${bare}`)
+    expectClose(cleared, bare, { relative: 1e-3 }, 'without fog')
+    for (let frame = 0; frame < 3; frame++) {
+      fog.set({ density: 0, albedo: [1, 1, 1, 1] })
+      renderer.render(scene, camera)
+    }
+    // Any step of a redraw would be followed by the rest.
+    for (let frame = 0; frame < FRAMES; frame++) renderer.render(scene, camera)
+    expectTrue(environment.redraws === 3, 'drawn though nothing has changed')
+    environment.dispose()
+    atmosphere.dispose()
+  },
+  { timeoutSeconds: 180 }
 )
 
 gpuTest(

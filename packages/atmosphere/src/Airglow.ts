@@ -64,8 +64,8 @@ export class Airglow implements SkyLayer {
   readonly #drowns = uniform(0).setGroup(renderGroup)
   /** 0 where all of the layer is far above the eye, else 1. */
   readonly #isAround = uniform(0).setGroup(renderGroup)
-  /** Multiplies the physical brightness, ≥ 0. */
-  intensity = 1
+  #intensity = 1
+  #version = 0
 
   /** @throws If an option is out of range. */
   constructor({
@@ -87,6 +87,21 @@ export class Airglow implements SkyLayer {
       altitude: uniform(altitude).setGroup(renderGroup),
       width: uniform(width).setGroup(renderGroup)
     }
+  }
+
+  /** Multiplies the physical brightness, ≥ 0. */
+  get intensity(): number {
+    return this.#intensity
+  }
+
+  set intensity(value: number) {
+    if (value !== this.#intensity) this.#version++
+    this.#intensity = value
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
   }
 
   update({ atmosphere: { parameters }, height }: AtmosphereView): void {

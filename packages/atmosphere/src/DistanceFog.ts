@@ -22,9 +22,10 @@ export interface DistanceFogOptions {
  * ```
  */
 export class DistanceFog implements SkyLayer {
-  /** See {@link DistanceFogOptions} [1/m]. */
-  density: number
+  /** See {@link DistanceFogOptions} [m]. */
   readonly fade: readonly [number, number]
+  #value = 0
+  #version = 0
   readonly #density = uniform(0).setGroup(renderGroup)
 
   /** @throws If an option is out of range. */
@@ -37,6 +38,21 @@ export class DistanceFog implements SkyLayer {
     }
     this.density = density
     this.fade = [...fade]
+  }
+
+  /** See {@link DistanceFogOptions} [1/m]. */
+  get density(): number {
+    return this.#value
+  }
+
+  set density(value: number) {
+    if (value !== this.#value) this.#version++
+    this.#value = value
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
   }
 
   update(view: AtmosphereView): void {

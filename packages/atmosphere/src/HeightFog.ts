@@ -54,6 +54,7 @@ export class HeightFog implements SkyLayer {
   readonly #albedo = uniform(new Vector4()).setGroup(renderGroup)
   readonly #lamps: readonly Lamp[]
   #options: Required<HeightFogOptions>
+  #version = 0
 
   /** @throws If an option is out of range. */
   constructor(options: HeightFogOptions = {}) {
@@ -74,6 +75,11 @@ export class HeightFog implements SkyLayer {
     }))
   }
 
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
+  }
+
   /** As they are; change them with {@link set}. */
   get options(): Readonly<Required<HeightFogOptions>> {
     return this.#options
@@ -85,7 +91,10 @@ export class HeightFog implements SkyLayer {
    * @throws If an option is out of range.
    */
   set(options: Omit<HeightFogOptions, 'sources'>): this {
+    const values = (): string => JSON.stringify({ ...this.#options, sources: [] })
+    const before = values()
     this.#options = checked({ ...this.#options, ...options })
+    if (values() !== before) this.#version++
     return this
   }
 

@@ -61,6 +61,10 @@ const CORONA_RADII = 12
 
 const FLARE = { innerPower: 12_000, innerStrength: 0.02, outerPower: 500, outerStrength: 0.006 }
 
+/** How far it must be moved by hand for its light in the air to change: a tenth of a degree [rad]. */
+const MOVE = Math.PI / 1800
+const NOWHERE = new Vector3()
+
 const _position = new Vector3()
 const _matrix = new Matrix4()
 
@@ -96,6 +100,9 @@ export class Moon implements SkyLayer {
   #distance: number | null = null
   #radius = MOON_RADIUS
   #strength = 1
+  #version = 0
+  /** Where it was when that was last counted up for its direction. */
+  readonly #counted = new Vector3()
   readonly #place = new MoonPlace()
   readonly #air: MoonlitAir
   readonly #surface: MoonSurface
@@ -154,6 +161,15 @@ export class Moon implements SkyLayer {
       throw new Error(`Moon: direction must be finite and not zero, got (${x}, ${y}, ${z})`)
     }
     this.#byHand = value?.clone().normalize() ?? null
+    const direction = this.#byHand ?? NOWHERE
+    if (direction.distanceTo(this.#counted) <= MOVE) return
+    this.#counted.copy(direction)
+    this.#version++
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
   }
 
   /** 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new again; null follows the geometry. */
@@ -165,6 +181,7 @@ export class Moon implements SkyLayer {
     if (value !== null && !(value >= 0 && value <= 1)) {
       throw new Error(`Moon: phase must be in [0, 1] or null, got ${value}`)
     }
+    if (value !== this.#phase) this.#version++
     this.#phase = value
   }
 
@@ -175,6 +192,7 @@ export class Moon implements SkyLayer {
 
   set distance(value: number | null) {
     if (value !== null) checkPositive('distance', value)
+    if (value !== this.#distance) this.#version++
     this.#distance = value
   }
 
@@ -185,6 +203,7 @@ export class Moon implements SkyLayer {
 
   set radius(value: number) {
     checkPositive('radius', value)
+    if (value !== this.#radius) this.#version++
     this.#radius = value
   }
 
@@ -197,6 +216,7 @@ export class Moon implements SkyLayer {
     if (!(value >= 0 && value < Infinity)) {
       throw new Error(`Moon: strength must be finite and ≥ 0, got ${value}`)
     }
+    if (value !== this.#strength) this.#version++
     this.#strength = value
   }
 

@@ -16,6 +16,7 @@ import type { Node, Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import { PrefilteredCube } from './PrefilteredCube'
+import type { SkyLayer } from './SkyLayer'
 import { skyColor } from './tsl/sky'
 import type { Vec3 } from './tsl-types'
 import { viewNodes, type ViewNodes } from './ViewNodes'
@@ -39,6 +40,7 @@ export class SkyCube {
   /** Stands where the sky is seen from, with the world's axes. */
   readonly camera = new PerspectiveCamera()
   readonly #atmosphere: Atmosphere
+  readonly #size: number
   readonly #view: ViewNodes
   readonly #faces: CubeRenderTarget
   readonly #cameras = new CubeCamera(1, 10, null as never)
@@ -53,6 +55,8 @@ export class SkyCube {
   /** From the luminance scale of now to that of the cube, and from that of the map to now's. */
   readonly #toCube = uniform(1).setGroup(renderGroup)
   readonly #fromMap = uniform(1).setGroup(renderGroup)
+  /** Those that the shader has. */
+  #layers: readonly SkyLayer[] | null = null
   /** Faces drawn; null while it rests. */
   #drawn: number | null = null
 
@@ -68,21 +72,26 @@ export class SkyCube {
     })
     this.#faces.texture.name = 'SkyEnvironment'
     this.#filtered = new PrefilteredCube(this.#faces.texture)
+    this.#size = size
     const material = new NodeMaterial()
     material.name = 'Welkin.SkyEnvironment'
     material.side = BackSide
     material.blending = NoBlending
     material.depthTest = material.depthWrite = material.toneMapped = material.fog = false
-    material.fragmentNode = Fn(() => {
+    this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
+  }
+
+  /** The sky in the direction of a fragment, with the layers that there are. */
+  #sky(): Node<'vec4'> {
+    return Fn(() => {
       const direction = positionWorldDirection.toConst() as Vec3
       const height = direction.dot(this.#up).sub(this.#view.eye.cosHorizon).toConst()
-      const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / size))
+      const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / this.#size))
       // With the world's axes a direction in view space is one in world space.
       const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
       const mapped = this.#view.toMapped(raised).normalize().toConst() as Vec3
       return vec4(skyColor(this.#view, mapped, null).mul(this.#toCube), 1)
     })()
-    this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }
 
   /** What materials mirror, once there is anything. */
@@ -103,6 +112,13 @@ export class SkyCube {
     const { up, viewToMapped } = this.#atmosphere.update(renderer, this.camera)
     this.#up.value.copy(up).applyMatrix3(_rotation.copy(viewToMapped).transpose()).normalize()
     this.#scale = this.#atmosphere.luminanceScale
+    const { layers } = this.#atmosphere
+    const isSame = (layer: SkyLayer, i: number): boolean => layer === this.#layers?.[i]
+    if (layers.length !== this.#layers?.length || !layers.every(isSame)) {
+      this.#layers = [...layers]
+      this.#box.material.fragmentNode = this.#sky()
+      this.#box.material.needsUpdate = true
+    }
     this.#drawn = 0
     this.#filtered.restart()
   }

@@ -5,6 +5,7 @@ import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
+import type { SkyLayer } from './SkyLayer'
 import { SkyCube } from './SkyCube'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
@@ -44,9 +45,11 @@ const RESCALING = 1000
  *
  * It has no sun: `SunDirectionalLight` is that, with its highlight; nor moon and stars. Layers of the
  * atmosphere that glow, fog and ground are in it. It is drawn once, and again, in place, when sun or
- * altitude have changed by more than a threshold: a face of the cube a frame, then a part of the filter a
- * frame, fifteen frames for the default size. Until the new map is complete, the old one is mirrored. It
- * is seen from the camera's place: things far away from the camera mirror the camera's sky.
+ * altitude have changed by more than a threshold, parameters of the air at all, or layers, theirs by the
+ * count of {@link SkyLayer.version}: a face of the cube a frame, then a part of the filter a
+ * frame, fifteen frames for the default size. Until the new map is complete, the old one is mirrored.
+ * `luminanceScale` acts at once. What is painted on the textures of a `planetGround` is not followed: set
+ * {@link needsRedraw}. It is seen from the camera's place: things far away from the camera mirror the camera's sky.
  *
  * `scene.environmentIntensity` and the materials' roughness act as they do with any environment.
  */
@@ -167,6 +170,8 @@ class DrawnSky {
   #height = NaN
   #tablesVersion = -1
   #scale = NaN
+  #layers: readonly SkyLayer[] = []
+  #versions: readonly (number | undefined)[] = []
   readonly #sun = new Vector3()
   readonly #up = new Vector3()
   readonly #axes = new Matrix3()
@@ -183,6 +188,8 @@ class DrawnSky {
     this.#height = view.height
     this.#tablesVersion = view.atmosphere.tables.version
     this.#scale = view.atmosphere.luminanceScale
+    this.#layers = [...view.atmosphere.layers]
+    this.#versions = this.#layers.map(({ version }) => version)
     this.#sun.copy(view.sunDirection)
     this.#up.copy(view.up)
     this.#axes.copy(this.#axesOf(view))
@@ -193,9 +200,13 @@ class DrawnSky {
     const reach = 2 * Math.sin((Math.min(angle, 180) * RADIANS) / 2)
     const axes = this.#axesOf(view).elements
     const scale = Math.hypot(axes[0], axes[1], axes[2]) || 1
-    const { luminanceScale, tables } = view.atmosphere
+    const { layers, luminanceScale, tables } = view.atmosphere
     return (
       tables.version === this.#tablesVersion &&
+      layers.length === this.#layers.length &&
+      layers.every(
+        (layer, i) => layer === this.#layers[i] && layer.version === this.#versions[i]
+      ) &&
       Math.abs(Math.log(luminanceScale / this.#scale)) <= Math.log(RESCALING) &&
       this.#sun.distanceTo(view.sunDirection) <= reach &&
       this.#up.distanceTo(view.up) <= reach &&

@@ -61,6 +61,11 @@ export interface SkyLayer {
   readonly atmosphere?: Atmosphere
   /** Part of the sun's light that it leaves at a position in world space. */
   eclipse?(position: Vector3): Spectrum
+  /**
+   * Counts changes by hand to light other than {@link beyond}, such as an option's; what is drawn once and
+   * kept is drawn again. Not what follows camera, sun and date by itself.
+   */
+  readonly version?: number
   /** Bakes what the layer needs. Called before a render. */
   prepare?(renderer: Renderer, view: AtmosphereView): void
   /** Sets uniforms for the camera that renders. */

@@ -40,6 +40,34 @@ const ALLEN: readonly (readonly [number, number])[] = [
   [150, 5.9]
 ]
 
+describe('version of a moon', () => {
+  it('counts what is set by hand, a direction once it has moved by a tenth of a degree', () => {
+    const luna = moon(new Atmosphere(), { direction: new Vector3(1, 1, 0) })
+    const counts = (change: () => void): number => {
+      const { version } = luna
+      change()
+      return luna.version - version
+    }
+    expect(counts(() => (luna.direction = new Vector3(2, 2, 0)))).toBe(0)
+    expect(
+      counts(() => {
+        for (let step = 1; step <= 25; step++) {
+          const angle = (45 + 0.01 * step) * degree
+          luna.direction = new Vector3(Math.cos(angle), Math.sin(angle), 0)
+        }
+      })
+    ).toBe(2)
+    expect(counts(() => (luna.direction = null))).toBe(1)
+    expect(counts(() => (luna.direction = null))).toBe(0)
+    expect(counts(() => (luna.phase = 0.25))).toBe(1)
+    expect(counts(() => (luna.phase = 0.25))).toBe(0)
+    for (const name of ['strength', 'radius', 'distance'] as const) {
+      expect(counts(() => (luna[name] = 3e8))).toBe(1)
+      expect(counts(() => (luna[name] = 3e8))).toBe(0)
+    }
+  })
+})
+
 describe('moonlight', () => {
   it('has the illuminance of the published table at every phase angle, within 10 %', () => {
     // Magnitude 0 is 2.54e-6 lx above the air; the full moon −12.74. Allen 1976, §98, §66.
