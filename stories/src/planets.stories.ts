@@ -71,7 +71,7 @@ export const MarsNoon: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Dust throws blue light closer to the sun than red. */
 export const MarsSunset: Story = {
-  args: { sunElevation: 4, sunAzimuth: 0, pitch: 6, fieldOfView: 45, exposure: -1 },
+  args: { sunElevation: 3, sunAzimuth: 0, pitch: 8, fieldOfView: 55, exposure: -3, dust: 0.3 },
   tags: ['screenshot']
 }
 

@@ -18,7 +18,9 @@ import {
   SphereGeometry,
   Vector3
 } from 'three'
+import type { Texture } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { earthPictures } from './globe/earthPictures'
 import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -36,6 +38,9 @@ export interface ShellArgs extends RendererArgs {
 
 /** Sunlight on a plane that faces it [lx], as bright as the sky's tables have it at scale 1e-4. */
 const SUNLIGHT = 13
+
+/** How far bodies are turned, for Africa to face the map's camera [radians]. */
+const LONGITUDE = -1.6
 
 /** A kilometre in the cockpit's world [world units]. */
 const KILOMETER = 1
@@ -59,6 +64,7 @@ export async function createShell(
   const light = new DirectionalLight(0xffffff, SUNLIGHT)
   scene.add(light, light.target)
   const { model } = args
+  const earth = args.view === 'map' ? await earthPictures() : null
   const meshes: Mesh[] = []
   const shells: AtmosphereShell[] = []
 
@@ -66,14 +72,16 @@ export async function createShell(
     parameters: AtmosphereParameters,
     radius: number,
     position: Vector3,
-    color: string
+    color: string,
+    map: Texture | null = null
   ): void => {
     const ball = new Mesh(
       globeGeometry(args.view),
-      new MeshStandardMaterial({ color, roughness: 1 })
+      new MeshStandardMaterial({ color, map, roughness: 1 })
     )
     ball.scale.setScalar(radius)
     ball.position.copy(position)
+    ball.rotation.y = LONGITUDE
     meshes.push(ball)
     scene.add(ball)
     // #region shell
@@ -86,7 +94,7 @@ export async function createShell(
   const cockpit = new Group()
   const build = (): void => {
     if (args.view === 'map') {
-      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#24445c')
+      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#ffffff', earth?.surface)
       add(marsAtmosphere(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
       add(titanAtmosphere(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
       add(airlessBody(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
@@ -167,6 +175,7 @@ export async function createShell(
         geometry.dispose()
         ;(material as MeshStandardMaterial).dispose()
       }
+      for (const picture of Object.values(earth ?? {})) picture.dispose()
       light.dispose()
       void renderer.dispose()
     }

@@ -72,13 +72,9 @@ export class SkyVolumes {
     DEPTH_SIZE[0] + 1,
     DEPTH_SIZE[1] * VOLUME_SLOTS
   )
-  /** Light of each segment alone, before the sum. */
-  readonly #segments: RenderTarget = tableTarget(
-    'SkyVolume.segments',
-    AZIMUTHS * TILE_COLUMNS,
-    ELEVATIONS * TILE_ROWS,
-    2
-  )
+  /** Light of each segment alone, before the sum: nothing that outlasts a bake. */
+  readonly segments: RenderTarget
+  readonly #ownsSegments: boolean
   readonly #volumes: SkyVolume[] = Array.from({ length: VOLUME_SLOTS }, (_, slot) => ({
     slot,
     eye: null,
@@ -91,13 +87,23 @@ export class SkyVolumes {
   readonly #sumPass: FragmentPass
   #uses = 0
 
-  constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget, diffuse: RenderTarget) {
+  /** @param segments - Those of other volumes, to share them; whose they are frees them. */
+  constructor(
+    uniforms: AtmosphereUniforms,
+    transmittance: RenderTarget,
+    diffuse: RenderTarget,
+    segments?: RenderTarget
+  ) {
+    this.#ownsSegments = segments === undefined
+    this.segments =
+      segments ??
+      tableTarget('SkyVolume.segments', AZIMUTHS * TILE_COLUMNS, ELEVATIONS * TILE_ROWS, 2)
     const air: Air = {
       uniforms,
       transmittance: texture(transmittance.texture),
       diffuse: texture(diffuse.texture)
     }
-    const [molecular, aerosol] = this.#segments.textures.map(part => texture(part))
+    const [molecular, aerosol] = this.segments.textures.map(part => texture(part))
     this.#depthPass = new FragmentPass('Welkin.SkyVolume.depth', bakeDepth(air, this.#eye))
     this.#segmentPass = new FragmentPass(
       'Welkin.SkyVolume.segments',
@@ -138,13 +144,13 @@ export class SkyVolumes {
   #bake(renderer: Renderer, slot: number, eye: EyeScalars<number>): void {
     this.#eye.set(eye, slot)
     this.#depthPass.render(renderer, this.depth)
-    this.#segmentPass.render(renderer, this.#segments)
+    this.#segmentPass.render(renderer, this.segments)
     this.#sumPass.render(renderer, this.light)
   }
 
-  /** What takes GPU memory. */
+  /** What takes GPU memory of its own. */
   get targets(): RenderTarget[] {
-    return [this.light, this.depth, this.#segments]
+    return [this.light, this.depth, ...(this.#ownsSegments ? [this.segments] : [])]
   }
 
   dispose(): void {
