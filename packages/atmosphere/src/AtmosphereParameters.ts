@@ -1,5 +1,5 @@
 import { fail } from '@welkin/geo'
-import { checkOptions, withDefaults } from './check'
+import { checkOptions } from './check'
 
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
@@ -195,7 +195,7 @@ export class AtmosphereParameters {
    */
   constructor(init: AtmosphereParametersInit = {}) {
     const earth = Object.entries(FIELDS).map(([name, [value]]) => [name, value])
-    this.set(withDefaults(CLASS, Object.fromEntries(earth), init))
+    this.set(Object.fromEntries(earth)).set(init)
     this.#version = 0
   }
 
@@ -244,7 +244,8 @@ export class AtmosphereParameters {
    */
   set(init: AtmosphereParametersInit): this {
     const next: AtmosphereParametersInit = {}
-    for (const [name, value] of Object.entries(withDefaults(CLASS, {}, init))) {
+    for (const [name, value] of Object.entries(checkOptions(CLASS, init))) {
+      if (value === undefined) continue
       if (!Object.hasOwn(FIELDS, name)) fail(CLASS, 'fields must be parameters', name)
       const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
       const [earth, least, most] = field

@@ -166,13 +166,11 @@ export class DayCycle {
   set latitude(value: number) {
     checkRange('DayCycle', 'latitude', value, -90, 90)
     const { frame, metersPerUnit, worldToECEF, ellipsoid } = this.atmosphere
-    if (frame !== 'local') {
-      fail('DayCycle', "atmosphere.frame must be 'local' for latitude to be set", frame)
-    }
+    if (frame !== 'local') fail('DayCycle', "frame must be 'local' to set latitude", frame)
     const { longitude, height } = this.#place()
     ellipsoid.localYUpFrame(_origin, _frame).scale(_scale.setScalar(metersPerUnit))
     if (!_frame.equals(worldToECEF)) {
-      fail('DayCycle', 'atmosphere.place must be in use for latitude to be set', 'worldToECEF')
+      fail('DayCycle', 'frame must be of place() to set latitude', 'worldToECEF')
     }
     this.atmosphere.place({ longitude, latitude: value, height })
   }

@@ -19,9 +19,9 @@ export function checkOptions<T extends object>(where: string, options: T, ...nam
 
 /** Defaults, and the options that are not undefined in place of them. */
 export function withDefaults<T extends object>(where: string, defaults: T, options: object): T {
-  const given = Object.entries(checkOptions(where, options)).filter(([, value]) => {
-    return value !== undefined
-  })
+  const given = Object.entries(checkOptions(where, options)).filter(
+    ([, value]) => value !== undefined
+  )
   return { ...defaults, ...Object.fromEntries(given) }
 }
 
@@ -56,8 +56,7 @@ export function checkFade(where: string, fade: readonly [number, number]): void 
   if (!Array.isArray(fade) || fade.length !== 2) {
     fail(where, 'fade must be an array of 2 altitudes', fade)
   }
-  checkRange(where, 'fade[0]', fade[0], -1e7, 1e9)
-  checkRange(where, 'fade[1]', fade[1], -1e7, Infinity)
+  fade.forEach((value, i) => checkRange(where, `fade[${i}]`, value, -1e7, Infinity))
   if (!(fade[1] > fade[0])) fail(where, 'fade must rise', fade)
 }
 
@@ -77,6 +76,6 @@ export function checkSources(where: string, sources: readonly LightSource[]): vo
 /** @throws If it is neither null nor a matrix. */
 export function checkOrientation(where: string, value: Matrix4 | null): void {
   if (value !== null && !(value instanceof Matrix4 && value.elements.every(Number.isFinite))) {
-    fail(where, 'orientation must be a Matrix4 of finite numbers, or null', value)
+    fail(where, 'orientation must be a Matrix4 or null', value)
   }
 }

@@ -208,10 +208,10 @@ describe('DayCycle', () => {
       expect(cycle.latitude).toBeCloseTo(latitude, 9)
     }
     const byHand = atmosphere.worldToECEF.setPosition(7e6, 0, 0).clone()
-    expect(() => (cycle.latitude = 10)).toThrow('DayCycle: atmosphere.place must be in use')
+    expect(() => (cycle.latitude = 10)).toThrow('DayCycle: frame must be of place()')
     expect(atmosphere.worldToECEF).toEqual(byHand)
     atmosphere.frame = 'ecef'
-    expect(() => (cycle.latitude = 10)).toThrow("DayCycle: atmosphere.frame must be 'local'")
+    expect(() => (cycle.latitude = 10)).toThrow("DayCycle: frame must be 'local'")
     expect(atmosphere.frame).toBe('ecef')
   })
 
