@@ -1,7 +1,9 @@
 import { Vector4 } from 'three'
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import { checkNonNegative } from '@welkin/geo'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkRange, checkSpectrum } from './check'
 import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from './SkyLayer'
 import { ofLuminance } from './stars/starColor'
 import { glowGains, overheadGain } from './tsl/airglow'
@@ -68,19 +70,17 @@ export class Airglow implements SkyLayer {
   #version = 0
 
   /** @throws If an option is out of range. */
-  constructor({
-    luminance = 1e-4,
-    altitude = 96_000,
-    width = 4000,
-    spectrum = GREENISH
-  }: AirglowOptions = {}) {
-    check('luminance', luminance, 0, 1e9)
-    check('altitude', altitude, 1, 1e7)
-    check('width', width, 1, 1e6)
-    if (spectrum.length !== 4) {
-      throw new Error(`Airglow: spectrum must have 4 values, got ${spectrum.length}`)
-    }
-    spectrum.forEach((value, i) => check(`spectrum[${i}]`, value, 0, 1e9))
+  constructor(options: AirglowOptions = {}) {
+    const {
+      luminance = 1e-4,
+      altitude = 96_000,
+      width = 4000,
+      spectrum = GREENISH
+    } = checkOptions('Airglow', options)
+    checkRange('Airglow', 'luminance', luminance, 0, 1e9)
+    checkRange('Airglow', 'altitude', altitude, 1, 1e7)
+    checkRange('Airglow', 'width', width, 1, 1e6)
+    checkSpectrum('Airglow', 'spectrum', spectrum, 1e9)
     this.luminance = luminance
     this.#spectrum = spectrum
     this.#layer = {
@@ -89,12 +89,13 @@ export class Airglow implements SkyLayer {
     }
   }
 
-  /** Multiplies the physical brightness, ≥ 0. */
+  /** Multiplies the physical brightness, finite, ≥ 0. */
   get intensity(): number {
     return this.#intensity
   }
 
   set intensity(value: number) {
+    checkNonNegative('Airglow', 'intensity', value)
     if (value !== this.#intensity) this.#version++
     this.#intensity = value
   }
@@ -106,7 +107,7 @@ export class Airglow implements SkyLayer {
 
   update({ atmosphere: { parameters }, height }: AtmosphereView): void {
     const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
-    const luminance = this.luminance * Math.max(this.intensity, 0)
+    const luminance = this.luminance * this.intensity
     this.#radiance.value.fromArray(ofLuminance(parameters, values, luminance))
     this.#drowns.value = this.#radiance.value.y * DROWNS
     const { altitude, width } = this.#layer
@@ -168,12 +169,6 @@ export class Airglow implements SkyLayer {
       light.addAssign(this.#radiance.mul(down.add(up)))
     })
     return light
-  }
-}
-
-function check(name: string, value: number, min: number, max: number): void {
-  if (!(value >= min && value <= max)) {
-    throw new Error(`Airglow: ${name} must be in [${min}, ${max}], got ${value}`)
   }
 }
 

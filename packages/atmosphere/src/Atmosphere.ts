@@ -13,6 +13,7 @@ import type { GeodeticLike } from '@welkin/geo'
 import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkRange } from './check'
 import { LightSource } from './LightSource'
 import type { SkyLayer } from './SkyLayer'
 import { AtmosphereQuery } from './cpu/AtmosphereQuery'
@@ -83,12 +84,13 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   readonly #space = new SphericalSpace()
 
   /** @throws If an option is of the wrong kind. */
-  constructor({
-    parameters = new AtmosphereParameters(),
-    ellipsoid = Ellipsoid.WGS84,
-    flat = false
-  }: AtmosphereOptions = {}) {
+  constructor(options: AtmosphereOptions = {}) {
     super()
+    const {
+      parameters = new AtmosphereParameters(),
+      ellipsoid = Ellipsoid.WGS84,
+      flat = false
+    } = checkOptions('Atmosphere', options)
     if (!(parameters instanceof AtmosphereParameters)) {
       fail('Atmosphere', 'parameters must be AtmosphereParameters', parameters)
     }
@@ -247,9 +249,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
    */
   setSunAngles(elevation: number, azimuth: number): this {
-    if (!(elevation >= -90 && elevation <= 90)) {
-      fail('Atmosphere', 'elevation must be in [-90, 90]', elevation)
-    }
+    checkRange('Atmosphere', 'elevation', elevation, -90, 90)
     if (!Number.isFinite(azimuth)) fail('Atmosphere', 'azimuth must be finite', azimuth)
     const origin = _position.setFromMatrixPosition(this.worldToECEF)
     if (origin.length() < this.ellipsoid.radii.x / 2) {

@@ -1,4 +1,5 @@
 import { fail } from '@welkin/geo'
+import { checkOptions } from './check'
 
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
@@ -194,7 +195,7 @@ export class AtmosphereParameters {
    */
   constructor(init: AtmosphereParametersInit = {}) {
     const earth = Object.entries(FIELDS).map(([name, [value]]) => [name, value])
-    this.set({ ...Object.fromEntries(earth), ...init })
+    this.set(Object.fromEntries(earth)).set(init)
     this.#version = 0
   }
 
@@ -219,7 +220,8 @@ export class AtmosphereParameters {
    *
    * @throws If a number is out of its range; then nothing has changed.
    */
-  setEarth({ turbidity, ozone }: { turbidity?: number; ozone?: number }): this {
+  setEarth(options: { turbidity?: number; ozone?: number }): this {
+    const { turbidity, ozone } = checkOptions(CLASS, options, 'turbidity', 'ozone')
     const init: AtmosphereParametersInit = {}
     if (turbidity !== undefined) {
       check('turbidity', turbidity, 1, 20)
@@ -237,12 +239,13 @@ export class AtmosphereParameters {
   /**
    * Replaces fields. Whoever holds tables made from these parameters re-bakes them.
    *
-   * @param init - The fields to replace; arrays are copied.
+   * @param init - The fields to replace; arrays are copied, undefined changes nothing.
    * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
    */
   set(init: AtmosphereParametersInit): this {
     const next: AtmosphereParametersInit = {}
-    for (const [name, value] of Object.entries(init)) {
+    for (const [name, value] of Object.entries(checkOptions(CLASS, init))) {
+      if (value === undefined) continue
       if (!Object.hasOwn(FIELDS, name)) fail(CLASS, 'fields must be parameters', name)
       const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
       const [earth, least, most] = field

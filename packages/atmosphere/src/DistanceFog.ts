@@ -1,5 +1,6 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkFade, checkOptions, checkRange } from './check'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
 import { aimAt, sampleSky } from './tsl/skyVolume'
 import type { Bool, Float } from './tsl-types'
@@ -29,23 +30,20 @@ export class DistanceFog implements SkyLayer {
   readonly #density = uniform(0).setGroup(renderGroup)
 
   /** @throws If an option is out of range. */
-  constructor({ density = 1e-4, fade = [5000, 15_000] }: DistanceFogOptions = {}) {
-    if (!(density >= 0 && density <= 100)) {
-      throw new Error(`DistanceFog: density must be in [0, 100], got ${density}`)
-    }
-    if (!(fade[1] > fade[0])) {
-      throw new Error(`DistanceFog: fade must rise, got [${fade[0]}, ${fade[1]}]`)
-    }
+  constructor(options: DistanceFogOptions = {}) {
+    const { density = 1e-4, fade = [5000, 15_000] } = checkOptions('DistanceFog', options)
+    checkFade('DistanceFog', fade)
     this.density = density
     this.fade = [...fade]
   }
 
-  /** See {@link DistanceFogOptions} [1/m]. */
+  /** See {@link DistanceFogOptions}, in [0, 100] [1/m]. */
   get density(): number {
     return this.#value
   }
 
   set density(value: number) {
+    checkRange('DistanceFog', 'density', value, 0, 100)
     if (value !== this.#value) this.#version++
     this.#value = value
   }
@@ -58,8 +56,7 @@ export class DistanceFog implements SkyLayer {
   update(view: AtmosphereView): void {
     const [low, high] = this.fade
     const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
-    const density = this.density * (1 - x * x * (3 - 2 * x))
-    this.#density.value = density > 0 ? density : 0
+    this.#density.value = this.density * (1 - x * x * (3 - 2 * x))
   }
 
   veil({ view, cosView, cosViewSun, distance }: Sightline, air: Veil): Veil {

@@ -1,4 +1,6 @@
 import { renderGroup, uniform } from 'three/tsl'
+import { checkNonNegative, checkPositive } from '@welkin/geo'
+import { checkOptions } from './check'
 
 /** Light that an eye or a lens spreads around something bright, in two lobes. */
 export interface FlareOptions {
@@ -14,6 +16,8 @@ export interface FlareOptions {
 
 /** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
 const FAINTEST = 1e-8
+
+const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength']
 
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 
@@ -34,15 +38,15 @@ export class HaloUniforms {
     this.set(options)
   }
 
-  /** @throws If a figure is out of its range; then nothing has changed. */
+  /** @throws If a figure is unknown or out of its range; then nothing has changed. */
   set(options: FlareOptions): void {
-    const entries = Object.entries(options) as [keyof FlareOptions, number | undefined][]
+    const entries = Object.entries(checkOptions(this.owner, options, ...NAMES)) as [
+      keyof FlareOptions,
+      number | undefined
+    ][]
     for (const [name, value] of entries) {
-      const isOk = name.endsWith('Power') ? value! > 0 : value! >= 0
-      if (value !== undefined && !(isOk && value < Infinity)) {
-        const rule = name.endsWith('Power') ? 'positive and finite' : 'finite and ≥ 0'
-        throw new Error(`${this.owner}: ${name} must be ${rule}, got ${value}`)
-      }
+      const check = name.endsWith('Power') ? checkPositive : checkNonNegative
+      if (value !== undefined) check(this.owner, name, value)
     }
     for (const [name, value] of entries) if (value !== undefined) this[name].value = value
   }

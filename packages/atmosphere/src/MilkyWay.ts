@@ -2,7 +2,9 @@ import { Matrix3, Vector4 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
 import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { checkNonNegative } from '@welkin/geo'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkOrientation } from './check'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from './FragmentPass'
 import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
@@ -43,8 +45,7 @@ const UNIT = 1e-4
  */
 export class MilkyWay implements SkyLayer {
   readonly isAdditive = true
-  /** Multiplies the physical brightness, ≥ 0. */
-  intensity = 1
+  #intensity = 1
   readonly #frame = new CelestialFrame(new Matrix3().set(...CELESTIAL_TO_GALACTIC))
   readonly #target: RenderTarget = tableTarget('MilkyWay', SIZE, SIZE)
   readonly #color = uniform(new Vector4()).setGroup(renderGroup)
@@ -54,9 +55,20 @@ export class MilkyWay implements SkyLayer {
   #pass: FragmentPass | null = null
   #renderer: Renderer | null = null
 
-  constructor({ orientation }: MilkyWayOptions = {}) {
-    this.orientation = orientation ?? null
+  /** @throws If an option is of the wrong kind. */
+  constructor(options: MilkyWayOptions = {}) {
+    this.orientation = checkOptions('MilkyWay', options).orientation ?? null
     this.#map = texture(this.#target.texture)
+  }
+
+  /** Multiplies the physical brightness, finite, ≥ 0. */
+  get intensity(): number {
+    return this.#intensity
+  }
+
+  set intensity(value: number) {
+    checkNonNegative('MilkyWay', 'intensity', value)
+    this.#intensity = value
   }
 
   /** Rotation from the stars' frame to ECEF; null to follow the atmosphere's date. */
@@ -65,6 +77,7 @@ export class MilkyWay implements SkyLayer {
   }
 
   set orientation(value: Matrix4 | null) {
+    checkOrientation('MilkyWay', value)
     this.#frame.orientation = value
   }
 
@@ -86,7 +99,7 @@ export class MilkyWay implements SkyLayer {
 
   update(view: AtmosphereView): void {
     this.#frame.update(view)
-    const luminance = UNIT * Math.max(this.intensity, 0)
+    const luminance = UNIT * this.intensity
     const color = starIrradiance(view.atmosphere.parameters, COLOR_INDEX, luminance)
     this.#color.value.fromArray(color)
     this.#drowns.value = this.#color.value.y * DROWNS

@@ -2,9 +2,11 @@ import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import type { Quaternion } from 'three'
 import { If, renderGroup, texture, uniform, mix } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkRange } from './check'
 import { CORONA, eclipsedSun } from './cpu/eclipse'
 import { earthshine, MOON_RADIUS, moonIrradiance, surfacePhase } from './cpu/moonlight'
 import { visibleSun } from './cpu/transmittance'
@@ -18,6 +20,7 @@ import type { HazeLine, SkyLayer, SkyRay } from './SkyLayer'
 import { addHalo } from './tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
 import type { Vec4 } from './tsl-types'
+import { checkAtmosphere } from './ViewNodes'
 
 /** Options of {@link Moon}. */
 export interface MoonOptions {
@@ -124,12 +127,10 @@ export class Moon implements SkyLayer {
 
   /** @throws If an argument is of the wrong kind or out of its range. */
   constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`Moon: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
-    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+    checkAtmosphere('Moon', atmosphere)
+    const { lightsAir = true, flare = {}, mapSize = 1024 } = checkOptions('Moon', options)
     if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
-      throw new Error(`Moon: mapSize must be a power of two in [16, 8192], got ${mapSize}`)
+      fail('Moon', 'mapSize must be a power of two in [16, 8192]', mapSize)
     }
     this.atmosphere = atmosphere
     this.lightsAir = lightsAir
@@ -156,9 +157,9 @@ export class Moon implements SkyLayer {
   }
 
   set direction(value: Vector3 | null) {
-    if (value !== null && !(value.lengthSq() > 0 && value.lengthSq() < Infinity)) {
-      const { x, y, z } = value
-      throw new Error(`Moon: direction must be finite and not zero, got (${x}, ${y}, ${z})`)
+    const square = value?.isVector3 ? value.lengthSq() : 0
+    if (value !== null && !(square > 0 && square < Infinity)) {
+      fail('Moon', 'direction must be a Vector3, finite and not zero, or null', value)
     }
     this.#byHand = value?.clone().normalize() ?? null
     const direction = this.#byHand ?? NOWHERE
@@ -178,9 +179,7 @@ export class Moon implements SkyLayer {
   }
 
   set phase(value: number | null) {
-    if (value !== null && !(value >= 0 && value <= 1)) {
-      throw new Error(`Moon: phase must be in [0, 1] or null, got ${value}`)
-    }
+    if (value !== null) checkRange('Moon', 'phase', value, 0, 1)
     if (value !== this.#phase) this.#version++
     this.#phase = value
   }
@@ -191,7 +190,7 @@ export class Moon implements SkyLayer {
   }
 
   set distance(value: number | null) {
-    if (value !== null) checkPositive('distance', value)
+    if (value !== null) checkPositive('Moon', 'distance', value)
     if (value !== this.#distance) this.#version++
     this.#distance = value
   }
@@ -202,7 +201,7 @@ export class Moon implements SkyLayer {
   }
 
   set radius(value: number) {
-    checkPositive('radius', value)
+    checkPositive('Moon', 'radius', value)
     if (value !== this.#radius) this.#version++
     this.#radius = value
   }
@@ -213,9 +212,7 @@ export class Moon implements SkyLayer {
   }
 
   set strength(value: number) {
-    if (!(value >= 0 && value < Infinity)) {
-      throw new Error(`Moon: strength must be finite and ≥ 0, got ${value}`)
-    }
+    checkNonNegative('Moon', 'strength', value)
     if (value !== this.#strength) this.#version++
     this.#strength = value
   }
@@ -369,12 +366,6 @@ export class Moon implements SkyLayer {
 
 /** Cosine of an angle and the widest pixels' more [rad]. */
 const cosBeyond = (angle: number): number => Math.cos(Math.min(angle + WIDEST_PIXEL, Math.PI))
-
-function checkPositive(name: string, value: number): void {
-  if (!(value > 0 && value < Infinity)) {
-    throw new Error(`Moon: ${name} must be positive and finite, got ${value}`)
-  }
-}
 
 function setRotation(target: Matrix3, rotation: Quaternion): void {
   target.setFromMatrix4(_matrix.makeRotationFromQuaternion(rotation))

@@ -1,7 +1,9 @@
 import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
+import { checkNonNegative, fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkOrientation } from './check'
 import { CelestialFrame } from './CelestialFrame'
 import type { SkyLayer, SkyRay } from './SkyLayer'
 import { COLOR_STEPS, ENTRY_COLUMNS, STAR_LEVELS, starCells } from './stars/starCells'
@@ -42,8 +44,7 @@ export class Stars implements SkyLayer {
   readonly catalogue: readonly Star[]
   /** Whether `starsOverlay` draws them and the sky does not. */
   readonly overlay: boolean
-  /** Multiplies the physical brightness, ≥ 0. */
-  intensity = 1
+  #intensity = 1
   readonly #frame = new CelestialFrame()
   readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
   readonly #textures: StarTextures
@@ -51,13 +52,14 @@ export class Stars implements SkyLayer {
   readonly #brightest = uniform(0).setGroup(renderGroup)
   #paletteOf = ''
 
-  /** @throws If a star has a number that is not finite. */
-  constructor(catalogue: readonly Star[], { overlay = false, orientation }: StarsOptions = {}) {
+  /** @throws If a star lacks a finite number, or an option is of the wrong kind. */
+  constructor(catalogue: readonly Star[], options: StarsOptions = {}) {
+    const { overlay = false, orientation } = checkOptions('Stars', options)
+    if (!Array.isArray(catalogue)) fail('Stars', 'catalogue must be an array of stars', catalogue)
     catalogue.forEach((star, i) => {
-      for (const [name, value] of Object.entries(star)) {
-        if (!Number.isFinite(value)) {
-          throw new Error(`Stars: ${name} of star ${i} must be finite, got ${value}`)
-        }
+      for (const name of ['ascension', 'declination', 'magnitude', 'colorIndex'] as const) {
+        const value = star?.[name]
+        if (!Number.isFinite(value)) fail('Stars', `${name} of star ${i} must be finite`, value)
       }
     })
     this.catalogue = catalogue
@@ -70,12 +72,23 @@ export class Stars implements SkyLayer {
     }
   }
 
+  /** Multiplies the physical brightness, finite, ≥ 0. */
+  get intensity(): number {
+    return this.#intensity
+  }
+
+  set intensity(value: number) {
+    checkNonNegative('Stars', 'intensity', value)
+    this.#intensity = value
+  }
+
   /** Rotation from the stars' frame to ECEF; null to follow the atmosphere's date. */
   get orientation(): Matrix4 | null {
     return this.#frame.orientation
   }
 
   set orientation(value: Matrix4 | null) {
+    checkOrientation('Stars', value)
     this.#frame.orientation = value
   }
 
@@ -89,7 +102,7 @@ export class Stars implements SkyLayer {
     const state = [this.intensity, wavelengths, solarIrradiance, spectralToXYZ].join(' ')
     if (state === this.#paletteOf) return
     this.#paletteOf = state
-    const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * Math.max(this.intensity, 0)
+    const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * this.intensity
     const magnitude = this.catalogue.reduce((least, star) => Math.min(least, star.magnitude), 9)
     const [, green] = starIrradiance(parameters, 0, illuminance * 10 ** (-0.4 * magnitude))
     this.#brightest.value = 100 * green

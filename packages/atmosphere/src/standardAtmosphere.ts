@@ -1,3 +1,4 @@
+import { checkOptions, checkRange } from './check'
 import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 
 const map = (values: Spectrum, f: (value: number) => number): Spectrum =>
@@ -38,15 +39,16 @@ export const ANGSTROM_EXPONENT = 1.3
  *   clear, 0.4 hazy. `ozone` in [0, 1000] [Dobson units], default 300.
  * @throws If a number is out of its range.
  */
-export function standardAtmosphere({
-  aerosolOpticalDepth = 0.12,
-  ozone = 300
-}: { aerosolOpticalDepth?: number; ozone?: number } = {}): AtmosphereParameters {
-  if (!(aerosolOpticalDepth >= 0 && aerosolOpticalDepth <= 5)) {
-    throw new Error(
-      `standardAtmosphere: aerosolOpticalDepth must be in [0, 5], got ${aerosolOpticalDepth}`
-    )
-  }
+export function standardAtmosphere(
+  options: { aerosolOpticalDepth?: number; ozone?: number } = {}
+): AtmosphereParameters {
+  const { aerosolOpticalDepth = 0.12, ozone = 300 } = checkOptions(
+    'standardAtmosphere',
+    options,
+    'aerosolOpticalDepth',
+    'ozone'
+  )
+  checkRange('standardAtmosphere', 'aerosolOpticalDepth', aerosolOpticalDepth, 0, 5)
   const { bottomRadius, wavelengths, mieScaleHeight, absorptionExtinction } =
     AtmosphereParameters.earth({ ozone })
   const mieExtinction = map(

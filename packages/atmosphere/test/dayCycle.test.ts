@@ -131,6 +131,90 @@ describe('DayCycle', () => {
     expect(Math.abs(Math.log2(last))).toBeLessThan(1)
   })
 
+  it('keeps the season that was set, whatever the hour', () => {
+    const season = fc.oneof(number(0, 0.99999), fc.constantFrom(0, 0.9985, 0.9995, 0.9999))
+    fc.assert(
+      fc.property(season, number(0, 23.99), number(-180, 180), number(-40, 40), (...given) => {
+        const [asked, hour, longitude, years] = given
+        const atmosphere = new Atmosphere().place({ longitude, latitude: 50 })
+        const date = new Date(noon.getTime() + years * 365 * DAY)
+        const cycle = new DayCycle(atmosphere, { date })
+        cycle.hour = hour
+        cycle.season = asked
+        expect(cycle.season).toBeCloseTo(asked, 9)
+        expect(cycle.hour).toBeCloseTo(hour, 5)
+        const { time } = cycle
+        cycle.season = asked
+        expect(cycle.time).toBe(time)
+        cycle.hour = 0
+        expect(cycle.season).toBeCloseTo(asked, 9)
+        // Once more by time alone, to half a day.
+        cycle.time = time
+        const off = cycle.season - asked
+        expect(Math.abs(off - Math.round(off)) * 365.2422).toBeLessThan(0.5001)
+      }),
+      { ...runs, numRuns: 200 }
+    )
+  })
+
+  it('does not wander through the year as its season goes to and fro', () => {
+    const cycle = new DayCycle(new Atmosphere(), { date: noon })
+    cycle.season = 0.3
+    const { time } = cycle
+    for (let i = 0; i < 50; i++) cycle.season = (i * 0.377) % 1
+    cycle.season = 0.3
+    expect(cycle.time).toBe(time)
+    cycle.season = 0
+    expect(cycle.season).toBe(0)
+    cycle.season = 0.9995
+    expect(cycle.season).toBeCloseTo(0.9995, 9)
+  })
+
+  it('takes over from another cycle at night', () => {
+    const atmosphere = new Atmosphere()
+    atmosphere.luminanceScale = 3e-4
+    const camera = new PerspectiveCamera()
+    const date = new Date('2026-06-21T00:00:00Z')
+    const first = new DayCycle(atmosphere, { date })
+    first.update(0, camera)
+    const atNight = atmosphere.luminanceScale
+    expect(atNight).toBeGreaterThan(1)
+    const second = new DayCycle(atmosphere, { date })
+    second.update(0, camera)
+    expect(atmosphere.luminanceScale).toBe(atNight)
+    second.hour = 12
+    const third = new DayCycle(atmosphere)
+    third.update(0, camera)
+    expect(atmosphere.luminanceScale / 3e-4).toBeCloseTo(third.exposure, 9)
+    expect(third.exposure).toBeLessThan(2)
+    // One that was set by hand is daylight's.
+    atmosphere.luminanceScale = 1e-3
+    const fourth = new DayCycle(atmosphere)
+    fourth.update(0, camera)
+    expect(atmosphere.luminanceScale / 1e-3).toBeCloseTo(fourth.exposure, 9)
+  })
+
+  it('sets the latitude of places alone', () => {
+    const atmosphere = new Atmosphere().place({ longitude: 90, latitude: 20, height: 300 })
+    atmosphere.metersPerUnit = 1000
+    const cycle = new DayCycle(atmosphere, { date: noon })
+    cycle.latitude = -35
+    const place = new Atmosphere().place({ longitude: 90, latitude: -35, height: 300 })
+    place.metersPerUnit = 1000
+    const pairs = atmosphere.worldToECEF.elements.map((v, i) => [v, place.worldToECEF.elements[i]])
+    for (const [got, expected] of pairs) expect(Math.abs(got - expected)).toBeLessThan(1e-6)
+    for (const latitude of [90, -90, 0, 48.2]) {
+      cycle.latitude = latitude
+      expect(cycle.latitude).toBeCloseTo(latitude, 9)
+    }
+    const byHand = atmosphere.worldToECEF.setPosition(7e6, 0, 0).clone()
+    expect(() => (cycle.latitude = 10)).toThrow('DayCycle: frame must be of place()')
+    expect(atmosphere.worldToECEF).toEqual(byHand)
+    atmosphere.frame = 'ecef'
+    expect(() => (cycle.latitude = 10)).toThrow("DayCycle: frame must be 'local'")
+    expect(atmosphere.frame).toBe('ecef')
+  })
+
   it('wants sensible numbers', () => {
     const atmosphere = new Atmosphere()
     const make = (options: object) => () => new DayCycle(atmosphere, options)

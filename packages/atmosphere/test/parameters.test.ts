@@ -27,7 +27,7 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
     { rayleighLayers: [[1e4]] } as unknown as AtmosphereParametersInit,
     /AtmosphereParameters: rayleighLayers\[0\] .*2 values/
   ],
-  [{ rayleighLayers: undefined }, /AtmosphereParameters: rayleighLayers .*3 layers.*undefined/],
+  [{ rayleighLayers: null as never }, /AtmosphereParameters: rayleighLayers .*3 layers.*null/],
   [{ groundAlbedo: [0, 0, 1.5, 0] }, /AtmosphereParameters: groundAlbedo\[2\] .*1\.5/],
   [
     { mieExtinction: [0, -1e-6, 0, 0] },
@@ -37,8 +37,8 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
     { wavelengths: [1, 2, 3] as unknown as Spectrum },
     /AtmosphereParameters: wavelengths .*4 values.*3/
   ],
-  [{ mieScattering: undefined }, /AtmosphereParameters: mieScattering .*4 values.*undefined/],
-  [{ mieAsymmetry: undefined }, /AtmosphereParameters: mieAsymmetry .*undefined/],
+  [{ mieScattering: null as never }, /AtmosphereParameters: mieScattering .*4 values.*null/],
+  [{ mieAsymmetry: null as never }, /AtmosphereParameters: mieAsymmetry .*null/],
   [
     { mieScaleHeight: '1200' } as unknown as AtmosphereParametersInit,
     /AtmosphereParameters: mieScaleHeight .*1200/
