@@ -27,20 +27,23 @@ export function eyeScalars(
   const { bottomRadius, topRadius } = parameters
   const thickness = topRadius - bottomRadius
   const h = Math.max(altitude, LOWEST_EYE)
-  const radius = bottomRadius + h
+  // From afar squares of distances cancel in shaders: all must be of the radius that these add up.
+  const isFar = h > bottomRadius
+  const radius = isFar ? Math.fround(bottomRadius + Math.fround(h)) : bottomRadius + h
+  const height = isFar ? radius - bottomRadius : h
   const sinHorizon = bottomRadius / radius
   const dip = Math.acos(sinHorizon)
   const above =
     radius > topRadius ? Math.asin(topRadius / radius) - Math.asin(sinHorizon) : Math.PI / 2 + dip
   const start = Math.min(h, thickness)
-  const height = homogeneousHeight(parameters)
-  const groundExponent = exponent(-start, height)
-  const skyExponent = exponent(thickness - start, height)
+  const scale = homogeneousHeight(parameters)
+  const groundExponent = exponent(-start, scale)
+  const skyExponent = exponent(thickness - start, scale)
   return {
     altitude: h,
     radius,
-    toHorizon: h * (bottomRadius + radius),
-    toTop: (thickness - h) * (topRadius + radius),
+    toHorizon: height * (bottomRadius + radius),
+    toTop: (thickness - height) * (topRadius + radius),
     cosSun,
     sinSun: Math.sqrt(Math.max(1 - cosSun ** 2, 0)),
     cosHorizon: -Math.sin(dip),

@@ -48,9 +48,13 @@ function twoOutputs(body: () => Parts): TwoOutputs {
 
 /** The same ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
+  const { thickness } = air.uniforms
   const entry = pointAlong(air, ray, limits.start)
   return {
-    altitude: entry.altitude.min(air.uniforms.thickness).toConst(),
+    altitude: limits.start
+      .greaterThan(0)
+      .select(thickness, entry.altitude.min(thickness))
+      .toConst(),
     cosView: entry.cosView,
     cosSun: entry.cosSun,
     cosViewSun: ray.cosViewSun
