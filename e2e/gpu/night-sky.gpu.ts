@@ -342,7 +342,7 @@ gpuTest('wants sensible airglow', () => {
   }
   fails({ luminance: -1 }, 'Airglow: luminance must be in [0, 1000000000], got -1')
   fails({ altitude: NaN }, 'Airglow: altitude must be in')
-  fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must have 4 values, got 3')
+  fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must be an array of 4 values, got [1, 1, 1]')
 })
 
 gpuTest('folds the map of the Milky Way without a seam', async t => {
