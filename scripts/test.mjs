@@ -25,7 +25,7 @@ const steps = [
   { id: 'visual', title: 'Visual regression', script: 'test:visual' },
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer' }
 ]
-const stepMinutes = 20
+const stepMinutes = 30
 
 const { values } = parseArgs({ options: { only: { type: 'string' } } })
 const chosen = values.only?.split(',')

@@ -104,6 +104,13 @@ export function gpuPasses(renderer: WebGPURenderer): number[] {
   return [...timestampQueryPool.render.timestamps.values()]
 }
 
+/** Disposes of a renderer and of its device: a driver has only so many. */
+export function release(renderer: WebGPURenderer): void {
+  const { device } = renderer.backend as unknown as { device: GPUDevice }
+  void renderer.dispose()
+  device.destroy()
+}
+
 /** Waits until the GPU has done all that was asked of it. */
 export async function finished(renderer: WebGPURenderer): Promise<void> {
   await (renderer.backend as unknown as { device: GPUDevice }).device.queue.onSubmittedWorkDone()

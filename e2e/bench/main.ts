@@ -1,11 +1,12 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
-import type { Atmosphere } from '@welkin/atmosphere'
 import { timeClouds } from './clouds'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
 import { timeEnvironment } from './environment'
-import { addSunMoonAndStars, benchScene, setSun, type Path } from './scene'
+import { timeFrame } from './frame'
+import { benchScene, type Path } from './scene'
 import { timeShells } from './shell'
+import { skyLine, timeSky } from './sky'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -17,14 +18,14 @@ const { values } = parseArgs({
   }
 })
 const frames = Number(values.frames)
-const [width, height] = values.size.split('x').map(Number) as [number, number]
+const size = values.size.split('x').map(Number) as [number, number]
+const [width, height] = size
 if (!Number.isInteger(frames) || frames < 1 || !(width > 0 && height > 0)) {
   throw new Error(`bench: --frames must be a positive integer and --size WIDTHxHEIGHT`)
 }
 
 const ALTITUDES = [2, 1e3, 1e4, 4e5, 2e7]
 const PATHS: Path[] = ['forward', 'post']
-const WARM_UP = 15
 
 interface Case {
   path: Path
@@ -39,50 +40,16 @@ const log = (text: string): void => {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 
-/** What else is in the sky, and how high the sun stands [°]. */
-interface SkyCase {
-  decorate?: (atmosphere: Atmosphere) => void
-  elevation?: number
-}
-
-/** GPU milliseconds of one frame, median after warm-up; and CPU milliseconds to submit it. */
-async function time(
-  path: Path,
-  altitude: number,
-  withAir: boolean,
-  sunMoves: boolean,
-  { decorate, elevation }: SkyCase = {}
-): Promise<{ gpu: number; cpu: number }> {
-  const renderer = await device.renderer(width, height)
-  const scene = benchScene(renderer, path, altitude, withAir, [width, height], decorate)
-  if (elevation !== undefined) setSun(scene.atmosphere, scene.camera, elevation)
-  const gpu: number[] = []
-  const cpu: number[] = []
-  for (let frame = 0; frame < WARM_UP + frames; frame++) {
-    if (sunMoves) setSun(scene.atmosphere, scene.camera, 30 + frame * 0.05)
-    const start = performance.now()
-    scene.draw()
-    const submitted = performance.now() - start
-    const elapsed = await gpuMilliseconds(renderer)
-    if (frame >= WARM_UP) {
-      gpu.push(elapsed)
-      cpu.push(submitted)
-    }
-  }
-  scene.dispose()
-  void renderer.dispose()
-  return { gpu: median(gpu), cpu: median(cpu) }
-}
-
 // Before anything else is warm.
 const firstFrameMs = await timeFirstFrame()
 const cases: Case[] = []
 const cpuCosts: number[] = []
 for (const path of PATHS) {
   for (const altitude of ALTITUDES) {
-    const without = await time(path, altitude, false, false)
-    const still = await time(path, altitude, true, false)
-    const moving = await time(path, altitude, true, true)
+    const at = { path, altitude }
+    const without = await timeFrame(device, size, frames, { ...at, withAir: false })
+    const still = await timeFrame(device, size, frames, at)
+    const moving = await timeFrame(device, size, frames, { ...at, sunMoves: true })
     const compositeMs = still.gpu - without.gpu
     const volumeUpdateMs = moving.gpu - still.gpu
     cases.push({ path, altitude, compositeMs, volumeUpdateMs })
@@ -94,27 +61,10 @@ for (const path of PATHS) {
   }
 }
 
-/** What sun, moon and stars cost, by day and in a night that the full moon lights. */
-interface SkyCost {
-  path: Path
-  elevation: number
-  decoratedMs: number
-}
+const skyCosts = await timeSky(device, size, frames, PATHS)
+for (const cost of skyCosts) log(skyLine(cost))
 
-const skyCosts: SkyCost[] = []
-for (const path of PATHS) {
-  for (const elevation of [40, -40]) {
-    const bare = await time(path, 2, true, false, { elevation })
-    const full = await time(path, 2, true, false, { elevation, decorate: addSunMoonAndStars })
-    const decoratedMs = full.gpu - bare.gpu
-    skyCosts.push({ path, elevation, decoratedMs })
-    log(
-      `${path.padEnd(8)} sun at ${String(elevation).padStart(3)}°   sun, moon, stars ${decoratedMs.toFixed(3)} ms`
-    )
-  }
-}
-
-const shells = await timeShells(device, [width, height], frames)
+const shells = await timeShells(device, size, frames)
 for (const { model, outsideMs, insideMs } of shells) {
   log(
     `shell, ${model.padEnd(18)} outside ${outsideMs.toFixed(3)} ms   inside ${insideMs.toFixed(3)} ms`
@@ -165,8 +115,8 @@ async function timeFirstFrame(): Promise<number> {
 }
 
 const bake = await timeBake()
-const environment = await timeEnvironment(device, [width, height], 10)
-const cloudCosts = await timeClouds(device, [width, height], Math.min(frames, 10))
+const environment = await timeEnvironment(device, size, 10)
+const cloudCosts = await timeClouds(device, size, Math.min(frames, 10))
 for (const { view, quality, ms, passes, psnr } of cloudCosts) {
   const each = passes.map(pass => pass.toFixed(2)).join(' ')
   log(

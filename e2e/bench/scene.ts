@@ -14,12 +14,7 @@ import {
   Atmosphere,
   aerialPerspective,
   aerialPerspectiveFog,
-  airglow,
-  milkyWay,
-  moon,
-  skyBackground,
-  stars,
-  sunFlare
+  skyBackground
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 
@@ -125,9 +120,4 @@ export function setSun(atmosphere: Atmosphere, camera: PerspectiveCamera, elevat
   atmosphere.sunDirection = up
     .multiplyScalar(Math.sin(angle))
     .addScaledVector(east.addScaledVector(north, 0.5).normalize(), Math.cos(angle))
-}
-
-/** Sun with its flare, the Milky Way, 5,044 stars, the full moon and airglow. */
-export function addSunMoonAndStars(atmosphere: Atmosphere): void {
-  atmosphere.add(sunFlare(atmosphere), milkyWay(), stars(), moon(atmosphere), airglow())
 }

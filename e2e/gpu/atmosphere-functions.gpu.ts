@@ -1,4 +1,4 @@
-import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
+import { Atmosphere, AtmosphereParameters, standardAtmosphere } from '@welkin/atmosphere'
 import { float, vec4 } from 'three/tsl'
 import { AtmosphereUniforms } from '../../packages/atmosphere/src/AtmosphereUniforms'
 import * as boundaryTwin from '../../packages/atmosphere/src/cpu/boundary'
@@ -6,6 +6,7 @@ import {
   diffuseColumnCosine,
   sampleDiffuseLight
 } from '../../packages/atmosphere/src/cpu/diffuseLight'
+import { densities as densitiesTwin } from '../../packages/atmosphere/src/cpu/medium'
 import * as phaseTwin from '../../packages/atmosphere/src/cpu/phase'
 import { skyIrradiance as skyIrradianceTwin } from '../../packages/atmosphere/src/cpu/skyIrradiance'
 import { solveDiffuseLight } from '../../packages/atmosphere/src/cpu/solveDiffuseLight'
@@ -16,13 +17,14 @@ import {
   distanceToTop,
   groundDiscriminant
 } from '../../packages/atmosphere/src/tsl/boundary'
+import { densities } from '../../packages/atmosphere/src/tsl/medium'
 import { miePhase, rayleighPhase } from '../../packages/atmosphere/src/tsl/phase'
 import { skyIrradiance } from '../../packages/atmosphere/src/tsl/skyIrradiance'
 import { sunTransmittance } from '../../packages/atmosphere/src/tsl/transmittance'
 import { viewNodes } from '../../packages/atmosphere/src/ViewNodes'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+import { gpuTest, type GpuTest } from './harness/gpu-test'
 
 const earth = new AtmosphereParameters()
 const bottom = earth.bottomRadius
@@ -96,24 +98,55 @@ gpuTest('scatters as the phase functions say', async t => {
   }
 })
 
+gpuTest('knows the densities of the air', async t => {
+  const inputs = table(i => [120_000 * spread(i, 0) ** 2])
+  for (const air of [
+    earth,
+    standardAtmosphere(),
+    new AtmosphereParameters({ rayleighLayers: [[7000, 5000]] }),
+    new AtmosphereParameters({
+      rayleighLayers: [
+        [1000, 9000],
+        [20_000, 4000]
+      ]
+    })
+  ]) {
+    const uniforms = new AtmosphereUniforms()
+    uniforms.update(air, 1)
+    const results = await t.evaluate(inputs, input => vec4(densities(uniforms, input.x), 1))
+    inputs.forEach(([h], i) => {
+      const expected = densitiesTwin(air, h)
+      const tolerance = { relative: 2e-5, absolute: 1e-6 * Math.max(...expected) }
+      expectClose(results.subarray(4 * i, 4 * i + 3), expected, tolerance, `height ${h}`)
+    })
+  }
+})
+
 gpuTest('reads sunlight within 0.2 % of the sun from the transmittance table', async t => {
   const renderer = await t.createRenderer()
-  const atmosphere = new Atmosphere({ parameters: earth })
-  await atmosphere.bake(renderer)
-  const { uniforms, transmittance } = viewNodes(atmosphere).air
-  const inputs = table(i => {
-    const height = thickness * spread(i, 0) ** 3
-    const horizon = -Math.acos(bottom / (bottom + height))
-    // Where the whole disc is seen.
-    const low = horizon + 1.1 * earth.sunAngularRadius
-    return [height, Math.sin(low + (Math.PI / 2 - low) * spread(i, 1) ** 2)]
-  })
-  const results = await evaluateOnGpu(renderer, inputs, input =>
-    sunTransmittance(uniforms, transmittance, input.x, input.y)
-  )
-  const expected = inputs.flatMap(([h, mu]) => sunTransmittanceTwin(earth, bottom + h, mu))
-  expectClose(results, expected, { absolute: 2e-3 })
-  atmosphere.dispose()
+  for (const [air, absolute] of [
+    [earth, 2e-3],
+    [standardAtmosphere({ ozone: 0 }), 2e-3],
+    // The ozone ends between rows of the table, which are 2 km apart there.
+    [standardAtmosphere(), 7e-3]
+  ] as const) {
+    const atmosphere = new Atmosphere({ parameters: air })
+    await atmosphere.bake(renderer)
+    const { uniforms, transmittance } = viewNodes(atmosphere).air
+    const inputs = table(i => {
+      const height = (air.topRadius - bottom) * spread(i, 0) ** 3
+      const horizon = -Math.acos(bottom / (bottom + height))
+      // Where the whole disc is seen.
+      const low = horizon + 1.1 * air.sunAngularRadius
+      return [height, Math.sin(low + (Math.PI / 2 - low) * spread(i, 1) ** 2)]
+    })
+    const results = await evaluateOnGpu(renderer, inputs, input =>
+      sunTransmittance(uniforms, transmittance, input.x, input.y)
+    )
+    const expected = inputs.flatMap(([h, mu]) => sunTransmittanceTwin(air, bottom + h, mu))
+    expectClose(results, expected, { absolute })
+    atmosphere.dispose()
+  }
 })
 
 gpuTest('gathers sky light on planes as float64 does', async t => {
@@ -141,12 +174,22 @@ gpuTest('gathers sky light on planes as float64 does', async t => {
   atmosphere.dispose()
 })
 
-gpuTest('bakes the diffuse light that float64 solves', async t => {
+for (const [name, air] of [
+  ['default', earth],
+  ['standard', standardAtmosphere()]
+] as const) {
+  gpuTest(`bakes the diffuse light that float64 solves, ${name} air`, t => comparesBake(t, air))
+}
+
+async function comparesBake(
+  t: Parameters<GpuTest['body']>[0],
+  air: AtmosphereParameters
+): Promise<void> {
   const renderer = await t.createRenderer()
-  const atmosphere = new Atmosphere({ parameters: earth })
+  const atmosphere = new Atmosphere({ parameters: air })
   await atmosphere.bake(renderer)
   const baked = atmosphere.tables.data!
-  const solved = solveDiffuseLight(earth)
+  const solved = solveDiffuseLight(air)
   let worst = 0
   for (const altitude of [0, 0.05, 0.3, 0.9]) {
     for (let column = 30; column < 96; column += 5) {
@@ -164,4 +207,4 @@ gpuTest('bakes the diffuse light that float64 solves', async t => {
   t.note(`worst difference ${(100 * worst).toFixed(2)} %`)
   expectTrue(worst < 0.03, `worst relative difference is ${worst}`)
   atmosphere.dispose()
-})
+}

@@ -1,15 +1,24 @@
 import {
   aerialPerspectiveFog,
   Atmosphere,
+  distanceFog,
+  heightFog,
   skyBackground,
   SkyLightProbe,
   SunDirectionalLight,
   type AtmosphereParametersInit,
   type Spectrum
 } from '@welkin/atmosphere'
-import { Mesh, MeshLambertMaterial, PerspectiveCamera, Scene, SphereGeometry } from 'three'
+import {
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Scene,
+  SphereGeometry
+} from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
-import { drawToFloat, postPath, relativeDifferences } from './harness/atmosphere'
+import { drawForward, drawToFloat, postPath, relativeDifferences } from './harness/atmosphere'
 import type { GpuContext } from './harness/context'
 import { expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
@@ -115,6 +124,76 @@ gpuTest('re-bakes for new parameters, and compiles nothing', async t => {
   t.note(`${first} compiled at first`)
   expectTrue(compiled() === first, `compiled ${JSON.stringify(counts)}, of which first ${first}`)
   view.dispose()
+})
+
+gpuTest('shows and hides layers that come and go between frames', async t => {
+  const renderer = await t.createRenderer(small)
+  const counts = countCompilations(renderer)
+  const compiled = (): number => Object.values(counts).reduce((sum, count) => sum + count, 0)
+  const atmosphere = new Atmosphere().setSunAngles(35, 120)
+  const camera = new PerspectiveCamera(60, small.width / small.height, 1, 1e6)
+  camera.position.y = 100
+  const ball = new Mesh(new SphereGeometry(2500, 32, 16), new MeshBasicMaterial())
+  ball.position.set(2000, 1000, -9000)
+  const bare = new Scene().add(ball)
+  const post = postPath(renderer, bare, camera, atmosphere)
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere)
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  const nodes = [scene.backgroundNode, scene.fogNode]
+
+  const forward = async (of: Scene): Promise<Picture> => {
+    of.add(ball)
+    const picture = await drawForward(renderer, of, camera, atmosphere)
+    bare.add(ball)
+    return picture
+  }
+  /** Both paths, after a change, in one frame each; the next frame compiles nothing. */
+  const draw = async (): Promise<Picture[]> => {
+    const first = await forward(scene)
+    post.refresh()
+    const pictures = [first, await post.draw()]
+    const before = compiled()
+    expectTrue(
+      (await forward(scene)).data.every((v, i) => v === first.data[i]),
+      'the next frame'
+    )
+    await post.draw()
+    expectTrue(compiled() === before, `compiled ${compiled() - before} more in the next frame`)
+    return pictures
+  }
+  const most = (a: Picture, b: Picture): number => relativeDifferences(a, b).at(-1)!
+  const clear = await draw()
+  const mist = heightFog({ base: 0, falloff: 300, density: 2e-4 })
+  const murk = distanceFog({ density: 1e-4 })
+  let last = clear
+  for (const [label, change] of [
+    ['height fog', () => atmosphere.add(mist)],
+    ['distance fog in its place', () => atmosphere.remove(mist).add(murk)],
+    ['both', () => atmosphere.add(mist)]
+  ] as const) {
+    change()
+    const pictures = await draw()
+    // What has never been rendered before knows nothing of earlier layers.
+    const fresh = await forward(new Scene())
+    paths.forEach((path, i) => {
+      const difference = most(pictures[i], last[i])
+      expectTrue(difference > 0.02, `${label} changes ${path} by ${difference}`)
+    })
+    expectTrue(most(pictures[0], fresh) < 1e-6, `${label}: ${most(pictures[0], fresh)} from fresh`)
+    last = pictures
+  }
+  atmosphere.remove(mist, murk)
+  const again = await draw()
+  paths.forEach((path, i) => {
+    expectTrue(
+      most(again[i], clear[i]) === 0,
+      `${path} without layers: ${most(again[i], clear[i])}`
+    )
+  })
+  post.dispose()
+  for (const part of [ball.geometry, ball.material, ...nodes]) part.dispose()
+  atmosphere.dispose()
 })
 
 gpuTest('bakes the same tables step by step', async t => {

@@ -172,17 +172,17 @@ gpuTest('glows like the sky by day, a 400,000th as bright, by either path', asyn
   camera.rotation.x = 0.4
   camera.updateMatrixWorld()
   const direction = new Vector3(1, 1, 1).normalize()
-  const day = new Atmosphere()
-  day.sunDirection = direction
-  const daylight = await drawForward(renderer, new Scene(), camera, day)
-  const night = new Atmosphere()
-  night.sunDirection = new Vector3(0, -1, 0)
+  const aboveTheAir = new Vector3(0, 1e6, 0)
+  const atmosphere = new Atmosphere()
+  atmosphere.sunDirection = direction
+  const daylight = await drawForward(renderer, new Scene(), camera, atmosphere)
+  const sunlight = luminance(atmosphere.sunIlluminanceAt(aboveTheAir))
+  atmosphere.sunDirection = new Vector3(0, -1, 0)
   const strength = 1e5
-  const luna = moon(night, { direction, phase: 0.5, mapSize: 16, strength, flare: noFlare })
-  night.add(luna)
-  const moonlight = await drawForward(renderer, new Scene(), camera, night)
-  const light = luminance(moonIlluminanceAt(luna, new Vector3(0, 1e6, 0)))
-  const sunlight = luminance(day.sunIlluminanceAt(new Vector3(0, 1e6, 0)))
+  const luna = moon(atmosphere, { direction, phase: 0.5, mapSize: 16, strength, flare: noFlare })
+  atmosphere.add(luna)
+  const moonlight = await drawForward(renderer, new Scene(), camera, atmosphere)
+  const light = luminance(moonIlluminanceAt(luna, aboveTheAir))
   for (const [x, y] of [
     [4, 4],
     [16, 12],
@@ -195,27 +195,23 @@ gpuTest('glows like the sky by day, a 400,000th as bright, by either path', asyn
   const wall = new Mesh(new PlaneGeometry(6e4, 6e4), new MeshLambertMaterial({ color: 0 }))
   wall.position.z = -30_000
   scene.add(wall)
-  const forward = await drawForward(renderer, scene, camera, night)
-  const post = postPath(renderer, scene, camera, night)
+  const forward = await drawForward(renderer, scene, camera, atmosphere)
+  const post = postPath(renderer, scene, camera, atmosphere)
   const after = await post.draw()
   for (const picture of [forward, after]) expectLight(picture, 'haze by moonlight')
   const haze = forward.at(16, 24).slice(0, 3)
   expectTrue(luminance(haze) > 1e-4, `haze is ${haze}`)
   expectClose(after.at(16, 24).slice(0, 3), haze, { relative: 0.02 }, 'post path')
   post.dispose()
-  for (const atmosphere of [day, night]) atmosphere.dispose()
+  atmosphere.dispose()
 })
 
 gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
   const size = { width: 64, height: 64 }
   const renderer = await t.createRenderer(size)
-  const draw = async (
-    time: string,
-    eclipsed: boolean
-  ): Promise<{ sky: Picture; plane: number }> => {
-    const atmosphere = new Atmosphere().place({ longitude: -96.797, latitude: 32.777 })
+  const atmosphere = new Atmosphere().place({ longitude: -96.797, latitude: 32.777 })
+  const draw = async (time: string): Promise<{ sky: Picture; plane: number }> => {
     atmosphere.date = new Date(`2024-04-08T${time}Z`)
-    if (eclipsed) atmosphere.add(sunFlare(atmosphere), moon(atmosphere, { mapSize: 64 }))
     const camera = new PerspectiveCamera(2, 1, 0.1, 100)
     camera.position.y = 2
     camera.lookAt(camera.position.clone().add(atmosphere.sunDirection))
@@ -232,12 +228,12 @@ gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
     const lit = luminance(ground.at(32, 32))
     const sun = luminance(atmosphere.sunIlluminanceAt(origin)) * atmosphere.sunDirection.y
     expectClose(lit, (sun / Math.PI) * 1e-4, { relative: 0.02, absolute: 1e-9 }, `plane at ${time}`)
-    atmosphere.dispose()
     return { sky, plane: lit }
   }
-  const bare = await draw('18:42:38', false)
-  const total = await draw('18:42:38', true)
-  const partial = await draw('18:10:00', true)
+  const bare = await draw('18:42:38')
+  atmosphere.add(sunFlare(atmosphere), moon(atmosphere, { mapSize: 64 }))
+  const total = await draw('18:42:38')
+  const partial = await draw('18:10:00')
   expectTrue(luminance(total.sky.at(32, 32)) < 1e-5 * luminance(bare.sky.at(32, 32)), 'disc')
   const ring = luminance(total.sky.at(32, 22))
   expectTrue(ring > 1e-3 && ring < 10, `corona is ${ring}`)
@@ -246,6 +242,36 @@ gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
     partial.plane > 0.3 * bare.plane && partial.plane < 0.8 * bare.plane,
     `partial light is ${partial.plane}`
   )
+  atmosphere.dispose()
+})
+
+gpuTest('leaves no memory behind when it comes and goes under a sky that stays', async t => {
+  const renderer = await t.createRenderer({ width: 16, height: 16 })
+  const atmosphere = new Atmosphere().setSunAngles(-20, 90)
+  const camera = new PerspectiveCamera()
+  const scene = new Scene()
+  const background = skyBackground(atmosphere)
+  scene.backgroundNode = background
+  const memory = (): string => {
+    renderer.render(scene, camera)
+    const { programs, renderTargets, textures, texturesSize, uniformBuffers } = renderer.info.memory
+    return JSON.stringify({ programs, renderTargets, textures, texturesSize, uniformBuffers })
+  }
+  const [without, withMoon] = [[memory()], Array<string>()]
+  for (let i = 0; i < 4; i++) {
+    const luna = moon(atmosphere, { mapSize: 16 })
+    atmosphere.add(luna)
+    withMoon.push(memory())
+    luna.dispose()
+    without.push(memory())
+  }
+  background.dispose()
+  atmosphere.dispose()
+  t.note(`${without[0]} without, ${withMoon[0]} with it`)
+  expectTrue(withMoon[0] !== without[0], 'a moon takes no memory')
+  // What all moons share stays after the first.
+  expectTrue(new Set(without.slice(1)).size === 1, `without: ${without.join('\n')}`)
+  expectTrue(new Set(withMoon.slice(1)).size === 1, `with: ${withMoon.join('\n')}`)
 })
 
 gpuTest('leaves no memory behind', async t => {

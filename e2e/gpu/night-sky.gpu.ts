@@ -7,7 +7,9 @@ import {
   skyBackground,
   Stars,
   stars,
-  starsOverlay
+  starsOverlay,
+  distanceToTop,
+  opticalDepth
 } from '@welkin/atmosphere'
 import type { Star } from '@welkin/atmosphere'
 import {
@@ -19,13 +21,16 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { float, pass } from 'three/tsl'
+import { float, pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { glowGain } from '../../packages/atmosphere/src/cpu/airglow'
 import { starDirection } from '../../packages/atmosphere/src/stars/starCells'
-import { glowGains } from '../../packages/atmosphere/src/tsl/airglow'
-import { drawToFloat, expectLight } from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
+import { luminanceOf, starIrradiance } from '../../packages/atmosphere/src/stars/starColor'
+import { glowGains, overheadGain } from '../../packages/atmosphere/src/tsl/airglow'
+import { milkyWayMap } from '../../packages/atmosphere/src/tsl/milkyWay'
+import { drawToFloat, expectLight, relativeDifferences } from './harness/atmosphere'
+import { evaluateOnGpu } from './harness/evaluate'
+import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
 import type { Picture } from './harness/picture'
 
@@ -34,23 +39,24 @@ const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 
 /** Illuminance by a star of magnitude 0 [lx]. */
 const VEGA = 2.54e-6
 
-/** A camera far above the air, where the frame of the stars is ECEF: the atmosphere has no date. */
-function inSpace(
-  fov: number,
-  towards: Star
-): { atmosphere: Atmosphere; camera: PerspectiveCamera } {
+/** Without a date, so that the frame of the stars is ECEF; its light is in cd/m². */
+function stellarAtmosphere(): Atmosphere {
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef'
   atmosphere.luminanceScale = 1
+  return atmosphere
+}
+
+/** A camera far above the air, planet and sun behind it. */
+function inSpace(atmosphere: Atmosphere, fov: number, towards: Star): PerspectiveCamera {
   const camera = new PerspectiveCamera(fov, 64 / 36, 1, 1e9)
   const direction = new Vector3(...starDirection(towards))
-  // The planet and the sun are behind.
   atmosphere.sunDirection = direction.clone().negate()
   camera.position.copy(direction).multiplyScalar(1e8)
   camera.up.set(0.3, 0.5, 0.8).normalize()
   camera.lookAt(direction.clone().multiplyScalar(2e8))
   camera.updateMatrixWorld()
-  return { atmosphere, camera }
+  return camera
 }
 
 /** Illuminance of a plane that faces the middle of a picture, by all that is in it [lx]. */
@@ -84,19 +90,19 @@ gpuTest(
   'gives each star its illuminance and place, whatever the picture’s size and field',
   async t => {
     const vega = brightStars().find(({ ascension }) => Math.abs(ascension - 4.87356) < 1e-3) as Star
+    const renderer = await t.createRenderer()
+    const atmosphere = stellarAtmosphere().add(new Stars([{ ...vega, colorIndex: 0 }]))
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
     for (const [width, height, fov] of [
       [64, 36, 20],
       [160, 90, 20],
       [128, 72, 1],
       [96, 54, 5]
     ]) {
-      const renderer = await t.createRenderer({ width, height })
-      const { atmosphere, camera } = inSpace(fov, vega)
+      renderer.setSize(width, height)
+      const camera = inSpace(atmosphere, fov, vega)
       camera.setViewOffset(width, height, 0.31, -0.22, width, height)
-      const field = new Stars([{ ...vega, colorIndex: 0 }])
-      atmosphere.add(field)
-      const scene = new Scene()
-      scene.backgroundNode = skyBackground(atmosphere)
       const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
       expectLight(picture, `${width}×${height}`)
       const ratio = illuminance(picture, fov) / (VEGA * 10 ** (-0.4 * vega.magnitude))
@@ -107,13 +113,16 @@ gpuTest(
       expectTrue(Math.abs(ratio - 1) < 0.02, `illuminance is ${ratio} of what it should be`)
       const off = Math.hypot(x - width / 2 + 0.31, y - height / 2 - 0.22)
       expectTrue(off < 0.05, `it is ${off} pixels from its place`)
-      atmosphere.dispose()
     }
+    atmosphere.dispose()
   }
 )
 
 gpuTest('has the light of the whole catalogue', async t => {
   const renderer = await t.createRenderer({ width: 128, height: 128 })
+  const atmosphere = stellarAtmosphere().add(stars())
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere)
   // 90° square, six of them: the whole sky.
   let sum = 0
   const size = 90
@@ -127,14 +136,11 @@ gpuTest('has the light of the whole catalogue', async t => {
   ]) {
     const ascension = Math.atan2(y, x)
     const towards = { ascension, declination: (z * Math.PI) / 2, magnitude: 0, colorIndex: 0 }
-    const { atmosphere, camera } = inSpace(size, towards)
+    const camera = inSpace(atmosphere, size, towards)
     camera.aspect = 1
     camera.up.set(0, z === 0 ? 0 : 1, z === 0 ? 1 : 0)
     camera.lookAt(camera.position.clone().multiplyScalar(2))
     camera.updateProjectionMatrix()
-    atmosphere.add(stars())
-    const scene = new Scene()
-    scene.backgroundNode = skyBackground(atmosphere)
     const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
     // On a plane that faces each star, not the face's middle.
     const side = 2 / picture.height
@@ -144,8 +150,8 @@ gpuTest('has the light of the whole catalogue', async t => {
       const [r, g, b] = picture.data.subarray(i, i + 3)
       sum += (luminance([r, g, b]) * side * side) / (1 + u * u + v * v) ** 1.5
     }
-    atmosphere.dispose()
   }
+  atmosphere.dispose()
   const expected = brightStars().reduce(
     (total, star) => total + VEGA * 10 ** (-0.4 * star.magnitude),
     0
@@ -159,7 +165,8 @@ gpuTest('draws the same stars after post-processing, behind what was drawn', asy
   const renderer = await t.createRenderer({ width, height })
   const orion = { ascension: 1.46, declination: 0, magnitude: 0, colorIndex: 0 }
   const draw = async (overlay: boolean): Promise<Picture> => {
-    const { atmosphere, camera } = inSpace(fov, orion)
+    const atmosphere = stellarAtmosphere()
+    const camera = inSpace(atmosphere, fov, orion)
     atmosphere.add(milkyWay(), stars({ overlay }))
     const scene = new Scene()
     scene.backgroundNode = skyBackground(atmosphere)
@@ -226,7 +233,57 @@ gpuTest('has airglow as bright as its layer is long', async t => {
     const label = `${name}, ${height} m, cos ${cosView}`
     expectTrue(off < 0.02, `${label}: ${gpu[4 * i]}, not ${exact}`)
   })
+  const below = cases.filter(({ name }) => name === 'below')
+  const thin = await t.evaluate(
+    below.map(({ height, cosView }) => [height, cosView, 0, 0]),
+    input => {
+      const nodes = { altitude: float(altitude), width: float(width) }
+      return overheadGain(nodes, input.x, input.y, float(bottomRadius))
+    }
+  )
+  below.forEach(({ height, cosView }, i) => {
+    const exact = glowGain(layer, bottomRadius + height, cosView, bottomRadius, 3e6)
+    const off = Math.abs(thin[4 * i] / exact - 1)
+    worst = Math.max(worst, off)
+    expectTrue(off < 0.01, `shell, ${height} m, cos ${cosView}: ${thin[4 * i]}, not ${exact}`)
+  })
   t.note(`off by ${(100 * worst).toFixed(2)} % at most`)
+})
+
+gpuTest('dims stars by the air in a night that no day came before', async t => {
+  const [width, height, fov] = [96, 54, 5]
+  const renderer = await t.createRenderer({ width, height })
+  for (const elevation of [60, 10, 2]) {
+    const angle = (elevation * Math.PI) / 180
+    // At longitude and latitude 0: the zenith is X of ECEF, which is the stars' frame without a date.
+    const star: Star = {
+      ascension: Math.PI / 2 - angle,
+      declination: 0,
+      magnitude: 1,
+      colorIndex: 0
+    }
+    const atmosphere = new Atmosphere().setSunAngles(-60, 270)
+    atmosphere.luminanceScale = 1
+    atmosphere.add(new Stars([star]))
+    const camera = new PerspectiveCamera(fov, width / height, 1, 1e6)
+    camera.position.y = 2
+    camera.lookAt(new Vector3(Math.cos(angle), Math.sin(angle), 0).add(camera.position))
+    camera.updateMatrixWorld()
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
+    const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+    const { parameters } = atmosphere
+    const radius = parameters.bottomRadius + 2
+    const way = distanceToTop(radius, Math.sin(angle), parameters.topRadius)
+    const depth = opticalDepth(parameters, radius, Math.sin(angle), way)
+    const light = starIrradiance(parameters, 0, VEGA * 10 ** -0.4)
+    const dimmed = light.map((value, i) => value * Math.exp(-depth[i]))
+    const ratio = illuminance(picture, fov) / luminanceOf(parameters, dimmed)
+    const part = luminanceOf(parameters, dimmed) / luminanceOf(parameters, light)
+    t.note(`${elevation}° high: ${(100 * part).toFixed(1)} % is left, ${ratio.toFixed(3)} of that`)
+    expectTrue(Math.abs(ratio - 1) < 0.03, `${elevation}° high: ${ratio} of what it should be`)
+    atmosphere.dispose()
+  }
 })
 
 gpuTest('lights a level plane at night as much as told', async t => {
@@ -251,6 +308,29 @@ gpuTest('lights a level plane at night as much as told', async t => {
   atmosphere.dispose()
 })
 
+gpuTest('dims what is beyond the air deep in the night as at dusk', async t => {
+  const renderer = await t.createRenderer({ width: 32, height: 32 })
+  const atmosphere = new Atmosphere()
+  atmosphere.add({ beyond: (_, farther) => farther.add(vec4(1)) })
+  const camera = new PerspectiveCamera(60, 1, 0.1, 100)
+  camera.position.y = 100
+  camera.rotation.x = 0.55
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere)
+  const draw = (): Promise<Picture> => drawToFloat(renderer, () => renderer.render(scene, camera))
+  await atmosphere.bake(renderer)
+  // Night first: no hour before it has left anything behind.
+  atmosphere.setSunAngles(-60, 180)
+  const night = await draw()
+  atmosphere.setSunAngles(-20, 180)
+  const dusk = await draw()
+  const [zenith, horizon] = [night.at(16, 0), night.at(16, 31)].map(luminance)
+  t.note(`towards the horizon ${(horizon / zenith).toFixed(3)} of what comes from above`)
+  expectTrue(horizon < 0.7 * zenith, `${horizon} at the horizon, ${zenith} above`)
+  expectClose(Math.max(...relativeDifferences(night, dusk)), 0, { absolute: 1e-3 }, 'difference')
+  atmosphere.dispose()
+})
+
 gpuTest('wants sensible airglow', () => {
   const fails = (options: object, message: string): void => {
     try {
@@ -262,5 +342,24 @@ gpuTest('wants sensible airglow', () => {
   }
   fails({ luminance: -1 }, 'Airglow: luminance must be in [0, 1000000000], got -1')
   fails({ altitude: NaN }, 'Airglow: altitude must be in')
-  fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must have 4 values, got 3')
+  fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must be an array of 4 values, got [1, 1, 1]')
+})
+
+gpuTest('folds the map of the Milky Way without a seam', async t => {
+  const renderer = await t.createRenderer({ width: 4, height: 4 })
+  const along = Array.from({ length: 31 }, (_, i) => (i + 1) / 32)
+  // Where an edge is folded its halves are the same directions.
+  const halves = [1, -1].map(half =>
+    along.flatMap(x => [
+      [1, half * x, 0, 0],
+      [-1, half * x, 0, 0],
+      [half * x, 1, 0, 0],
+      [half * x, -1, 0, 0]
+    ])
+  )
+  const [first, second] = await Promise.all(
+    halves.map(points => evaluateOnGpu(renderer, points, point => milkyWayMap(point.xy)))
+  )
+  expectTrue(Math.max(...first) > 1, 'the band is not on the edge')
+  expectClose(first, second, { relative: 1e-3 }, 'halves of the edges')
 })

@@ -3,7 +3,6 @@ import {
   AtmosphereParameters,
   SunDirectionalLight,
   airlessBody,
-  flatAtmosphere,
   marsAtmosphere,
   planetGround,
   skyBackground,
@@ -18,6 +17,7 @@ import {
   MeshLambertMaterial,
   NearestFilter,
   PerspectiveCamera,
+  PlaneGeometry,
   RGBAFormat,
   RepeatWrapping,
   Scene,
@@ -291,21 +291,30 @@ gpuTest('keeps two atmospheres in one scene apart', async t => {
     return drawForward(renderer, scene, camera, earth)
   }
   const alone = [await draw(skyBackground(earth)), await draw(skyBackground(mars))]
-  const [first, second] = [skyBackground(earth), skyBackground(mars)] as unknown as Node<'vec4'>[]
-  const both = await draw(vec4(first.rgb.add(second.rgb), 1))
+  const [near, far] = [skyBackground(earth), skyBackground(mars)] as unknown as Node<'vec4'>[]
+  const both = await draw(vec4(near.rgb.add(far.rgb), 1))
   const sum = alone[0].data.map((value, i) => (i % 4 < 3 ? value + alone[1].data[i] : 1))
   expectClose(both.data, sum, { relative: 1e-3, absolute: 1e-5 }, 'sum')
   const again = await draw(skyBackground(earth))
   expectTrue(relativeDifferences(alone[0], again).at(-1)! < 1e-4, 'the first sky has changed')
   const most = Math.max(...alone[1].data.filter((_, i) => i % 4 === 0))
   expectTrue(most > 0.05, `the red planet is not to be seen: ${most}`)
+
+  // One after the other in a scene, sky and haze.
+  const wall = new Mesh(new PlaneGeometry(6e5, 6e5), new MeshLambertMaterial({ color: 0 }))
+  wall.position.set(-3e5, 0, -4e5)
+  const scene = new Scene().add(wall)
+  await drawForward(renderer, scene, camera, earth)
+  const second = await drawForward(renderer, scene, camera, mars)
+  const afresh = await drawForward(renderer, new Scene().add(wall), camera, mars)
+  expectTrue(relativeDifferences(second, afresh).at(-1)! < 1e-4, 'the first sky or haze stays')
   earth.dispose()
   mars.dispose()
 })
 
 gpuTest('keeps up and the sky of a flat world wherever the camera goes', async t => {
   const renderer = await t.createRenderer({ width: 32, height: 18 })
-  const atmosphere = flatAtmosphere().setSunAngles(5, 60)
+  const atmosphere = new Atmosphere({ flat: true }).setSunAngles(5, 60)
   const scene = new Scene()
   const camera = new PerspectiveCamera(60, 32 / 18, 1, 1e7)
   const pictures = []

@@ -132,10 +132,11 @@ try {
   const listing = await openPage()
   const cases = await listing.evaluate(() => window.welkinVisual.list())
   await listing.close()
-  for (const { file, story } of cases) {
+  for (const { file, story, isWebGPUOnly } of cases) {
     const name = `${file}-${story}`.toLowerCase()
     if (positionals.length > 0 && !positionals.some(word => name.includes(word))) continue
     for (const backend of backends) {
+      if (isWebGPUOnly && backend !== 'webgpu') continue
       const page = await openPage()
       await shoot(page, file, story, backend)
       await page.close()

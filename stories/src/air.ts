@@ -30,7 +30,7 @@ function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
 export class Air {
   readonly atmosphere: Atmosphere
   readonly sun: SunDirectionalLight
-  private readonly sky: SkyLightProbe
+  readonly sky: SkyLightProbe
   private readonly pipeline: RenderPipeline | undefined
 
   constructor(

@@ -1,14 +1,14 @@
 import {
-  aerialPerspectiveFog,
   airglow,
   Atmosphere,
   DayCycle,
   milkyWay,
+  moon,
+  MoonDirectionalLight,
   NightLightProbe,
-  skyBackground,
   SkyLightProbe,
-  stars,
-  SunDirectionalLight
+  standardAtmosphere,
+  stars
 } from '@welkin/atmosphere'
 import {
   BoxGeometry,
@@ -20,7 +20,8 @@ import {
   SphereGeometry
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { createRenderer, WARM_UP_FRAMES } from './scene'
+import { Air } from './air'
+import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface DayArgs extends RendererArgs {
@@ -37,7 +38,7 @@ export interface DayArgs extends RendererArgs {
   paused: boolean
 }
 
-/** A day and a night in a minute: sun, stars and exposure, from one clock. */
+/** A day and a night in a minute: sun, moon, stars and exposure, from one clock. */
 export async function createDay(
   canvas: HTMLCanvasElement,
   args: DayArgs
@@ -61,28 +62,49 @@ export async function createDay(
   for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
   scene.add(...meshes)
 
-  const atmosphere = new Atmosphere()
-  atmosphere.add(milkyWay(), stars(), airglow())
-  scene.backgroundNode = skyBackground(atmosphere)
-  scene.fogNode = aerialPerspectiveFog(atmosphere)
-  const sun = new SunDirectionalLight(atmosphere, 60)
-  sun.castShadow = true
-  sun.shadow.camera.left = sun.shadow.camera.bottom = -25
-  sun.shadow.camera.right = sun.shadow.camera.top = 25
-  sun.shadow.camera.far = 150
-  sun.shadow.normalBias = 0.03
-  const lights = [sun, new SkyLightProbe(atmosphere), new NightLightProbe(atmosphere)]
-  scene.add(sun.target, ...lights)
+  // #region day
+  const atmosphere = new Atmosphere({ parameters: standardAtmosphere() }) // twilight as it is
+  const luna = moon(atmosphere)
+  atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
+  const moonlight = new MoonDirectionalLight(atmosphere, luna, 50) // 50 m from its target
+  const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
+  const night = new NightLightProbe(atmosphere)
+  moonlight.castShadow = true
+  scene.add(moonlight, moonlight.target, moonlitSky, night)
 
-  const cycle = new DayCycle(atmosphere, { date: new Date('2026-03-21T12:00:00Z'), holdDay: true })
-  const apply = (changes: Partial<DayArgs>): void => {
-    cycle.rate = 86_400 / current.dayLength
-    cycle.daylight = current.daylight
-    cycle.paused = current.paused || current.frame
-    cycle.latitude = current.latitude
-    cycle.season = current.season
-    if (changes.hour !== undefined) cycle.hour = current.hour % 24
+  const cycle = new DayCycle(atmosphere, {
+    rate: 1440, // a day in a minute
+    exposure: { sources: [luna.source] }
+  })
+  // #endregion
+  const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  air.sun.castShadow = true
+  air.sun.distance = 50
+  for (const { shadow } of [air.sun, moonlight]) {
+    shadow.camera.left = shadow.camera.bottom = -25
+    shadow.camera.right = shadow.camera.top = 25
+    shadow.camera.far = 150
+    shadow.normalBias = 0.03
   }
+
+  const apply = (changes: Partial<DayArgs>): void => {
+    const { dayLength, daylight, paused, frame, latitude, season, hour } = {
+      ...current,
+      ...changes
+    }
+    cycle.rate = 86_400 / dayLength
+    cycle.daylight = daylight
+    cycle.paused = paused || frame
+    cycle.latitude = latitude
+    // The clock goes on from where these were set.
+    if (season !== current.season) cycle.season = season
+    if (hour !== current.hour) cycle.hour = hour
+    Object.assign(current, changes)
+  }
+  atmosphere.place({ longitude: 0, latitude: current.latitude })
+  cycle.time = Date.UTC(2026, 2, 21, 12)
+  cycle.season = current.season
+  cycle.hour = current.hour
   apply(current)
 
   let last: number | undefined
@@ -92,8 +114,11 @@ export async function createDay(
     last = now
     camera.updateMatrixWorld()
     // Hidden pages get no frames: time goes on from where it was.
-    cycle.update(Math.min(delta, 0.1), camera)
-    renderer.render(scene, camera)
+    const deltaSeconds = Math.min(delta, 0.1)
+    // #region each frame
+    cycle.update(deltaSeconds, camera) // moves sun, moon and stars, and exposure with them
+    // #endregion
+    air.render()
   }
   let ready: Promise<void> = Promise.resolve()
   return {
@@ -109,10 +134,7 @@ export async function createDay(
       draw()
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = (async () => {
         // One exposure, from the same tables, in every single frame.
         if (current.frame) {
@@ -123,13 +145,12 @@ export async function createDay(
       })()
     },
     update(changes) {
-      Object.assign(current, changes)
       apply(changes)
     },
     dispose() {
       if (controls.domElement !== null) controls.dispose()
-      for (const light of lights) light.dispose()
-      atmosphere.dispose()
+      for (const light of [moonlight, moonlitSky, night]) light.dispose()
+      air.dispose()
       for (const { geometry } of meshes) geometry.dispose()
       material.dispose()
       void renderer.dispose()

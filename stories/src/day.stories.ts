@@ -3,16 +3,24 @@ import { createDay } from './day.scene'
 import type { DayArgs } from './day.scene'
 import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('day.scene.ts', 'day')}
+
+${storyCode('day.scene.ts', 'each frame')}`
 
 const meta: Meta<DayArgs> = {
   title: '24 hours',
-  render: mount(createDay),
+  render: mount(createDay, code),
   argTypes: {
     latitude: { name: 'Latitude [°]', control: { type: 'range', min: -90, max: 90, step: 1 } },
     season: {
       name: 'Season [part of a year]',
       control: { type: 'range', min: 0, max: 0.99, step: 0.01 },
-      description: '0 the equinox of March, 0.25 the solstice of June'
+      description:
+        '0 the equinox of March 2026, 0.25 the solstice of June; the moon is as of the date'
     },
     hour: {
       name: 'Hour [h]',
@@ -50,10 +58,19 @@ export default meta
 type Story = StoryObj<DayArgs>
 
 /** A day and a night in a minute. */
-export const Minute: Story = { name: 'In a minute', tags: ['screenshot'] }
+export const Minute: Story = { name: 'In a minute', tags: ['screenshot', 'webgpu-only'] }
 
 /** Half an hour after sunset. */
-export const Dusk: Story = { args: { hour: 19.4, paused: true }, tags: ['screenshot'] }
+export const Dusk: Story = {
+  args: { hour: 19.4, paused: true },
+  tags: ['screenshot', 'webgpu-only']
+}
 
-/** No moon. */
-export const Night: Story = { args: { hour: 1, paused: true }, tags: ['screenshot'] }
+/** The moon, full the day before, has risen. */
+export const Moonrise: Story = { args: { hour: 21, paused: true }, tags: ['screenshot'] }
+
+/** A fortnight later there is no moon. */
+export const Night: Story = {
+  args: { season: 0.237, hour: 1, paused: true },
+  tags: ['screenshot', 'webgpu-only']
+}

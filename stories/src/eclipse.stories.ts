@@ -3,10 +3,15 @@ import { createEclipse } from './eclipse.scene'
 import type { MoonArgs } from './moon.scene'
 import moonMeta from './moon.stories'
 import { mount } from './mount'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('moon.scene.ts', 'moon')}`
 
 const meta: Meta<MoonArgs> = {
   title: 'Eclipse',
-  render: mount(createEclipse),
+  render: mount(createEclipse, code),
   argTypes: moonMeta.argTypes,
   args: {
     ...moonMeta.args,
@@ -16,8 +21,7 @@ const meta: Meta<MoonArgs> = {
     hour: 18.71,
     target: 'sun',
     fieldOfView: 2.5,
-    exposure: 1,
-    mapSize: 256
+    exposure: 1
   }
 }
 
@@ -29,12 +33,15 @@ type Story = StoryObj<MoonArgs>
 export const Totality: Story = { tags: ['screenshot'] }
 
 /** Ten seconds before totality. */
-export const DiamondRing: Story = { args: { hour: 18.675, exposure: 1 }, tags: ['screenshot'] }
+export const DiamondRing: Story = {
+  args: { hour: 18.675, exposure: 1 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** Half an hour before, through a dark filter. */
 export const Partial: Story = {
-  args: { hour: 18.2, fieldOfView: 1, exposure: -14 },
-  tags: ['screenshot']
+  args: { hour: 18.2, fieldOfView: 1, exposure: -16 },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The land a minute before totality: a hundredth of the sun lights it, as it still stands high. */

@@ -1,13 +1,4 @@
-import {
-  aerialPerspective,
-  aerialPerspectiveFog,
-  Atmosphere,
-  AtmosphereParameters,
-  skyBackground,
-  skyEnvironment,
-  SkyLightProbe,
-  SunDirectionalLight
-} from '@welkin/atmosphere'
+import { skyEnvironment } from '@welkin/atmosphere'
 import {
   BoxGeometry,
   IcosahedronGeometry,
@@ -20,10 +11,9 @@ import {
 } from 'three'
 import type { Material } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { pass } from 'three/tsl'
-import { RenderPipeline } from 'three/webgpu'
+import { Air } from './air'
 import { createWater } from './environment/water'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface EnvironmentArgs extends RendererArgs {
@@ -39,8 +29,6 @@ export interface EnvironmentArgs extends RendererArgs {
 
 /** Past the horizon of a camera a few metres up [m]. */
 const SEA_RADIUS = 20_000
-/** Of the sea, at the four wavelengths: little, and that bluish. */
-const SEA_ALBEDO = [0.07, 0.06, 0.05, 0.04] as const
 
 /** A stone slab in calm water, with metals from polished to matt in front and glass behind. */
 function populate(scene: Scene): Mesh[] {
@@ -95,36 +83,22 @@ export async function createEnvironment(
   controls.update()
 
   const current = { ...args }
-  const parameters = AtmosphereParameters.earth()
-  parameters.set({ groundAlbedo: [...SEA_ALBEDO] })
-  const atmosphere = new Atmosphere({ parameters })
+  const air = new Air(renderer, scene, camera, args.path)
+  const { atmosphere, sun } = air
+  // #region environment
+  atmosphere.parameters.set({ groundAlbedo: [0.07, 0.06, 0.05, 0.04] }) // a dark, bluish sea
+  const environment = skyEnvironment(atmosphere) // without the sun: its light has a highlight
+  scene.environmentNode = environment
+  // #endregion
   const meshes = populate(scene)
   const water = createWater(SEA_RADIUS)
   scene.add(water.mesh)
 
-  const environment = skyEnvironment(atmosphere)
-  scene.environmentNode = environment
-  const sun = new SunDirectionalLight(atmosphere, 50)
-  const sky = new SkyLightProbe(atmosphere)
-  scene.add(sun, sun.target, sky)
-  sun.castShadow = true
   sun.shadow.mapSize.setScalar(2048)
   sun.shadow.camera.left = sun.shadow.camera.bottom = -10
   sun.shadow.camera.right = sun.shadow.camera.top = 10
   sun.shadow.camera.far = 100
   sun.shadow.normalBias = 0.02
-
-  let pipeline: RenderPipeline | undefined
-  if (args.path === 'forward') {
-    scene.backgroundNode = skyBackground(atmosphere)
-    scene.fogNode = aerialPerspectiveFog(atmosphere)
-  } else {
-    const scenePass = pass(scene, camera, { samples: 0 })
-    const color = scenePass.getTextureNode()
-    const depth = scenePass.getTextureNode('depth')
-    pipeline = new RenderPipeline(renderer)
-    pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
-  }
 
   const apply = (): void => {
     atmosphere.setSunAngles(current.elevation, current.azimuth)
@@ -135,17 +109,10 @@ export async function createEnvironment(
   }
   apply()
 
-  const draw = (): void => {
-    if (pipeline === undefined) {
-      renderer.render(scene, camera)
-    } else {
-      pipeline.render()
-    }
-  }
   let ready: Promise<void> = Promise.resolve()
   const warmUp = async (): Promise<void> => {
     for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-      draw()
+      air.render()
     }
   }
   const start = performance.now()
@@ -163,13 +130,10 @@ export async function createEnvironment(
         controls.update()
         water.setTime((performance.now() - start) / 1000)
       }
-      draw()
+      air.render()
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = warmUp()
     },
     update(changes) {
@@ -180,11 +144,8 @@ export async function createEnvironment(
       if (controls.domElement !== null) {
         controls.dispose()
       }
-      sun.dispose()
-      sky.dispose()
       environment.dispose()
-      pipeline?.dispose()
-      atmosphere.dispose()
+      air.dispose()
       water.dispose()
       for (const { geometry, material } of meshes) {
         geometry.dispose()

@@ -3,10 +3,15 @@ import { createEnvironment } from './environment.scene'
 import type { EnvironmentArgs } from './environment.scene'
 import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('environment.scene.ts', 'environment')}`
 
 const meta: Meta<EnvironmentArgs> = {
   title: 'Environment',
-  render: mount(createEnvironment),
+  render: mount(createEnvironment, code),
   argTypes: {
     elevation: {
       name: "Sun's elevation [°]",
@@ -45,7 +50,7 @@ export default meta
 type Story = StoryObj<EnvironmentArgs>
 
 /** Metals from polished to matt, paint, gold, glass and water. */
-export const Day: Story = { tags: ['screenshot'] }
+export const Day: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** The sun stands low ahead: its glow in the sky, in the water and in the metals. */
 export const Sunset: Story = {

@@ -1,18 +1,8 @@
-import type { TilesRenderer } from '3d-tiles-renderer'
-import { GlobeControls } from '3d-tiles-renderer'
-import { Atmosphere, distanceFog, heightFog } from '@welkin/atmosphere'
-import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
-import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
-import { Air } from './air'
-import { createNoiseTexture } from './globe/detailNoise'
-import { createEarthSurface } from './globe/earthSurface'
-import { loadTiles, tilesProgress } from './globe/loadTiles'
+import { distanceFog, heightFog } from '@welkin/atmosphere'
+import { createLand } from './globe/land'
 import type { Place } from './globe/places'
-import { moveCamera } from './globe/places'
-import { aimShadow, prepareShadow } from './globe/sunShadow'
-import { createTerrain } from './globe/terrain'
-import { createRenderer, dateOf, exposureOf, WARM_UP_FRAMES } from './scene'
-import type { RendererArgs, SceneHandle } from './scene'
+import { applyTime } from './scene'
+import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
 /** Where the camera stands and looks. */
 export const VIEWS = {
@@ -50,7 +40,7 @@ export const VIEWS = {
   }
 } satisfies Record<string, Place>
 
-export interface FogValleyArgs extends RendererArgs {
+export interface FogValleyArgs extends RendererArgs, TimeArgs {
   view: keyof typeof VIEWS
   /** Extinction of the mist at its base [1/km]. */
   density: number
@@ -60,141 +50,28 @@ export interface FogValleyArgs extends RendererArgs {
   base: number
   /** Of fog by distance [1/km]. */
   distance: number
-  /** A moment of the day [ms since 1970]. */
-  day: number
-  /** Hour of that day, UTC [h]. */
-  hour: number
-  /** [stops], 0 for daylight. */
-  exposure: number
 }
 
 /** Mist in the valleys along the Jacksboro fault at sunrise: real heights, in ECEF metres. */
-export async function createFogValley(
+export const createFogValley = (
   canvas: HTMLCanvasElement,
   args: FogValleyArgs
-): Promise<SceneHandle<FogValleyArgs>> {
-  const renderer = await createRenderer(canvas, args.forceWebGL)
-  const scene = new Scene()
-  const camera = new PerspectiveCamera(46, 1, 1, 1e6)
-  const noise = createNoiseTexture()
-  const data = new URL('world-data/', document.baseURI)
-  const surface = createEarthSurface(new URL('natural-earth/', data).href, noise)
-  const terrain = createTerrain(new URL('terrain/', data).href, noise)
-  const tilesets: TilesRenderer[] = [surface.tiles, terrain.tiles]
-  const land = new Group()
-  land.add(surface.tiles.group, terrain.tiles.group)
-  scene.add(land)
-
-  const atmosphere = new Atmosphere()
-  atmosphere.frame = 'ecef'
-  const mist = heightFog()
-  const murk = distanceFog()
-  atmosphere.add(murk, mist)
-  const air = new Air(renderer, scene, camera, args.path, atmosphere)
-  prepareShadow(air.sun)
-
-  const controls = new GlobeControls(land, camera, args.frame ? undefined : canvas)
-  controls.setEllipsoid(surface.tiles.ellipsoid, surface.tiles.group)
-  controls.cameraRadius = 1.7
-  controls.enableDamping = true
-  const { pivotMesh } = controls as unknown as { pivotMesh: { material: { visible: boolean } } }
-  // Its GLSL material is not for WebGPURenderer.
-  pivotMesh.material.visible = false
-  for (const tiles of tilesets) {
-    tiles.setCamera(camera)
-  }
-
-  const current = { ...args }
-  const up = new Vector3()
-  let ready: Promise<void> = Promise.resolve()
-  let disposed = false
-
-  const prepare = (): void => {
-    camera.updateMatrixWorld()
-    fitGlobeCamera(camera, { depth: renderer.reversedDepthBuffer ? 'reversed' : 'standard' })
-    for (const tiles of tilesets) {
-      tiles.update()
+): Promise<SceneHandle<FogValleyArgs>> =>
+  createLand(canvas, args, 46, ({ renderer, air }) => {
+    const { atmosphere } = air
+    // #region fog
+    atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
+    const mist = heightFog({ base: 300, falloff: 40, density: 0.006 }) // metres, 1/m: in the valleys
+    const murk = distanceFog({ density: 1 / 8000 }) // 1/m: where the scene ends
+    atmosphere.add(murk, mist)
+    // #endregion
+    return {
+      place: ({ view }) => VIEWS[view],
+      apply(current) {
+        applyTime(renderer, air, current)
+        const { density, falloff, base, distance } = current
+        mist.set({ density: density / 1000, falloff, base })
+        murk.density = distance / 1000
+      }
     }
-  }
-
-  const draw = (): void => {
-    prepare()
-    const altitude = Ellipsoid.WGS84.heightAt(camera.position)
-    Ellipsoid.WGS84.surfaceNormal(camera.position, up)
-    aimShadow(air.sun, camera, Math.max(altitude, 2), up)
-    air.render()
-  }
-
-  const load = (): void => {
-    ready = loadTiles(tilesets, prepare, () => disposed).then(() => {
-      for (let i = 0; current.frame && !disposed && i < WARM_UP_FRAMES; i++) {
-        draw()
-      }
-    })
-    // A failure is reported to whoever awaits `ready`.
-    ready.catch(() => {})
-  }
-
-  const goTo = (view: keyof typeof VIEWS): void => {
-    moveCamera(camera, VIEWS[view])
-    controls.setCamera(camera)
-    load()
-  }
-
-  const apply = (): void => {
-    atmosphere.date = dateOf(current.day, current.hour)
-    renderer.toneMappingExposure = exposureOf(current.exposure)
-    const { density, falloff, base } = current
-    mist.set({ density: density / 1000, falloff, base })
-    murk.density = current.distance / 1000
-  }
-
-  apply()
-  goTo(current.view)
-
-  return {
-    renderer,
-    scene,
-    camera,
-    get ready() {
-      return ready
-    },
-    get progress() {
-      return tilesProgress(tilesets)
-    },
-    render() {
-      if (!current.frame) {
-        controls.update()
-      }
-      draw()
-    },
-    resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
-      for (const tiles of tilesets) {
-        tiles.setResolution(camera, width * pixelRatio, height * pixelRatio)
-      }
-      load()
-    },
-    update(changes) {
-      const view = changes.view ?? current.view
-      const moved = view !== current.view
-      Object.assign(current, changes)
-      apply()
-      if (moved) {
-        goTo(view)
-      }
-    },
-    dispose() {
-      disposed = true
-      controls.dispose()
-      surface.dispose()
-      terrain.dispose()
-      air.dispose()
-      noise.dispose()
-      void renderer.dispose()
-    }
-  }
-}
+  })

@@ -3,10 +3,15 @@ import { createFogValley, VIEWS } from './fogValley.scene'
 import type { FogValleyArgs } from './fogValley.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('fogValley.scene.ts', 'fog')}`
 
 const meta: Meta<FogValleyArgs> = {
   title: 'Fog valley',
-  render: mount(createFogValley),
+  render: mount(createFogValley, code),
   argTypes: {
     view: {
       name: 'Camera',
@@ -61,11 +66,11 @@ export const Sunrise: Story = { tags: ['screenshot'] }
 /** In the middle of it. */
 export const Inside: Story = {
   args: { view: 'floor', base: 342, density: 8, falloff: 25, hour: 12.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The same by the post effect. */
-export const Post: Story = { args: { path: 'post' }, tags: ['screenshot'] }
+export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }
 
 /** Only ridges stand out. */
 export const FromAbove: Story = { args: { view: 'high', hour: 14, exposure: 0 } }

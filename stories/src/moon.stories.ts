@@ -3,10 +3,15 @@ import { createMoon } from './moon.scene'
 import type { MoonArgs } from './moon.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('moon.scene.ts', 'moon')}`
 
 const meta: Meta<MoonArgs> = {
   title: 'Moon phases',
-  render: mount(createMoon),
+  render: mount(createMoon, code),
   argTypes: {
     longitude: {
       name: 'Longitude [°]',
@@ -72,18 +77,21 @@ export default meta
 type Story = StoryObj<MoonArgs>
 
 /** The first quarter of May 2026 in a telescope, libration and tilt as they were. */
-export const FirstQuarter: Story = { args: { exposure: 2.5, mapSize: 256 }, tags: ['screenshot'] }
+export const FirstQuarter: Story = {
+  args: { exposure: 2.5 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** Full, 5 days later: flat, without a dark limb. */
 export const Full: Story = {
-  args: { day: Date.UTC(2026, 4, 31), hour: 23, exposure: 1, mapSize: 256 },
-  tags: ['screenshot']
+  args: { day: Date.UTC(2026, 4, 31), hour: 23, exposure: 1 },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Three days old: the dark part is lit by the Earth. */
 export const Earthshine: Story = {
-  args: { day: Date.UTC(2026, 4, 19), hour: 20.25, exposure: 9.5, mapSize: 256 },
-  tags: ['screenshot']
+  args: { day: Date.UTC(2026, 4, 19), hour: 20.25, exposure: 9.5 },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** A night of full moon: sky, haze and shadows by its light alone. */
@@ -94,8 +102,7 @@ export const MoonlitNight: Story = {
     fieldOfView: 50,
     lower: 12,
     exposure: 17,
-    lights: 'moon',
-    mapSize: 256
+    lights: 'moon'
   },
   tags: ['screenshot']
 }

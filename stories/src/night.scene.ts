@@ -24,7 +24,7 @@ import {
 } from 'three'
 import { CONSTELLATIONS } from './night/constellations'
 import type { Constellation, ConstellationName } from './night/constellations'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface NightArgs extends RendererArgs {
@@ -65,11 +65,13 @@ export async function createNight(
   lines.frustumCulled = false
   scene.add(ground, house, lines)
 
+  // #region night
   const atmosphere = new Atmosphere()
-  atmosphere.add(milkyWay(), stars(), airglow())
-  scene.backgroundNode = skyBackground(atmosphere)
-  const night = new NightLightProbe(atmosphere)
+  atmosphere.add(milkyWay(), stars(), airglow()) // far before near
+  const night = new NightLightProbe(atmosphere) // nights are dark, not black
   scene.add(night)
+  scene.backgroundNode = skyBackground(atmosphere)
+  // #endregion
 
   const toWorld = new Matrix4()
   const direction = (ascension: number, declination: number): Vector3 => {
@@ -109,8 +111,10 @@ export async function createNight(
     house.position.set(middle.x, 0, middle.z).setLength(25).setY(2)
     house.position.x += 9
     lines.visible = current.chart
-    const exposure = exposureFor(atmosphere, camera) * exposureOf(current.exposure)
-    atmosphere.luminanceScale = 1e-4 * exposure
+    // #region night exposure
+    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // as the camera moves
+    // #endregion
+    atmosphere.luminanceScale *= exposureOf(current.exposure)
     lines.material.color.set('#3d6f96')
   }
   apply()
@@ -127,10 +131,7 @@ export async function createNight(
     progress: 1,
     render: draw,
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = (async () => {
         for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
       })()

@@ -3,12 +3,14 @@ import {
   Atmosphere,
   exposureFor,
   milkyWay,
+  planetGround,
   skyBackground,
   stars
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { earthPictures } from './globe/earthPictures'
+import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface OrbitArgs extends RendererArgs {
@@ -31,11 +33,15 @@ export async function createOrbit(
   const scene = new Scene()
   const camera = new PerspectiveCamera(args.fieldOfView, 1, 10, 1e8)
   const current = { ...args }
+  const pictures = await earthPictures()
+  // #region orbit
   const atmosphere = new Atmosphere()
-  atmosphere.frame = 'ecef'
+  atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
   atmosphere.date = new Date('2026-06-20T23:00:00Z')
-  atmosphere.add(milkyWay(), stars(), airglow())
+  const ground = planetGround({ ...pictures, nightLuminance: 0.02 }) // surface, water, nightLights
+  atmosphere.add(milkyWay(), stars(), ground, airglow()) // far before near
   scene.backgroundNode = skyBackground(atmosphere)
+  // #endregion
 
   const apply = (): void => {
     const angle = (current.angle * Math.PI) / 180
@@ -55,8 +61,10 @@ export async function createOrbit(
     camera.fov = current.fieldOfView
     camera.updateProjectionMatrix()
     camera.updateMatrixWorld()
-    atmosphere.luminanceScale =
-      1e-4 * exposureFor(atmosphere, camera) * exposureOf(current.exposure)
+    // #region orbit exposure
+    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // as the camera moves
+    // #endregion
+    atmosphere.luminanceScale *= exposureOf(current.exposure)
   }
   apply()
 
@@ -72,10 +80,7 @@ export async function createOrbit(
     progress: 1,
     render: draw,
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = (async () => {
         await atmosphere.bake(renderer)
         apply()
@@ -88,6 +93,7 @@ export async function createOrbit(
     },
     dispose() {
       atmosphere.dispose()
+      for (const picture of Object.values(pictures)) picture.dispose()
       void renderer.dispose()
     }
   }

@@ -3,10 +3,15 @@ import { mount } from './mount'
 import { createOrbit } from './orbit.scene'
 import type { OrbitArgs } from './orbit.scene'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('orbit.scene.ts', 'orbit')}
+
+${storyCode('orbit.scene.ts', 'orbit exposure')}`
 
 const meta: Meta<OrbitArgs> = {
   title: 'Low Earth orbit',
-  render: mount(createOrbit),
+  render: mount(createOrbit, code),
   argTypes: {
     altitude: {
       name: 'Altitude [km]',
@@ -28,7 +33,8 @@ const meta: Meta<OrbitArgs> = {
       control: { type: 'range', min: -8, max: 8, step: 0.25 },
       description: '0 as exposureFor says'
     },
-    ...rendererArgTypes
+    ...rendererArgTypes,
+    path: { table: { disable: true } }
   },
   args: {
     altitude: 410,
@@ -49,4 +55,7 @@ type Story = StoryObj<OrbitArgs>
 export const Night: Story = { tags: ['screenshot'] }
 
 /** The sun is about to rise ahead. */
-export const Dawn: Story = { args: { angle: 248, exposure: -6 }, tags: ['screenshot'] }
+export const Dawn: Story = {
+  args: { angle: 248, exposure: -9.5, fieldOfView: 30 },
+  tags: ['screenshot', 'webgpu-only']
+}

@@ -8,9 +8,9 @@ import {
   venusAtmosphere
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
-import { PerspectiveCamera, RepeatWrapping, Scene, SRGBColorSpace, TextureLoader } from 'three'
-import type { Texture } from 'three'
+import { PerspectiveCamera, Scene } from 'three'
 import { Air } from './air'
+import { earthPictures } from './globe/earthPictures'
 import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -43,39 +43,6 @@ function daylight(parameters: AtmosphereParameters): number {
   return new AtmosphereParameters().solarIrradiance[1] / parameters.solarIrradiance[1]
 }
 
-function parametersOf({ planet, dust }: PlanetsArgs): AtmosphereParameters {
-  switch (planet) {
-    case 'mars':
-      return marsAtmosphere({ dust })
-    case 'titan':
-      return titanAtmosphere()
-    case 'venus':
-      return venusAtmosphere()
-    case 'moon':
-      return airlessBody()
-    default:
-      return new AtmosphereParameters()
-  }
-}
-
-/** The Earth's colours, water and night lights. */
-async function earthPictures(): Promise<Record<'surface' | 'water' | 'nightLights', Texture>> {
-  const folder = new URL('world-data/earth/', document.baseURI).href
-  const load = async (name: string, isColor: boolean): Promise<Texture> => {
-    const picture = await new TextureLoader().loadAsync(folder + name)
-    if (isColor) picture.colorSpace = SRGBColorSpace
-    picture.wrapS = RepeatWrapping
-    picture.anisotropy = 8
-    return picture
-  }
-  const [surface, water, nightLights] = await Promise.all([
-    load('earth-blue-marble.jpg', true),
-    load('earth-water.png', false),
-    load('earth-night.jpg', true)
-  ])
-  return { surface, water, nightLights }
-}
-
 /** A planet's sky and ground from 2 m to orbit, with nothing else in the scene. */
 export async function createPlanets(
   canvas: HTMLCanvasElement,
@@ -91,15 +58,27 @@ export async function createPlanets(
   let ready: Promise<void> = Promise.resolve()
 
   const show = async (): Promise<void> => {
-    const parameters = parametersOf(current)
-    const { bottomRadius } = parameters
-    const isEarth = current.planet === 'earth'
-    const ellipsoid = isEarth ? Ellipsoid.WGS84 : new Ellipsoid(bottomRadius, bottomRadius)
+    const { planet, dust } = current
+    // #region planets
+    const parameters = {
+      earth: AtmosphereParameters.earth(),
+      'made-up': AtmosphereParameters.earth(),
+      mars: marsAtmosphere({ dust }), // its optical depth
+      titan: titanAtmosphere(),
+      venus: venusAtmosphere(), // above its clouds
+      moon: airlessBody()
+    }[planet]
+    const radius = parameters.bottomRadius
+    const ellipsoid = planet === 'earth' ? Ellipsoid.WGS84 : new Ellipsoid(radius, radius)
     const atmosphere = new Atmosphere({ parameters, ellipsoid })
-    if (isEarth || current.planet === 'made-up') {
-      const ground = planetGround(isEarth ? pictures : { seed: 3 })
+    // #endregion
+    if (planet === 'earth' || planet === 'made-up') {
+      const options = planet === 'earth' ? pictures : { seed: 3 }
+      // #region planet's ground
+      const ground = planetGround(options) // pictures: { surface, water, nightLights }; none are needed
       atmosphere.add(ground)
       parameters.set({ groundAlbedo: await ground.meanAlbedo(renderer, parameters) })
+      // #endregion
     }
     shown?.air.dispose()
     const air = new Air(renderer, scene, camera, args.path, atmosphere)

@@ -3,6 +3,7 @@ import { mount } from './mount'
 import { createPlanets } from './planets.scene'
 import type { PlanetsArgs } from './planets.scene'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 
 const range = (name: string, min: number, max: number, step: number, description: string) => ({
   name,
@@ -10,9 +11,13 @@ const range = (name: string, min: number, max: number, step: number, description
   control: { type: 'range' as const, min, max, step }
 })
 
+const code = `${storyCode('planets.scene.ts', 'planets')}
+
+${storyCode('planets.scene.ts', "planet's ground")}`
+
 const meta: Meta<PlanetsArgs> = {
   title: 'Planets',
-  render: mount(createPlanets),
+  render: mount(createPlanets, code),
   argTypes: {
     planet: {
       name: 'Planet',
@@ -62,17 +67,17 @@ export default meta
 
 type Story = StoryObj<PlanetsArgs>
 
-export const MarsNoon: Story = { tags: ['screenshot'] }
+export const MarsNoon: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Dust throws blue light closer to the sun than red. */
 export const MarsSunset: Story = {
-  args: { sunElevation: 4, sunAzimuth: 0, pitch: 6, fieldOfView: 45, exposure: -1 },
+  args: { sunElevation: 3, sunAzimuth: 0, pitch: 8, fieldOfView: 55, exposure: -3, dust: 0.3 },
   tags: ['screenshot']
 }
 
 export const Titan: Story = {
   args: { planet: 'titan', height: 6e6, pitch: -90, sunElevation: 10, exposure: -0.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const TitanGround: Story = { args: { planet: 'titan', sunElevation: 40, exposure: 1 } }
@@ -85,8 +90,8 @@ export const MoonGround: Story = { args: { planet: 'moon', sunElevation: 15, sun
 
 /** Land and sea from pictures; the sun glints on the sea. */
 export const Earth: Story = {
-  args: { planet: 'earth', height: 1.2e7, pitch: -90, sunElevation: 35, exposure: -1 },
-  tags: ['screenshot']
+  args: { planet: 'earth', height: 1.2e7, pitch: -90, sunElevation: 35, exposure: -2 },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const EarthNight: Story = {
@@ -103,13 +108,13 @@ export const LowOrbit: Story = {
     pitch: -25,
     sunElevation: 35,
     sunAzimuth: 25,
-    exposure: -1
+    exposure: -2
   },
   tags: ['screenshot']
 }
 
 /** No picture at all: continents are made up. */
 export const MadeUp: Story = {
-  args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -1 },
-  tags: ['screenshot']
+  args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -2 },
+  tags: ['screenshot', 'webgpu-only']
 }

@@ -18,8 +18,10 @@ import {
   SphereGeometry,
   Vector3
 } from 'three'
+import type { Texture } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { earthPictures } from './globe/earthPictures'
+import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface ShellArgs extends RendererArgs {
@@ -37,8 +39,18 @@ export interface ShellArgs extends RendererArgs {
 /** Sunlight on a plane that faces it [lx], as bright as the sky's tables have it at scale 1e-4. */
 const SUNLIGHT = 13
 
+/** How far bodies are turned, for Africa to face the map's camera [radians]. */
+const LONGITUDE = -1.6
+
 /** A kilometre in the cockpit's world [world units]. */
 const KILOMETER = 1
+
+/** A sphere of radius 1; or what can be seen of it from 400 km over its pole, in faces that are flat to metres. */
+function globeGeometry(view: ShellArgs['view']): SphereGeometry {
+  return view === 'map'
+    ? new SphereGeometry(1, 256, 128)
+    : new SphereGeometry(1, 512, 256, 0, 2 * Math.PI, 0, 0.4)
+}
 
 /** Bodies with shells of air, and no sky, no background, no post pass. */
 export async function createShell(
@@ -51,6 +63,8 @@ export async function createShell(
   const camera = new PerspectiveCamera(45, 1, 0.001, 1e5)
   const light = new DirectionalLight(0xffffff, SUNLIGHT)
   scene.add(light, light.target)
+  const { model } = args
+  const earth = args.view === 'map' ? await earthPictures() : null
   const meshes: Mesh[] = []
   const shells: AtmosphereShell[] = []
 
@@ -58,26 +72,29 @@ export async function createShell(
     parameters: AtmosphereParameters,
     radius: number,
     position: Vector3,
-    color: string
+    color: string,
+    map: Texture | null = null
   ): void => {
     const ball = new Mesh(
-      args.view === 'map' ? new SphereGeometry(1, 128, 64) : new SphereGeometry(1, 512, 256),
-      new MeshStandardMaterial({ color, roughness: 1 })
+      globeGeometry(args.view),
+      new MeshStandardMaterial({ color, map, roughness: 1 })
     )
     ball.scale.setScalar(radius)
     ball.position.copy(position)
+    ball.rotation.y = LONGITUDE
     meshes.push(ball)
     scene.add(ball)
-    const shell = atmosphereShell(parameters, 1, { sun: light, model: args.model })
-    if (shell === null) return
-    shells.push(shell)
-    ball.add(shell)
+    // #region shell
+    const shell = atmosphereShell(parameters, 1, { sun: light, model }) // null for a body without air
+    if (shell !== null) ball.add(shell) // a mesh whose geometry has radius 1, of any scale
+    // #endregion
+    if (shell !== null) shells.push(shell)
   }
 
   const cockpit = new Group()
   const build = (): void => {
     if (args.view === 'map') {
-      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#24445c')
+      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#ffffff', earth?.surface)
       add(marsAtmosphere(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
       add(titanAtmosphere(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
       add(airlessBody(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
@@ -92,8 +109,8 @@ export async function createShell(
     const frame = new MeshStandardMaterial({ color: '#1b1d20', roughness: 0.6 })
     for (const [x, y, z, width, height, turn] of [
       [0, -0.5, -0.9, 2.6, 0.35, 0],
-      [-0.62, 0.1, -0.9, 0.06, 1.3, 0.35],
-      [0.62, 0.1, -0.9, 0.06, 1.3, -0.35]
+      [-0.62, 0.1, -0.91, 0.06, 1.3, 0.35],
+      [0.62, 0.1, -0.91, 0.06, 1.3, -0.35]
     ]) {
       const part = new Mesh(new BoxGeometry(width, height, 0.05), frame)
       part.position.set(x, y, z)
@@ -142,10 +159,7 @@ export async function createShell(
       renderer.render(scene, camera)
     },
     resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = Promise.resolve().then(() => {
         for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) renderer.render(scene, camera)
       })
@@ -161,6 +175,7 @@ export async function createShell(
         geometry.dispose()
         ;(material as MeshStandardMaterial).dispose()
       }
+      for (const picture of Object.values(earth ?? {})) picture.dispose()
       light.dispose()
       void renderer.dispose()
     }

@@ -3,10 +3,11 @@ import { mount } from './mount'
 import { createShell } from './shell.scene'
 import type { ShellArgs } from './shell.scene'
 import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
 
 const meta: Meta<ShellArgs> = {
   title: 'Shell',
-  render: mount(createShell),
+  render: mount(createShell, storyCode('shell.scene.ts', 'shell')),
   argTypes: {
     view: { name: 'View', table: { disable: true } },
     model: {
@@ -50,10 +51,13 @@ export default meta
 type Story = StoryObj<ShellArgs>
 
 /** Three bodies with air and one without. */
-export const Map: Story = {}
+export const Map: Story = { tags: ['screenshot'] }
 
 /** From inside: the cockpit is not hazed, the ground is. */
-export const Cockpit: Story = { args: { view: 'cockpit', sun: 12 }, tags: ['screenshot'] }
+export const Cockpit: Story = {
+  args: { view: 'cockpit', sun: 12 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 export const CockpitInSpace: Story = {
   args: { view: 'cockpit', sun: 20, height: 300_000 }

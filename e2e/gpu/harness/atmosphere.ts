@@ -38,6 +38,8 @@ export interface PostPath {
   /** Draws to the renderer's target or canvas; anew only in a new frame of the page. */
   render: () => void
   draw: () => Promise<Picture>
+  /** Compiles it anew. */
+  refresh: () => void
   dispose: () => void
 }
 
@@ -61,6 +63,9 @@ export function postPath(
     async draw() {
       await nextFrame()
       return drawToFloat(renderer, () => pipeline.render())
+    },
+    refresh() {
+      pipeline.needsUpdate = true
     },
     dispose() {
       scenePass.dispose()

@@ -5,10 +5,10 @@ import type { Node, WebGPURenderer } from 'three/webgpu'
 import { eyeScalars } from '../../../packages/atmosphere/src/cpu/eye'
 import { groundIrradiance } from '../../../packages/atmosphere/src/tsl/diffuseLight'
 import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/tsl/marchedAir'
-import { scatteredRadiance } from '../../../packages/atmosphere/src/tsl/scattering'
 import {
   rayLimits,
   rayTargets,
+  aimAt,
   sampleSky,
   sampleVolume
 } from '../../../packages/atmosphere/src/tsl/skyVolume'
@@ -34,17 +34,17 @@ function skyRadiance({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes)
   const { cosView, cosViewSun } = ray
   const { uniforms } = air
   if (path === 'volume') {
-    const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
-    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
-    return scatteredRadiance(uniforms, light, cosViewSun).mul(meetsAir.select(1, 0))
+    const { hitsGround, meetsAir } = rayTargets(eye, cosView)
+    const light = sampleSky(uniforms, volume, eye, aimAt(eye, cosView, hitsGround), cosViewSun)
+    return light.mul(meetsAir.select(1, 0))
   }
-  const limits = rayLimits(uniforms, eye, cosView)
+  const limits = rayLimits(eye, cosView)
   return marchedSky(air, eye, cosView, cosViewSun, limits, MARCH_STEPS)
 }
 
 function airInSegment({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes) {
   const { cosView, cosViewSun, distance } = ray
-  const limits = rayLimits(air.uniforms, eye, cosView)
+  const limits = rayLimits(eye, cosView)
   return path === 'volume'
     ? sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
     : marchedAir(air, eye, cosView, cosViewSun, limits, distance, MARCH_STEPS)
@@ -74,9 +74,7 @@ async function evaluateRays(
     )
   const batches = {
     sky: batch(sky, ray => skyRadiance(view, path, ray)),
-    inscatter: batch(segments, ray =>
-      scatteredRadiance(view.air.uniforms, airInSegment(view, path, ray), ray.cosViewSun)
-    ),
+    inscatter: batch(segments, ray => airInSegment(view, path, ray).radiance),
     transmittance: batch(segments, ray => airInSegment(view, path, ray).depth.negate().exp())
   }
   eyes.forEach(({ altitude, cosSun }, i) => {

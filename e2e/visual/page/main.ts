@@ -26,8 +26,8 @@ export interface Shot {
 }
 
 export interface VisualPage {
-  /** Stories with the tag `screenshot`, per file. */
-  list: () => Promise<{ file: string; story: string }[]>
+  /** Stories with the tag `screenshot`, per file; those with `webgpu-only` are not taken on WebGL. */
+  list: () => Promise<{ file: string; story: string; isWebGPUOnly: boolean }[]>
   shoot: (file: string, story: string, backend: Backend) => Promise<Shot>
 }
 
@@ -54,14 +54,15 @@ async function findCreate(file: string): Promise<CreateScene> {
 
 window.welkinVisual = {
   async list() {
-    const found: { file: string; story: string }[] = []
+    const found: { file: string; story: string; isWebGPUOnly: boolean }[] = []
     for (const name of Object.keys(modules).filter(key => key.endsWith('.stories'))) {
       const { default: meta, ...stories } = await load(name)
       const inherited = (meta as Story).tags ?? []
       for (const [story, value] of Object.entries(stories)) {
         const tags = new Set([...inherited, ...((value as Story).tags ?? [])])
         if (tags.has('screenshot') && !tags.has('!screenshot')) {
-          found.push({ file: name.replace('.stories', ''), story })
+          const isWebGPUOnly = tags.has('webgpu-only')
+          found.push({ file: name.replace('.stories', ''), story, isWebGPUOnly })
         }
       }
     }

@@ -1,4 +1,5 @@
-// How well four wavelengths and the Earth's `spectralToXYZ` stand for 35 wavelengths on other planets.
+// How well four wavelengths and the Earth's `spectralToXYZ` stand for 35 wavelengths on other planets
+// and in the standard atmosphere.
 // Run it with: npx tsx packages/atmosphere/scripts/planet-color.ts
 import { ciede2000, xyzToLab } from '../../../e2e/validate/color-difference'
 import { rayFromAngles } from '../../../e2e/validate/request'
@@ -8,7 +9,8 @@ import type { Triple } from '../src/cpu/color'
 import { skyRadiance } from '../src/cpu/scattering'
 import { solveDiffuseLight } from '../src/cpu/solveDiffuseLight'
 import { marsAtmosphere, titanAtmosphere, venusAtmosphere } from '../src/planets'
-import { spectrumToXYZ, sunlight, wavelengths } from './spectra'
+import { standardAtmosphere } from '../src/standardAtmosphere'
+import { spectrumToXYZ, standardAt, sunlight, wavelengths } from './spectra'
 
 /** A value at any wavelength from those at four: straight lines, carried on beyond the ends. */
 function between(from: Spectrum, values: Spectrum, nm: number): number {
@@ -53,20 +55,28 @@ const quality = {
   diffuse: { elevations: 6, azimuths: 5, steps: 4 }
 }
 
-for (const [name, planet] of Object.entries({
-  Mars: marsAtmosphere(),
-  Titan: titanAtmosphere(),
-  Venus: venusAtmosphere()
-})) {
+const DAY = [20, 60, 80, 86]
+
+for (const { name, planet, suns = DAY, atWavelengths = at } of [
+  { name: 'Mars', planet: marsAtmosphere() },
+  { name: 'Titan', planet: titanAtmosphere() },
+  { name: 'Venus', planet: venusAtmosphere() },
+  {
+    name: 'Standard',
+    planet: standardAtmosphere(),
+    suns: [...DAY, 90, 93, 96],
+    atWavelengths: (_: AtmosphereParameters, nm: readonly number[]) => standardAt(nm)
+  }
+]) {
   const scale = planet.solarIrradiance[1] / new AtmosphereParameters().solarIrradiance[1]
   const parts = wavelengths.flatMap((_, i) => {
     if (i % 4 !== 0) return []
-    const p = at(planet, wavelengths.slice(i, i + 4))
+    const p = atWavelengths(planet, wavelengths.slice(i, i + 4))
     return [{ p, light: solveDiffuseLight(p, quality) }]
   })
   const light = solveDiffuseLight(planet, quality)
   const differences: number[] = []
-  for (const sun of [20, 60, 80, 86]) {
+  for (const sun of suns) {
     const skies = [5, 40, 70, 85, 100, 150].flatMap(view =>
       [0, 30, 90, 180].map(azimuth => {
         const ray = rayFromAngles(0.002, view, sun, azimuth)

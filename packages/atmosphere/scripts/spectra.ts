@@ -1,6 +1,11 @@
 import { readFileSync } from 'node:fs'
 import { AtmosphereParameters, type Spectrum } from '../src/AtmosphereParameters'
 import type { Triple } from '../src/cpu/color'
+import {
+  ANGSTROM_EXPONENT,
+  rayleighCrossSection,
+  standardAtmosphere
+} from '../src/standardAtmosphere'
 
 const spectra = JSON.parse(
   readFileSync(new URL('../../../e2e/reference/spectra.json', import.meta.url), 'utf8')
@@ -42,12 +47,16 @@ export function spectrumToXYZ(values: readonly number[]): Triple {
   ) as Triple
 }
 
+const ozone = (nm: number): number =>
+  lookUp(spectra.ozone_cross_section_m2, spectra.wavelengths_nm, nm)
+
+const spectrumAt = (nm: readonly number[], f: (nm: number) => number): Spectrum =>
+  nm.map(f) as unknown as Spectrum
+
 /** The Earth's default air at four of {@link wavelengths}. */
 export function earthAt(nm: readonly number[], groundAlbedo = 0.1): AtmosphereParameters {
   const earth = new AtmosphereParameters()
-  const spectrum = (f: (nm: number) => number): Spectrum => nm.map(f) as unknown as Spectrum
-  const ozone = (nm: number): number =>
-    lookUp(spectra.ozone_cross_section_m2, spectra.wavelengths_nm, nm)
+  const spectrum = (f: (nm: number) => number): Spectrum => spectrumAt(nm, f)
   return new AtmosphereParameters({
     wavelengths: spectrum(x => x),
     solarIrradiance: spectrum(solarIrradiance),
@@ -58,5 +67,26 @@ export function earthAt(nm: readonly number[], groundAlbedo = 0.1): AtmospherePa
       x => (earth.absorptionExtinction[0] * ozone(x)) / ozone(earth.wavelengths[0])
     ),
     groundAlbedo: spectrum(() => groundAlbedo)
+  })
+}
+
+/** Air of `standardAtmosphere` at four of {@link wavelengths}. */
+export function standardAt(nm: readonly number[]): AtmosphereParameters {
+  const air = standardAtmosphere()
+  const [first] = air.wavelengths
+  const aerosols = (x: number): number => (x / first) ** -ANGSTROM_EXPONENT
+  return air.set({
+    wavelengths: spectrumAt(nm, x => x),
+    solarIrradiance: spectrumAt(nm, solarIrradiance),
+    rayleighScattering: spectrumAt(
+      nm,
+      x => (air.rayleighScattering[0] * rayleighCrossSection(x)) / rayleighCrossSection(first)
+    ),
+    mieScattering: spectrumAt(nm, x => air.mieScattering[0] * aerosols(x)),
+    mieExtinction: spectrumAt(nm, x => air.mieExtinction[0] * aerosols(x)),
+    absorptionExtinction: spectrumAt(
+      nm,
+      x => (air.absorptionExtinction[0] * ozone(x)) / ozone(first)
+    )
   })
 }

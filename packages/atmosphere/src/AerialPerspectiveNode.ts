@@ -96,7 +96,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
       const isSky = isBackgroundDepth(depth).toConst()
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
-      const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray)
+      const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
       If(isSky.not(), () => {
         const at = isLogarithmic
           ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
@@ -108,7 +108,8 @@ export class AerialPerspectiveNode extends AtmosphereNode {
       if (this.showSky) {
         // Silhouettes (with multisampling) and transparent things leave their coverage in alpha.
         If(isSky.or(color.a.lessThan(1)), () => {
-          const sky = skyColor(this.view, ray, this.showSun ? pixel : null)
+          const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
+          const sky = skyColor(this.view, direction, this.showSun ? pixel : null)
           result.addAssign(sky.mul(color.a.oneMinus()))
         })
       }

@@ -1,12 +1,13 @@
 import { Vector4 } from 'three'
-import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import { checkNonNegative } from '@welkin/geo'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
-import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
+import { checkOptions, checkRange, checkSpectrum } from './check'
+import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from './SkyLayer'
 import { ofLuminance } from './stars/starColor'
-import { glowGains } from './tsl/airglow'
-import { skyTransmittance } from './tsl/skyVolume'
-import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
+import { glowGains, overheadGain } from './tsl/airglow'
+import type { Bool, Float, Vec4 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 
 /** Options of {@link Airglow}. */
@@ -36,6 +37,9 @@ const DOME = 1.71
  */
 const SCATTERED = DOME / 2
 
+/** Standard deviations below its middle from where the layer is as thin as a shell, within 0.4 %. */
+const MARGIN = 10
+
 /**
  * Airglow: the upper air's own light. From the ground a faint even light that brightens towards the
  * horizon; from orbit a thin greenish line above the limb.
@@ -55,96 +59,116 @@ export class Airglow implements SkyLayer {
   /** Luminance straight through the layer [cd/m²]. */
   readonly luminance: number
   readonly #spectrum: Spectrum
-  readonly #altitude
-  readonly #width
+  readonly #layer
   /** Radiance straight through the layer, over `solarIrradiance`. */
   readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
-  /** Multiplies the physical brightness, ≥ 0. */
-  intensity = 1
+  /** Green light of the air that hides it. */
+  readonly #drowns = uniform(0).setGroup(renderGroup)
+  /** 0 where all of the layer is far above the eye, else 1. */
+  readonly #isAround = uniform(0).setGroup(renderGroup)
+  #intensity = 1
+  #version = 0
 
   /** @throws If an option is out of range. */
-  constructor({
-    luminance = 1e-4,
-    altitude = 96_000,
-    width = 4000,
-    spectrum = GREENISH
-  }: AirglowOptions = {}) {
-    check('luminance', luminance, 0, 1e9)
-    check('altitude', altitude, 1, 1e7)
-    check('width', width, 1, 1e6)
-    if (spectrum.length !== 4) {
-      throw new Error(`Airglow: spectrum must have 4 values, got ${spectrum.length}`)
-    }
-    spectrum.forEach((value, i) => check(`spectrum[${i}]`, value, 0, 1e9))
+  constructor(options: AirglowOptions = {}) {
+    const {
+      luminance = 1e-4,
+      altitude = 96_000,
+      width = 4000,
+      spectrum = GREENISH
+    } = checkOptions('Airglow', options)
+    checkRange('Airglow', 'luminance', luminance, 0, 1e9)
+    checkRange('Airglow', 'altitude', altitude, 1, 1e7)
+    checkRange('Airglow', 'width', width, 1, 1e6)
+    checkSpectrum('Airglow', 'spectrum', spectrum, 1e9)
     this.luminance = luminance
     this.#spectrum = spectrum
-    this.#altitude = uniform(altitude).setGroup(renderGroup)
-    this.#width = uniform(width).setGroup(renderGroup)
+    this.#layer = {
+      altitude: uniform(altitude).setGroup(renderGroup),
+      width: uniform(width).setGroup(renderGroup)
+    }
   }
 
-  update({ atmosphere: { parameters } }: AtmosphereView): void {
+  /** Multiplies the physical brightness, finite, ≥ 0. */
+  get intensity(): number {
+    return this.#intensity
+  }
+
+  set intensity(value: number) {
+    checkNonNegative('Airglow', 'intensity', value)
+    if (value !== this.#intensity) this.#version++
+    this.#intensity = value
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
+  }
+
+  update({ atmosphere: { parameters }, height }: AtmosphereView): void {
     const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
-    const luminance = this.luminance * Math.max(this.intensity, 0)
+    const luminance = this.luminance * this.intensity
     this.#radiance.value.fromArray(ofLuminance(parameters, values, luminance))
+    this.#drowns.value = this.#radiance.value.y * DROWNS
+    const { altitude, width } = this.#layer
+    this.#isAround.value = height < altitude.value - MARGIN * width.value ? 0 : 1
   }
 
   #gains(view: ViewNodes, cosView: Float, distance: Float | null): { down: Float; up: Float } {
-    const layer = { altitude: this.#altitude as Float, width: this.#width as Float }
     const { bottomRadius } = view.air.uniforms
-    return glowGains(layer, view.height, cosView, bottomRadius, distance)
+    return glowGains(this.#layer, view.height, cosView, bottomRadius, distance)
   }
 
   /** By day it is less than a thousandth of the sky. */
   #isSeen(airlight: Vec4): Bool {
-    return airlight.y.lessThan(this.#radiance.y.mul(DROWNS))
+    return airlight.y.lessThan(this.#drowns)
   }
 
   /** The layer beyond the air below it. */
   beyond({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
     const light = farther.toVar()
     If(this.#isSeen(airlight), () => {
-      light.addAssign(vec4(this.#radiance.mul(this.#gains(view, cosView, null).up)))
+      const gain = float(0).toVar()
+      If(this.#isAround.equal(0), () => {
+        const { bottomRadius } = view.air.uniforms
+        gain.assign(overheadGain(this.#layer, view.height, cosView, bottomRadius))
+      }).Else(() => {
+        gain.assign(this.#gains(view, cosView, null).up)
+      })
+      light.addAssign(this.#radiance.mul(gain))
     })
     return light
   }
 
-  /** The layer in front of that air, from above; its light scattered in the air, and the ground in it. */
-  glow({ view, cosView, hitsGround, airlight }: SkyRay): Vec4 {
-    const light = vec4(0).toVar()
-    If(this.#isSeen(airlight), () => {
-      const { down } = this.#gains(view, cosView, null)
-      const { uniforms } = view.air
-      const through = skyTransmittance(
-        uniforms,
-        view.volume,
-        view.eye,
-        cosView,
-        hitsGround
-      ).toConst()
-      const ground = uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
-      const air = through.oneMinus().mul(SCATTERED)
-      light.assign(vec4(this.#radiance.mul(ground.mul(through).add(air).add(down))))
+  /** The layer in front of that air, from above. */
+  glow({ view, cosView, airlight }: SkyRay, without: Vec4): Vec4 {
+    const light = without.toVar()
+    If(this.#isAround.greaterThan(0).and(this.#isSeen(airlight)), () => {
+      light.addAssign(this.#radiance.mul(this.#gains(view, cosView, null).down))
     })
     return light
   }
 
-  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
-    const light = vec4(0).toVar()
+  /** Its light scattered in the air, and the ground in it. */
+  below({ view, hitsGround, airlight }: SkyRay): ReturnType<NonNullable<SkyLayer['below']>> {
+    return {
+      isSeen: this.#isSeen(airlight),
+      // The ground's through the air, and the air's.
+      light: through => {
+        const ground = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
+        return vec4(ground.sub(SCATTERED).mul(through).add(SCATTERED).mul(this.#radiance))
+      }
+    }
+  }
+
+  haze({ view, cosView, distance }: HazeLine, without: Vec4): Vec4 {
+    const light = without.toVar()
     // From below there is none of it in front of anything.
-    If(view.height.greaterThan(this.#altitude.sub(this.#width.mul(8))), () => {
-      const offset = view.toMapped(displacementView).toConst()
-      const distance = offset.length().max(1e-3).toConst() as Float
-      const cosView = offset.dot(view.up).div(distance).clamp(-1, 1).toConst() as Float
+    If(this.#isAround.greaterThan(0), () => {
       const { down, up } = this.#gains(view, cosView, distance)
-      light.assign(vec4(this.#radiance.mul(down.add(up))))
+      light.addAssign(this.#radiance.mul(down.add(up)))
     })
     return light
-  }
-}
-
-function check(name: string, value: number, min: number, max: number): void {
-  if (!(value >= min && value <= max)) {
-    throw new Error(`Airglow: ${name} must be in [${min}, ${max}], got ${value}`)
   }
 }
 

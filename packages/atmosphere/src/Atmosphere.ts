@@ -10,9 +10,10 @@ import {
   sunDirectionECEF
 } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
-import { AtmosphereParameters } from './AtmosphereParameters'
+import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 import { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkRange } from './check'
 import { LightSource } from './LightSource'
 import type { SkyLayer } from './SkyLayer'
 import { AtmosphereQuery } from './cpu/AtmosphereQuery'
@@ -25,10 +26,14 @@ export interface AtmosphereOptions {
   parameters?: AtmosphereParameters
   /** The planet's figure; by default WGS84. */
   ellipsoid?: Ellipsoid
+  /** See {@link Atmosphere.flat}; by default false. */
+  flat?: boolean
 }
 
 /** How the scene's world space lies on the planet. */
 export type AtmosphereFrame = 'local' | 'ecef'
+
+const FULL: Spectrum = [1, 1, 1, 1]
 
 const _position = new Vector3()
 const _rotation = new Matrix4()
@@ -74,15 +79,18 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.tables.volumes
   )
   readonly #layers: SkyLayer[] = []
+  #layersVersion = 0
   readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()
   readonly #space = new SphericalSpace()
 
   /** @throws If an option is of the wrong kind. */
-  constructor({
-    parameters = new AtmosphereParameters(),
-    ellipsoid = Ellipsoid.WGS84
-  }: AtmosphereOptions = {}) {
+  constructor(options: AtmosphereOptions = {}) {
     super()
+    const {
+      parameters = new AtmosphereParameters(),
+      ellipsoid = Ellipsoid.WGS84,
+      flat = false
+    } = checkOptions('Atmosphere', options)
     if (!(parameters instanceof AtmosphereParameters)) {
       fail('Atmosphere', 'parameters must be AtmosphereParameters', parameters)
     }
@@ -95,7 +103,33 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     }
     this.parameters = parameters
     this.ellipsoid = ellipsoid
+    this.flat = flat
+    this.sun.irradianceAt = position =>
+      this.#layers.reduce<Spectrum>((light, layer) => {
+        const left = layer.eclipse?.(position)
+        return left ? (light.map((value, i) => value * left[i]) as unknown as Spectrum) : light
+      }, FULL)
     this.#updateFrame()
+  }
+
+  /**
+   * Whether the world is flat: up is +Y wherever the camera goes, and height is y. For scenes with no
+   * planet, however far they reach.
+   *
+   * It looks just as it does at the origin of a round world, the horizon's dip and the reddening of a
+   * low sun included. What the camera sees is hazed and lit as if the ground fell away from it with the
+   * planet's curve: over 10 km by 8 m and 0.1° of the sun's height.
+   */
+  get flat(): boolean {
+    return this.#space.flat
+  }
+
+  set flat(value: boolean) {
+    if (typeof value !== 'boolean') fail('Atmosphere', 'flat must be true or false', value)
+    if (value && this.#frame === 'ecef') {
+      fail('Atmosphere', "flat must be false in the frame 'ecef'", value)
+    }
+    this.#space.flat = value
   }
 
   /** Output of every node per luminance, > 0 [1/(cd/m²)]. */
@@ -148,6 +182,9 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   set frame(value: AtmosphereFrame) {
     if (value !== 'local' && value !== 'ecef') {
       fail('Atmosphere', "frame must be 'local' or 'ecef'", value)
+    }
+    if (value === 'ecef' && this.flat) {
+      fail('Atmosphere', "frame must be 'local' where the world is flat", value)
     }
     this.#frame = value
     this.#updateFrame()
@@ -212,9 +249,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
    */
   setSunAngles(elevation: number, azimuth: number): this {
-    if (!(elevation >= -90 && elevation <= 90)) {
-      fail('Atmosphere', 'elevation must be in [-90, 90]', elevation)
-    }
+    checkRange('Atmosphere', 'elevation', elevation, -90, 90)
     if (!Number.isFinite(azimuth)) fail('Atmosphere', 'azimuth must be finite', azimuth)
     const origin = _position.setFromMatrixPosition(this.worldToECEF)
     if (origin.length() < this.ellipsoid.radii.x / 2) {
@@ -266,14 +301,50 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return this.#layers
   }
 
+  /** Grows whenever {@link layers} change. */
+  get layersVersion(): number {
+    return this.#layersVersion
+  }
+
   /**
-   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near, and
-   * all of it before the first render.
+   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near; what is
+   * there already becomes the nearest.
+   *
+   * Background and fog show it from the next frame on, after compiling their shaders anew. A
+   * `RenderPipeline` that has rendered does so when its `needsUpdate` is set to true, and a node of
+   * yours around background or fog when its own is.
+   *
+   * @returns This atmosphere.
+   * @throws If something is no layer, or made for another atmosphere; then nothing is added.
+   */
+  add(...layers: SkyLayer[]): this {
+    for (const layer of layers) {
+      if (typeof layer !== 'object' || layer === null || Array.isArray(layer)) {
+        fail('Atmosphere', 'layer must be a SkyLayer', layer)
+      }
+      if ((layer.atmosphere ?? this) !== this) {
+        fail('Atmosphere', 'layer must be made for this atmosphere', layer)
+      }
+    }
+    this.remove(...layers)
+    this.#layers.push(...new Set(layers))
+    this.#layersVersion++
+    return this
+  }
+
+  /**
+   * Takes layers out of the sky, as {@link add} puts them in; what is not in it is passed over. It frees
+   * no memory: that is for a layer's `dispose`.
    *
    * @returns This atmosphere.
    */
-  add(...layers: SkyLayer[]): this {
-    this.#layers.push(...layers)
+  remove(...layers: SkyLayer[]): this {
+    for (const layer of layers) {
+      const index = this.#layers.indexOf(layer)
+      if (index < 0) continue
+      this.#layers.splice(index, 1)
+      this.#layersVersion++
+    }
     return this
   }
 
@@ -322,10 +393,13 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return this.query(position).skyIlluminance(position, normal)
   }
 
-  /** Frees all GPU memory. The atmosphere can be used again, from nothing. */
+  /** Frees all GPU memory. The atmosphere and its layers can be used again, from nothing. */
   dispose(): void {
     this.tables.dispose()
-    for (const layer of this.#layers) layer.dispose?.()
+    // Out for now: a moon that is disposed removes itself.
+    const layers = this.#layers.splice(0)
+    for (const layer of layers) layer.dispose?.()
+    this.#layers.push(...layers)
     this.dispatchEvent({ type: 'dispose' })
   }
 }

@@ -39,6 +39,7 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   readonly atmosphere: Atmosphere
   /** What shaders read, as the camera that renders sees it. */
   protected readonly view: ViewNodes
+  #layersVersion = 0
 
   /**
    * @param camera - Camera whose view it is; null for whichever renders.
@@ -54,9 +55,17 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     this.updateType = NodeUpdateType.RENDER
   }
 
-  // Layers are part of the shader.
+  // Layers are part of the shader; the id tells a scene that one sky has taken another's place.
   override customCacheKey(): number {
-    return this.atmosphere.layers.length
+    return 1024 * super.customCacheKey() + (this.atmosphere.layersVersion % 1024)
+  }
+
+  // three keeps a node's key until the node's version changes.
+  override getCacheKey(force?: boolean, ignores?: Set<Node>): number {
+    const { layersVersion } = this.atmosphere
+    if (this.#layersVersion !== layersVersion) this.needsUpdate = true
+    this.#layersVersion = layersVersion
+    return super.getCacheKey(force, ignores)
   }
 
   override updateBefore(frame: NodeFrame): undefined {

@@ -1,4 +1,5 @@
 import { fail } from '@welkin/geo'
+import { checkOptions } from './check'
 
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
@@ -6,10 +7,14 @@ export type Spectrum = readonly [number, number, number, number]
 /** Three rows (X, Y, Z) of four columns, one per wavelength. */
 export type SpectralMatrix = readonly [Spectrum, Spectrum, Spectrum]
 
+/** Layers of air, from the ground up: altitude where one begins, and its scale height [m]. */
+export type ScaleHeightLayers = readonly (readonly [baseAltitude: number, scaleHeight: number])[]
+
 /**
  * What an atmosphere is made of, as plain numbers in SI units; spectra have four values.
  *
- * Molecules and aerosols thin out exponentially, an absorber (on Earth ozone) has the profile of a
+ * Molecules and aerosols thin out exponentially (molecules layer by layer, if there are
+ * {@link AtmosphereParametersInit.rayleighLayers}), an absorber (on Earth ozone) has the profile of a
  * tent, the ground is Lambertian.
  */
 export interface AtmosphereParametersInit {
@@ -27,8 +32,15 @@ export interface AtmosphereParametersInit {
   topRadius?: number
   /** Scattering by molecules at the ground [1/m]. */
   rayleighScattering?: Spectrum
-  /** Height over which molecules thin out by a factor e [m]. */
+  /** Height over which molecules thin out by a factor e; in the lowest layer, if there are more [m]. */
   rayleighScaleHeight?: number
+  /**
+   * Layers above the lowest, in which molecules thin out by a factor e over other heights: at most
+   * three, from the ground up; base altitudes and scale heights in [1, 1e6] [m]. By default none.
+   *
+   * `standardAtmosphere()` has those of the U.S. Standard Atmosphere 1976.
+   */
+  rayleighLayers?: ScaleHeightLayers
   /** Scattering by aerosols at the ground, at most `mieExtinction` [1/m]. */
   mieScattering?: Spectrum
   /** Extinction (scattering and absorption) by aerosols at the ground [1/m]. */
@@ -106,6 +118,7 @@ const FIELDS: {
     1
   ],
   rayleighScaleHeight: [8000, 1, 1e6],
+  rayleighLayers: [[], 1, 1e6],
   mieScattering: [/*#__PURE__*/ all(0.9 * CLEAR_AEROSOL_EXTINCTION), 0, 1],
   mieExtinction: [/*#__PURE__*/ all(CLEAR_AEROSOL_EXTINCTION), 0, 1],
   mieScaleHeight: [1200, 1, 1e6],
@@ -165,6 +178,7 @@ export class AtmosphereParameters {
   declare readonly topRadius: number
   declare readonly rayleighScattering: Spectrum
   declare readonly rayleighScaleHeight: number
+  declare readonly rayleighLayers: ScaleHeightLayers
   declare readonly mieScattering: Spectrum
   declare readonly mieExtinction: Spectrum
   declare readonly mieScaleHeight: number
@@ -181,7 +195,7 @@ export class AtmosphereParameters {
    */
   constructor(init: AtmosphereParametersInit = {}) {
     const earth = Object.entries(FIELDS).map(([name, [value]]) => [name, value])
-    this.set({ ...Object.fromEntries(earth), ...init })
+    this.set(Object.fromEntries(earth)).set(init)
     this.#version = 0
   }
 
@@ -191,7 +205,7 @@ export class AtmosphereParameters {
   }
 
   /**
-   * The Earth's atmosphere from two everyday numbers.
+   * The Earth's atmosphere from two everyday numbers. `standardAtmosphere()` is as bright as the real one.
    *
    * @param options - `turbidity` in [1, 20]: haziness as aerosol optical depth, 1 none, 2 the clear
    *   air of the default, growing in proportion; `ozone` in [0, 1000] [Dobson units], default 300.
@@ -206,7 +220,8 @@ export class AtmosphereParameters {
    *
    * @throws If a number is out of its range; then nothing has changed.
    */
-  setEarth({ turbidity, ozone }: { turbidity?: number; ozone?: number }): this {
+  setEarth(options: { turbidity?: number; ozone?: number }): this {
+    const { turbidity, ozone } = checkOptions(CLASS, options, 'turbidity', 'ozone')
     const init: AtmosphereParametersInit = {}
     if (turbidity !== undefined) {
       check('turbidity', turbidity, 1, 20)
@@ -224,22 +239,33 @@ export class AtmosphereParameters {
   /**
    * Replaces fields. Whoever holds tables made from these parameters re-bakes them.
    *
-   * @param init - The fields to replace; arrays are copied.
+   * @param init - The fields to replace; arrays are copied, undefined changes nothing.
    * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
    */
   set(init: AtmosphereParametersInit): this {
     const next: AtmosphereParametersInit = {}
-    for (const [name, value] of Object.entries(init)) {
+    for (const [name, value] of Object.entries(checkOptions(CLASS, init))) {
+      if (value === undefined) continue
       if (!Object.hasOwn(FIELDS, name)) fail(CLASS, 'fields must be parameters', name)
       const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
       const [earth, least, most] = field
-      // The one field of either kind.
-      const shape = name === 'mieAsymmetry' && Array.isArray(value) ? all(0) : earth
+      // The fields of more than one shape.
+      let shape = name === 'mieAsymmetry' && Array.isArray(value) ? all(0) : earth
+      if (name === 'rayleighLayers') {
+        if (!Array.isArray(value) || value.length > 3) {
+          fail(CLASS, `${name} must be an array of at most 3 layers`, value)
+        }
+        shape = value.map(() => [0, 0])
+      }
       Object.assign(next, { [name]: checkedCopy<unknown>(name, value, shape, least, most) })
     }
     const { bottomRadius = this.bottomRadius, topRadius = this.topRadius } = next
     const { mieScattering = this.mieScattering, mieExtinction = this.mieExtinction } = next
     mieScattering.forEach((value, i) => check('mieScattering', value, 0, mieExtinction[i]))
+    next.rayleighLayers?.reduce((below, [base], i) => {
+      check(`rayleighLayers[${i}][0]`, base, below, 1e6)
+      return base
+    }, 1)
     check('topRadius', topRadius, bottomRadius * (1 + 1e-5), bottomRadius * 1.5)
     Object.assign(this, next)
     this.#version++

@@ -8,6 +8,7 @@ import {
   OneFactor,
   OneMinusSrcAlphaFactor,
   Plane,
+  Vector2,
   Vector3
 } from 'three'
 import type { Camera, DirectionalLight, Light, PointLight, BufferGeometry } from 'three'
@@ -21,18 +22,22 @@ import {
   vec4
 } from 'three/tsl'
 import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
-import type { NodeFrame } from 'three/webgpu'
+import type { NodeFrame, Renderer } from 'three/webgpu'
+import { checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import { AtmosphereParameters } from './AtmosphereParameters'
-import { AtmosphereTables } from './AtmosphereTables'
+import type { AtmosphereTables } from './AtmosphereTables'
 import { AtmosphereUniforms } from './AtmosphereUniforms'
 import { eyeScalars } from './cpu/eye'
 import { sunWhite } from './cpu/reflectance'
 import { isAirless } from './planets'
+import { giveTablesBack, takeTables } from './sharedTables'
 import { EyeUniforms, SkyVolumes } from './SkyVolumes'
+import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from './tsl/scattering'
-import { shellColor, shellDepth, type ShellPlace, type Way } from './tsl/shell'
-import { singleScatteringShell, tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import { shellFragment, type ShellPlace, type Way } from './tsl/shell'
+import { tableShell, volumeShell, type Shell } from './tsl/shellMarch'
+import { singleScatteringShell } from './tsl/singleScattering'
 import type { Bool, Vec4 } from './tsl-types'
 
 /** Where a shell's light comes from. */
@@ -46,7 +51,8 @@ export interface AtmosphereShellOptions {
    */
   sun?: ShellSun
   /**
-   * `'tables'`, the default: all orders of scattering, from tables that are baked on first use.
+   * `'tables'`, the default: all orders of scattering, from tables that are baked on first use, once for
+   * all shells of the same `parameters` object.
    * `'single-scattering'`: sunlight scattered once, without any texture; skies are darker and bluer, and
    * dark soon after sunset.
    */
@@ -70,6 +76,7 @@ const SCALE = 1e-4
 const _inverse = new Matrix4()
 const _point = new Vector3()
 const _other = new Vector3()
+const _size = new Vector2()
 
 /** A ball of triangles around the unit sphere: none of them cuts it. */
 function ballAround(radius: number): BufferGeometry {
@@ -89,7 +96,17 @@ function ballAround(radius: number): BufferGeometry {
 }
 
 const isAtmosphere = (sun: ShellSun): sun is Atmosphere => 'isAtmosphere' in sun
-const isLight = (sun: ShellSun): sun is DirectionalLight | PointLight => 'isLight' in sun
+const isLight = (sun: ShellSun): sun is DirectionalLight | PointLight =>
+  'isDirectionalLight' in sun || 'isPointLight' in sun
+
+/** Also of what only claims to be one. */
+function isSun(sun: ShellSun | null): boolean {
+  if (typeof sun !== 'object' || sun === null) return false
+  if (isAtmosphere(sun) || isLight(sun)) return true
+  if (!('isVector3' in sun)) return false
+  const length = sun.manhattanLength()
+  return length > 0 && length < Infinity
+}
 
 /** Follows body, camera and sun, and has tables and volumes baked, whenever its shell is drawn. */
 class ShellNode extends Node<'vec4'> {
@@ -132,8 +149,9 @@ class ShellNode extends Node<'vec4'> {
  * Works for perspective and orthographic cameras and every kind of depth buffer.
  *
  * The way through the air ends at the body's sphere, not at the scene's depth: what stands in front of
- * the middle of the way through the air, a ship or a cockpit, is drawn without haze, and what is
- * behind it with all of it. One alpha dims all colours of what is behind alike.
+ * the middle of the way through the air (from outside, of the way to the ground or the lowest point), a
+ * ship or a cockpit, is drawn without haze, and what is behind it with all of it; multisampling bares no
+ * ground. One alpha dims all colours of what is behind alike.
  *
  * An eclipse of its sun does not dim it.
  *
@@ -145,24 +163,28 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly parameters: AtmosphereParameters
   /** Of the body, in its own units. */
   readonly bodyRadius: number
-  /** Where the light comes from. */
-  sun: ShellSun
-  /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
-  luminanceScale: number
-  readonly #uniforms: AtmosphereUniforms
-  /** Its own tables; null for single scattering, or where the atmosphere that is its sun lends its. */
-  readonly #tables: AtmosphereTables | null
+  #sun: ShellSun
+  #luminanceScale: number
+  readonly #isSingle: boolean
+  /** An atmosphere that is its sun and of the same air: its tables serve the shell, too. */
   readonly #lender: Atmosphere | null
-  /** Its own even if tables are lent: its body's place is not the atmosphere's. */
-  readonly #volumes: SkyVolumes | null
+  /** Those of all shells of its parameters, or the lender's; null before it is drawn, or if single. */
+  #tables: AtmosphereTables | null = null
+  /** Its own, of a few slots, whoever the tables are of: seen from its body the eye is elsewhere. */
+  #volumes: SkyVolumes | null = null
+  #uniforms = new AtmosphereUniforms()
+  /** What the tables are taken for. */
+  #renderer: Renderer | null = null
   readonly #eye = new EyeUniforms()
   readonly #isMarched = uniform(1)
+  readonly #profile = new ProfileUniforms()
   #version = -1
   readonly #height = uniform(0)
   readonly #up = uniform(new Vector3())
   readonly #sunDirection = uniform(new Vector3())
   readonly #viewToMapped = uniform(new Matrix3())
   readonly #tint = uniform(new Vector3(1, 1, 1))
+  readonly #pixel = uniform(new Vector2())
 
   /**
    * @param parameters - What the air is made of. `bottomRadius` in metres is what `bodyRadius` stands for.
@@ -193,42 +215,20 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         `AtmosphereShell: model must be 'tables' or 'single-scattering', got ${String(model)}`
       )
     }
-    if (!(luminanceScale > 0 && luminanceScale < Infinity)) {
-      throw new Error(`AtmosphereShell: luminanceScale must be positive, got ${luminanceScale}`)
-    }
     super(
       ballAround((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
       new NodeMaterial()
     )
     this.parameters = parameters
     this.bodyRadius = bodyRadius
-    this.sun = sun
-    this.luminanceScale = luminanceScale
+    this.#sun = this.sun = sun
+    this.#luminanceScale = this.luminanceScale = luminanceScale
     this.name = 'AtmosphereShell'
     this.renderOrder = 1
 
-    const lends = model === 'tables' && isAtmosphere(sun) && sun.parameters === parameters
+    this.#isSingle = model === 'single-scattering'
+    const lends = !this.#isSingle && isAtmosphere(sun) && sun.parameters === parameters
     this.#lender = lends ? sun : null
-    this.#tables = model === 'tables' && !lends ? new AtmosphereTables() : null
-    const tables = this.#lender?.tables ?? this.#tables
-    this.#uniforms = tables?.uniforms ?? new AtmosphereUniforms()
-    const air: Air = {
-      uniforms: this.#uniforms,
-      transmittance: (tables &&
-        texture(tables.transmittance.target.texture)) as Air['transmittance'],
-      diffuse: tables && texture(tables.diffuseLight.target.texture)
-    }
-    const place: ShellPlace = {
-      height: this.#height,
-      up: this.#up,
-      sunDirection: this.#sunDirection,
-      viewToMapped: this.#viewToMapped,
-      tint: this.#tint
-    }
-    this.#volumes =
-      tables &&
-      (this.#tables?.volumes ??
-        new SkyVolumes(tables.uniforms, tables.transmittance.target, tables.diffuseLight.target))
     const { material } = this
     material.name = 'Welkin.AtmosphereShell'
     material.side = BackSide
@@ -241,35 +241,105 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     material.premultipliedAlpha = false
     material.fog = false
     material.lights = false
-    material.fragmentNode = new ShellNode(
-      this,
-      shellColor(air, place, this.#light(air, this.#volumes))
-    )
-    material.depthNode = shellDepth(air, place)
     // Its depth is written by the fragments: let neither plane of the frustum clip it.
     const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
     material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
   }
 
+  /** Draws with what a renderer has from now on. */
+  #take(renderer: Renderer): void {
+    if (renderer === this.#renderer) return
+    this.#giveBack()
+    this.#renderer = renderer
+    const tables = this.#isSingle
+      ? null
+      : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
+    this.#tables = tables
+    if (tables !== null) this.#uniforms = tables.uniforms
+    const air: Air = {
+      uniforms: this.#uniforms,
+      transmittance: (tables &&
+        texture(tables.transmittance.target.texture)) as Air['transmittance'],
+      diffuse: tables && texture(tables.diffuseLight.target.texture)
+    }
+    const place: ShellPlace = {
+      height: this.#height,
+      up: this.#up,
+      sunDirection: this.#sunDirection,
+      viewToMapped: this.#viewToMapped,
+      tint: this.#tint,
+      pixel: this.#pixel
+    }
+    this.#volumes =
+      tables &&
+      new SkyVolumes(
+        tables.uniforms,
+        tables.transmittance.target,
+        tables.diffuseLight.target,
+        tables.volumes.segments
+      )
+    const { color, depth } = shellFragment(air, place, this.#light(air, this.#volumes))
+    this.material.fragmentNode = new ShellNode(this, color)
+    this.material.depthNode = depth
+    this.material.needsUpdate = true
+  }
+
+  #giveBack(): void {
+    this.#volumes?.dispose()
+    this.#volumes = null
+    if (this.#renderer === null || this.#tables === null) return
+    if (this.#lender === null) giveTablesBack(this.parameters, this.#renderer, this)
+    this.#tables = null
+  }
+
+  /** Comes before what its material is compiled from is looked at. */
+  override onBeforeRender(renderer: unknown): void {
+    this.#take(renderer as Renderer)
+  }
+
   #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
-    if (volumes === null) return ({ ray, sight }) => singleScatteringShell(air, ray, sight)
+    if (volumes === null) return way => singleScatteringShell(air, this.#profile, way)
     const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
     const isMarched = this.#isMarched.greaterThan(0) as Bool
-    return ({ ray, sight }) => {
+    return way => {
       const radiance = vec4(0).toVar()
       const depth = vec4(0).toVar()
       If(isMarched, () => {
-        const shell = tableShell(air, ray, sight.length, TABLE_STEPS)
+        const shell = tableShell(air, way, TABLE_STEPS)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       }).Else(() => {
-        const shell = volumeShell(air.uniforms, textures, this.#eye, sight)
+        const shell = volumeShell(air.uniforms, textures, this.#eye, way.sight)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       })
       return { radiance, depth }
     }
+  }
+
+  /** Where the light comes from. Throws if set to anything else, or to a direction without one. */
+  get sun(): ShellSun {
+    return this.#sun
+  }
+
+  set sun(value: ShellSun) {
+    if (!isSun(value)) {
+      const rule =
+        'sun must be an Atmosphere, a DirectionalLight, a PointLight or a finite direction'
+      fail('AtmosphereShell', rule, value)
+    }
+    this.#sun = value
+  }
+
+  /** Output per luminance where the sun is a direction [1/(cd/m²)], positive. */
+  get luminanceScale(): number {
+    return this.#luminanceScale
+  }
+
+  set luminanceScale(value: number) {
+    checkPositive('AtmosphereShell', 'luminanceScale', value)
+    this.#luminanceScale = value
   }
 
   /** No ray hits air. */
@@ -278,6 +348,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Bakes the tables if they are stale. Drawing does this by itself. */
   bake(renderer: NonNullable<NodeFrame['renderer']>): void {
     const { parameters } = this
+    this.#take(renderer)
     if (this.#lender !== null) {
       const { luminanceScale, bakeStepsPerFrame, tables } = this.#lender
       tables.update(renderer, parameters, luminanceScale, bakeStepsPerFrame)
@@ -285,6 +356,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       this.#tables.update(renderer, parameters, SCALE, Infinity)
     } else if (this.#version !== parameters.version) {
       this.#uniforms.update(parameters, SCALE)
+      this.#profile.update(parameters)
       this.#version = parameters.version
     }
   }
@@ -311,19 +383,24 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
    */
   see(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
     this.follow(camera)
-    const tables = this.#lender?.tables ?? this.#tables
-    if (this.#volumes === null || tables === null) return
-    const { parameters } = this
-    const height = this.#height.value
     // Rays of an orthographic camera do not start where it is.
     const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
+    const rows = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(_size).y
+    const pixel = Math.SQRT2 / (camera.projectionMatrix.elements[5] * rows)
+    const [x, y, z] = this.#viewToMapped.value.elements
+    if (isOrthographic) this.#pixel.value.set(0, pixel * Math.hypot(x, y, z))
+    else this.#pixel.value.set(pixel, 0)
+    if (this.#volumes === null || this.#tables === null) return
+    const { parameters } = this
+    const { version } = this.#tables
+    const height = this.#height.value
     const isFar = height > FAR * parameters.bottomRadius
-    const isMarched = isOrthographic || isFar || tables.version === 0
+    const isMarched = isOrthographic || isFar || version === 0
     this.#isMarched.value = isMarched ? 1 : 0
     if (isMarched) return
     const cosSun = Math.min(Math.max(this.#up.value.dot(this.#sunDirection.value), -1), 1)
     const eye = eyeScalars(parameters, height, cosSun)
-    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, tables.version).slot)
+    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, version).slot)
   }
 
   #followSun(): void {
@@ -354,12 +431,12 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (!(direction.lengthSq() > 0)) direction.set(0, 1, 0)
   }
 
-  /** Frees its geometry, material and own tables. */
+  /** Frees its geometry, material and volumes, and its tables if no other shell uses them. */
   override dispose(): void {
     this.geometry.dispose()
     this.material.dispose()
-    const owned = this.#tables ?? this.#volumes
-    owned?.dispose()
+    this.#giveBack()
+    this.#renderer = null
   }
 }
 

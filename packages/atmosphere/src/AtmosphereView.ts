@@ -56,10 +56,10 @@ export class AtmosphereView {
     space.direction(_direction, this.sunDirection)
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
-    this.eye = eyeScalars(parameters, this.height, cosSun)
     // From inside the air a line of sight gets 16° nearer to the sun at most, where dusk ends at −9°.
     this.isLit = cosSun > DEEP_NIGHT || radius > parameters.topRadius
-    if (!this.isLit) return
+    // Then only the depth of the air counts, which one volume holds for all the night.
+    this.eye = eyeScalars(parameters, this.height, this.isLit ? cosSun : DEEP_NIGHT)
     // Before the first bake is done there is no light to compute a volume from.
     if (tables.version === 0) return
     this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot

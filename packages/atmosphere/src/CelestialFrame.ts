@@ -14,10 +14,12 @@ export class CelestialFrame {
    * either, the two frames are one.
    */
   orientation: Matrix4 | null = null
-  /** Directions in the mapped space to the frame of the stars, not keeping their length. */
-  readonly mappedToCelestial = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly #mappedToAxes = uniform(new Matrix3()).setGroup(renderGroup)
   readonly #rotation = new Matrix4()
   #time = NaN
+
+  /** @param axes - Rotation from the frame of the stars to the axes that are wanted, if not the same. */
+  constructor(readonly axes: Matrix3 | null = null) {}
 
   /** Follows the date. */
   update({ atmosphere }: AtmosphereView): void {
@@ -34,11 +36,12 @@ export class CelestialFrame {
     // The mapped space is ECEF times 1/radii; the inverse of a rotation is its transpose.
     const { x, y, z } = ellipsoid.radii
     _matrix.transpose().multiply(_scale.makeScale(1, y / x, z / x))
-    this.mappedToCelestial.value.setFromMatrix4(_matrix)
+    this.#mappedToAxes.value.setFromMatrix4(_matrix)
+    if (this.axes !== null) this.#mappedToAxes.value.premultiply(this.axes)
   }
 
-  /** A direction of the mapped space among the stars, unit length. */
-  toCelestial(direction: Vec3): Vec3 {
-    return (this.mappedToCelestial as unknown as Mat3).mul(direction).normalize()
+  /** A direction of the mapped space among the stars, about as long. */
+  turn(direction: Vec3): Vec3 {
+    return (this.#mappedToAxes as unknown as Mat3).mul(direction)
   }
 }

@@ -1,8 +1,10 @@
 import type { Camera } from 'three'
-import { Vector3 } from 'three'
-import { Geodetic } from '@welkin/geo'
+import { Matrix4, Vector3 } from 'three'
+import { checkNonNegative, fail, Geodetic } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
-import { exposureFor, type ExposureOptions } from './exposureFor'
+import { checkOptions, checkRange } from './check'
+import { checkExposure, exposureFor, type ExposureOptions } from './exposureFor'
+import { checkAtmosphere } from './ViewNodes'
 
 /** Options of {@link DayCycle}. */
 export interface DayCycleOptions {
@@ -21,13 +23,23 @@ export interface DayCycleOptions {
 }
 
 const DAY = 86_400_000
-const YEAR = 365.2422 * DAY
+
+/** Days of a year. */
+const YEAR = 365.2422
 
 /** An equinox of March; later ones come every {@link YEAR} [ms since 1970]. */
 const EQUINOX = Date.UTC(2026, 2, 20, 14, 46)
 
+/** A tenth of a millisecond, lest rounding makes midnight the day before [days]. */
+const MOMENT = 1e-9
+
 const _origin = new Vector3()
 const _geodetic = new Geodetic()
+const _frame = new Matrix4()
+const _scale = new Vector3()
+
+/** The `luminanceScale` that a cycle last set on an atmosphere, and that of exposure 1. */
+const scales = new WeakMap<Atmosphere, { written: number; daylight: number }>()
 
 const wrap = (value: number, period: number): number => value - Math.floor(value / period) * period
 
@@ -43,8 +55,11 @@ const wrap = (value: number, period: number): number => value - Math.floor(value
  * cycle.time = Number(localStorage.time)
  * ```
  *
- * It drives `atmosphere.date`, which whatever is in the sky follows. `time`, one number, is all of its
- * state.
+ * It drives `atmosphere.date`, which whatever is in the sky follows. `time`, one number, is where the
+ * clock stands; the rest is settings and the atmosphere's place.
+ *
+ * Exposure multiplies the `luminanceScale` that the atmosphere has when the cycle is made, unless that is
+ * what another cycle wrote: from that it takes over.
  */
 export class DayCycle {
   /** Shared, not owned. */
@@ -62,36 +77,49 @@ export class DayCycle {
   #exposure: number | null = null
   /** Of exposure 1 [1/(cd/m²)]. */
   readonly #daylightScale: number
+  /** The season that was set and the day that it was set to; null if the time was set since. */
+  #asked: { season: number; day: number } | null = null
 
   /** @throws If an argument is of the wrong kind or out of range. */
   constructor(atmosphere: Atmosphere, options: DayCycleOptions = {}) {
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`DayCycle: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
+    checkAtmosphere('DayCycle', atmosphere)
+    const { date, rate, daylight, adaptation, holdDay, exposure } = checkOptions(
+      'DayCycle',
+      options
+    )
+    if (date !== undefined && !(date instanceof Date)) {
+      fail('DayCycle', 'date must be a Date', date)
     }
     this.atmosphere = atmosphere
-    const { date, rate, daylight, adaptation, holdDay = false, exposure = {} } = options
-    this.exposureOptions = exposure
-    this.holdDay = holdDay
+    this.exposureOptions = checkExposure('DayCycle', exposure)
+    this.holdDay = holdDay ?? false
     if (rate !== undefined) this.rate = rate
     if (daylight !== undefined) this.daylight = daylight
     if (adaptation !== undefined) this.adaptation = adaptation
-    this.#daylightScale = atmosphere.luminanceScale
+    const { luminanceScale } = atmosphere
+    const known = scales.get(atmosphere)
+    this.#daylightScale = known?.written === luminanceScale ? known.daylight : luminanceScale
     this.#time = 0
     this.time = (date ?? atmosphere.date ?? new Date()).getTime()
   }
 
-  /** When it is in the sky [ms since 1970]. The cycle's whole state. */
+  /** When it is in the sky [ms since 1970]. */
   get time(): number {
     return this.#time
   }
 
   set time(value: number) {
+    this.#moveTo(value)
+    this.#asked = null
+  }
+
+  #moveTo(time: number): void {
     // Beyond this there are no dates.
-    if (!(Math.abs(value) <= 8.64e15)) {
-      throw new Error(`DayCycle: time must be a date in milliseconds, got ${value}`)
+    if (!(Number.isFinite(time) && Math.abs(time) <= 8.64e15)) {
+      fail('DayCycle', 'time must be a date in milliseconds', time)
     }
-    this.#time = value
-    this.atmosphere.date = new Date(value)
+    this.#time = time
+    this.atmosphere.date = new Date(time)
   }
 
   /** Seconds of the sky per second of the clock. */
@@ -100,7 +128,7 @@ export class DayCycle {
   }
 
   set rate(value: number) {
-    if (!Number.isFinite(value)) throw new Error(`DayCycle: rate must be finite, got ${value}`)
+    if (!Number.isFinite(value)) fail('DayCycle', 'rate must be finite', value)
     this.#rate = value
   }
 
@@ -110,8 +138,8 @@ export class DayCycle {
   }
 
   set daylight(value: number) {
-    if (!(value > 0 && value < 1)) {
-      throw new Error(`DayCycle: daylight must be in (0, 1), got ${value}`)
+    if (!(Number.isFinite(value) && value > 0 && value < 1)) {
+      fail('DayCycle', 'daylight must be in (0, 1)', value)
     }
     this.#daylight = value
   }
@@ -122,31 +150,49 @@ export class DayCycle {
   }
 
   set adaptation(value: number) {
-    if (!(value >= 0 && value < Infinity)) {
-      throw new Error(`DayCycle: adaptation must be finite and ≥ 0, got ${value}`)
-    }
+    checkNonNegative('DayCycle', 'adaptation', value)
     this.#adaptation = value
   }
 
-  /** Geodetic latitude of the world's origin [°]; setting it keeps longitude and height. */
+  /**
+   * Geodetic latitude of the world's origin [°]; setting it keeps longitude and height.
+   *
+   * @throws If it is set out of range, or in a frame that `atmosphere.place` did not make.
+   */
   get latitude(): number {
     return this.#place().latitude
   }
 
   set latitude(value: number) {
+    checkRange('DayCycle', 'latitude', value, -90, 90)
+    const { frame, metersPerUnit, worldToECEF, ellipsoid } = this.atmosphere
+    if (frame !== 'local') fail('DayCycle', "frame must be 'local' to set latitude", frame)
     const { longitude, height } = this.#place()
+    ellipsoid.localYUpFrame(_origin, _frame).scale(_scale.setScalar(metersPerUnit))
+    if (!_frame.equals(worldToECEF)) {
+      fail('DayCycle', 'frame must be of place() to set latitude', 'worldToECEF')
+    }
     this.atmosphere.place({ longitude, latitude: value, height })
   }
 
-  /** Part of the year since the equinox of March, in [0, 1); setting it keeps the time of day. */
+  /**
+   * Part of the year since the equinox of March, in [0, 1), the same all day. Setting it goes to the
+   * nearest day, at the time of day that it is.
+   */
   get season(): number {
-    return wrap((this.#time - EQUINOX) / YEAR, 1)
+    const { season, day } = this.#asked ?? { season: 0, day: this.#dayOf(EQUINOX) }
+    return wrap(season + (this.#dayOf(this.#time) - day) / YEAR, 1)
   }
 
   set season(value: number) {
-    if (!Number.isFinite(value)) throw new Error(`DayCycle: season must be finite, got ${value}`)
-    const days = Math.round(((wrap(value, 1) - this.season) * YEAR) / DAY)
-    this.time = this.#time + days * DAY
+    if (!Number.isFinite(value)) fail('DayCycle', 'season must be finite', value)
+    const season = wrap(value, 1)
+    const last = this.season
+    // What the day last set to was off by.
+    const off = (last - (this.#dayOf(this.#time) - this.#dayOf(EQUINOX)) / YEAR) % 1
+    const days = Math.round((season - last + off - Math.round(off)) * YEAR)
+    this.#moveTo(this.#time + days * DAY)
+    this.#asked = { season, day: this.#dayOf(this.#time) }
   }
 
   /** Mean solar time at the world's origin, in [0, 24); setting it keeps the day [h]. */
@@ -155,10 +201,10 @@ export class DayCycle {
   }
 
   set hour(value: number) {
-    if (!(value >= 0 && value < 24)) {
-      throw new Error(`DayCycle: hour must be in [0, 24), got ${value}`)
+    if (!(Number.isFinite(value) && value >= 0 && value < 24)) {
+      fail('DayCycle', 'hour must be in [0, 24)', value)
     }
-    this.time = this.#time + (value / 24 - this.#dayPart()) * DAY
+    this.#moveTo(this.#time + (value / 24 - this.#dayPart()) * DAY)
   }
 
   /** What {@link update} last set: 1 in full daylight. */
@@ -174,8 +220,18 @@ export class DayCycle {
     return ellipsoid.ecefToGeodetic(_origin, _geodetic)
   }
 
+  /** Solar days since 1970. */
+  #days(time: number): number {
+    return time / DAY + this.#place().longitude / 360
+  }
+
+  /** Number of the solar day. */
+  #dayOf(time: number): number {
+    return Math.floor(this.#days(time) + MOMENT)
+  }
+
   #dayPart(): number {
-    return wrap(this.#time / DAY + this.#place().longitude / 360, 1)
+    return Math.max(this.#days(this.#time) - this.#dayOf(this.#time), 0)
   }
 
   /**
@@ -187,9 +243,9 @@ export class DayCycle {
    */
   update(deltaSeconds: number, camera?: Camera): void {
     if (!Number.isFinite(deltaSeconds)) {
-      throw new Error(`DayCycle: deltaSeconds must be finite, got ${deltaSeconds}`)
+      fail('DayCycle', 'deltaSeconds must be finite', deltaSeconds)
     }
-    if (!this.paused) this.time = this.#time + this.#advance(deltaSeconds * this.#rate * 1000)
+    if (!this.paused) this.#moveTo(this.#time + this.#advance(deltaSeconds * this.#rate * 1000))
     if (camera !== undefined) this.#adapt(deltaSeconds, camera)
   }
 
@@ -225,6 +281,8 @@ export class DayCycle {
     // In stops, as eyes and cameras count.
     const rest = this.#adaptation > 0 ? Math.exp(-Math.abs(deltaSeconds) / this.#adaptation) : 0
     this.#exposure = target * (last / target) ** rest
-    this.atmosphere.luminanceScale = this.#daylightScale * this.#exposure
+    const written = this.#daylightScale * this.#exposure
+    this.atmosphere.luminanceScale = written
+    scales.set(this.atmosphere, { written, daylight: this.#daylightScale })
   }
 }

@@ -1,8 +1,8 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkFade, checkOptions, checkRange } from './check'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
-import { scatteredRadiance } from './tsl/scattering'
-import { sampleSky } from './tsl/skyVolume'
+import { aimAt, sampleSky } from './tsl/skyVolume'
 import type { Bool, Float } from './tsl-types'
 
 /** Options of {@link DistanceFog}. */
@@ -23,28 +23,40 @@ export interface DistanceFogOptions {
  * ```
  */
 export class DistanceFog implements SkyLayer {
-  /** See {@link DistanceFogOptions} [1/m]. */
-  density: number
+  /** See {@link DistanceFogOptions} [m]. */
   readonly fade: readonly [number, number]
+  #value = 0
+  #version = 0
   readonly #density = uniform(0).setGroup(renderGroup)
 
   /** @throws If an option is out of range. */
-  constructor({ density = 1e-4, fade = [5000, 15_000] }: DistanceFogOptions = {}) {
-    if (!(density >= 0 && density <= 100)) {
-      throw new Error(`DistanceFog: density must be in [0, 100], got ${density}`)
-    }
-    if (!(fade[1] > fade[0])) {
-      throw new Error(`DistanceFog: fade must rise, got [${fade[0]}, ${fade[1]}]`)
-    }
+  constructor(options: DistanceFogOptions = {}) {
+    const { density = 1e-4, fade = [5000, 15_000] } = checkOptions('DistanceFog', options)
+    checkFade('DistanceFog', fade)
     this.density = density
     this.fade = [...fade]
+  }
+
+  /** See {@link DistanceFogOptions}, in [0, 100] [1/m]. */
+  get density(): number {
+    return this.#value
+  }
+
+  set density(value: number) {
+    checkRange('DistanceFog', 'density', value, 0, 100)
+    if (value !== this.#value) this.#version++
+    this.#value = value
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
   }
 
   update(view: AtmosphereView): void {
     const [low, high] = this.fade
     const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
-    const density = this.density * (1 - x * x * (3 - 2 * x))
-    this.#density.value = density > 0 ? density : 0
+    this.#density.value = this.density * (1 - x * x * (3 - 2 * x))
   }
 
   veil({ view, cosView, cosViewSun, distance }: Sightline, air: Veil): Veil {
@@ -64,8 +76,14 @@ export class DistanceFog implements SkyLayer {
         .clamp(-1, 1)
         .toConst() as Float
       const isGround = float(0).greaterThan(1) as Bool
-      const sky = sampleSky(uniforms, view.volume, eye, cosRaised, cosRaisedSun, isGround)
-      const color = scatteredRadiance(uniforms, sky, cosRaisedSun).mul(source.irradiance)
+      const sky = sampleSky(
+        uniforms,
+        view.volume,
+        eye,
+        aimAt(eye, cosRaised, isGround),
+        cosRaisedSun
+      )
+      const color = sky.mul(source.irradiance)
       const root = distance.mul(this.#density)
       const fog = root.mul(root).min(80).toConst()
       const through = fog.negate().exp().toConst()

@@ -1,4 +1,6 @@
 import { renderGroup, uniform } from 'three/tsl'
+import { checkNonNegative, checkPositive } from '@welkin/geo'
+import { checkOptions } from './check'
 
 /** Light that an eye or a lens spreads around something bright, in two lobes. */
 export interface FlareOptions {
@@ -12,6 +14,11 @@ export interface FlareOptions {
   outerStrength?: number
 }
 
+/** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
+const FAINTEST = 1e-8
+
+const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength']
+
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 
 /** A halo's figures as shader uniforms; they may be changed at any time. */
@@ -20,6 +27,8 @@ export class HaloUniforms {
   readonly innerStrength = scalar(0)
   readonly outerPower = scalar(0)
   readonly outerStrength = scalar(0)
+  /** Cosine of the angle from its middle where a halo ends; above 1 for none. */
+  readonly cosReach = scalar(2)
 
   /** @param owner - Names the class in errors. */
   constructor(
@@ -29,16 +38,27 @@ export class HaloUniforms {
     this.set(options)
   }
 
-  /** @throws If a figure is out of its range; then nothing has changed. */
+  /** @throws If a figure is unknown or out of its range; then nothing has changed. */
   set(options: FlareOptions): void {
-    const entries = Object.entries(options) as [keyof FlareOptions, number | undefined][]
+    const entries = Object.entries(checkOptions(this.owner, options, ...NAMES)) as [
+      keyof FlareOptions,
+      number | undefined
+    ][]
     for (const [name, value] of entries) {
-      const isOk = name.endsWith('Power') ? value! > 0 : value! >= 0
-      if (value !== undefined && !(isOk && value < Infinity)) {
-        const rule = name.endsWith('Power') ? 'positive and finite' : 'finite and ≥ 0'
-        throw new Error(`${this.owner}: ${name} must be ${rule}, got ${value}`)
-      }
+      const check = name.endsWith('Power') ? checkPositive : checkNonNegative
+      if (value !== undefined) check(this.owner, name, value)
     }
     for (const [name, value] of entries) if (value !== undefined) this[name].value = value
+  }
+
+  /** @param isSeen - Whether there is light to spread. */
+  update(isSeen: boolean): void {
+    const square = (power: number, strength: number): number =>
+      (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * FAINTEST))
+    const widest = Math.max(
+      square(this.innerPower.value, this.innerStrength.value),
+      square(this.outerPower.value, this.outerStrength.value)
+    )
+    this.cosReach.value = isSeen && widest > 0 ? 1 - Math.min(widest, 4) / 2 : 2
   }
 }

@@ -3,13 +3,13 @@ import { If, exp, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkFade, checkRange, checkSources, checkSpectrum, withDefaults } from './check'
 import type { LightSource } from './LightSource'
 import type { Sightline, SkyLayer, Veil } from './SkyLayer'
 import { RADIANCE_SCALE } from './tableSizes'
 import { diffuseMoments } from './tsl/diffuseLight'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from './tsl/moments'
-import { scatteredRadiance } from './tsl/scattering'
 import { rayLimits, sampleVolume } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec4 } from './tsl-types'
@@ -55,24 +55,21 @@ export class HeightFog implements SkyLayer {
   readonly #albedo = uniform(new Vector4()).setGroup(renderGroup)
   readonly #lamps: readonly Lamp[]
   #options: Required<HeightFogOptions>
+  #version = 0
 
   /** @throws If an option is out of range. */
   constructor(options: HeightFogOptions = {}) {
-    this.#options = checked({
-      density: 0.01,
-      falloff: 50,
-      base: 0,
-      albedo: [1, 1, 1, 1],
-      asymmetry: 0.75,
-      sources: [],
-      fade: [5000, 15_000],
-      ...options
-    })
+    this.#options = checked(DEFAULTS, options)
     this.#lamps = this.#options.sources.map(source => ({
       source,
       direction: uniform(new Vector3()).setGroup(renderGroup),
       irradiance: uniform(new Vector4()).setGroup(renderGroup)
     }))
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
   }
 
   /** As they are; change them with {@link set}. */
@@ -86,7 +83,10 @@ export class HeightFog implements SkyLayer {
    * @throws If an option is out of range.
    */
   set(options: Omit<HeightFogOptions, 'sources'>): this {
-    this.#options = checked({ ...this.#options, ...options })
+    const values = (): string => JSON.stringify({ ...this.#options, sources: [] })
+    const before = values()
+    this.#options = checked(this.#options, options)
+    if (values() !== before) this.#version++
     return this
   }
 
@@ -114,7 +114,7 @@ export class HeightFog implements SkyLayer {
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = line.view.air
       const { eye, source } = line.view
-      const limits = rayLimits(uniforms, eye, line.cosView, line.hitsGround)
+      const limits = rayLimits(eye, line.cosView, line.hitsGround)
       const distance = line.distance ?? limits.length
       const radius = uniforms.bottomRadius.add(line.view.height).toConst() as Float
       const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
@@ -137,10 +137,7 @@ export class HeightFog implements SkyLayer {
       const { volume } = line.view
       const { cosView, cosViewSun } = line
       const ahead = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, reach)
-      const front = scatteredRadiance(uniforms, ahead, cosViewSun)
-        .mul(source.irradiance)
-        .min(air.light)
-        .toConst()
+      const front = ahead.radiance.mul(source.irradiance).min(air.light).toConst()
       const place = { line, radius, middle }
       let own = this.#light(place, eye.cosSun, cosViewSun).mul(source.irradiance)
       for (const { direction, irradiance } of this.#lamps) {
@@ -196,6 +193,16 @@ interface FogPlace {
   middle: Float
 }
 
+const DEFAULTS: Required<HeightFogOptions> = {
+  density: 0.01,
+  falloff: 50,
+  base: 0,
+  albedo: [1, 1, 1, 1],
+  asymmetry: 0.75,
+  sources: [],
+  fade: [5000, 15_000]
+}
+
 /** Altitude in falloff heights above which there is as good as no fog. */
 const HIGH = 40
 
@@ -204,26 +211,21 @@ const _direction = new Vector3()
 
 const number = (value: number) => uniform(value).setGroup(renderGroup)
 
-function checked(options: Required<HeightFogOptions>): Required<HeightFogOptions> {
-  const { density, falloff, base, albedo, asymmetry, fade } = options
-  const check = (name: string, value: number, min: number, max: number): void => {
-    if (!(value >= min && value <= max)) {
-      throw new Error(`HeightFog: ${name} must be in [${min}, ${max}], got ${value}`)
-    }
-  }
-  check('density', density, 0, 100)
-  check('falloff', falloff, 0.1, 1e5)
-  check('base', base, -1e5, 1e6)
-  check('asymmetry', asymmetry, 0, 0.95)
-  if (albedo.length !== 4) {
-    throw new Error(`HeightFog: albedo must have 4 values, got ${albedo.length}`)
-  }
-  albedo.forEach((value, i) => check(`albedo[${i}]`, value, 0, 1))
-  check('fade[0]', fade[0], -1e7, 1e9)
-  if (!(fade[1] > fade[0])) {
-    throw new Error(`HeightFog: fade must rise, got [${fade[0]}, ${fade[1]}]`)
-  }
-  return { ...options, albedo: [...albedo], fade: [...fade] }
+/** Options with defaults; those that are undefined stay as they are. */
+function checked(
+  before: Required<HeightFogOptions>,
+  given: HeightFogOptions
+): Required<HeightFogOptions> {
+  const options = withDefaults('HeightFog', before, given)
+  const { density, falloff, base, albedo, asymmetry, sources, fade } = options
+  checkRange('HeightFog', 'density', density, 0, 100)
+  checkRange('HeightFog', 'falloff', falloff, 0.1, 1e5)
+  checkRange('HeightFog', 'base', base, -1e5, 1e6)
+  checkRange('HeightFog', 'asymmetry', asymmetry, 0, 0.95)
+  checkSpectrum('HeightFog', 'albedo', albedo, 1)
+  checkSources('HeightFog', sources)
+  checkFade('HeightFog', fade)
+  return { ...options, albedo: [...albedo], sources: [...sources], fade: [...fade] }
 }
 
 /** Ground fog: see {@link HeightFog}. */

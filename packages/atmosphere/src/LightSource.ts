@@ -26,6 +26,6 @@ export class LightSource {
     readonly volumes: SkyVolumes
   ) {}
 
-  /** {@link irradiance} at a position in world space. What eclipses the source replaces this. */
+  /** {@link irradiance} at a position in world space. */
   irradianceAt: (position: Vector3) => Spectrum = () => [1, 1, 1, 1]
 }

@@ -1,13 +1,16 @@
-import { RepeatWrapping, Vector4 } from 'three'
+import { Matrix3, Vector4 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
 import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { checkNonNegative } from '@welkin/geo'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkOrientation } from './check'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from './FragmentPass'
 import { DROWNS, type SkyLayer, type SkyRay } from './SkyLayer'
 import { starIrradiance } from './stars/starColor'
-import { galacticUV, milkyWayMap, toGalactic } from './tsl/milkyWay'
+import { CELESTIAL_TO_GALACTIC, milkyWayMap } from './tsl/milkyWay'
+import { octahedralPoint } from './tsl/octahedron'
 import { sampleLevel0, type Vec4 } from './tsl-types'
 
 /** Options of {@link MilkyWay}. */
@@ -16,8 +19,11 @@ export interface MilkyWayOptions {
   orientation?: Matrix4 | null
 }
 
-/** Texels of the map: a third of a degree along the band, a sixth across. */
-const SIZE = [1024, 384] as const
+/** Texels along an edge of the map: a sixth to a third of a degree each. */
+const SIZE = 512
+
+/** The map ends in the middle of its outermost texels: folded along its edges, it has no seam. */
+const EDGE = SIZE / (SIZE - 1)
 
 /** B − V of the band where there is no dust [mag]. */
 const COLOR_INDEX = 0.7
@@ -35,23 +41,34 @@ const UNIT = 1e-4
  *
  * Photometric: 20.5 magnitudes per square second of arc at its brightest, 21.5 in the band, 24 at the
  * galactic poles. Its large shapes, the brightest clouds and the rift are where they are in the sky;
- * the rest is noise. Nothing is fetched: the map (3 MB) is drawn once, on the GPU.
+ * the rest is noise. Nothing is fetched: the map (2 MB) is drawn once, on the GPU.
  */
 export class MilkyWay implements SkyLayer {
   readonly isAdditive = true
-  /** Multiplies the physical brightness, ≥ 0. */
-  intensity = 1
-  readonly #frame = new CelestialFrame()
-  readonly #target: RenderTarget = tableTarget('MilkyWay', ...SIZE)
+  #intensity = 1
+  readonly #frame = new CelestialFrame(new Matrix3().set(...CELESTIAL_TO_GALACTIC))
+  readonly #target: RenderTarget = tableTarget('MilkyWay', SIZE, SIZE)
   readonly #color = uniform(new Vector4()).setGroup(renderGroup)
+  /** Green light of the air that hides it. */
+  readonly #drowns = uniform(0).setGroup(renderGroup)
   readonly #map
   #pass: FragmentPass | null = null
   #renderer: Renderer | null = null
 
-  constructor({ orientation }: MilkyWayOptions = {}) {
-    this.orientation = orientation ?? null
-    this.#target.texture.wrapS = RepeatWrapping
+  /** @throws If an option is of the wrong kind. */
+  constructor(options: MilkyWayOptions = {}) {
+    this.orientation = checkOptions('MilkyWay', options).orientation ?? null
     this.#map = texture(this.#target.texture)
+  }
+
+  /** Multiplies the physical brightness, finite, ≥ 0. */
+  get intensity(): number {
+    return this.#intensity
+  }
+
+  set intensity(value: number) {
+    checkNonNegative('MilkyWay', 'intensity', value)
+    this.#intensity = value
   }
 
   /** Rotation from the stars' frame to ECEF; null to follow the atmosphere's date. */
@@ -60,29 +77,40 @@ export class MilkyWay implements SkyLayer {
   }
 
   set orientation(value: Matrix4 | null) {
+    checkOrientation('MilkyWay', value)
     this.#frame.orientation = value
   }
 
   prepare(renderer: Renderer): void {
     if (renderer === this.#renderer) return
     this.#renderer = renderer
-    this.#pass ??= new FragmentPass('Welkin.MilkyWay', Fn(() => milkyWayMap(uv()))())
+    this.#pass ??= new FragmentPass(
+      'Welkin.MilkyWay',
+      Fn(() =>
+        milkyWayMap(
+          uv()
+            .sub(0.5)
+            .mul(2 * EDGE)
+        )
+      )()
+    )
     this.#pass.render(renderer, this.#target)
   }
 
   update(view: AtmosphereView): void {
     this.#frame.update(view)
-    const luminance = UNIT * Math.max(this.intensity, 0)
+    const luminance = UNIT * this.intensity
     const color = starIrradiance(view.atmosphere.parameters, COLOR_INDEX, luminance)
     this.#color.value.fromArray(color)
+    this.#drowns.value = this.#color.value.y * DROWNS
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
     const sum = farther.toVar()
     // By day it is less than a thousandth of the sky.
-    If(ray.airlight.y.lessThan(this.#color.y.mul(DROWNS)), () => {
-      const direction = toGalactic(this.#frame.toCelestial(ray.direction)).toConst()
-      const light = sampleLevel0(this.#map, galacticUV(direction))
+    If(ray.airlight.y.lessThan(this.#drowns), () => {
+      const point = octahedralPoint(this.#frame.turn(ray.direction).toConst())
+      const light = sampleLevel0(this.#map, point.mul(0.5 / EDGE).add(0.5))
       sum.addAssign(vec4(light.mul(this.#color)))
     })
     return sum

@@ -1,10 +1,12 @@
 import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import type { Quaternion } from 'three'
-import { If, renderGroup, texture, uniform, vec4, mix } from 'three/tsl'
+import { If, renderGroup, texture, uniform, mix } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkRange } from './check'
 import { CORONA, eclipsedSun } from './cpu/eclipse'
 import { earthshine, MOON_RADIUS, moonIrradiance, surfacePhase } from './cpu/moonlight'
 import { visibleSun } from './cpu/transmittance'
@@ -14,11 +16,11 @@ import { MoonPlace, type MoonGeometry } from './moonGeometry'
 import { MoonSurface } from './MoonSurface'
 import { MoonlitAir } from './MoonlitAir'
 import { MoonVolumes } from './MoonVolumes'
-import type { SkyLayer, SkyRay } from './SkyLayer'
-import { haloRadiance } from './tsl/halo'
+import type { HazeLine, SkyLayer, SkyRay } from './SkyLayer'
+import { addHalo } from './tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
-import type { Vec3, Vec4 } from './tsl-types'
-import type { ViewNodes } from './ViewNodes'
+import type { Vec4 } from './tsl-types'
+import { checkAtmosphere } from './ViewNodes'
 
 /** Options of {@link Moon}. */
 export interface MoonOptions {
@@ -54,7 +56,17 @@ export interface MoonAppearance {
   litFraction: number
 }
 
+/** Angle that a pixel of the coarsest picture covers [rad]. */
+const WIDEST_PIXEL = 0.06
+
+/** How far out the corona is drawn, in radii of the sun. */
+const CORONA_RADII = 12
+
 const FLARE = { innerPower: 12_000, innerStrength: 0.02, outerPower: 500, outerStrength: 0.006 }
+
+/** How far it must be moved by hand for its light in the air to change: a tenth of a degree [rad]. */
+const MOVE = Math.PI / 1800
+const NOWHERE = new Vector3()
 
 const _position = new Vector3()
 const _matrix = new Matrix4()
@@ -76,7 +88,7 @@ const spectrum = () => uniform(new Vector4()).setGroup(renderGroup)
  * it and full. `direction`, `phase` and `distance` can be set by hand at any time; a moon whose direction
  * is set by hand turns its near side to the camera, north up.
  *
- * Once added, it eclipses the sun where its disc is before the sun's: light, sky and haze dim as they do
+ * While added, it eclipses the sun where its disc is before the sun's: light, sky and haze dim as they do
  * at the camera, and the corona shows. Refraction and eclipses of the moon itself are left out.
  */
 export class Moon implements SkyLayer {
@@ -91,6 +103,9 @@ export class Moon implements SkyLayer {
   #distance: number | null = null
   #radius = MOON_RADIUS
   #strength = 1
+  #version = 0
+  /** Where it was when that was last counted up for its direction. */
+  readonly #counted = new Vector3()
   readonly #place = new MoonPlace()
   readonly #air: MoonlitAir
   readonly #surface: MoonSurface
@@ -103,17 +118,19 @@ export class Moon implements SkyLayer {
   readonly #sunlit = spectrum()
   readonly #earthlit = spectrum()
   readonly #flare = spectrum()
+  /** Cosine of the angle from the sun within which there is something of it. */
+  readonly #nearSun = uniform(1).setGroup(renderGroup)
+  /** The same of the moon and its halo. */
+  readonly #nearMoon = uniform(1).setGroup(renderGroup)
   /** 0 while the sun's disc is all covered, else 1. */
   readonly #sunShows = uniform(1).setGroup(renderGroup)
 
   /** @throws If an argument is of the wrong kind or out of its range. */
   constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`Moon: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
-    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+    checkAtmosphere('Moon', atmosphere)
+    const { lightsAir = true, flare = {}, mapSize = 1024 } = checkOptions('Moon', options)
     if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
-      throw new Error(`Moon: mapSize must be a power of two in [16, 8192], got ${mapSize}`)
+      fail('Moon', 'mapSize must be a power of two in [16, 8192]', mapSize)
     }
     this.atmosphere = atmosphere
     this.lightsAir = lightsAir
@@ -132,7 +149,6 @@ export class Moon implements SkyLayer {
     )
     this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
     this.#air = new MoonlitAir(atmosphere, this.source, volumes)
-    this.#eclipse()
   }
 
   /** To the moon in world space, unit length, a copy; null while it follows the date. */
@@ -141,11 +157,20 @@ export class Moon implements SkyLayer {
   }
 
   set direction(value: Vector3 | null) {
-    if (value !== null && !(value.lengthSq() > 0 && value.lengthSq() < Infinity)) {
-      const { x, y, z } = value
-      throw new Error(`Moon: direction must be finite and not zero, got (${x}, ${y}, ${z})`)
+    const square = value?.isVector3 ? value.lengthSq() : 0
+    if (value !== null && !(square > 0 && square < Infinity)) {
+      fail('Moon', 'direction must be a Vector3, finite and not zero, or null', value)
     }
     this.#byHand = value?.clone().normalize() ?? null
+    const direction = this.#byHand ?? NOWHERE
+    if (direction.distanceTo(this.#counted) <= MOVE) return
+    this.#counted.copy(direction)
+    this.#version++
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
   }
 
   /** 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new again; null follows the geometry. */
@@ -154,9 +179,8 @@ export class Moon implements SkyLayer {
   }
 
   set phase(value: number | null) {
-    if (value !== null && !(value >= 0 && value <= 1)) {
-      throw new Error(`Moon: phase must be in [0, 1] or null, got ${value}`)
-    }
+    if (value !== null) checkRange('Moon', 'phase', value, 0, 1)
+    if (value !== this.#phase) this.#version++
     this.#phase = value
   }
 
@@ -166,7 +190,8 @@ export class Moon implements SkyLayer {
   }
 
   set distance(value: number | null) {
-    if (value !== null) checkPositive('distance', value)
+    if (value !== null) checkPositive('Moon', 'distance', value)
+    if (value !== this.#distance) this.#version++
     this.#distance = value
   }
 
@@ -176,7 +201,8 @@ export class Moon implements SkyLayer {
   }
 
   set radius(value: number) {
-    checkPositive('radius', value)
+    checkPositive('Moon', 'radius', value)
+    if (value !== this.#radius) this.#version++
     this.#radius = value
   }
 
@@ -186,9 +212,8 @@ export class Moon implements SkyLayer {
   }
 
   set strength(value: number) {
-    if (!(value >= 0 && value < Infinity)) {
-      throw new Error(`Moon: strength must be finite and ≥ 0, got ${value}`)
-    }
+    checkNonNegative('Moon', 'strength', value)
+    if (value !== this.#strength) this.#version++
     this.#strength = value
   }
 
@@ -240,25 +265,16 @@ export class Moon implements SkyLayer {
     return light.map(value => value * this.#strength) as unknown as Spectrum
   }
 
-  /** Takes from the sun what this moon hides of it, besides what others do. */
-  #eclipse(): void {
-    const { atmosphere } = this
-    const before = atmosphere.sun.irradianceAt
-    atmosphere.sun.irradianceAt = position => {
-      const light = before(position)
-      if (!atmosphere.layers.includes(this)) return light
-      const geometry = this.#seenFrom(position)
-      const sun = atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF)
-      const { sunAngularRadius, limbDarkening } = atmosphere.parameters
-      const radius = this.#angularRadiusOf(geometry)
-      const left = eclipsedSun(
-        geometry.direction.angleTo(sun),
-        sunAngularRadius,
-        radius,
-        limbDarkening
-      )
-      return light.map((value, i) => value * left[i]) as unknown as Spectrum
-    }
+  /** Part of the sun's light that this moon leaves at a position in world space. */
+  eclipse(position: Vector3): Spectrum {
+    const { parameters, sunDirection, worldToECEF } = this.atmosphere
+    const geometry = this.#seenFrom(position)
+    return eclipsedSun(
+      geometry.direction.angleTo(sunDirection.transformDirection(worldToECEF)),
+      parameters.sunAngularRadius,
+      this.#angularRadiusOf(geometry),
+      parameters.limbDarkening
+    )
   }
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
@@ -288,6 +304,9 @@ export class Moon implements SkyLayer {
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
     this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
+    this.#halo.update(this.#flare.value.y > 0)
+    this.#nearSun.value = cosBeyond(CORONA_RADII * parameters.sunAngularRadius)
+    this.#nearMoon.value = Math.min(cosBeyond(angularRadius), this.#halo.cosReach.value)
     this.#air.update(view)
   }
 
@@ -295,56 +314,58 @@ export class Moon implements SkyLayer {
     const { direction, pixel, view } = ray
     const { uniforms } = view.air
     const light = farther.toVar()
-    const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
-    // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
-    const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
-    If(sunDistance.lessThan(nearDisc), () => {
-      light.mulAssign(this.#sunShows)
+    If(ray.cosViewSun.greaterThan(this.#nearSun), () => {
+      const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
+      // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
+      const nearDisc = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
+      If(sunDistance.lessThan(nearDisc), () => {
+        light.mulAssign(this.#sunShows)
+      })
+      If(sunDistance.lessThan(CORONA_RADII), () => {
+        light.addAssign(corona(uniforms, sunDistance))
+      })
     })
-    If(sunDistance.lessThan(12), () => {
-      light.addAssign(corona(uniforms, sunDistance))
+    const cosMoon = direction.dot(this.#direction).toConst()
+    If(cosMoon.greaterThan(this.#nearMoon), () => {
+      If(direction.sub(this.#direction).length().lessThan(this.#angularRadius.add(pixel)), () => {
+        const disc = moonDisc(
+          {
+            direction: this.#direction,
+            light: this.#light,
+            toFixed: this.#toFixed,
+            angularRadius: this.#angularRadius,
+            sunlit: this.#sunlit,
+            earthlit: this.#earthlit,
+            map: texture(this.#surface.target.texture)
+          },
+          direction,
+          pixel
+        )
+        light.assign(mix(light, disc.radiance, disc.coverage))
+      })
+      addHalo(light, this.#halo, this.#flare, direction, this.#direction, cosMoon)
     })
-    const reach = this.#angularRadius.add(pixel)
-    If(direction.sub(this.#direction).length().lessThan(reach), () => {
-      const disc = moonDisc(
-        {
-          direction: this.#direction,
-          light: this.#light,
-          toFixed: this.#toFixed,
-          angularRadius: this.#angularRadius,
-          sunlit: this.#sunlit,
-          earthlit: this.#earthlit,
-          map: texture(this.#surface.target.texture)
-        },
-        direction,
-        pixel
-      )
-      light.assign(mix(light, disc.radiance, disc.coverage))
-    })
-    const halo = haloRadiance(this.#halo, direction, this.#direction)
-    return light.add(this.#flare.mul(halo))
+    return light
   }
 
-  glow(ray: SkyRay): Vec4 {
-    return this.lightsAir ? this.#air.glow(ray) : vec4(0)
+  glow(ray: SkyRay, without: Vec4): Vec4 {
+    return this.lightsAir ? this.#air.glow(ray, without) : without
   }
 
-  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
-    return this.lightsAir ? this.#air.haze(view, displacementView) : vec4(0)
+  haze(line: HazeLine, without: Vec4): Vec4 {
+    return this.lightsAir ? this.#air.haze(line, without) : without
   }
 
-  /** Frees GPU memory. The moon can be used again. */
+  /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */
   dispose(): void {
+    this.atmosphere.remove(this)
     this.#surface.dispose()
     this.#air.dispose()
   }
 }
 
-function checkPositive(name: string, value: number): void {
-  if (!(value > 0 && value < Infinity)) {
-    throw new Error(`Moon: ${name} must be positive and finite, got ${value}`)
-  }
-}
+/** Cosine of an angle and the widest pixels' more [rad]. */
+const cosBeyond = (angle: number): number => Math.cos(Math.min(angle + WIDEST_PIXEL, Math.PI))
 
 function setRotation(target: Matrix3, rotation: Quaternion): void {
   target.setFromMatrix4(_matrix.makeRotationFromQuaternion(rotation))

@@ -1,3 +1,4 @@
+import { fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import type { Moon } from './Moon'
 import { SunDirectionalLight } from './SunDirectionalLight'
@@ -12,12 +13,18 @@ export class MoonDirectionalLight extends SunDirectionalLight {
   /** Shared, not owned. */
   readonly moon: Moon
 
-  /** @param distance - From the target to the light [world units]. */
+  /**
+   * @param distance - From the target to the light [world units].
+   * @throws If the moon is none, or made for another atmosphere.
+   */
   constructor(atmosphere: Atmosphere, moon: Moon, distance = 1) {
     if (moon?.source === undefined) {
       throw new Error(`MoonDirectionalLight: moon must be a Moon, got ${typeof moon}`)
     }
     super(atmosphere, distance, moon.source)
+    if (moon.atmosphere !== atmosphere) {
+      fail('MoonDirectionalLight', 'moon must be made for the same atmosphere', moon)
+    }
     this.moon = moon
   }
 

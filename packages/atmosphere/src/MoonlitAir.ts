@@ -1,14 +1,13 @@
 import { Vector3 } from 'three'
-import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, renderGroup, uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
 import type { MoonVolumes } from './MoonVolumes'
-import type { SkyRay } from './SkyLayer'
-import { scatteredRadiance } from './tsl/scattering'
-import { rayLimits, sampleSky, sampleVolume } from './tsl/skyVolume'
-import type { Float, Vec3, Vec4 } from './tsl-types'
+import type { HazeLine, SkyRay } from './SkyLayer'
+import { radianceBetween, sampleSky } from './tsl/skyVolume'
+import type { Float, Vec4 } from './tsl-types'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
 /** With the sun above this, or the moon below that, moonlight in the air is not seen. cos of zenith angles. */
@@ -55,40 +54,24 @@ export class MoonlitAir {
     }
   }
 
-  glow(ray: SkyRay): Vec4 {
-    const light = vec4(0).toVar()
+  glow(ray: SkyRay, without: Vec4): Vec4 {
+    const light = without.toVar()
     const { air, volume, eye, sunDirection } = this.#nodes(ray.view)
     If(this.#glows.greaterThan(0).and(ray.meetsAir), () => {
-      const cosViewMoon = ray.direction.dot(sunDirection).clamp(-1, 1).toConst() as Float
-      const { cosView, hitsGround } = ray
-      const sky = sampleSky(air.uniforms, volume, eye, cosView, cosViewMoon, hitsGround)
-      light.assign(scatteredRadiance(air.uniforms, sky, cosViewMoon).mul(this.source.irradiance))
+      const cosViewMoon = ray.direction.dot(sunDirection).toConst() as Float
+      const sky = sampleSky(air.uniforms, volume, eye, ray, cosViewMoon)
+      light.addAssign(sky.mul(this.source.irradiance))
     })
     return light
   }
 
-  haze(view: ViewNodes, displacementView: Vec3): Vec4 {
-    const light = vec4(0).toVar()
-    const { air, volume, eye, up, sunDirection } = this.#nodes(view)
+  haze({ view, direction, place }: HazeLine, without: Vec4): Vec4 {
+    const light = without.toVar()
+    const { air, volume, eye, sunDirection } = this.#nodes(view)
     If(this.#glows.greaterThan(0), () => {
-      const offset = view.toMapped(displacementView).toConst()
-      const distance = offset.length().max(1e-3).toConst() as Float
-      const direction = offset.div(distance).toConst()
-      const cosView = direction.dot(up).clamp(-1, 1).toConst() as Float
-      const cosViewMoon = direction.dot(sunDirection).clamp(-1, 1).toConst() as Float
-      const limits = rayLimits(air.uniforms, eye, cosView)
-      const between = sampleVolume(
-        air.uniforms,
-        volume,
-        eye,
-        cosView,
-        cosViewMoon,
-        limits,
-        distance
-      )
-      light.assign(
-        scatteredRadiance(air.uniforms, between, cosViewMoon).mul(this.source.irradiance)
-      )
+      const cosViewMoon = direction.dot(sunDirection).toConst() as Float
+      const between = radianceBetween(air.uniforms, volume, eye, place, cosViewMoon)
+      light.addAssign(between.mul(this.source.irradiance))
     })
     return light
   }

@@ -2,13 +2,14 @@ import { LightProbe, Vector4 } from 'three'
 import { Fn, normalView, renderGroup, uniform, vec4 } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
+import { checkNonNegative } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import { NIGHT_ILLUMINANCE } from './cpu/twilight'
 import { ofLuminance } from './stars/starColor'
 import { linearSRGB } from './tsl/color'
 import type { Vec3 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
-import { viewNodes } from './ViewNodes'
+import { checkAtmosphere, viewNodes } from './ViewNodes'
 
 /**
  * Light of the night sky on surfaces: what is left when sun and moon are down, so that nights are dark
@@ -30,12 +31,8 @@ export class NightLightProbe extends LightProbe {
    */
   constructor(atmosphere: Atmosphere, illuminance = NIGHT_ILLUMINANCE) {
     super()
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`NightLightProbe: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
-    if (!(illuminance >= 0 && illuminance < Infinity)) {
-      throw new Error(`NightLightProbe: illuminance must be finite and ≥ 0, got ${illuminance}`)
-    }
+    checkAtmosphere('NightLightProbe', atmosphere)
+    checkNonNegative('NightLightProbe', 'illuminance', illuminance)
     this.atmosphere = atmosphere
     this.illuminance = illuminance
   }

@@ -16,15 +16,16 @@ import {
   vec4
 } from 'three/tsl'
 import type { Renderer, TextureNode, UniformNode } from 'three/webgpu'
+import { fail } from '@welkin/geo'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkRange, withDefaults } from './check'
 import { FragmentPass, tableTarget } from './FragmentPass'
 import type { SkyLayer, SkyRay } from './SkyLayer'
 import { reflectanceColumns, sunWhite } from './cpu/reflectance'
 import { groundIrradiance } from './tsl/diffuseLight'
 import { orenNayar, seaSlopeVariance, skyGlint, sunGlint } from './tsl/groundReflection'
 import { proceduralGround, type GroundSurface } from './tsl/proceduralGround'
-import { scatteredRadiance } from './tsl/scattering'
 import { rayLimits, sampleVolume } from './tsl/skyVolume'
 import { sunTransmittance } from './tsl/transmittance'
 import type { Float, Vec2, Vec3, Vec4 } from './tsl-types'
@@ -48,6 +49,16 @@ export interface PlanetGroundOptions {
   windSpeed?: number
   /** Other continents of a made-up planet. */
   seed?: number
+}
+
+const DEFAULTS: Required<PlanetGroundOptions> = {
+  surface: null,
+  water: null,
+  nightLights: null,
+  nightLuminance: 2,
+  roughness: 0.35,
+  windSpeed: 7,
+  seed: 0
 }
 
 /** Light that comes back out of the sea by absorbing and scattering water, over what fell on it. */
@@ -109,41 +120,54 @@ export class PlanetGround implements SkyLayer {
   ]
   /** Polar over equatorial radius: geodetic latitudes from directions of the mapped sphere. */
   readonly #flattening = uniform(1).setGroup(renderGroup)
-  readonly #variance
-  readonly #nightLuminance
+  readonly #variance = uniform(0).setGroup(renderGroup)
+  readonly #roughness = uniform(0).setGroup(renderGroup)
+  readonly #nightLuminance = uniform(0).setGroup(renderGroup)
 
-  /** @throws If a number is out of its range. */
+  /** @throws If an option is of the wrong kind or out of its range. */
   constructor(options: PlanetGroundOptions = {}) {
-    this.#options = {
-      surface: null,
-      water: null,
-      nightLights: null,
-      nightLuminance: 2,
-      roughness: 0.35,
-      windSpeed: 7,
-      seed: 0,
-      ...options
-    }
-    const { nightLuminance, roughness, windSpeed, seed } = this.#options
-    const check = (name: string, value: number, max: number): void => {
-      if (!(value >= 0 && value <= max)) {
-        throw new Error(`PlanetGround: ${name} must be in [0, ${max}], got ${value}`)
+    const { surface, water, nightLights, nightLuminance, roughness, windSpeed, seed } =
+      (this.#options = withDefaults('PlanetGround', DEFAULTS, options))
+    for (const [name, value] of Object.entries({ surface, water, nightLights })) {
+      if (value !== null && !value.isTexture) {
+        fail('PlanetGround', `${name} must be a Texture or null`, value)
       }
     }
-    check('nightLuminance', nightLuminance, 1e6)
-    check('roughness', roughness, 1.5)
-    check('windSpeed', windSpeed, 40)
-    if (!Number.isFinite(seed)) throw new Error(`PlanetGround: seed must be finite, got ${seed}`)
-    this.#variance = uniform(seaSlopeVariance(windSpeed)).setGroup(renderGroup)
-    this.#nightLuminance = uniform(nightLuminance).setGroup(renderGroup)
+    if (!Number.isFinite(seed)) fail('PlanetGround', 'seed must be finite', seed)
+    this.nightLuminance = nightLuminance
+    this.roughness = roughness
+    this.windSpeed = windSpeed
   }
 
   /** Wind over the sea, in [0, 40] [m/s]. */
+  get windSpeed(): number {
+    return this.#options.windSpeed
+  }
+
   set windSpeed(value: number) {
-    if (!(value >= 0 && value <= 40)) {
-      throw new Error(`PlanetGround: windSpeed must be in [0, 40], got ${value}`)
-    }
+    checkRange('PlanetGround', 'windSpeed', value, 0, 40)
+    this.#options.windSpeed = value
     this.#variance.value = seaSlopeVariance(value)
+  }
+
+  /** Luminance of white in `nightLights`, in [0, 1e6] [cd/m²]. */
+  get nightLuminance(): number {
+    return this.#nightLuminance.value
+  }
+
+  set nightLuminance(value: number) {
+    checkRange('PlanetGround', 'nightLuminance', value, 0, 1e6)
+    this.#nightLuminance.value = value
+  }
+
+  /** Of land: standard deviation of its slopes, in [0, 1.5] [rad]. */
+  get roughness(): number {
+    return this.#roughness.value
+  }
+
+  set roughness(value: number) {
+    checkRange('PlanetGround', 'roughness', value, 0, 1.5)
+    this.#roughness.value = value
   }
 
   update({ atmosphere }: AtmosphereView): void {
@@ -182,7 +206,7 @@ export class PlanetGround implements SkyLayer {
     const { uniforms } = air
     const radiance = model.toVar()
     If(hitsGround, () => {
-      const limits = rayLimits(uniforms, eye, cosView, hitsGround)
+      const limits = rayLimits(eye, cosView, hitsGround)
       const distance = limits.start.add(limits.length).toConst() as Float
       const foot = view.up.mul(uniforms.bottomRadius.add(eye.altitude)).add(direction.mul(distance))
       const up = foot.normalize().toConst() as Vec3
@@ -217,7 +241,7 @@ export class PlanetGround implements SkyLayer {
         .mul(view.source.irradiance)
         .toConst()
       const level = sunlight.mul(angles.cosSun.max(0)).toConst()
-      const rough = orenNayar(angles, this.#options.roughness)
+      const rough = orenNayar(angles, this.#roughness)
       const albedo = this.#spectrum(this.#columns, color).clamp(0, 1)
       const land = level.mul(rough).add(skylight).mul(albedo).div(Math.PI)
       const body = level.add(skylight).mul(vec4(...WATER_BODY))
@@ -233,9 +257,7 @@ export class PlanetGround implements SkyLayer {
       }
       const between = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, distance)
       radiance.assign(
-        scatteredRadiance(uniforms, between, cosViewSun)
-          .mul(view.source.irradiance)
-          .add(light.mul(between.depth.negate().exp()))
+        between.radiance.mul(view.source.irradiance).add(light.mul(between.depth.negate().exp()))
       )
     })
     return radiance

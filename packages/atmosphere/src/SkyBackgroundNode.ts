@@ -29,8 +29,8 @@ export class SkyBackgroundNode extends AtmosphereNode {
 
   override setup(_builder: NodeBuilder): Node {
     return Fn(() => {
-      const ray = screenRay().direction.toConst() as Vec3
-      return vec4(skyColor(this.view, ray, this.showSun ? pixelAngle(ray) : null), 1)
+      const direction = this.view.toMapped(screenRay().direction).normalize().toConst() as Vec3
+      return vec4(skyColor(this.view, direction, this.showSun ? pixelAngle(direction) : null), 1)
     })()
   }
 }

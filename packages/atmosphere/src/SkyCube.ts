@@ -10,18 +10,18 @@ import {
   PerspectiveCamera,
   Vector3
 } from 'three'
-import type { Texture } from 'three'
 import { Fn, positionWorldDirection, renderGroup, uniform, vec4 } from 'three/tsl'
-import { CubeRenderTarget, NodeMaterial, PMREMGenerator, RendererUtils } from 'three/webgpu'
-import type { Renderer } from 'three/webgpu'
+import { CubeRenderTarget, NodeMaterial, RendererUtils } from 'three/webgpu'
+import type { Node, Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
+import { PrefilteredCube } from './PrefilteredCube'
+import type { SkyLayer } from './SkyLayer'
 import { skyColor } from './tsl/sky'
 import type { Vec3 } from './tsl-types'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
-/** Faces of the cube, and the filter. */
-export const SKY_CUBE_STEPS = 7
+const FACES = 6
 
 /**
  * Texels below the horizon over which the sky goes on, so that three's filter, which blurs even what
@@ -33,22 +33,32 @@ const _position = new Vector3()
 const _rotation = new Matrix3()
 
 /**
- * Sky and ground about a place as three's prefiltered environment map, in the world's axes. Drawn in
- * {@link SKY_CUBE_STEPS} steps, always into the same two cubes.
+ * Sky and ground about a place as three's prefiltered environment map, in the world's axes. Drawn face
+ * by face and then filtered part by part, always into the same cubes.
  */
 export class SkyCube {
   /** Stands where the sky is seen from, with the world's axes. */
   readonly camera = new PerspectiveCamera()
   readonly #atmosphere: Atmosphere
+  readonly #size: number
   readonly #view: ViewNodes
   readonly #faces: CubeRenderTarget
   readonly #cameras = new CubeCamera(1, 10, null as never)
   /** Zenith in world space. */
   readonly #up = uniform(new Vector3()).setGroup(renderGroup)
   readonly #box: Mesh<BoxGeometry, NodeMaterial>
-  #generator: PMREMGenerator | null = null
-  #renderer: Renderer | null = null
-  #filtered: CubeRenderTarget | null = null
+  readonly #filtered: PrefilteredCube
+  #node: Node | null = null
+  /** Luminance scale that all faces of a cube have; that of the map that was completed last. */
+  #scale = 1
+  #completedScale = 1
+  /** From the luminance scale of now to that of the cube, and from that of the map to now's. */
+  readonly #toCube = uniform(1).setGroup(renderGroup)
+  readonly #fromMap = uniform(1).setGroup(renderGroup)
+  /** Those that the shader has. */
+  #layers: readonly SkyLayer[] | null = null
+  /** Faces drawn; null while it rests. */
+  #drawn: number | null = null
 
   /** @param size - Texels along the edge of a face, a power of two. */
   constructor(atmosphere: Atmosphere, size: number) {
@@ -61,54 +71,94 @@ export class SkyCube {
       generateMipmaps: false
     })
     this.#faces.texture.name = 'SkyEnvironment'
+    this.#filtered = new PrefilteredCube(this.#faces.texture)
+    this.#size = size
     const material = new NodeMaterial()
     material.name = 'Welkin.SkyEnvironment'
     material.side = BackSide
     material.blending = NoBlending
     material.depthTest = material.depthWrite = material.toneMapped = material.fog = false
-    material.fragmentNode = Fn(() => {
-      const direction = positionWorldDirection.toConst() as Vec3
-      const height = direction.dot(this.#up).sub(this.#view.eye.cosHorizon).toConst()
-      const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / size))
-      // With the world's axes a direction in view space is one in world space.
-      const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
-      return vec4(skyColor(this.#view, raised, null), 1)
-    })()
     this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }
 
-  /** The filtered map, once there is one. */
-  get texture(): Texture | null {
-    return this.#filtered?.texture ?? null
+  /** The sky in the direction of a fragment, with the layers that there are. */
+  #sky(): Node<'vec4'> {
+    return Fn(() => {
+      const direction = positionWorldDirection.toConst() as Vec3
+      const height = direction.dot(this.#up).sub(this.#view.eye.cosHorizon).toConst()
+      const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / this.#size))
+      // With the world's axes a direction in view space is one in world space.
+      const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
+      const mapped = this.#view.toMapped(raised).normalize().toConst() as Vec3
+      return vec4(skyColor(this.#view, mapped, null).mul(this.#toCube), 1)
+    })()
   }
 
-  /** Looks from a camera's place at the sky as it is now; the steps that follow draw that. */
+  /** What materials mirror, once there is anything. */
+  get node(): Node | null {
+    const { node } = this.#filtered
+    if (node !== null) this.#node ??= (node as Vec3).mul(this.#fromMap)
+    return this.#node
+  }
+
+  /** Whether nothing is half done. */
+  get isIdle(): boolean {
+    return this.#drawn === null
+  }
+
+  /** Looks from a camera's place at the sky as it is now; what is drawn from now on shows that. */
   aim(renderer: Renderer, from: PerspectiveCamera['matrixWorld']): void {
     this.camera.matrixWorld.setPosition(_position.setFromMatrixPosition(from))
     const { up, viewToMapped } = this.#atmosphere.update(renderer, this.camera)
     this.#up.value.copy(up).applyMatrix3(_rotation.copy(viewToMapped).transpose()).normalize()
+    this.#scale = this.#atmosphere.luminanceScale
+    const { layers } = this.#atmosphere
+    const isSame = (layer: SkyLayer, i: number): boolean => layer === this.#layers?.[i]
+    if (layers.length !== this.#layers?.length || !layers.every(isSame)) {
+      this.#layers = [...layers]
+      this.#box.material.fragmentNode = this.#sky()
+      this.#box.material.needsUpdate = true
+    }
+    this.#drawn = 0
+    this.#filtered.restart()
   }
 
   /**
-   * Draws a face, or filters all of them.
+   * Draws the next face, or filters the next part, or does all that is left.
    *
-   * @param step - In [0, {@link SKY_CUBE_STEPS}), in that order.
+   * @returns Whether it is complete.
    */
-  draw(renderer: Renderer, step: number): void {
+  draw(renderer: Renderer, isWhole: boolean): boolean {
     const view = this.#atmosphere.viewOf(this.camera)
-    if (view === undefined || view.eye === null) return
+    if (this.#drawn === null || view === undefined || view.eye === null) return false
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     const isPresenting = renderer.xr.enabled
     renderer.xr.enabled = false
     renderer.setMRT(null)
-    if (step < 6) this.#drawFace(renderer, view, step)
-    else this.#filter(renderer)
+    let isComplete = false
+    if (isWhole) {
+      while (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
+      this.#filtered.filterAll(renderer)
+      isComplete = true
+    } else if (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
+    else isComplete = this.#filtered.filterNext(renderer)
+    if (isComplete) {
+      this.#drawn = null
+      this.#completedScale = this.#scale
+    }
     renderer.xr.enabled = isPresenting
     RendererUtils.restoreRendererState(renderer, state)
+    return isComplete
+  }
+
+  /** Has materials see what was completed last, at the luminance scale of now. */
+  show(): void {
+    this.#filtered.show()
+    this.#fromMap.value = this.#atmosphere.luminanceScale / this.#completedScale
   }
 
   #drawFace(renderer: Renderer, view: AtmosphereView, face: number): void {
-    const { layers, sun, tables } = this.#atmosphere
+    const { layers, luminanceScale, sun, tables } = this.#atmosphere
     // Another camera may have taken the sky volume since the last face.
     view.slot = sun.volumes.volumeFor(renderer, view.eye!, tables.version).slot
     for (const layer of layers) layer.prepare?.(renderer, view)
@@ -118,25 +168,16 @@ export class SkyCube {
       this.#cameras.coordinateSystem = renderer.coordinateSystem
       this.#cameras.updateCoordinateSystem()
     }
+    this.#toCube.value = this.#scale / luminanceScale
     renderer.setRenderTarget(this.#faces, face)
     renderer.render(this.#box, this.#cameras.children[face] as PerspectiveCamera)
-  }
-
-  #filter(renderer: Renderer): void {
-    if (this.#renderer !== renderer) {
-      this.#generator?.dispose()
-      this.#generator = new PMREMGenerator(renderer)
-      this.#renderer = renderer
-    }
-    this.#filtered = this.#generator!.fromCubemap(this.#faces.texture, this.#filtered)
   }
 
   /** Frees GPU memory; it can be drawn again. */
   dispose(): void {
     this.#faces.dispose()
-    this.#filtered?.dispose()
-    this.#generator?.dispose()
-    this.#generator = this.#renderer = null
+    this.#filtered.dispose()
+    this.#drawn = null
     this.#box.geometry.dispose()
     this.#box.material.dispose()
   }

@@ -5,7 +5,8 @@ import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
-import { SKY_CUBE_STEPS, SkyCube } from './SkyCube'
+import type { SkyLayer } from './SkyLayer'
+import { SkyCube } from './SkyCube'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
 /** Options of {@link skyEnvironment}. */
@@ -32,6 +33,8 @@ const RADIANS = Math.PI / 180
 const LOW = 500
 /** Change of the sun's irradiance, in an eclipse say, that shows. */
 const DIMMING = 0.02
+/** Factor of the luminance scale up to which half floats resolve a tenth of a grey level. */
+const RESCALING = 1000
 
 /**
  * Sky and ground as what materials mirror: a scene's environment, through three's prefiltered maps.
@@ -42,8 +45,11 @@ const DIMMING = 0.02
  *
  * It has no sun: `SunDirectionalLight` is that, with its highlight; nor moon and stars. Layers of the
  * atmosphere that glow, fog and ground are in it. It is drawn once, and again, in place, when sun or
- * altitude have changed by more than a threshold: a face of the cube a frame, then the filter in the
- * seventh. It is seen from the camera's place: things far away from the camera mirror the camera's sky.
+ * altitude have changed by more than a threshold, parameters of the air at all, or layers, theirs by the
+ * count of {@link SkyLayer.version}: a face of the cube a frame, then a part of the filter a
+ * frame, fifteen frames for the default size. Until the new map is complete, the old one is mirrored.
+ * `luminanceScale` acts at once. What is painted on the textures of a `planetGround` is not followed: set
+ * {@link needsRedraw}. It is seen from the camera's place: things far away from the camera mirror the camera's sky.
  *
  * `scene.environmentIntensity` and the materials' roughness act as they do with any environment.
  */
@@ -67,7 +73,6 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly #view: ViewNodes
   readonly #cube: SkyCube
   readonly #drawn = new DrawnSky()
-  #step = SKY_CUBE_STEPS
   #frame = -1
   #camera: Camera | null = null
   readonly #release = (): void => this.#free()
@@ -103,14 +108,15 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   }
 
   override updateBefore(frame: NodeFrame): undefined {
+    // The frame is shared: renders that prepare the view leave their camera in it.
+    const { renderer, camera, frameId } = frame
     this.#view.prepare(frame)
-    if (frame.renderer !== null && frame.camera !== null) {
-      this.#follow(frame.renderer, frame.camera, frame.frameId)
-    }
+    if (renderer !== null && camera !== null) this.#follow(renderer, camera, frameId)
   }
 
   // Drawing the sky from another camera set the layers' uniforms for that.
   override update(frame: NodeFrame): undefined {
+    this.#cube.show()
     const view = this.#view.update(frame)
     if (view === undefined) return
     for (const layer of this.atmosphere.layers) layer.update?.(view)
@@ -124,28 +130,26 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     if (isLed && this.redraws > 0) return
     this.#frame = frameId
     this.#camera = camera
-    const isIdle = this.#step === SKY_CUBE_STEPS
-    if (this.needsRedraw || (isIdle && !this.#drawn.resembles(view, this.angle, this.climb))) {
+    const cube = this.#cube
+    if (this.needsRedraw || (cube.isIdle && !this.#drawn.resembles(view, this.angle, this.climb))) {
       this.#drawn.set(view)
-      this.#cube.aim(renderer, camera.matrixWorld)
-      this.#step = 0
+      cube.aim(renderer, camera.matrixWorld)
     }
-    const end = this.needsRedraw ? SKY_CUBE_STEPS : Math.min(this.#step + 1, SKY_CUBE_STEPS)
-    if (this.#step === end) return
-    for (; this.#step < end; this.#step++) this.#cube.draw(renderer, this.#step)
-    if (end === SKY_CUBE_STEPS) this.redraws++
+    if (cube.isIdle) return
+    if (!cube.draw(renderer, this.needsRedraw)) return
+    this.redraws++
     this.needsRedraw = false
   }
 
   override setup(builder: NodeBuilder): Node {
     const { renderer, camera } = builder as unknown as { renderer: Renderer; camera: Camera }
     // The map must be there when a material is made, as three's own node has it.
-    if (this.#cube.texture === null && camera !== null) {
+    if (this.#cube.node === null && camera !== null) {
       this.#view.prepare({ renderer, camera } as NodeFrame)
       this.#follow(renderer, camera, -1)
     }
-    if (this.#cube.texture === null) return vec3(0)
-    return mirrored(builder, this.#cube.texture, this.diffuse)
+    const { node } = this.#cube
+    return node === null ? vec3(0) : mirrored(builder, node, this.diffuse)
   }
 
   #free(): void {
@@ -165,6 +169,9 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
 class DrawnSky {
   #height = NaN
   #tablesVersion = -1
+  #scale = NaN
+  #layers: readonly SkyLayer[] = []
+  #versions: readonly (number | undefined)[] = []
   readonly #sun = new Vector3()
   readonly #up = new Vector3()
   readonly #axes = new Matrix3()
@@ -180,6 +187,9 @@ class DrawnSky {
   set(view: AtmosphereView): void {
     this.#height = view.height
     this.#tablesVersion = view.atmosphere.tables.version
+    this.#scale = view.atmosphere.luminanceScale
+    this.#layers = [...view.atmosphere.layers]
+    this.#versions = this.#layers.map(({ version }) => version)
     this.#sun.copy(view.sunDirection)
     this.#up.copy(view.up)
     this.#axes.copy(this.#axesOf(view))
@@ -190,8 +200,14 @@ class DrawnSky {
     const reach = 2 * Math.sin((Math.min(angle, 180) * RADIANS) / 2)
     const axes = this.#axesOf(view).elements
     const scale = Math.hypot(axes[0], axes[1], axes[2]) || 1
+    const { layers, luminanceScale, tables } = view.atmosphere
     return (
-      view.atmosphere.tables.version === this.#tablesVersion &&
+      tables.version === this.#tablesVersion &&
+      layers.length === this.#layers.length &&
+      layers.every(
+        (layer, i) => layer === this.#layers[i] && layer.version === this.#versions[i]
+      ) &&
+      Math.abs(Math.log(luminanceScale / this.#scale)) <= Math.log(RESCALING) &&
       this.#sun.distanceTo(view.sunDirection) <= reach &&
       this.#up.distanceTo(view.up) <= reach &&
       this.#axes.elements.every((value, i) => Math.abs(value - axes[i]) <= reach * scale) &&
@@ -219,20 +235,20 @@ export class ImageEnvironmentNode extends Node<'vec3'> {
   }
 
   override setup(builder: NodeBuilder): Node {
-    return mirrored(builder, this.image, this.diffuse)
+    let map = maps.get(this.image)
+    if (map === undefined) maps.set(this.image, (map = pmremTexture(this.image)))
+    return mirrored(builder, map, this.diffuse)
   }
 }
 
 const maps = new WeakMap<Texture, Node>()
 
 /** What a material gets from a map: by roughness what it mirrors, or light from all around. */
-function mirrored(builder: NodeBuilder, texture: Texture, diffuse: boolean | null): Node {
+function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | null): Node {
   const { context, lightsNode } = builder as unknown as {
     context: { getUV?: (node: Node, builder: NodeBuilder) => unknown }
     lightsNode: { getLights?: () => object[] } | null
   }
-  let map = maps.get(texture)
-  if (map === undefined) maps.set(texture, (map = pmremTexture(texture)))
   // Light on matte surfaces is what three asks about the normal, not the mirrored ray.
   if (context.getUV?.(map, builder) !== normalWorld) return map
   const lights = lightsNode?.getLights?.() ?? []

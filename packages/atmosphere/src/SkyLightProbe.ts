@@ -3,6 +3,7 @@ import { Fn, normalView } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
+import { checkSource } from './check'
 import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
 import { coveredPosition } from './tsl/coveredPosition'
@@ -24,10 +25,14 @@ export class SkyLightProbe extends LightProbe {
   /** Whose light sky and ground scatter: the sun's. */
   readonly source: LightSource
 
-  /** @param source - Whose light sky and ground scatter; by default the sun's. */
+  /**
+   * @param source - Whose light sky and ground scatter; by default the sun's.
+   * @throws If an argument is of the wrong kind.
+   */
   constructor(atmosphere: Atmosphere, source: LightSource = atmosphere?.sun) {
     super()
     checkAtmosphere('SkyLightProbe', atmosphere)
+    checkSource('SkyLightProbe', 'source', source)
     this.atmosphere = atmosphere
     this.source = source
   }

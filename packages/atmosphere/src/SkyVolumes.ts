@@ -16,14 +16,18 @@ const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGro
 /** Uniforms of an eye, and a way to set them all. */
 export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
   readonly altitude = scalar()
+  readonly radius = scalar()
+  readonly toHorizon = scalar()
+  readonly toTop = scalar()
   readonly cosSun = scalar()
+  readonly sinSun = scalar()
   readonly cosHorizon = scalar()
   readonly sinHorizon = scalar()
-  readonly belowSpan = scalar()
-  readonly aboveSpan = scalar()
-  readonly groundExponent = scalar()
+  readonly belowScale = scalar()
+  readonly aboveScale = scalar()
+  readonly groundStretch = scalar()
   readonly groundGrowth = scalar()
-  readonly skyExponent = scalar()
+  readonly skyStretch = scalar()
   readonly skyGrowth = scalar()
   /** Number of the volume in the atlas. */
   readonly slot = scalar()
@@ -62,19 +66,15 @@ export class SkyVolumes {
     ELEVATIONS * TILE_ROWS * VOLUME_SLOTS,
     2
   )
-  /** Mean extinction along rays. */
+  /** Mean extinction along rays, and in the last column transmittance of all the air. */
   readonly depth: RenderTarget = tableTarget(
     'SkyVolume.depth',
-    DEPTH_SIZE[0],
+    DEPTH_SIZE[0] + 1,
     DEPTH_SIZE[1] * VOLUME_SLOTS
   )
-  /** Light of each segment alone, before the sum. */
-  readonly #segments: RenderTarget = tableTarget(
-    'SkyVolume.segments',
-    AZIMUTHS * TILE_COLUMNS,
-    ELEVATIONS * TILE_ROWS,
-    2
-  )
+  /** Light of each segment alone, before the sum: nothing that outlasts a bake. */
+  readonly segments: RenderTarget
+  readonly #ownsSegments: boolean
   readonly #volumes: SkyVolume[] = Array.from({ length: VOLUME_SLOTS }, (_, slot) => ({
     slot,
     eye: null,
@@ -87,13 +87,23 @@ export class SkyVolumes {
   readonly #sumPass: FragmentPass
   #uses = 0
 
-  constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget, diffuse: RenderTarget) {
+  /** @param segments - Those of other volumes, to share them; whose they are frees them. */
+  constructor(
+    uniforms: AtmosphereUniforms,
+    transmittance: RenderTarget,
+    diffuse: RenderTarget,
+    segments?: RenderTarget
+  ) {
+    this.#ownsSegments = segments === undefined
+    this.segments =
+      segments ??
+      tableTarget('SkyVolume.segments', AZIMUTHS * TILE_COLUMNS, ELEVATIONS * TILE_ROWS, 2)
     const air: Air = {
       uniforms,
       transmittance: texture(transmittance.texture),
       diffuse: texture(diffuse.texture)
     }
-    const [molecular, aerosol] = this.#segments.textures.map(part => texture(part))
+    const [molecular, aerosol] = this.segments.textures.map(part => texture(part))
     this.#depthPass = new FragmentPass('Welkin.SkyVolume.depth', bakeDepth(air, this.#eye))
     this.#segmentPass = new FragmentPass(
       'Welkin.SkyVolume.segments',
@@ -134,13 +144,13 @@ export class SkyVolumes {
   #bake(renderer: Renderer, slot: number, eye: EyeScalars<number>): void {
     this.#eye.set(eye, slot)
     this.#depthPass.render(renderer, this.depth)
-    this.#segmentPass.render(renderer, this.#segments)
+    this.#segmentPass.render(renderer, this.segments)
     this.#sumPass.render(renderer, this.light)
   }
 
-  /** What takes GPU memory. */
+  /** What takes GPU memory of its own. */
   get targets(): RenderTarget[] {
-    return [this.light, this.depth, this.#segments]
+    return [this.light, this.depth, ...(this.#ownsSegments ? [this.segments] : [])]
   }
 
   dispose(): void {

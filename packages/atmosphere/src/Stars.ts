@@ -1,13 +1,15 @@
-import { DataTexture, FloatType, NearestFilter, RGBAFormat, Vector4 } from 'three'
+import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
+import { checkNonNegative, fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
+import { checkOptions, checkOrientation } from './check'
 import { CelestialFrame } from './CelestialFrame'
 import type { SkyLayer, SkyRay } from './SkyLayer'
-import { CELL_COLUMNS, COLOR_STEPS, starCells } from './stars/starCells'
+import { COLOR_STEPS, ENTRY_COLUMNS, STAR_LEVELS, starCells } from './stars/starCells'
 import type { Star } from './stars/starCode'
 import { MAGNITUDE_ZERO_ILLUMINANCE, starIrradiance } from './stars/starColor'
-import { starField } from './tsl/starField'
+import { starField, type StarTextures } from './tsl/starField'
 import type { Vec4 } from './tsl-types'
 import { vec4Array } from './tsl-types'
 import { If, renderGroup, uniform } from 'three/tsl'
@@ -42,33 +44,42 @@ export class Stars implements SkyLayer {
   readonly catalogue: readonly Star[]
   /** Whether `starsOverlay` draws them and the sky does not. */
   readonly overlay: boolean
-  /** Multiplies the physical brightness, ≥ 0. */
-  intensity = 1
+  #intensity = 1
   readonly #frame = new CelestialFrame()
   readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
-  readonly #cells: DataTexture
+  readonly #textures: StarTextures
   /** A hundred times the irradiance of the brightest star, over `solarIrradiance`. */
   readonly #brightest = uniform(0).setGroup(renderGroup)
   #paletteOf = ''
 
-  /** @throws If a star has a number that is not finite. */
-  constructor(catalogue: readonly Star[], { overlay = false, orientation }: StarsOptions = {}) {
+  /** @throws If a star lacks a finite number, or an option is of the wrong kind. */
+  constructor(catalogue: readonly Star[], options: StarsOptions = {}) {
+    const { overlay = false, orientation } = checkOptions('Stars', options)
+    if (!Array.isArray(catalogue)) fail('Stars', 'catalogue must be an array of stars', catalogue)
     catalogue.forEach((star, i) => {
-      for (const [name, value] of Object.entries(star)) {
-        if (!Number.isFinite(value)) {
-          throw new Error(`Stars: ${name} of star ${i} must be finite, got ${value}`)
-        }
+      for (const name of ['ascension', 'declination', 'magnitude', 'colorIndex'] as const) {
+        const value = star?.[name]
+        if (!Number.isFinite(value)) fail('Stars', `${name} of star ${i} must be finite`, value)
       }
     })
     this.catalogue = catalogue
     this.overlay = overlay
     this.orientation = orientation ?? null
-    const texels = starCells(catalogue)
-    const rows = texels.length / 4 / CELL_COLUMNS
-    this.#cells = new DataTexture(texels, CELL_COLUMNS, rows, RGBAFormat, FloatType)
-    this.#cells.name = 'Stars.cells'
-    this.#cells.minFilter = this.#cells.magFilter = NearestFilter
-    this.#cells.needsUpdate = true
+    const { cells, entries } = starCells(catalogue)
+    this.#textures = {
+      cells: dataTexture('Stars.cells', cells, STAR_LEVELS[0].cells, RGFormat),
+      entries: dataTexture('Stars.entries', entries, ENTRY_COLUMNS, RGBAFormat)
+    }
+  }
+
+  /** Multiplies the physical brightness, finite, ≥ 0. */
+  get intensity(): number {
+    return this.#intensity
+  }
+
+  set intensity(value: number) {
+    checkNonNegative('Stars', 'intensity', value)
+    this.#intensity = value
   }
 
   /** Rotation from the stars' frame to ECEF; null to follow the atmosphere's date. */
@@ -77,6 +88,7 @@ export class Stars implements SkyLayer {
   }
 
   set orientation(value: Matrix4 | null) {
+    checkOrientation('Stars', value)
     this.#frame.orientation = value
   }
 
@@ -90,7 +102,7 @@ export class Stars implements SkyLayer {
     const state = [this.intensity, wavelengths, solarIrradiance, spectralToXYZ].join(' ')
     if (state === this.#paletteOf) return
     this.#paletteOf = state
-    const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * Math.max(this.intensity, 0)
+    const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * this.intensity
     const magnitude = this.catalogue.reduce((least, star) => Math.min(least, star.magnitude), 9)
     const [, green] = starIrradiance(parameters, 0, illuminance * 10 ** (-0.4 * magnitude))
     this.#brightest.value = 100 * green
@@ -102,8 +114,8 @@ export class Stars implements SkyLayer {
 
   /** Light of the stars in a direction, above the air [1/sr]. */
   light(ray: SkyRay): Vec4 {
-    const direction = this.#frame.toCelestial(ray.direction).toConst()
-    return starField(this.#cells, this.#palette, direction, ray.pixel)
+    const direction = this.#frame.turn(ray.direction).toConst()
+    return starField(this.#textures, this.#palette, direction, ray.pixel)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
@@ -118,6 +130,21 @@ export class Stars implements SkyLayer {
   }
 
   dispose(): void {
-    this.#cells.dispose()
+    this.#textures.cells.dispose()
+    this.#textures.entries.dispose()
   }
+}
+
+function dataTexture(
+  name: string,
+  texels: Float32Array<ArrayBuffer>,
+  width: number,
+  format: typeof RGFormat | typeof RGBAFormat
+): DataTexture {
+  const rows = texels.length / width / (format === RGFormat ? 2 : 4)
+  const made = new DataTexture(texels, width, rows, format, FloatType)
+  made.name = name
+  made.minFilter = made.magFilter = NearestFilter
+  made.needsUpdate = true
+  return made
 }

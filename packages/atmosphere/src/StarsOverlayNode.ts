@@ -17,7 +17,7 @@ import type { SkyLayer, SkyRay } from './SkyLayer'
 import type { Stars } from './Stars'
 import { linearSRGB } from './tsl/color'
 import { pixelAngle } from './tsl/sky'
-import { rayTargets, skyTransmittance } from './tsl/skyVolume'
+import { aimAt, rayTargets, skyTransmittance } from './tsl/skyVolume'
 import type { Float, Vec3, Vec4 } from './tsl-types'
 
 const isOverlay = (layer: SkyLayer): layer is Stars =>
@@ -74,21 +74,22 @@ export class StarsOverlayNode extends AtmosphereNode {
       const color = vec4(this.colorNode as Vec4).toConst()
       const depth = float((this.depthNode as Vec4).r).toConst()
       const rayView = getViewPosition(uv(), float(0.5), this.#projectionInverse).toConst() as Vec3
-      const pixel = pixelAngle(rayView)
+      const direction = this.view.toMapped(rayView).normalize().toConst() as Vec3
+      const pixel = pixelAngle(direction)
       const added = vec3(0).toVar()
       If(isBackgroundDepth(depth), () => {
         const { uniforms } = this.view.air
         const { volume, eye } = this.view
-        const direction = this.view.toMapped(rayView).normalize().toConst() as Vec3
         const cosView = direction.dot(this.view.up).clamp(-1, 1).toConst() as Float
         const cosViewSun = direction.dot(this.view.sunDirection).clamp(-1, 1).toConst() as Float
-        const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
+        const { hitsGround, meetsAir } = rayTargets(eye, cosView)
         // What is overlaid is asked for its light itself, which no air hides.
         const airlight = vec4(0) as Vec4
-        const angles = { direction, cosView, cosViewSun, hitsGround, meetsAir }
+        const aim = aimAt(eye, cosView, hitsGround)
+        const angles = { direction, cosViewSun, meetsAir, ...aim }
         const ray = { view: this.view, ...angles, pixel, airlight }
         If(hitsGround.not(), () => {
-          const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
+          const through = skyTransmittance(volume, eye, aim)
           added.assign(linearSRGB(uniforms, this.#light(ray).mul(through)))
         })
       })

@@ -4,6 +4,7 @@ import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import { checkPositive } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
+import { checkSource } from './check'
 import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
 import { coveredPosition } from './tsl/coveredPosition'
@@ -37,6 +38,7 @@ export class SunDirectionalLight extends DirectionalLight {
   constructor(atmosphere: Atmosphere, distance = 1, source: LightSource = atmosphere?.sun) {
     super()
     checkAtmosphere('SunDirectionalLight', atmosphere)
+    checkSource('SunDirectionalLight', 'source', source)
     this.atmosphere = atmosphere
     this.source = source
     this.distance = distance

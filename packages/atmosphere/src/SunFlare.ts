@@ -4,8 +4,9 @@ import type { AtmosphereView } from './AtmosphereView'
 import { visibleSun } from './cpu/transmittance'
 import { HaloUniforms, type FlareOptions } from './HaloUniforms'
 import type { SkyLayer, SkyRay } from './SkyLayer'
-import { haloRadiance } from './tsl/halo'
+import { addHalo } from './tsl/halo'
 import type { Vec4 } from './tsl-types'
+import { checkAtmosphere } from './ViewNodes'
 
 const DEFAULTS = { innerPower: 6000, innerStrength: 0.006, outerPower: 150, outerStrength: 0.004 }
 
@@ -28,9 +29,7 @@ export class SunFlare implements SkyLayer {
 
   /** @throws If an argument is of the wrong kind or out of its range. */
   constructor(atmosphere: Atmosphere, options: FlareOptions = {}) {
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`SunFlare: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
+    checkAtmosphere('SunFlare', atmosphere)
     this.atmosphere = atmosphere
     this.#halo = new HaloUniforms('SunFlare', DEFAULTS)
     this.set(options)
@@ -39,7 +38,7 @@ export class SunFlare implements SkyLayer {
   /**
    * Changes powers and strengths.
    *
-   * @throws If one is out of its range; then nothing has changed.
+   * @throws If one is unknown or out of its range; then nothing has changed.
    */
   set(options: FlareOptions): this {
     this.#halo.set(options)
@@ -50,11 +49,15 @@ export class SunFlare implements SkyLayer {
     const { parameters } = this.atmosphere
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     this.#visible.value = visibleSun(parameters, radius, view.up.dot(view.sunDirection))
+    this.#halo.update(this.#visible.value > 0)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
-    const light = ray.view.source.irradiance.mul(this.#visible)
-    return farther.add(light.mul(haloRadiance(this.#halo, ray.direction, ray.view.sunDirection)))
+    const { direction, cosViewSun, view } = ray
+    const light = farther.toVar()
+    const irradiance = view.source.irradiance.mul(this.#visible)
+    addHalo(light, this.#halo, irradiance, direction, view.sunDirection, cosViewSun)
+    return light
   }
 }
 

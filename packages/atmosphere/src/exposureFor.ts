@@ -1,12 +1,15 @@
 import type { Camera } from 'three'
 import { Vector3 } from 'three'
+import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from './Atmosphere'
+import { checkOptions, checkSources } from './check'
 import { clampCosine } from './cpu/AtmosphereQuery'
 import { sampleDiffuseLight } from './cpu/diffuseLight'
 import { sunTransmittance } from './cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from './cpu/twilight'
 import type { LightSource } from './LightSource'
 import { luminanceOf } from './stars/starColor'
+import { checkAtmosphere } from './ViewNodes'
 
 /** Options of {@link exposureFor}. */
 export interface ExposureOptions {
@@ -49,14 +52,24 @@ function keyOf(luminance: number): number {
  * Exposure that suits an illuminance, falling steadily with it: 1 in full daylight (100 klx), 17,000 in
  * the light of a full moon, 1.1 million in a moonless night.
  *
- * @param illuminance - Of level ground, > 0 [lx].
+ * @param illuminance - Of level ground, ≥ 0 [lx].
+ * @throws If it is out of range.
  */
 export function exposureOfIlluminance(illuminance: number): number {
+  checkNonNegative('exposureOfIlluminance', 'illuminance', illuminance)
   const exposure = (lux: number): number => {
     const luminance = (lux * REFLECTANCE) / Math.PI
     return keyOf(luminance) / luminance
   }
   return exposure(Math.max(illuminance, 1e-9)) / exposure(DAYLIGHT)
+}
+
+/** @throws If an option is of the wrong kind or out of range. */
+export function checkExposure(where: string, options: ExposureOptions = {}): ExposureOptions {
+  const { sources = [], floor = NIGHT_ILLUMINANCE } = checkOptions(where, options)
+  checkSources(where, sources)
+  checkPositive(where, 'floor', floor)
+  return options
 }
 
 /** Illuminance of level ground by a source at a zenith angle [lx]. */
@@ -101,16 +114,16 @@ function groundIlluminance(
  *
  * @param camera - Its `matrixWorld` must be up to date.
  * @returns Greater than 0; 1 in full daylight.
- * @throws If an option is out of range.
+ * @throws If an argument is of the wrong kind or out of range.
  */
 export function exposureFor(
   atmosphere: Atmosphere,
   camera: Camera,
-  { sources = [], floor = NIGHT_ILLUMINANCE }: ExposureOptions = {}
+  options: ExposureOptions = {}
 ): number {
-  if (!(floor > 0 && floor < Infinity)) {
-    throw new Error(`exposureFor: floor must be positive and finite, got ${floor}`)
-  }
+  checkAtmosphere('exposureFor', atmosphere)
+  if (!camera?.isCamera) fail('exposureFor', 'camera must be a Camera', camera)
+  const { sources = [], floor = NIGHT_ILLUMINANCE } = checkExposure('exposureFor', options)
   const { space, parameters } = atmosphere
   const position = new Vector3().setFromMatrixPosition(camera.matrixWorld)
   const up = space.position(position, new Vector3())

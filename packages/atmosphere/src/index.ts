@@ -1,7 +1,12 @@
 export { Atmosphere } from './Atmosphere'
 export type { AtmosphereFrame, AtmosphereOptions } from './Atmosphere'
 export { AtmosphereParameters } from './AtmosphereParameters'
-export type { AtmosphereParametersInit, SpectralMatrix, Spectrum } from './AtmosphereParameters'
+export type {
+  AtmosphereParametersInit,
+  ScaleHeightLayers,
+  SpectralMatrix,
+  Spectrum
+} from './AtmosphereParameters'
 export { SkyBackgroundNode, skyBackground } from './SkyBackgroundNode'
 export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './AerialPerspectiveFogNode'
 export { AerialPerspectiveNode, aerialPerspective } from './AerialPerspectiveNode'
@@ -37,8 +42,8 @@ export { PlanetGround, planetGround } from './PlanetGround'
 export type { PlanetGroundOptions } from './PlanetGround'
 export { AtmosphereShell, atmosphereShell } from './AtmosphereShell'
 export type { AtmosphereShellOptions, ShellSun } from './AtmosphereShell'
-export { FlatAtmosphere, flatAtmosphere } from './FlatAtmosphere'
 export { airlessBody, isAirless, marsAtmosphere, titanAtmosphere, venusAtmosphere } from './planets'
+export { standardAtmosphere } from './standardAtmosphere'
 export { ImageEnvironmentNode, SkyEnvironmentNode, skyEnvironment } from './SkyEnvironmentNode'
 export type { EnvironmentOptions, SkyEnvironmentOptions } from './SkyEnvironmentNode'
 export { HeightFog, heightFog } from './HeightFog'

@@ -1,3 +1,4 @@
+import { checkOptions, checkRange } from './check'
 import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 
 const map = (values: Spectrum, f: (value: number, i: number) => number): Spectrum =>
@@ -31,12 +32,6 @@ const N2_CROSS_SECTION = 5.1e-31
 
 const NONE: Spectrum = [0, 0, 0, 0]
 
-function check(name: string, value: number, min: number, max: number): void {
-  if (!(value >= min && value <= max)) {
-    throw new Error(`planets: ${name} must be in [${min}, ${max}], got ${value}`)
-  }
-}
-
 /**
  * Mars's dust at the four wavelengths: extinction relative to 630 nm, single-scattering albedo and
  * asymmetry, by Mie theory for a gamma distribution of r_eff 1.6 µm, v_eff 0.2 and refractive index
@@ -66,8 +61,9 @@ const MARS_DUST = {
  *   days (default 0.5), several in a dust storm.
  * @throws If it is out of its range.
  */
-export function marsAtmosphere({ dust = 0.5 }: { dust?: number } = {}): AtmosphereParameters {
-  check('dust', dust, 0, 10)
+export function marsAtmosphere(options: { dust?: number } = {}): AtmosphereParameters {
+  const { dust = 0.5 } = checkOptions('marsAtmosphere', options, 'dust')
+  checkRange('marsAtmosphere', 'dust', dust, 0, 10)
   const sun = sunAt(1.5237)
   const scaleHeight = 11_100
   const extinction = map(MARS_DUST.extinction, value => (value * dust) / scaleHeight)
@@ -150,16 +146,15 @@ export function titanAtmosphere(): AtmosphereParameters {
  * @param options - `radius` [m]; `groundAlbedo`; `distance` to the sun [astronomical units].
  * @throws If a number is out of its range.
  */
-export function airlessBody({
-  radius = 1_737_400,
-  groundAlbedo = [0.09, 0.11, 0.12, 0.135],
-  distance = 1
-}: {
-  radius?: number
-  groundAlbedo?: Spectrum
-  distance?: number
-} = {}): AtmosphereParameters {
-  check('distance', distance, 1e-3, 1e4)
+export function airlessBody(
+  options: { radius?: number; groundAlbedo?: Spectrum; distance?: number } = {}
+): AtmosphereParameters {
+  const {
+    radius = 1_737_400,
+    groundAlbedo = [0.09, 0.11, 0.12, 0.135],
+    distance = 1
+  } = checkOptions('airlessBody', options, 'radius', 'groundAlbedo', 'distance')
+  checkRange('airlessBody', 'distance', distance, 1e-3, 1e4)
   return new AtmosphereParameters({
     ...sunAt(distance),
     bottomRadius: radius,

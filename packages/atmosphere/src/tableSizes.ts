@@ -22,7 +22,10 @@ export const VOLUME_SLOTS = 2
  */
 export const VOLUME_TILES = [6, 4] as const
 
-/** Mean extinction along rays: distance × elevation. It costs a row little, and needs many. */
+/**
+ * Mean extinction along rays: distance × elevation, and a column of the whole way's transmittance. It costs
+ * a row little, and needs many.
+ */
 export const DEPTH_SIZE = [32, 192] as const
 
 /** Factor by which tables of radiance are scaled, to stay clear of subnormal half floats at night. */

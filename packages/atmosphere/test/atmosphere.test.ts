@@ -6,8 +6,11 @@ import {
   AtmosphereParameters,
   SkyLightProbe,
   SunDirectionalLight,
+  distanceFog,
+  heightFog,
   skyBackground,
-  skyLuminanceAt
+  skyLuminanceAt,
+  sunFlare
 } from '@welkin/atmosphere'
 import type { AtmosphereFrame } from '@welkin/atmosphere'
 import { Ellipsoid, type GeodeticLike, sunDirectionECEF } from '@welkin/geo'
@@ -18,6 +21,41 @@ const degree = Math.PI / 180
 const equinoxNoon = new Date('2026-03-20T12:07:30Z')
 
 describe('Atmosphere', () => {
+  it('keeps its layers in order, each once, and tells when they change', () => {
+    const atmosphere = new Atmosphere()
+    const node = skyBackground(atmosphere)
+    const key = (): number => node.getCacheKey()
+    const [near, far] = [heightFog(), distanceFog()]
+    const bare = key()
+    expect(key()).toBe(bare)
+    expect(atmosphere.add(near)).toBe(atmosphere)
+    const one = key()
+    expect(one).not.toBe(bare)
+    expect(key()).toBe(one)
+    atmosphere.add(far, near, far)
+    expect(atmosphere.layers).toEqual([far, near])
+    expect(atmosphere.remove(far).layers).toEqual([near])
+    const { layersVersion } = atmosphere
+    expect(atmosphere.remove(far).layersVersion).toBe(layersVersion)
+    // As many as before, but another one.
+    const before = key()
+    atmosphere.remove(near).add(far)
+    expect(key()).not.toBe(before)
+  })
+
+  it('takes no layer that is none, nor any of those with it', () => {
+    const atmosphere = new Atmosphere()
+    for (const wrong of [null, undefined, 'abc', 3, heightFog, [heightFog()]]) {
+      expect(() => atmosphere.add(heightFog(), wrong as never)).toThrow(
+        'Atmosphere: layer must be a SkyLayer, got '
+      )
+    }
+    expect(() => atmosphere.add(sunFlare(new Atmosphere()))).toThrow(
+      'Atmosphere: layer must be made for this atmosphere, got SunFlare'
+    )
+    expect(atmosphere.layers).toEqual([])
+  })
+
   it('sees the equinox sun at noon overhead at the equator and due south at 45° north', () => {
     const atmosphere = new Atmosphere()
     atmosphere.date = equinoxNoon

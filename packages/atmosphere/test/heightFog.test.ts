@@ -148,6 +148,29 @@ describe('multiple scattering in fog', () => {
   })
 })
 
+describe('version of a fog', () => {
+  it('counts changes and nothing else', () => {
+    const height = new HeightFog({ density: 0.01 })
+    const { version } = height
+    height.set({}).set({ density: 0.01, fade: [5000, 15_000], albedo: [1, 1, 1, 1] })
+    expect(height.version).toBe(version)
+    height
+      .set({ density: 0.02 })
+      .set({ albedo: [1, 1, 1, 0.9] })
+      .set({ fade: [5000, 16_000] })
+    expect(height.version).toBe(version + 3)
+    expect(() => height.set({ density: -1 })).toThrow('density')
+    expect(height.version).toBe(version + 3)
+
+    const distance = new DistanceFog({ density: 1e-4 })
+    const before = distance.version
+    distance.density = 1e-4
+    expect(distance.version).toBe(before)
+    distance.density = 2e-4
+    expect(distance.version).toBe(before + 1)
+  })
+})
+
 describe('fog', () => {
   it('says which option is wrong', () => {
     expect(() => new HeightFog({ falloff: 0 })).toThrow('HeightFog: falloff must be in [0.1, 1')

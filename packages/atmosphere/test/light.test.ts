@@ -78,16 +78,24 @@ describe('eye', () => {
       fc.property(number(-1e5, 6e7), cosine, (altitude, cosSun) => {
         const eye = eyeScalars(earth, altitude, cosSun)
         const height = Math.max(altitude, LOWEST_EYE)
-        const radius = earth.bottomRadius + height
+        const { bottomRadius } = earth
+        // From afar the radius is what float32 has, and all else is the geometry of that radius.
+        const exact = bottomRadius + height
+        const radius = height > bottomRadius ? eye.radius : exact
+        expect(Math.abs(eye.radius / exact - 1)).toBeLessThan(
+          height > bottomRadius ? 2 ** -23 : 1e-15
+        )
         expect(eye.altitude).toBe(height)
-        expect(eye.sinHorizon).toBeCloseTo(earth.bottomRadius / radius, 12)
-        const cosHorizon = -Math.sqrt(height * (2 * earth.bottomRadius + height)) / radius
+        expect(eye.sinHorizon).toBeCloseTo(bottomRadius / radius, 12)
+        const above = height > bottomRadius ? radius - bottomRadius : height
+        const cosHorizon = -Math.sqrt(above * (2 * bottomRadius + above)) / radius
+        expect(eye.toHorizon / (above * (2 * bottomRadius + above))).toBeCloseTo(1, 12)
         expect(Math.abs(eye.cosHorizon - cosHorizon)).toBeLessThan(1e-9)
         expect(Object.values(eye).every(Number.isFinite)).toBe(true)
-        expect(eye.belowSpan).toBeGreaterThan(0)
-        expect(eye.aboveSpan).toBeGreaterThan(0)
-        expect(eye.groundGrowth).toBeCloseTo(Math.exp(eye.groundExponent) - 1, 9)
-        expect(eye.skyGrowth).toBeCloseTo(Math.exp(eye.skyExponent) - 1, 9)
+        expect(eye.belowScale).toBeGreaterThan(0)
+        expect(eye.aboveScale).toBeGreaterThan(0)
+        expect(eye.groundGrowth).toBeCloseTo(Math.exp(1 / eye.groundStretch) - 1, 9)
+        expect(eye.skyGrowth).toBeCloseTo(Math.exp(1 / eye.skyStretch) - 1, 9)
       }),
       runs
     )

@@ -1,7 +1,14 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
-import { Vector3 } from 'three'
-import { Atmosphere, Moon, moon, MoonDirectionalLight, moonIlluminanceAt } from '@welkin/atmosphere'
+import { PerspectiveCamera, Vector3 } from 'three'
+import {
+  Atmosphere,
+  DayCycle,
+  Moon,
+  moon,
+  MoonDirectionalLight,
+  moonIlluminanceAt
+} from '@welkin/atmosphere'
 import { SearchLocalSolarEclipse, Observer } from 'astronomy-engine'
 import { Ellipsoid, moonPositionECEF } from '@welkin/geo'
 import { coveredSun } from '../src/cpu/eclipse'
@@ -32,6 +39,34 @@ const ALLEN: readonly (readonly [number, number])[] = [
   [140, 5.07],
   [150, 5.9]
 ]
+
+describe('version of a moon', () => {
+  it('counts what is set by hand, a direction once it has moved by a tenth of a degree', () => {
+    const luna = moon(new Atmosphere(), { direction: new Vector3(1, 1, 0) })
+    const counts = (change: () => void): number => {
+      const { version } = luna
+      change()
+      return luna.version - version
+    }
+    expect(counts(() => (luna.direction = new Vector3(2, 2, 0)))).toBe(0)
+    expect(
+      counts(() => {
+        for (let step = 1; step <= 25; step++) {
+          const angle = (45 + 0.01 * step) * degree
+          luna.direction = new Vector3(Math.cos(angle), Math.sin(angle), 0)
+        }
+      })
+    ).toBe(2)
+    expect(counts(() => (luna.direction = null))).toBe(1)
+    expect(counts(() => (luna.direction = null))).toBe(0)
+    expect(counts(() => (luna.phase = 0.25))).toBe(1)
+    expect(counts(() => (luna.phase = 0.25))).toBe(0)
+    for (const name of ['strength', 'radius', 'distance'] as const) {
+      expect(counts(() => (luna[name] = 3e8))).toBe(1)
+      expect(counts(() => (luna[name] = 3e8))).toBe(0)
+    }
+  })
+})
 
 describe('moonlight', () => {
   it('has the illuminance of the published table at every phase angle, within 10 %', () => {
@@ -134,6 +169,39 @@ describe('Moon', () => {
     }
   })
 
+  it('waxes and wanes as a day cycle runs, and exposure follows its light', () => {
+    const atmosphere = new Atmosphere().place({ longitude: 0, latitude: 35 })
+    const luna = moon(atmosphere)
+    const sources = [luna.source]
+    // Almanac: new on 16 May 2026 at 20:01 UTC, quarters on 23 May at 11:11 and 8 June at 10:00,
+    // full on 31 May at 08:45, new on 15 June at 02:54.
+    const date = new Date('2026-05-16T20:01:00Z')
+    const [lit, dark] = [{ sources }, {}].map(
+      exposure => new DayCycle(atmosphere, { date, rate: 86_400, adaptation: 0, exposure })
+    )
+    const camera = new PerspectiveCamera()
+    const fractions = [0, 6.63, 7.9, 8.05, 6.7].map(days => {
+      lit.update(days)
+      return luna.seenFrom(origin).litFraction
+    })
+    const [first, quarter, full, last, next] = fractions
+    for (const value of [first, next]) expect(value).toBeLessThan(0.005)
+    for (const value of [quarter, last]) expect(Math.abs(value - 0.5)).toBeLessThan(0.03)
+    expect(full).toBeGreaterThan(0.99)
+
+    const midnight = Date.UTC(2026, 4, 31)
+    const exposures = [lit, dark].map(cycle => {
+      cycle.time = midnight
+      cycle.update(0, camera)
+      return cycle.exposure
+    })
+    expect(exposures[1] / exposures[0]).toBeGreaterThan(10)
+    // A fortnight later there is no moon at midnight.
+    lit.time = Date.UTC(2026, 5, 15)
+    lit.update(0, camera)
+    expect(lit.exposure / exposures[1]).toBeCloseTo(1, 2)
+  })
+
   it('takes no wrong argument', () => {
     const atmosphere = new Atmosphere()
     expect(() => new Moon(undefined as never)).toThrow('Moon: atmosphere must be')
@@ -145,6 +213,13 @@ describe('Moon', () => {
     expect(() => new Moon(atmosphere, { direction: origin })).toThrow('Moon: direction must be')
     expect(() => new Moon(atmosphere, { flare: { innerPower: 0 } })).toThrow('Moon: innerPower')
     expect(() => new MoonDirectionalLight(atmosphere, null as never)).toThrow('must be a Moon')
+    const other = moon(new Atmosphere())
+    expect(() => new MoonDirectionalLight(atmosphere, other)).toThrow(
+      'MoonDirectionalLight: moon must be made for the same atmosphere, got Moon'
+    )
+    expect(() => atmosphere.add(other)).toThrow(
+      'Atmosphere: layer must be made for this atmosphere, got Moon'
+    )
   })
 })
 
@@ -241,5 +316,53 @@ describe('eclipse', () => {
     atmosphere.date = new Date('2024-04-08T18:42:30Z')
     moon(atmosphere)
     expect(luminance(atmosphere.sunIlluminanceAt(origin))).toBeGreaterThan(1e4)
+  })
+
+  it('ends when the moon is removed or disposed, but not when the atmosphere is disposed', () => {
+    const atmosphere = new Atmosphere().place({ longitude: -96.8, latitude: 32.8 })
+    atmosphere.date = new Date('2024-04-08T18:45:00Z')
+    const left = (): number => luminance(atmosphere.sunIlluminanceAt(origin))
+    const bare = left()
+    const luna = moon(atmosphere)
+    const other = moon(atmosphere, { direction: new Vector3(0, 1, 0) })
+    expect(left()).toBe(bare)
+    atmosphere.add(luna, other)
+    const dim = left()
+    expect(dim / bare).toBeLessThan(0.03)
+    expect(atmosphere.remove(luna).layers).toEqual([other])
+    expect(left()).toBe(bare)
+    atmosphere.add(luna).dispose()
+    expect(atmosphere.layers).toEqual([other, luna])
+    expect(left()).toBe(dim)
+    luna.dispose()
+    expect(atmosphere.layers).toEqual([other])
+    expect(left()).toBe(bare)
+    atmosphere.add(luna)
+    expect(left()).toBe(dim)
+  })
+
+  it('leaves nothing behind of a thousand moons that came and went', () => {
+    const atmosphere = new Atmosphere().place({ longitude: -96.8, latitude: 32.8 })
+    atmosphere.date = new Date('2024-04-08T18:45:00Z')
+    const luna = moon(atmosphere)
+    let asked = 0
+    for (let i = 0; i < 1000; i++) {
+      const guest = moon(atmosphere)
+      guest.eclipse = () => {
+        asked++
+        return [0, 0, 0, 0]
+      }
+      atmosphere.add(guest)
+      atmosphere.remove(guest)
+    }
+    atmosphere.add(luna)
+    expect(atmosphere.sun.irradianceAt(origin)).toEqual(luna.eclipse(origin))
+    atmosphere.remove(luna)
+    const start = performance.now()
+    for (let i = 0; i < 20_000; i++) atmosphere.sun.irradianceAt(origin)
+    // No chain of a thousand functions, which would take longer.
+    expect(performance.now() - start).toBeLessThan(100)
+    expect(atmosphere.sun.irradianceAt(origin)).toEqual([1, 1, 1, 1])
+    expect(asked).toBe(0)
   })
 })

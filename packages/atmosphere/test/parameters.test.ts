@@ -8,6 +8,26 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
   [{ topRadius: NaN }, /AtmosphereParameters: topRadius .*NaN/],
   [{ mieAsymmetry: 1 }, /AtmosphereParameters: mieAsymmetry.* got 1/],
   [{ rayleighScaleHeight: 0 }, /AtmosphereParameters: rayleighScaleHeight .*0/],
+  [{ rayleighLayers: [[1e4, 0]] }, /AtmosphereParameters: rayleighLayers\[0\]\[1\] .* got 0/],
+  [{ rayleighLayers: [[-1, 7e3]] }, /AtmosphereParameters: rayleighLayers\[0\]\[0\] .* got -1/],
+  [
+    {
+      rayleighLayers: [
+        [4e4, 7e3],
+        [1e4, 6e3]
+      ]
+    },
+    /AtmosphereParameters: rayleighLayers\[1\]\[0\] must be .* in \[40000, 1000000\], got 10000/
+  ],
+  [
+    { rayleighLayers: [1, 2, 3, 4].map(i => [1e4 * i, 7e3] as const) },
+    /AtmosphereParameters: rayleighLayers must be an array of at most 3 layers/
+  ],
+  [
+    { rayleighLayers: [[1e4]] } as unknown as AtmosphereParametersInit,
+    /AtmosphereParameters: rayleighLayers\[0\] .*2 values/
+  ],
+  [{ rayleighLayers: null as never }, /AtmosphereParameters: rayleighLayers .*3 layers.*null/],
   [{ groundAlbedo: [0, 0, 1.5, 0] }, /AtmosphereParameters: groundAlbedo\[2\] .*1\.5/],
   [
     { mieExtinction: [0, -1e-6, 0, 0] },
@@ -17,8 +37,8 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
     { wavelengths: [1, 2, 3] as unknown as Spectrum },
     /AtmosphereParameters: wavelengths .*4 values.*3/
   ],
-  [{ mieScattering: undefined }, /AtmosphereParameters: mieScattering .*4 values.*undefined/],
-  [{ mieAsymmetry: undefined }, /AtmosphereParameters: mieAsymmetry .*undefined/],
+  [{ mieScattering: null as never }, /AtmosphereParameters: mieScattering .*4 values.*null/],
+  [{ mieAsymmetry: null as never }, /AtmosphereParameters: mieAsymmetry .*null/],
   [
     { mieScaleHeight: '1200' } as unknown as AtmosphereParametersInit,
     /AtmosphereParameters: mieScaleHeight .*1200/

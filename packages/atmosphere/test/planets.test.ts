@@ -2,7 +2,6 @@ import {
   Atmosphere,
   AtmosphereParameters,
   airlessBody,
-  flatAtmosphere,
   isAirless,
   marsAtmosphere,
   planetGround,
@@ -129,9 +128,9 @@ describe('reflectanceColumns', () => {
   })
 })
 
-describe('FlatAtmosphere', () => {
+describe('a flat world', () => {
   it('has the same light wherever one goes, and that of an atmosphere at its origin', () => {
-    const flat = flatAtmosphere().place({ longitude: 10, latitude: 40 })
+    const flat = new Atmosphere({ flat: true }).place({ longitude: 10, latitude: 40 })
     const round = new Atmosphere().place({ longitude: 10, latitude: 40 })
     for (const atmosphere of [flat, round]) atmosphere.setSunAngles(4, 130)
     const here = round.sunIlluminanceAt(new Vector3(0, 500, 0))
@@ -145,5 +144,13 @@ describe('FlatAtmosphere', () => {
     }
     const far = round.sunIlluminanceAt(new Vector3(1e5, 500, -3e5))
     expect(Math.abs(far[0] / here[0] - 1)).toBeGreaterThan(0.1)
+  })
+  it('has no ECEF frame', () => {
+    const atmosphere = new Atmosphere({ flat: true })
+    expect(() => (atmosphere.frame = 'ecef')).toThrow("Atmosphere: frame must be 'local'")
+    atmosphere.flat = false
+    atmosphere.frame = 'ecef'
+    expect(() => (atmosphere.flat = true)).toThrow('Atmosphere: flat must be false')
+    expect(() => new Atmosphere({ flat: 1 as never })).toThrow('Atmosphere: flat must be true')
   })
 })

@@ -13,12 +13,11 @@ import {
 import { eciToECEF, siderealAngle } from '@welkin/geo'
 import { spectralToLinearSRGB } from '../src/cpu/color'
 import {
-  CELL_COLUMNS,
-  CELLS,
   COLOR_STEPS,
+  ENTRY_COLUMNS,
   MAGNITUDE_RANGE,
   packStar,
-  STAR_REACH,
+  STAR_LEVELS,
   starCells,
   starDirection
 } from '../src/stars/starCells'
@@ -231,52 +230,65 @@ describe('star colours', () => {
 })
 
 describe('star cells', () => {
-  const texels = starCells(catalogue)
+  const { cells, entries } = starCells(catalogue)
+  const width = STAR_LEVELS[0].cells
 
-  /** Cell by angles from the middles of the faces, where the shader divides and takes arctangents. */
-  function cellOf(v: Vector3): number {
-    const axes = v.toArray()
-    const major = axes.reduce(
-      (best, value, i) => (Math.abs(value) > Math.abs(axes[best]) ? i : best),
-      0
+  /** First entry and number of entries where a direction is on the map: octant by octant. */
+  function listAt(v: Vector3, level: number): [number, number] {
+    const { cells: size } = STAR_LEVELS[level]
+    const [x, y, z] = v.toArray().map(Math.abs)
+    const [a, b] = [x / (x + y + z), y / (x + y + z)]
+    // The lower half mirrored in the diamond's edge x + y = 1.
+    const [u, w] = v.z < 0 ? [1 - b, 1 - a] : [a, b]
+    const [column, row] = [v.x < 0 ? -u : u, v.y < 0 ? -w : w].map(p =>
+      Math.min(Math.floor(((p + 1) / 2) * size), size - 1)
     )
-    const face = 2 * major + (axes[major] < 0 ? 1 : 0)
-    const [column, row] = [1, 2].map(step => {
-      const angle = Math.atan2(axes[(major + step) % 3], Math.abs(axes[major]))
-      return Math.min(Math.floor(((angle + Math.PI / 4) / (Math.PI / 2)) * CELLS), CELLS - 1)
-    })
-    return (face * CELLS + row) * CELLS + column
+    const texel = (row + (level === 0 ? 0 : width)) * width + column
+    return [cells[2 * texel], cells[2 * texel + 1]]
   }
 
-  it('list every star that can shine into them', () => {
-    const packed = catalogue.map(star => [...starDirection(star), packStar(star)].map(Math.fround))
-    expect(packed).toHaveLength(5044)
-    fc.assert(
-      fc.property(number(-1, 1), number(0, 2 * Math.PI), (z, angle) => {
-        const level = Math.sqrt(1 - z * z)
-        const v = new Vector3(level * Math.cos(angle), level * Math.sin(angle), z)
-        const [first, count] = texels.subarray(4 * cellOf(v))
-        const listed = new Set(
-          Array.from({ length: count }, (_, i) =>
-            texels.slice(4 * (first + i), 4 * (first + i) + 4).join()
+  it.each(STAR_LEVELS.map((_, level) => level))(
+    'of level %i list every star that can shine into them',
+    level => {
+      const packed = catalogue.map(star =>
+        [...starDirection(star), packStar(star)].map(Math.fround)
+      )
+      expect(packed).toHaveLength(5044)
+      fc.assert(
+        fc.property(number(-1, 1), number(0, 2 * Math.PI), (z, angle) => {
+          const across = Math.sqrt(1 - z * z)
+          const v = new Vector3(across * Math.cos(angle), across * Math.sin(angle), z)
+          const [first, count] = listAt(v, level)
+          const listed = new Set(
+            Array.from({ length: count }, (_, i) =>
+              entries.slice(4 * (first + i), 4 * (first + i) + 4).join()
+            )
           )
-        )
-        const missing = catalogue.filter(
-          (star, i) => directionOf(star).angleTo(v) < STAR_REACH && !listed.has(packed[i].join())
-        )
-        expect(missing).toEqual([])
-      }),
-      { ...runs, numRuns: 100 }
-    )
-  })
+          const missing = catalogue.filter(
+            (star, i) =>
+              directionOf(star).angleTo(v) < STAR_LEVELS[level].reach &&
+              !listed.has(packed[i].join())
+          )
+          expect(missing).toEqual([])
+        }),
+        { ...runs, numRuns: 200 }
+      )
+    }
+  )
 
   it('are few and short enough to look through for every pixel', () => {
-    const counts = Array.from({ length: 6 * CELLS * CELLS }, (_, cell) => texels[4 * cell + 1])
-    const mean = counts.reduce((sum, count) => sum + count, 0) / counts.length
-    expect(mean).toBeLessThan(5)
-    expect(Math.max(...counts)).toBeLessThan(32)
-    expect(texels.length % (4 * CELL_COLUMNS)).toBe(0)
-    expect(texels.byteLength).toBeLessThan(700_000)
+    STAR_LEVELS.forEach(({ cells: size }, level) => {
+      const counts = Array.from({ length: size * size }, (_, cell) => {
+        const row = Math.floor(cell / size) + (level === 0 ? 0 : width)
+        return cells[2 * (row * width + (cell % size)) + 1]
+      })
+      const mean = counts.reduce((sum, count) => sum + count, 0) / counts.length
+      expect(mean).toBeLessThan([0.8, 6][level])
+      expect(mean).toBeGreaterThan([0.4, 2][level])
+      expect(Math.max(...counts)).toBeLessThan([16, 40][level])
+    })
+    expect(entries.length % (4 * ENTRY_COLUMNS)).toBe(0)
+    expect(cells.byteLength + entries.byteLength).toBeLessThan(750_000)
   })
 
   it('keep magnitude and colour apart', () => {

@@ -35,8 +35,9 @@ export function checkLatitude(where: string, latitude: number): void {
 }
 
 export function checkVector(where: string, name: string, vector: XYZ): void {
-  // One sum finds NaN and Infinity in any component: Infinity − Infinity is NaN.
-  if (!Number.isFinite(vector?.x + vector?.y + vector?.z)) {
+  const isFinite =
+    Number.isFinite(vector?.x) && Number.isFinite(vector?.y) && Number.isFinite(vector?.z)
+  if (!isFinite) {
     fail(where, `${name} must have finite components`, vector)
   }
 }
@@ -59,5 +60,5 @@ function describe(value: unknown): string {
   if ('x' in value && 'y' in value && 'z' in value) {
     return `(${String(value.x)}, ${String(value.y)}, ${String(value.z)})`
   }
-  return Array.isArray(value) ? `[${String(value)}]` : (value.constructor?.name ?? 'object')
+  return Array.isArray(value) ? `[${value.join(', ')}]` : (value.constructor?.name ?? 'object')
 }

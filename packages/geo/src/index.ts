@@ -19,4 +19,4 @@ export { ellipsoidToSphere } from './tsl/ellipsoidToSphere'
 export { offsetHeight } from './tsl/offsetHeight'
 export { rayEllipsoid, raySphere } from './tsl/rayEllipsoid'
 // Preconditions that Welkin's packages share; not for use elsewhere.
-export { checkDirection, checkPositive, checkVector, fail } from './check'
+export { checkDirection, checkNonNegative, checkPositive, checkVector, fail } from './check'

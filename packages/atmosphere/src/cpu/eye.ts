@@ -1,5 +1,6 @@
 import type { AtmosphereParameters } from '../AtmosphereParameters'
 import type { EyeScalars } from '../tsl/eye'
+import { homogeneousHeight } from './medium'
 
 /** How much faster than the density of molecules the steps grow along a ray. */
 const STEP_GROWTH = 0.4
@@ -7,8 +8,8 @@ const STEP_GROWTH = 0.4
 /** Eyes lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */
 export const LOWEST_EYE = 1
 
-function exponent(rise: number, scaleHeight: number): number {
-  const value = Math.min(Math.max((STEP_GROWTH * rise) / scaleHeight, -4), 4)
+function exponent(rise: number, height: number): number {
+  const value = Math.min(Math.max((STEP_GROWTH * rise) / height, -4), 4)
   return Math.sign(value || 1) * Math.max(Math.abs(value), 0.05)
 }
 
@@ -23,27 +24,35 @@ export function eyeScalars(
   altitude: number,
   cosSun: number
 ): EyeScalars<number> {
-  const { bottomRadius, topRadius, rayleighScaleHeight } = parameters
+  const { bottomRadius, topRadius } = parameters
   const thickness = topRadius - bottomRadius
   const h = Math.max(altitude, LOWEST_EYE)
-  const radius = bottomRadius + h
+  // From afar squares of distances cancel in shaders: all must be of the radius that these add up.
+  const isFar = h > bottomRadius
+  const radius = isFar ? Math.fround(bottomRadius + Math.fround(h)) : bottomRadius + h
+  const height = isFar ? radius - bottomRadius : h
   const sinHorizon = bottomRadius / radius
   const dip = Math.acos(sinHorizon)
   const above =
     radius > topRadius ? Math.asin(topRadius / radius) - Math.asin(sinHorizon) : Math.PI / 2 + dip
   const start = Math.min(h, thickness)
-  const groundExponent = exponent(-start, rayleighScaleHeight)
-  const skyExponent = exponent(thickness - start, rayleighScaleHeight)
+  const scale = homogeneousHeight(parameters)
+  const groundExponent = exponent(-start, scale)
+  const skyExponent = exponent(thickness - start, scale)
   return {
     altitude: h,
+    radius,
+    toHorizon: height * (bottomRadius + radius),
+    toTop: (thickness - height) * (topRadius + radius),
     cosSun,
+    sinSun: Math.sqrt(Math.max(1 - cosSun ** 2, 0)),
     cosHorizon: -Math.sin(dip),
     sinHorizon,
-    belowSpan: Math.tan((Math.PI / 2 - dip) / 2),
-    aboveSpan: Math.tan(above / 2),
-    groundExponent,
+    belowScale: 1 / Math.tan((Math.PI / 2 - dip) / 2),
+    aboveScale: 1 / Math.tan(above / 2),
+    groundStretch: 1 / groundExponent,
     groundGrowth: Math.expm1(groundExponent),
-    skyExponent,
+    skyStretch: 1 / skyExponent,
     skyGrowth: Math.expm1(skyExponent)
   }
 }

@@ -27,3 +27,21 @@ export function gaussLegendre(count: number): { nodes: number[]; weights: number
   }
   return { nodes, weights }
 }
+
+/**
+ * Weights of the integral from 0 to a position of the polynomial through values at some nodes.
+ *
+ * @param nodes - No two the same.
+ */
+export function weightsTo(nodes: readonly number[], position: number): number[] {
+  return nodes.map(node => {
+    // Lagrange's polynomial that is 1 at this node and 0 at the others, lowest power first.
+    let polynomial = [1]
+    for (const other of nodes) {
+      if (other === node) continue
+      const raised = [0, ...polynomial]
+      polynomial = raised.map((c, i) => (c - other * (polynomial[i] ?? 0)) / (node - other))
+    }
+    return polynomial.reduce((sum, c, i) => sum + (c * position ** (i + 1)) / (i + 1), 0)
+  })
+}

@@ -2,7 +2,7 @@ import { spectrumOf, type AtmosphereParameters } from '../AtmosphereParameters'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../tableSizes'
 import { distanceToGround, distanceToTop } from './boundary'
 import { diffuseColumn, diffuseColumnCosine, type DiffuseLightData } from './diffuseLight'
-import { densities } from './medium'
+import { densities, homogeneousHeight } from './medium'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from './phase'
 import { gaussLegendre } from './quadrature'
 import { discTransmittance, visibleSun } from './transmittance'
@@ -104,6 +104,8 @@ class Gatherer {
   readonly depth = new Float64Array(4)
   readonly #p: AtmosphereParameters
   readonly #sunlight: Sunlight
+  /** Over which air thins out, by and large [m]. */
+  readonly #height: number
   readonly #mie: [number, number, number][]
   readonly #sun = new Float64Array(4)
   readonly #cell = new Float64Array(PER_CELL)
@@ -112,6 +114,7 @@ class Gatherer {
   constructor(p: AtmosphereParameters) {
     this.#p = p
     this.#sunlight = new Sunlight(p)
+    this.#height = homogeneousHeight(p)
     this.#mie = spectrumOf(p.mieAsymmetry).map(asymmetryMoments)
   }
 
@@ -150,7 +153,7 @@ class Gatherer {
     this.radiance.fill(0)
     this.depth.fill(0)
     const rise = endAltitude - (radius - p.bottomRadius)
-    const growth = Math.min(Math.max((0.3 * rise) / p.rayleighScaleHeight, -4), 4)
+    const growth = Math.min(Math.max((0.3 * rise) / this.#height, -4), 4)
     const exponent = Math.abs(growth) < 0.05 ? 0.05 : growth
     const at = (x: number): number => (distance * Math.expm1(exponent * x)) / Math.expm1(exponent)
     const molecularPhase = rayleighPhase(cosViewSun)

@@ -10,6 +10,8 @@ export class SphericalSpace {
   /** World to mapped space. */
   readonly #matrix = new Matrix4()
   readonly #linear = new Matrix3()
+  /** Whether every position lies above the world's origin, at height y. */
+  flat = false
 
   /**
    * @param worldToECEF - From world units to metres in ECEF.
@@ -24,7 +26,9 @@ export class SphericalSpace {
 
   /** A position in the mapped space [m]. */
   position(world: Vector3, target: Vector3): Vector3 {
-    return target.copy(world).applyMatrix4(this.#matrix)
+    target.copy(world)
+    if (this.flat) target.x = target.z = 0
+    return target.applyMatrix4(this.#matrix)
   }
 
   /** A direction in the mapped space, unit length. */

@@ -1,3 +1,5 @@
+import { fail } from '@welkin/geo'
+import { checkOptions, checkRange } from '../check'
 import type { Star } from './starCode'
 
 /** Options of {@link proceduralStars}. */
@@ -22,20 +24,13 @@ const BRIGHTEST_SPAN = 7.5
  *
  * @throws If an option is out of range.
  */
-export function proceduralStars({
-  count = 5000,
-  faintest = 6,
-  seed = 1
-}: ProceduralStarsOptions = {}): Star[] {
+export function proceduralStars(options: ProceduralStarsOptions = {}): Star[] {
+  const { count = 5000, faintest = 6, seed = 1 } = checkOptions('proceduralStars', options)
   if (!(Number.isInteger(count) && count >= 1 && count <= 50_000)) {
     throw new Error(`proceduralStars: count must be an integer in [1, 50000], got ${count}`)
   }
-  if (!(faintest >= -10 && faintest <= 20)) {
-    throw new Error(`proceduralStars: faintest must be in [-10, 20], got ${faintest}`)
-  }
-  if (!Number.isFinite(seed)) {
-    throw new Error(`proceduralStars: seed must be finite, got ${seed}`)
-  }
+  checkRange('proceduralStars', 'faintest', faintest, -10, 20)
+  if (!Number.isFinite(seed)) fail('proceduralStars', 'seed must be finite', seed)
   const next = random(seed)
   return Array.from({ length: count }, () => {
     const ascension = 2 * Math.PI * next()

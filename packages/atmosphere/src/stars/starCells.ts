@@ -1,13 +1,22 @@
+import { octahedralDirection, octahedralPoint } from './octahedron'
 import type { Star } from './starCode'
 
-/** Cells along an edge of a face of the cube; a face has this number squared. */
-export const CELLS = 32
+/** Cells of the sky for stars whose pictures have a size. */
+export interface StarLevel {
+  /** Cells along an edge of the octahedral map. */
+  readonly cells: number
+  /** Cells that a star may shine into from outside of them are within this angle of it [rad]. */
+  readonly reach: number
+}
 
-/** Cells that a star may shine into from outside of them are within this angle of it [rad]. */
-export const STAR_REACH = 0.024
+/** For pictures of stars as small as most cameras make them, and for large ones. */
+export const STAR_LEVELS = [
+  { cells: 128, reach: 0.004 },
+  { cells: 64, reach: 0.024 }
+] as const satisfies readonly StarLevel[]
 
-/** Columns of the texture that the cells and their stars are kept in. */
-export const CELL_COLUMNS = 256
+/** Columns of the texture that the cells' stars are kept in, a power of two. */
+export const ENTRY_COLUMNS = 256
 
 /** Magnitudes are stored as a fraction of this range. */
 export const MAGNITUDE_RANGE = { min: -4, span: 32 } as const
@@ -32,85 +41,113 @@ export function starDirection({ ascension, declination }: Star): [number, number
   return [level * Math.cos(ascension), level * Math.sin(ascension), Math.sin(declination)]
 }
 
-/** Axes of a face of the cube: the one through it, and those of its two coordinates. */
-export const faceAxes = (face: number): [number, number, number] => {
-  const axis = face >> 1
-  return [axis, (axis + 1) % 3, (axis + 2) % 3]
-}
-
-/** Direction, not of unit length, of a point of a face; coordinates in [−1, 1], equal in angle. */
-function facePoint(face: number, s: number, t: number): [number, number, number] {
-  const [major, first, second] = faceAxes(face)
-  const direction: [number, number, number] = [0, 0, 0]
-  direction[major] = face & 1 ? -1 : 1
-  direction[first] = Math.tan((Math.PI / 4) * s)
-  direction[second] = Math.tan((Math.PI / 4) * t)
-  return direction
-}
-
 const dot = (a: readonly number[], b: readonly number[]): number =>
   a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+const cross = (a: readonly number[], b: readonly number[]): number[] => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0]
+]
 
 const unit = (v: readonly number[]): number[] => {
   const length = Math.hypot(...v)
   return v.map(value => value / length)
 }
 
-/** Cosines between the middle of a cell and what lies {@link STAR_REACH} beyond its farthest corner. */
-function boundCell(face: number, column: number, row: number) {
-  const at = (i: number): number => (2 * i) / CELLS - 1
-  const middle = unit(facePoint(face, at(column + 0.5), at(row + 0.5)))
-  const corners = [0, 1, 2, 3].map(corner =>
-    unit(facePoint(face, at(column + (corner & 1)), at(row + (corner >> 1))))
-  )
-  // A cell's edges are great circles: no point of it is farther from the middle than a corner.
-  const radius = Math.max(...corners.map(corner => Math.acos(Math.min(dot(middle, corner), 1))))
-  return { middle, cosReach: Math.cos(radius + STAR_REACH) }
+/** Half-spaces, as (normal, least dot product), that hold all that is within `reach` of a cell. */
+type Bounds = (readonly [normal: readonly number[], least: number])[]
+
+function boundCell({ cells, reach }: StarLevel, cell: number): Bounds {
+  const at = (i: number): number => (2 * i) / cells - 1
+  const [column, row] = [cell % cells, Math.floor(cell / cells)]
+  const corners = [
+    [0, 0],
+    [1, 0],
+    [1, 1],
+    [0, 1]
+  ].map(([x, y]) => unit(octahedralDirection(at(column + x), at(row + y))))
+  const middle = unit(octahedralDirection(at(column + 0.5), at(row + 0.5)))
+  const fold = Math.abs(at(column + 0.5)) + Math.abs(at(row + 0.5))
+  if (Math.abs(fold - 1) < 0.5 / cells) {
+    // The map is folded along its diagonal: no point of it is farther from its middle than a corner.
+    const radius = Math.max(...corners.map(corner => Math.acos(Math.min(dot(middle, corner), 1))))
+    return [[middle, Math.cos(radius + reach)]]
+  }
+  // Its edges are great circles.
+  return corners.map((corner, i) => {
+    const normal = unit(cross(corner, corners[(i + 1) % 4]))
+    const inwards = normal.map(value => value * Math.sign(dot(normal, middle)))
+    return [inwards, -Math.sin(reach)] as const
+  })
 }
 
-/**
- * Which stars can shine into which cell of a cube around the observer, as texels of a float texture
- * {@link CELL_COLUMNS} wide: first a texel per cell, (its first entry's texel, number of entries, 0, 0);
- * then the entries, (unit vector, {@link packStar}).
- */
-export function starCells(stars: readonly Star[]): Float32Array<ArrayBuffer> {
-  const cells: number[][] = []
-  const bounds: ReturnType<typeof boundCell>[] = []
-  for (let face = 0; face < 6; face++) {
-    for (let row = 0; row < CELLS; row++) {
-      for (let column = 0; column < CELLS; column++) {
-        cells.push([])
-        bounds.push(boundCell(face, column, row))
-      }
-    }
+/** The four cells that share an edge with one; those at the map's edges meet others there. */
+function neighbours({ cells }: StarLevel, cell: number): number[] {
+  const [column, row] = [cell % cells, Math.floor(cell / cells)]
+  const last = cells - 1
+  const at = (x: number, y: number): number => {
+    if (x < 0 || x > last) return at(Math.min(Math.max(x, 0), last), last - y)
+    if (y < 0 || y > last) return at(last - x, Math.min(Math.max(y, 0), last))
+    return y * cells + x
   }
-  const directions = stars.map(starDirection)
+  return [at(column - 1, row), at(column + 1, row), at(column, row - 1), at(column, row + 1)]
+}
+
+/** Numbers of the stars that can shine into each cell. */
+function starsByCell(level: StarLevel, directions: readonly (readonly number[])[]): number[][] {
+  const { cells } = level
+  const lists: number[][] = Array.from({ length: cells * cells }, () => [])
+  const bounds: Bounds[] = []
   directions.forEach((direction, star) => {
-    for (let face = 0; face < 6; face++) {
-      const [major, first, second] = faceAxes(face)
-      const depth = direction[major] * (face & 1 ? -1 : 1)
-      // Beyond 55° + reach from the middle of a face there is none of its cells.
-      if (depth < 0.5) continue
-      // A cell's width more than needed on either side: the exact test follows.
-      const near = [first, second].map(axis => {
-        const s = (Math.atan(direction[axis] / depth) / (Math.PI / 4) + 1) * (CELLS / 2)
-        return [Math.max(Math.floor(s) - 2, 0), Math.min(Math.floor(s) + 2, CELLS - 1)]
-      })
-      for (let row = near[1][0]; row <= near[1][1]; row++) {
-        for (let column = near[0][0]; column <= near[0][1]; column++) {
-          const cell = (face * CELLS + row) * CELLS + column
-          if (dot(bounds[cell].middle, direction) >= bounds[cell].cosReach) cells[cell].push(star)
-        }
+    const [column, row] = octahedralPoint(direction).map(x =>
+      Math.min(Math.floor(((x + 1) / 2) * cells), cells - 1)
+    )
+    const waiting = [row * cells + column]
+    const seen = new Set(waiting)
+    // Spreads from the star's own cell: what a circle touches is connected.
+    for (let cell = waiting.pop(); cell !== undefined; cell = waiting.pop()) {
+      bounds[cell] ??= boundCell(level, cell)
+      if (bounds[cell].some(([normal, least]) => dot(normal, direction) < least)) continue
+      lists[cell].push(star)
+      for (const next of neighbours(level, cell)) {
+        if (!seen.has(next)) waiting.push(next)
+        seen.add(next)
       }
     }
   })
-  const entries = cells.reduce((sum, list) => sum + list.length, 0)
-  const rows = Math.ceil((cells.length + entries) / CELL_COLUMNS)
-  const texels = new Float32Array(4 * rows * CELL_COLUMNS)
-  let next = cells.length
-  cells.forEach((list, cell) => {
-    texels.set([next, list.length], 4 * cell)
-    for (const star of list) texels.set([...directions[star], packStar(stars[star])], 4 * next++)
+  return lists
+}
+
+/** Textures that say which stars can shine where. */
+export interface StarCells {
+  /**
+   * Texels (first entry, number of entries) of the cells, those of the first of {@link STAR_LEVELS} in the
+   * first rows, and as wide.
+   */
+  cells: Float32Array<ArrayBuffer>
+  /** Texels (unit vector, {@link packStar}), {@link ENTRY_COLUMNS} wide. */
+  entries: Float32Array<ArrayBuffer>
+}
+
+/** Sorts stars into cells. The unit vectors are in the frame of J2000. */
+export function starCells(stars: readonly Star[]): StarCells {
+  const directions = stars.map(starDirection)
+  const levels = STAR_LEVELS.map(level => starsByCell(level, directions))
+  const width = STAR_LEVELS[0].cells
+  const cells = new Float32Array(2 * width * STAR_LEVELS.reduce((sum, { cells }) => sum + cells, 0))
+  const total = levels.flat().reduce((sum, list) => sum + list.length, 0)
+  const rows = Math.max(Math.ceil(total / ENTRY_COLUMNS), 1)
+  const entries = new Float32Array(4 * ENTRY_COLUMNS * rows)
+  let [top, next] = [0, 0]
+  levels.forEach((lists, level) => {
+    const size = STAR_LEVELS[level].cells
+    lists.forEach((list, cell) => {
+      const texel = (top + Math.floor(cell / size)) * width + (cell % size)
+      cells.set([next, list.length], 2 * texel)
+      for (const star of list) entries.set([...directions[star], packStar(stars[star])], 4 * next++)
+    })
+    top += size
   })
-  return texels
+  return { cells, entries }
 }

@@ -3,8 +3,7 @@ import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { Sightline, Veil } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB, transmittanceRGB } from './color'
-import { scatteredRadiance } from './scattering'
-import { rayLimits, sampleVolume } from './skyVolume'
+import { placeInVolume, radianceBetween, rayLimits } from './skyVolume'
 
 /** What the air between the eye and a point does to light from there. */
 export interface AerialPerspective {
@@ -27,23 +26,25 @@ export function veiled(line: Sightline, air: Veil): Veil {
 export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
   const { air, volume, eye } = view
   const offset = view.toMapped(displacementView).toConst()
-  const distance = offset.length().max(1e-3).toConst() as Float
-  const direction = offset.div(distance).toConst()
+  const square = offset.dot(offset).max(1e-6).toConst() as Float
+  const inverse = square.inverseSqrt().toConst()
+  const distance = square.mul(inverse).toConst()
+  const direction = offset.mul(inverse).toConst()
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
-  const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
-  const limits = rayLimits(air.uniforms, eye, cosView)
-  const between = sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
+  const cosViewSun = direction.dot(view.sunDirection).toConst() as Float
+  const limits = rayLimits(eye, cosView)
+  const place = placeInVolume(volume, eye, cosView, limits, distance)
   const sunlit = vec4(0).toVar()
   If(view.isLit.greaterThan(0), () => {
-    const scattered = scatteredRadiance(air.uniforms, between, cosViewSun)
-    sunlit.assign(scattered.mul(view.source.irradiance))
+    const between = radianceBetween(air.uniforms, volume, eye, place, cosViewSun)
+    sunlit.assign(between.mul(view.source.irradiance))
   })
-  const light = view.atmosphere.layers.reduce<Vec4>((sum, layer) => {
-    const haze = layer.haze?.(view, displacementView)
-    return haze === undefined ? sum : sum.add(haze)
-  }, sunlit)
-  const line = { view, direction, cosView, cosViewSun, distance }
-  const veil = veiled(line, { depth: between.depth, light })
+  const line = { view, direction, cosView, cosViewSun, distance, place }
+  const light = view.atmosphere.layers.reduce<Vec4>(
+    (without, layer) => layer.haze?.(line, without) ?? without,
+    sunlit
+  )
+  const veil = veiled(line, { depth: place.depth, light })
   return {
     transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),
     inScatter: linearSRGB(air.uniforms, veil.light)

@@ -74,3 +74,25 @@ export function glowGains(
     up: gain.mul(part(half))
   }
 }
+
+/**
+ * How many times brighter a layer far above the eye is along a line than straight through: r/√(r² − b²),
+ * b the line's distance from the planet's centre, which does not cross the ground.
+ *
+ * @param altitude - Of the eye, ten standard deviations below the layer or more [m].
+ * @param cosView - μ.
+ * @param bottomRadius - Planet's centre to the ground [m].
+ * @see van Rhijn 1921. Twin: cpu/airglow.ts
+ */
+export function overheadGain(
+  layer: GlowLayerNodes,
+  altitude: Float,
+  cosView: Float,
+  bottomRadius: Float
+): Float {
+  const radius = bottomRadius.add(layer.altitude)
+  const eye = bottomRadius.add(altitude).toConst()
+  const start = eye.mul(cosView).toConst()
+  const square = layer.altitude.sub(altitude).mul(radius.add(eye)).add(start.mul(start))
+  return radius.mul(square.max(1).inverseSqrt())
+}

@@ -1,4 +1,3 @@
-import { float } from 'three/tsl'
 import type { Float } from '../tsl-types'
 
 /** Cosines between a patch of ground, the sun and the eye. */
@@ -18,11 +17,10 @@ export interface GroundAngles {
  * @see Oren & Nayar 1994, qualitative model; in the form of Fujii, "A tiny improvement of Oren–Nayar
  * reflectance model", which keeps it free of tangents.
  */
-export function orenNayar(angles: GroundAngles, roughness: number): Float {
-  if (roughness === 0) return float(1)
-  const variance = roughness ** 2
-  const even = 1 - (0.5 * variance) / (variance + 0.33)
-  const uneven = (0.45 * variance) / (variance + 0.09)
+export function orenNayar(angles: GroundAngles, roughness: Float): Float {
+  const variance = roughness.mul(roughness).toConst()
+  const even = variance.mul(0.5).div(variance.add(0.33)).oneMinus()
+  const uneven = variance.mul(0.45).div(variance.add(0.09))
   const cosSun = angles.cosSun.max(0).toConst()
   const along = angles.cosSunEye.sub(cosSun.mul(angles.cosEye)).toConst()
   const longest = along.greaterThan(0).select(cosSun.max(angles.cosEye), 1).max(1e-3)

@@ -28,7 +28,8 @@ export function marchedAir(
   const inside = distance === null ? limits.length : distance.sub(limits.start).max(0)
   const length = inside.min(limits.length).toConst() as Float
   const end = pointAlong(air, ray, length)
-  return scattering(air, ray, length, end.altitude.sub(ray.altitude), steps)
+  const light = scattering(air, ray, length, end.altitude.sub(ray.altitude), steps)
+  return { radiance: scatteredRadiance(air.uniforms, light, cosViewSun), depth: light.depth }
 }
 
 /**
@@ -47,7 +48,7 @@ export function marchedSky(
   steps: number
 ): Vec4 {
   const between = marchedAir(air, eye, cosView, cosViewSun, limits, null, steps)
-  const radiance = scatteredRadiance(air.uniforms, between, cosViewSun).toVar()
+  const radiance = between.radiance.toVar()
   If(limits.hitsGround, () => {
     const ray = { altitude: eye.altitude, cosView, cosSun: eye.cosSun, cosViewSun }
     const ground = pointAlong(air, ray, limits.start.add(limits.length))

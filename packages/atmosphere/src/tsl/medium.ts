@@ -8,11 +8,15 @@ import type { Float, Vec3, Vec4 } from '../tsl-types'
  *
  * @param altitude - h ≥ 0 [m].
  * @returns (molecules, aerosols, absorber), each in [0, 1].
+ * @see cpu/medium.ts, its twin
  */
 export function densities(uniforms: AtmosphereUniforms, altitude: Float): Vec3 {
-  const { rayleighScaleHeight, mieScaleHeight, absorptionAltitude, absorptionHalfWidth } = uniforms
+  const { rayleighScaleHeight, rayleighLayerBases, rayleighLayerSlopes } = uniforms
+  const { mieScaleHeight, absorptionAltitude, absorptionHalfWidth } = uniforms
+  // −ln of the density is a broken line: its slope changes at the base of every layer.
+  const bends = vec3(altitude).sub(rayleighLayerBases).max(0).dot(rayleighLayerSlopes)
   return vec3(
-    altitude.div(rayleighScaleHeight).negate().exp(),
+    altitude.div(rayleighScaleHeight).add(bends).negate().exp(),
     altitude.div(mieScaleHeight).negate().exp(),
     altitude.sub(absorptionAltitude).abs().div(absorptionHalfWidth).oneMinus().max(0)
   )

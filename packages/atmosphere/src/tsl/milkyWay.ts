@@ -1,9 +1,6 @@
-import { atan, mx_fractal_noise_float, vec2, vec3, vec4 } from 'three/tsl'
-import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
-
-/** Crowding of the map's rows at the galactic equator: sin b = c sinh(x asinh(1/c)), x in [−1, 1]. */
-const CROWDING = 0.2
-const STRETCH = Math.asinh(1 / CROWDING)
+import { atan, mx_fractal_noise_float, vec4 } from 'three/tsl'
+import type { Float, Vec2, Vec4 } from '../tsl-types'
+import { octahedralDirection } from './octahedron'
 
 const DEGREE = Math.PI / 180
 
@@ -13,41 +10,10 @@ const DEGREE = Math.PI / 180
  *
  * @see The Hipparcos and Tycho Catalogues, ESA SP-1200 (1997), vol. 1, eq. 1.5.11
  */
-const CELESTIAL_TO_GALACTIC = [
-  [-0.0548755604, -0.8734370902, -0.4838350155],
-  [0.4941094279, -0.44482963, 0.7469822445],
-  [-0.867666149, -0.1980763734, 0.4559837762]
+export const CELESTIAL_TO_GALACTIC = [
+  -0.0548755604, -0.8734370902, -0.4838350155, 0.4941094279, -0.44482963, 0.7469822445,
+  -0.867666149, -0.1980763734, 0.4559837762
 ] as const
-
-/** A direction of the stars' frame in galactic axes. */
-export function toGalactic(direction: Vec3): Vec3 {
-  const [x, y, z] = CELESTIAL_TO_GALACTIC.map(row => direction.dot(vec3(...row)))
-  return vec3(x, y, z)
-}
-
-/** Where a direction in galactic axes is on the map; longitude grows over the width and wraps. */
-export function galacticUV(direction: Vec3): Vec2 {
-  const longitude = atan(direction.y, direction.x).div(2 * Math.PI)
-  const sine = direction.z.clamp(-1, 1).div(CROWDING).toConst()
-  // asinh as an odd function: ln(x + √(x² + 1)) has no digits left for large negative x.
-  const size = sine.abs().toConst()
-  const asinh = size.add(size.mul(size).add(1).sqrt()).log().mul(sine.sign())
-  return vec2(longitude.fract(), asinh.div(2 * STRETCH).add(0.5))
-}
-
-/** Galactic longitude and latitude [°] of a place on the map; longitude in [−180, 180). */
-function galacticAngles(uv: Vec2): { longitude: Float; latitude: Float } {
-  const longitude = uv.x.add(0.5).fract().sub(0.5).mul(360)
-  const x = uv.y.sub(0.5).mul(2 * STRETCH)
-  const sine = x
-    .exp()
-    .sub(x.negate().exp())
-    .mul(CROWDING / 2)
-  return {
-    longitude: longitude.toConst(),
-    latitude: sine.clamp(-1, 1).asin().div(DEGREE).toConst()
-  }
-}
 
 /** Star clouds and two other galaxies: longitude, latitude, half widths [°], strength. */
 const CLOUDS = [
@@ -77,15 +43,17 @@ const REDDENING = vec4(1.3, 1.08, 0.98, 0.85)
  * brightness that photometry found at the poles, in the band and towards the centre, and noise for
  * clouds of stars and dust.
  *
- * @param uv - Place on the map.
+ * @param point - Of the octahedral map of directions in galactic axes, in [−1, 1]; a little beyond is
+ *   across the edge.
  * @returns Luminance at the four wavelengths, dust's reddening included [1e-4 cd/m²].
  * @see Leinert et al. 1998, "The 1997 reference of diffuse night sky brightness", §10
  */
-export function milkyWayMap(uv: Vec2): Vec4 {
-  const { longitude, latitude } = galacticAngles(uv)
-  const [l, b] = [longitude.mul(DEGREE).toConst(), latitude.mul(DEGREE).toConst()]
-  const level = b.cos().toConst()
-  const direction = vec3(level.mul(l.cos()), level.mul(l.sin()), b.sin()).toConst()
+export function milkyWayMap(point: Vec2): Vec4 {
+  const direction = octahedralDirection(point)
+  // Where y is −0 some implementations are half a turn off.
+  const l = atan(direction.y.add(1e-7), direction.x).toConst()
+  const longitude = l.div(DEGREE).toConst()
+  const latitude = direction.z.clamp(-1, 1).asin().div(DEGREE).toConst()
   const noise = (scale: number, octaves: number): Float =>
     mx_fractal_noise_float(direction.mul(scale), octaves, 2.1, 0.55)
   const coarse = noise(7, 5).toConst()

@@ -1,3 +1,4 @@
+import { If, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
 import type { Float, Vec4 } from '../tsl-types'
 
@@ -20,10 +21,15 @@ export function rayleighPhase(cosViewSun: Float): Float {
  * @see Cornette & Shanks 1992. Twin: cpu/phase.ts
  */
 export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 {
-  const { mieAsymmetry, miePhaseFactor } = uniforms
-  const chord = mieAsymmetry.mul(mieAsymmetry).add(1).sub(mieAsymmetry.mul(cosViewSun).mul(2))
-  const inverse = chord.max(1e-4).inverseSqrt().toConst()
-  return miePhaseFactor
-    .mul(cosViewSun.mul(cosViewSun).add(1))
-    .mul(inverse.mul(inverse).mul(inverse))
+  const { mieAsymmetry, mieIsGrey, miePhaseFactor } = uniforms
+  const lobes = (asymmetry: Float | Vec4): Vec4 => {
+    const chord = (asymmetry as Float).mul((asymmetry as Float).sub(cosViewSun.mul(2))).add(1)
+    const root = chord.max(1e-4).inverseSqrt().toConst()
+    return vec4(root.mul(root).mul(root).mul(cosViewSun.mul(cosViewSun).add(1)))
+  }
+  const phase = lobes(mieAsymmetry.x).toVar()
+  If(mieIsGrey.equal(0), () => {
+    phase.assign(lobes(mieAsymmetry))
+  })
+  return miePhaseFactor.mul(phase)
 }

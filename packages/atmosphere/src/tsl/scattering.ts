@@ -171,8 +171,8 @@ const STEP_GROWTH = 0.3
  *
  * @param rise - Altitude at the end of the way less that at its start [m].
  */
-export function stepExponent({ rayleighScaleHeight }: AtmosphereUniforms, rise: Float): Float {
-  const wanted = rise.div(rayleighScaleHeight).mul(STEP_GROWTH).clamp(-4, 4)
+export function stepExponent({ homogeneousHeight }: AtmosphereUniforms, rise: Float): Float {
+  const wanted = rise.div(homogeneousHeight).mul(STEP_GROWTH).clamp(-4, 4)
   return wanted.abs().max(0.05).mul(wanted.lessThan(0).select(-1, 1))
 }
 

@@ -1,12 +1,11 @@
 import { If, float, smoothstep, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
-import type { SkyLayer, SkyRay } from '../SkyLayer'
+import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
+import type { SkyRay } from '../SkyLayer'
 import type { ViewNodes } from '../ViewNodes'
 import { linearSRGB } from './color'
-import { scatteredRadiance } from './scattering'
 import { veiled } from './aerialPerspective'
-import { rayTargets, sampleSky, skyTransmittance } from './skyVolume'
+import { aimAt, rayTargets, sampleSky, skyTransmittance } from './skyVolume'
 import { sine } from './trigonometry'
 
 /**
@@ -41,59 +40,75 @@ export function sunDisc(
 /** Brightest output: half-float targets hold up to 65504, and the sun's disc is brighter. */
 const BRIGHTEST = 60_000
 
-/** Angle between a fragment's line of sight and the next one's [rad]. Not for use in branches. */
-export function pixelAngle(rayView: Vec3): Float {
-  return rayView.normalize().fwidth().length().toConst()
-}
-
-/** Light from beyond the air: the sun's disc, and the layers' in front of it [1/sr]. */
-function lightBeyond(ray: SkyRay, reach: Float, layers: readonly SkyLayer[]): Vec4 {
-  const { view, direction, cosViewSun, pixel } = ray
-  const sun = vec4(0).toVar()
-  If(cosViewSun.greaterThan(reach), () => {
-    sun.assign(sunDisc(view.air.uniforms, direction, view.sunDirection, pixel))
-  })
-  return layers.reduce<Vec4>((light, layer) => layer.beyond?.(ray, light) ?? light, sun)
+/**
+ * Angle between a fragment's line of sight and that of the one diagonally next to it [rad]. Not for use in
+ * branches.
+ *
+ * @param direction - Of unit length, in any frame.
+ */
+export function pixelAngle(direction: Vec3): Float {
+  const [across, up] = [direction.dFdx().toConst(), direction.dFdy().toConst()]
+  return across.dot(across).add(up.dot(up)).sqrt().toConst()
 }
 
 /**
  * Sky, ground, sun and the atmosphere's layers in a direction of view.
  *
- * @param rayView - Direction in view space, any length.
+ * @param direction - In the mapped space, unit length.
  * @param pixel - {@link pixelAngle} of it; null to leave out what is beyond the air: sun, moon, stars.
  * @returns Linear sRGB × `luminanceScale`.
  */
-export function skyColor(view: ViewNodes, rayView: Vec3, pixel: Float | null): Vec3 {
+export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null): Vec3 {
   const { air, volume, eye } = view
   const { layers } = view.atmosphere
   const { uniforms } = air
-  const direction = view.toMapped(rayView).normalize().toConst() as Vec3
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
-  const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
-  const { hitsGround, meetsAir } = rayTargets(uniforms, eye, cosView)
+  const cosViewSun = direction.dot(view.sunDirection).toConst() as Float
+  const { hitsGround, meetsAir } = rayTargets(eye, cosView)
+  const aim = aimAt(eye, cosView, hitsGround)
   const radiance = vec4(0).toVar()
   If(meetsAir.and(view.isLit.greaterThan(0)), () => {
-    const light = sampleSky(uniforms, volume, eye, cosView, cosViewSun, hitsGround)
-    radiance.assign(scatteredRadiance(uniforms, light, cosViewSun).mul(view.source.irradiance))
+    const light = sampleSky(uniforms, volume, eye, aim, cosViewSun)
+    radiance.assign(light.mul(view.source.irradiance))
   })
-  const angles = { direction, cosView, cosViewSun, hitsGround, meetsAir }
+  const angles = { direction, cosViewSun, meetsAir, ...aim }
   const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0), airlight: radiance }
   for (const layer of layers) {
     if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
-    if (layer.glow !== undefined) radiance.addAssign(layer.glow(ray))
+    if (layer.glow !== undefined) radiance.assign(layer.glow(ray, radiance))
   }
   const veil = veiled(ray, { depth: vec4(0), light: radiance })
   radiance.assign(veil.light)
+  const far = vec4(0).toVar()
+  let isDimmed: Bool | null = null
   if (pixel !== null) {
-    const reach = uniforms.sunAngularRadius.add(pixel).cos().sub(1e-6).toConst() as Float
-    const isSomewhere = layers.some(layer => layer.beyond !== undefined)
-    const isThere = isSomewhere
-      ? hitsGround.not()
-      : cosViewSun.greaterThan(reach).and(hitsGround.not())
-    If(isThere, () => {
-      const through = skyTransmittance(uniforms, volume, eye, cosView, hitsGround)
-      const covered = through.mul(veil.depth.negate().exp())
-      radiance.addAssign(lightBeyond(ray, reach, layers).mul(covered))
+    // cos x > 1 − x²/2, and no more than that by far.
+    const reach = uniforms.sunAngularRadius.add(pixel).toConst()
+    const isNear = cosViewSun.greaterThan(
+      reach
+        .mul(reach)
+        .mul(-0.5)
+        .add(1 - 1e-6)
+    )
+    isDimmed = isNear.and(hitsGround.not()).toConst()
+    If(isDimmed, () => {
+      far.assign(sunDisc(uniforms, direction, view.sunDirection, pixel))
+    })
+    if (layers.some(layer => layer.beyond !== undefined)) {
+      If(hitsGround.not(), () => {
+        for (const layer of layers) far.assign(layer.beyond?.(ray, far) ?? far)
+      })
+      isDimmed = far.dot(vec4(1)).greaterThan(0)
+    }
+  }
+  const below = layers.flatMap(layer => layer.below?.(ray) ?? [])
+  for (const { isSeen } of below) isDimmed = isDimmed?.or(isSeen) ?? isSeen
+  if (isDimmed !== null) {
+    If(isDimmed, () => {
+      const through = skyTransmittance(volume, eye, aim)
+      const first: Vec4 = far.mul(through)
+      const light = below.reduce((sum, each) => sum.add(each.light(through)), first)
+      radiance.addAssign(light.mul(veil.depth.negate().exp()))
     })
   }
   return linearSRGB(uniforms, radiance).min(BRIGHTEST)

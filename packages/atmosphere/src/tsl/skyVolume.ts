@@ -1,12 +1,11 @@
 import { If, float, mix, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../AtmosphereUniforms'
-import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
+import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
-import { distanceToGround, groundDiscriminant } from './boundary'
 import { spreadCosine, spreadSun } from './diffuseLight'
 import type { Eye } from './eye'
-import type { Scattered } from './scattering'
+import { miePhase } from './phase'
 import { rowAndColumn } from './texels'
 import { sine } from './trigonometry'
 
@@ -40,21 +39,16 @@ export interface RayLimits {
  * @param cosView - μ, ray against the zenith of the eye.
  * @param forcedGround - Whether the ray meets the ground, where rounding must not decide.
  */
-export function rayLimits(
-  uniforms: AtmosphereUniforms,
-  eye: Eye,
-  cosView: Float,
-  forcedGround?: Bool
-): RayLimits {
-  const { bottomRadius, thickness } = uniforms
-  const radial = bottomRadius.add(eye.altitude).mul(cosView).toConst()
-  const ground = groundDiscriminant(eye.altitude, cosView, bottomRadius).toConst() as Float
-  const gap = thickness.sub(eye.altitude).mul(bottomRadius.mul(2).add(thickness).add(eye.altitude))
-  const halfChord = radial.mul(radial).add(gap).max(0).sqrt().toConst()
+export function rayLimits(eye: Eye, cosView: Float, forcedGround?: Bool): RayLimits {
+  const radial = eye.radius.mul(cosView).toConst()
+  const square = radial.mul(radial).toConst()
+  const ground = square.sub(eye.toHorizon).toConst()
+  const halfChord = square.add(eye.toTop).max(0).sqrt().toConst()
   const start = radial.negate().sub(halfChord).max(0).toConst()
   const top = halfChord.sub(radial).max(0)
   const hitsGround = forcedGround ?? ground.greaterThanEqual(0).and(cosView.lessThan(0)).toConst()
-  const bottom = distanceToGround(eye.altitude, cosView, ground, bottomRadius)
+  // The near root as c / (−b + √D): the other form cancels close to the ground.
+  const bottom = eye.toHorizon.div(ground.max(0).sqrt().sub(radial).max(1e-3))
   return {
     start: start,
     length: hitsGround.select(bottom, top).sub(start).max(0).toConst(),
@@ -70,16 +64,11 @@ export function rayLimits(
  * @param hitsGround - Which half.
  * @param sinView - √(1 − μ²), which from far away is better known than μ tells.
  */
-function elevationPosition(
-  eye: Eye,
-  cosView: Float,
-  hitsGround: Bool,
-  sinView: Float = sine(cosView).toConst()
-): Float {
+function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool, sinView: Float): Float {
   const across = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
   const along = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
-  const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
-  return across.div(along.add(1).max(1e-6)).div(span).clamp().sqrt()
+  const scale = hitsGround.select(eye.belowScale, eye.aboveScale)
+  return across.div(along.add(1).max(1e-6)).mul(scale).clamp().sqrt()
 }
 
 /** Row of a position in a table with that many rows, the lower half below the horizon, in texels. */
@@ -101,8 +90,8 @@ export function rowCosine(
     .sub(hitsGround.select(0, half))
     .div(half - 1)
     .toConst()
-  const span = hitsGround.select(eye.belowSpan, eye.aboveSpan)
-  const tangent = position.mul(position).mul(span).toConst()
+  const scale = hitsGround.select(eye.belowScale, eye.aboveScale)
+  const tangent = position.mul(position).div(scale).toConst()
   const square = tangent.mul(tangent).toConst()
   const double = tangent.mul(hitsGround.select(-2, 2))
   const cosView = eye.cosHorizon
@@ -132,16 +121,15 @@ function sunAtFoot(
   hitsGround: Bool
 ) {
   const { bottomRadius } = uniforms
-  const nearest = bottomRadius.add(eye.altitude).mul(sinView).toConst()
+  const nearest = eye.radius.mul(sinView).toConst()
   const square = bottomRadius.sub(nearest).mul(bottomRadius.add(nearest)).max(0)
   const chord = hitsGround.select(square.sqrt(), 0).toConst()
   const across = nearest.mul(cosView).add(chord.mul(sinView))
   const along = nearest.mul(sinView).sub(chord.mul(cosView))
   const inverse = hitsGround.select(bottomRadius, nearest.max(1)).reciprocal().toConst()
-  const sinSun = sine(eye.cosSun)
   return {
     mean: along.mul(inverse).mul(eye.cosSun).toConst() as Float,
-    swing: across.mul(inverse).mul(sinSun).abs().max(1e-4).toConst() as Float
+    swing: across.mul(inverse).mul(eye.sinSun).abs().max(1e-4).toConst() as Float
   }
 }
 
@@ -162,10 +150,10 @@ function azimuthColumn(
   cosViewSun: Float,
   hitsGround: Bool
 ): Float {
-  const sines = sinView.mul(sine(eye.cosSun)).max(1e-6)
+  const sines = sinView.mul(eye.sinSun).max(1e-6)
   const cosAzimuth = cosViewSun.sub(cosView.mul(eye.cosSun)).div(sines).clamp(-1, 1).toConst()
   const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
-  If(eye.altitude.greaterThan(uniforms.thickness), () => {
+  If(eye.toTop.lessThan(0), () => {
     const { mean, swing } = sunAtFoot(uniforms, eye, cosView, sinView, hitsGround)
     const first = spreadSun(mean.add(swing)).toConst()
     const last = spreadSun(mean.sub(swing))
@@ -189,91 +177,180 @@ export function columnCosine(
     .div(AZIMUTHS - 1)
     .toConst()
   const cosAzimuth = position.mul(position).mul(2).oneMinus().toVar()
-  If(eye.altitude.greaterThan(uniforms.thickness), () => {
+  If(eye.toTop.lessThan(0), () => {
     const { mean, swing } = sunAtFoot(uniforms, eye, cosView, sinView, hitsGround)
     const first = spreadSun(mean.add(swing)).toConst()
     const last = spreadSun(mean.sub(swing))
     const x = mix(first, last, position).toConst()
     cosAzimuth.assign(spreadCosine(x).sub(mean).div(swing).clamp(-1, 1))
   })
-  const sines = sinView.mul(sine(eye.cosSun))
+  const sines = sinView.mul(eye.sinSun)
   return cosView.mul(eye.cosSun).add(sines.mul(cosAzimuth)).clamp(-1, 1).toConst()
 }
 
-/** κ and e^κ − 1 of a ray's distances. */
-function spacing(eye: Eye, hitsGround: Bool): { exponent: Float; growth: Float } {
+/** 1/κ and e^κ − 1 of a ray's distances. */
+function spacing(eye: Eye, hitsGround: Bool): { stretch: Float; growth: Float } {
   return {
-    exponent: hitsGround.select(eye.groundExponent, eye.skyExponent).toConst(),
+    stretch: hitsGround.select(eye.groundStretch, eye.skyStretch).toConst(),
     growth: hitsGround.select(eye.groundGrowth, eye.skyGrowth).toConst()
   }
 }
 
 /** Distance along a ray at a position x in [0, 1] among the slices [m]. */
 export function sliceDistance(eye: Eye, limits: RayLimits, position: Float): Float {
-  const { exponent, growth } = spacing(eye, limits.hitsGround)
-  return exponent.mul(position).exp().sub(1).div(growth).mul(limits.length)
+  const { stretch, growth } = spacing(eye, limits.hitsGround)
+  return position.div(stretch).exp().sub(1).div(growth).mul(limits.length)
 }
 
 /** Position among the slices of a distance, the inverse of {@link sliceDistance}. */
 function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
-  const { exponent, growth } = spacing(eye, limits.hitsGround)
+  const { stretch, growth } = spacing(eye, limits.hitsGround)
   const part = distance.div(limits.length.max(1e-3)).clamp()
-  return part.mul(growth).add(1).log().div(exponent).clamp()
+  return part.mul(growth).add(1).log().mul(stretch).clamp()
+}
+
+/** A row of the sky volumes. */
+export interface Elevation {
+  /** Whether the ground is in the way. */
+  hitsGround: Bool
+  /** Where the elevation lies in its half, below or above the horizon. */
+  elevation: Float
+}
+
+/** Reads a table of {@link DEPTH_SIZE} at a column, in texels. */
+function readDepth(
+  depth: TextureNode,
+  eye: Eye,
+  { elevation, hitsGround }: Elevation,
+  column: Float
+): Vec4 {
+  const row = elevationRow(elevation, hitsGround, DEPTH_ROWS).add(eye.slot.mul(DEPTH_ROWS))
+  const size = vec2(1 / (DEPTH_COLUMNS + 1), 1 / (DEPTH_ROWS * VOLUME_SLOTS))
+  return sampleLevel0(depth, vec2(column, row).mul(size))
 }
 
 /**
- * Mean extinction from where a ray enters the air to a position among the distances [1/m].
+ * Mean extinction from where a ray enters the air to a position among the distances
+ * [1/{@link EXTINCTION_SCALE} m].
  *
  * Depth over distance varies little from row to row, even just below the horizon, where the distance
  * to the ground varies most.
- *
- * @param elevation - Position in the ray's half.
  */
 export function meanExtinction(
   depth: TextureNode,
   eye: Eye,
-  elevation: Float,
-  hitsGround: Bool,
+  elevation: Elevation,
   position: Float
 ): Vec4 {
-  const row = elevationRow(elevation, hitsGround, DEPTH_ROWS).add(eye.slot.mul(DEPTH_ROWS))
-  const column = position.mul(DEPTH_COLUMNS).max(1).sub(0.5)
-  const uv = vec2(column.div(DEPTH_COLUMNS), row.div(DEPTH_ROWS * VOLUME_SLOTS))
-  return sampleLevel0(depth, uv).mul(1 / EXTINCTION_SCALE)
+  return readDepth(depth, eye, elevation, position.mul(DEPTH_COLUMNS).max(1).sub(0.5))
 }
 
 /** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
 export const EXTINCTION_SCALE = 1e5
 
 /** Light scattered between the eye and a point, with the optical depth between them. */
-export interface AirBetween extends Scattered {
+export interface AirBetween {
+  /** For unit irradiance of the sun [1/sr]. */
+  radiance: Vec4
   depth: Vec4
 }
 
-/** Reads a tile of the atlas in a direction. */
-type TileReader = (source: TextureNode, tile: Float) => Vec4
+/** A direction from an eye as its sky volumes have it, whatever lights them. */
+export interface Aim extends Elevation {
+  /** μ, against the zenith of the eye. */
+  cosView: Float
+  /** √(1 − μ²). */
+  sinView: Float
+}
 
+/** @param cosView - μ, direction against the zenith of the eye. */
+export function aimAt(
+  eye: Eye,
+  cosView: Float,
+  hitsGround: Bool,
+  sinView: Float = sine(cosView).toConst()
+): Aim {
+  const elevation = elevationPosition(eye, cosView, hitsGround, sinView).toConst() as Float
+  return { cosView, sinView, hitsGround, elevation }
+}
+
+/** Where in the atlas the texel of a direction lies for a tile. */
 function tileReader(
   uniforms: AtmosphereUniforms,
   eye: Eye,
-  cosView: Float,
-  cosViewSun: Float,
-  elevation: Float,
-  hitsGround: Bool,
-  sinView: Float = sine(cosView).toConst()
-): TileReader {
+  { cosView, sinView, hitsGround, elevation }: Aim,
+  cosViewSun: Float
+): (tile: Float) => Vec2 {
   const row = elevationRow(elevation, hitsGround, ELEVATIONS)
   const column = azimuthColumn(uniforms, eye, cosView, sinView, cosViewSun, hitsGround)
-  const inTile = vec2(column, row).toConst() as Vec2
   const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS))
-  return (source, tile) => {
+  const inSlot = row.add(eye.slot.mul(TILE_ROWS * ELEVATIONS))
+  const first = vec2(column, inSlot).mul(atlas).toConst()
+  return tile => {
     const { row: tileRow, column: tileColumn } = rowAndColumn(tile, TILE_COLUMNS)
-    const corner = vec2(
-      tileColumn.mul(AZIMUTHS),
-      tileRow.add(eye.slot.mul(TILE_ROWS)).mul(ELEVATIONS)
-    )
-    return sampleLevel0(source, inTile.add(corner).mul(atlas))
+    const size = vec2(1 / TILE_COLUMNS, 1 / (TILE_ROWS * VOLUME_SLOTS))
+    return vec2(tileColumn, tileRow).mul(size).add(first).toConst()
   }
+}
+
+/** A point as an eye's sky volumes have it, whatever lights them. */
+export interface VolumePlace extends Aim {
+  /** Among the distances of its ray, in [0, 1]. */
+  position: Float
+  /** Optical depth up to it. */
+  depth: Vec4
+}
+
+/**
+ * @param cosView - μ, ray against the zenith of the eye.
+ * @param limits - Of the same ray.
+ * @param distance - From the eye [m].
+ */
+export function placeInVolume(
+  textures: VolumeTextures,
+  eye: Eye,
+  cosView: Float,
+  limits: RayLimits,
+  distance: Float
+): VolumePlace {
+  const { hitsGround, length } = limits
+  const aim = aimAt(eye, cosView, hitsGround)
+  const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
+  const position = slicePosition(eye, limits, inAir).toConst() as Float
+  const mean = meanExtinction(textures.depth, eye, aim, position)
+  return { ...aim, position, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
+}
+
+/** Reads the light of the air between the eye and a point from the volume, for unit irradiance [1/sr]. */
+export function radianceBetween(
+  uniforms: AtmosphereUniforms,
+  textures: VolumeTextures,
+  eye: Eye,
+  place: VolumePlace,
+  cosViewSun: Float
+): Vec4 {
+  const fetch = tileReader(uniforms, eye, place, cosViewSun)
+  // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
+  const slices = place.position.mul(DISTANCES).toConst()
+  const grown = slices
+    .min(1)
+    .mul(1 / RADIANCE_SCALE)
+    .toConst()
+  const slice = slices.sub(1).max(0).toConst()
+  const near = slice
+    .floor()
+    .min(DISTANCES - 2)
+    .toConst() as Float
+  const weight = slice.sub(near).mul(grown).toConst()
+  const phase = miePhase(uniforms, cosViewSun).toConst()
+  const [from, to] = [near, near.add(1)].map(tile => readTile(textures, fetch(tile), phase))
+  return from.mul(grown.sub(weight)).add(to.mul(weight))
+}
+
+/** Adds both parts, times the table's scale. */
+function readTile(textures: VolumeTextures, at: Vec2, phase: Vec4): Vec4 {
+  const light = sampleLevel0(textures.aerosol, at).mul(phase)
+  return light.add(sampleLevel0(textures.molecular, at))
 }
 
 /**
@@ -293,59 +370,41 @@ export function sampleVolume(
   limits: RayLimits,
   distance: Float
 ): AirBetween {
-  const { hitsGround, length } = limits
-  const elevation = elevationPosition(eye, cosView, hitsGround).toConst() as Float
-  const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround)
-  const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
-  const position = slicePosition(eye, limits, inAir).toConst() as Float
-  const depth = meanExtinction(textures.depth, eye, elevation, hitsGround, position).mul(inAir)
-  // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
-  const exists = length.greaterThan(0).select(1, 0)
-  const grown = position.mul(DISTANCES).min(1).mul(exists).toConst()
-  const slice = position.mul(DISTANCES).sub(1).max(0).toConst()
-  const near = slice
-    .floor()
-    .min(DISTANCES - 2)
-    .toConst() as Float
-  const far = near.add(1) as Float
-  const part = slice.sub(near)
-  const read = (source: TextureNode): Vec4 =>
-    mix(fetch(source, near), fetch(source, far), part).mul(grown)
-  return { molecular: read(textures.molecular), aerosol: read(textures.aerosol), depth }
+  const place = placeInVolume(textures, eye, cosView, limits, distance)
+  return {
+    radiance: radianceBetween(uniforms, textures, eye, place, cosViewSun),
+    depth: place.depth
+  }
 }
 
 /** Which rays from an eye meet the ground, and which the air at all. */
-export function rayTargets(uniforms: AtmosphereUniforms, eye: Eye, cosView: Float) {
-  const { bottomRadius, thickness } = uniforms
-  const discriminant = groundDiscriminant(eye.altitude, cosView, bottomRadius).toConst()
+export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsAir: Bool } {
+  const radial = eye.radius.mul(cosView)
+  const square = radial.mul(radial).toConst()
   const looksDown = cosView.lessThan(0)
-  const shell = thickness.mul(bottomRadius.mul(2).add(thickness))
-  const isOutside = eye.altitude.greaterThan(thickness)
+  const crosses = square.add(eye.toTop).greaterThan(0).and(looksDown)
   return {
-    hitsGround: discriminant.greaterThanEqual(0).and(looksDown).toConst() as Bool,
-    meetsAir: isOutside.not().or(discriminant.add(shell).greaterThan(0).and(looksDown)) as Bool
+    hitsGround: square.greaterThanEqual(eye.toHorizon).and(looksDown).toConst(),
+    meetsAir: eye.toTop.greaterThanEqual(0).or(crosses)
   }
 }
 
 /**
- * Reads the light of all the air in a direction and of the ground behind it from the volume.
+ * Reads the light of all the air in a direction and of the ground behind it from the volume, for unit
+ * irradiance [1/sr].
  *
- * @param cosView - μ, direction against the zenith of the eye; it meets the air.
+ * @param aim - Direction, which meets the air.
  * @param cosViewSun - ν, direction against the sun.
- * @param hitsGround - Whether the ground is behind.
  */
 export function sampleSky(
   uniforms: AtmosphereUniforms,
   textures: VolumeTextures,
   eye: Eye,
-  cosView: Float,
-  cosViewSun: Float,
-  hitsGround: Bool
-): Scattered {
-  const elevation = elevationPosition(eye, cosView, hitsGround).toConst() as Float
-  const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround)
-  const tile = float(SKY_TILE) as Float
-  return { molecular: fetch(textures.molecular, tile), aerosol: fetch(textures.aerosol, tile) }
+  aim: Aim,
+  cosViewSun: Float
+): Vec4 {
+  const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE))
+  return readTile(textures, at, miePhase(uniforms, cosViewSun)).mul(1 / RADIANCE_SCALE)
 }
 
 /** A line of sight from an eye that meets the air. */
@@ -369,28 +428,15 @@ export function sampleAir(
   eye: Eye,
   { cosView, sinView, cosViewSun, hitsGround, length }: Sight
 ): AirBetween {
-  const elevation = elevationPosition(eye, cosView, hitsGround, sinView).toConst() as Float
-  const fetch = tileReader(uniforms, eye, cosView, cosViewSun, elevation, hitsGround, sinView)
+  const aim = aimAt(eye, cosView, hitsGround, sinView)
   // The slice before the ground's ends where the air does.
-  const tile = float(SKY_TILE - 1) as Float
-  const mean = meanExtinction(textures.depth, eye, elevation, hitsGround, float(1))
-  return {
-    molecular: fetch(textures.molecular, tile),
-    aerosol: fetch(textures.aerosol, tile),
-    depth: mean.mul(length)
-  }
+  const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE - 1))
+  const mean = meanExtinction(textures.depth, eye, aim, float(1))
+  const light = readTile(textures, at, miePhase(uniforms, cosViewSun))
+  return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }
 
 /** Transmittance of all the air in a direction; 1 where there is none. */
-export function skyTransmittance(
-  uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
-  eye: Eye,
-  cosView: Float,
-  hitsGround: Bool
-): Vec4 {
-  const elevation = elevationPosition(eye, cosView, hitsGround)
-  const { length } = rayLimits(uniforms, eye, cosView, hitsGround)
-  const mean = meanExtinction(textures.depth, eye, elevation, hitsGround, float(1))
-  return mean.mul(length).negate().exp()
+export function skyTransmittance(textures: VolumeTextures, eye: Eye, elevation: Elevation): Vec4 {
+  return readDepth(textures.depth, eye, elevation, float(DEPTH_COLUMNS + 0.5)).toConst()
 }

@@ -48,9 +48,13 @@ function twoOutputs(body: () => Parts): TwoOutputs {
 
 /** The same ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
+  const { thickness } = air.uniforms
   const entry = pointAlong(air, ray, limits.start)
   return {
-    altitude: entry.altitude.min(air.uniforms.thickness).toConst(),
+    altitude: limits.start
+      .greaterThan(0)
+      .select(thickness, entry.altitude.min(thickness))
+      .toConst(),
     cosView: entry.cosView,
     cosSun: entry.cosSun,
     cosViewSun: ray.cosViewSun
@@ -67,24 +71,32 @@ function withinSlot(eye: Eye): Vec2 {
   return vec2(texel.x, y).toConst()
 }
 
-/** Shader of the table of mean extinction: rows are elevations, columns distances. */
+/**
+ * Shader of the table of mean extinction: rows are elevations, columns distances; the last column has the
+ * transmittance of all the way.
+ */
 export function bakeDepth(air: Air, eye: Eye): Vec4 {
   return Fn(() => {
     const texel = withinSlot(eye)
     const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(DEPTH_ROWS), DEPTH_ROWS)
-    const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
+    const limits = rayLimits(eye, cosView, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun: cosSun }, limits)
     const start = float(0).toVar()
     const depth = vec4(0).toVar()
-    const column = int(texel.x.mul(DEPTH_COLUMNS).floor())
-    loop('segment', column.add(1), segment => {
+    const column = texel.x
+      .mul(DEPTH_COLUMNS + 1)
+      .floor()
+      .toConst()
+    loop('segment', int(column.add(1).min(DEPTH_COLUMNS)), segment => {
       const position = float(segment).add(1).div(DEPTH_COLUMNS)
       const end = sliceDistance(eye, limits, position).toConst()
       depth.addAssign(segmentDepth(air, ray, start, end).depth)
       start.assign(end)
     })
-    return depth.div(start.max(1)).mul(EXTINCTION_SCALE)
+    const isLast = column.greaterThanEqual(DEPTH_COLUMNS)
+    const mean = depth.div(start.max(1)).mul(EXTINCTION_SCALE)
+    return isLast.select(depth.negate().exp(), mean)
   })()
 }
 
@@ -117,15 +129,15 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
   return twoOutputs(() => {
     const { column, row, slice } = atlasPosition(uv())
     const { cosView, hitsGround, position } = rowCosine(eye, row, ELEVATIONS)
-    const limits = rayLimits(air.uniforms, eye, cosView, hitsGround)
+    const limits = rayLimits(eye, cosView, hitsGround)
     const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
     const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
     const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES)).toConst() as Float
     const reached = slice.div(DISTANCES) as Float
-    const before = meanExtinction(depth, eye, position, hitsGround, reached).mul(start)
-    const through = before.negate().exp().toConst()
+    const before = meanExtinction(depth, eye, { elevation: position, hitsGround }, reached)
+    const through = before.mul(start.div(EXTINCTION_SCALE)).negate().exp().toConst()
     const molecular = vec4(0).toVar()
     const aerosol = vec4(0).toVar()
     If(slice.lessThan(SKY_TILE), () => {

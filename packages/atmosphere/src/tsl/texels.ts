@@ -6,6 +6,10 @@ import type { Float } from '../tsl-types'
  * Half an item is added, so that a division that rounds down does not land in another row.
  */
 export function rowAndColumn(number: Float, columns: number): { row: Float; column: Float } {
-  const row = number.add(0.5).div(columns).floor().toConst()
+  const row = number
+    .add(0.5)
+    .mul(1 / columns)
+    .floor()
+    .toConst()
   return { row, column: number.sub(row.mul(columns)).toConst() }
 }

@@ -1,0 +1,81 @@
+import { Matrix4 } from 'three'
+import { fail } from '@welkin/geo'
+import { LightSource } from './LightSource'
+
+/**
+ * @param names - Of all options that there are; without any, others are let pass.
+ * @returns The options.
+ * @throws If they are no object, or have another option.
+ */
+export function checkOptions<T extends object>(where: string, options: T, ...names: string[]): T {
+  if (typeof options !== 'object' || options === null) {
+    fail(where, 'options must be an object', options)
+  }
+  for (const name of names.length > 0 ? Object.keys(options) : []) {
+    if (!names.includes(name)) fail(where, `options must be ${names.join(', ')}`, name)
+  }
+  return options
+}
+
+/** Defaults, and the options that are not undefined in place of them. */
+export function withDefaults<T extends object>(where: string, defaults: T, options: object): T {
+  const given = Object.entries(checkOptions(where, options)).filter(
+    ([, value]) => value !== undefined
+  )
+  return { ...defaults, ...Object.fromEntries(given) }
+}
+
+/** @throws If it is not a number from `min` to `max`. */
+export function checkRange(
+  where: string,
+  name: string,
+  value: number,
+  min: number,
+  max: number
+): void {
+  if (!(typeof value === 'number' && value >= min && value <= max)) {
+    fail(where, `${name} must be in [${min}, ${max}]`, value)
+  }
+}
+
+/** @throws If it is not four numbers from `min` to `max`. */
+export function checkSpectrum(
+  where: string,
+  name: string,
+  values: readonly number[],
+  max: number
+): void {
+  if (!Array.isArray(values) || values.length !== 4) {
+    fail(where, `${name} must be an array of 4 values`, values)
+  }
+  values.forEach((value, i) => checkRange(where, `${name}[${i}]`, value, 0, max))
+}
+
+/** @throws If it is not two altitudes that rise. */
+export function checkFade(where: string, fade: readonly [number, number]): void {
+  if (!Array.isArray(fade) || fade.length !== 2) {
+    fail(where, 'fade must be an array of 2 altitudes', fade)
+  }
+  fade.forEach((value, i) => checkRange(where, `fade[${i}]`, value, -1e7, Infinity))
+  if (!(fade[1] > fade[0])) fail(where, 'fade must rise', fade)
+}
+
+/** @throws If it is no source of light. */
+export function checkSource(where: string, name: string, source: LightSource): void {
+  if (!(source instanceof LightSource)) {
+    fail(where, `${name} must be a LightSource, such as a moon's source`, source)
+  }
+}
+
+/** @throws If they are no sources of light. */
+export function checkSources(where: string, sources: readonly LightSource[]): void {
+  if (!Array.isArray(sources)) fail(where, 'sources must be an array', sources)
+  sources.forEach((source, i) => checkSource(where, `sources[${i}]`, source))
+}
+
+/** @throws If it is neither null nor a matrix. */
+export function checkOrientation(where: string, value: Matrix4 | null): void {
+  if (value !== null && !(value instanceof Matrix4 && value.elements.every(Number.isFinite))) {
+    fail(where, 'orientation must be a Matrix4 or null', value)
+  }
+}

@@ -1,0 +1,155 @@
+import { GlobeControls } from '3d-tiles-renderer'
+import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
+import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
+import type { DataTexture } from 'three'
+import type { WebGPURenderer } from 'three/webgpu'
+import { Air } from '../air'
+import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from '../scene'
+import type { RendererArgs, SceneHandle } from '../scene'
+import { createNoiseTexture } from './detailNoise'
+import { createEarthSurface } from './earthSurface'
+import { loadTiles, tilesProgress } from './loadTiles'
+import { moveCamera } from './places'
+import type { Place } from './places'
+import { aimShadow, prepareShadow } from './sunShadow'
+import { createTerrain } from './terrain'
+
+/** The Earth's streamed imagery and terrain under a sky, and a camera that moves about it. */
+export interface Land {
+  readonly renderer: WebGPURenderer
+  readonly scene: Scene
+  readonly camera: PerspectiveCamera
+  readonly air: Air
+  /** For what else stands on the land. */
+  readonly noise: DataTexture
+}
+
+/** What a story adds to the land. */
+export interface LandStory<Args> {
+  /** Where its arguments put the camera: it moves when that is another object. */
+  place(args: Args): Place
+  /** Follows its arguments. */
+  apply(args: Args): void
+  /** @param altitude - Of the camera above the ellipsoid [m]. */
+  beforeDraw?(altitude: number): void
+  dispose?(): void
+}
+
+/**
+ * A scene on the Earth's land, in a world that is ECEF, in metres.
+ *
+ * @param fieldOfView - Vertical [degrees].
+ * @param create - Makes what is the story's own.
+ */
+export async function createLand<Args extends RendererArgs>(
+  canvas: HTMLCanvasElement,
+  args: Args,
+  fieldOfView: number,
+  create: (land: Land) => LandStory<Args>
+): Promise<SceneHandle<Args>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(fieldOfView, 1, 1, 1e7)
+  const noise = createNoiseTexture()
+  const data = new URL('world-data/', document.baseURI)
+  const surface = createEarthSurface(new URL('natural-earth/', data).href, noise)
+  const terrain = createTerrain(new URL('terrain/', data).href, noise)
+  const tilesets = [surface.tiles, terrain.tiles]
+  const ground = new Group()
+  ground.add(surface.tiles.group, terrain.tiles.group)
+  scene.add(ground)
+  for (const tiles of tilesets) tiles.setCamera(camera)
+
+  const air = new Air(renderer, scene, camera, args.path)
+  const story = create({ renderer, scene, camera, air, noise })
+  prepareShadow(air.sun)
+
+  const controls = new GlobeControls(ground, camera, args.frame ? undefined : canvas)
+  controls.setEllipsoid(surface.tiles.ellipsoid, surface.tiles.group)
+  controls.cameraRadius = 1.7
+  controls.enableDamping = true
+  hidePivot(controls)
+
+  const current = { ...args }
+  const up = new Vector3()
+  let ready: Promise<void> = Promise.resolve()
+  let disposed = false
+
+  const prepare = (): void => {
+    camera.updateMatrixWorld()
+    fitGlobeCamera(camera, { depth: renderer.reversedDepthBuffer ? 'reversed' : 'standard' })
+    for (const tiles of tilesets) tiles.update()
+  }
+
+  const draw = (): void => {
+    prepare()
+    const altitude = Ellipsoid.WGS84.heightAt(camera.position)
+    Ellipsoid.WGS84.surfaceNormal(camera.position, up)
+    story.beforeDraw?.(altitude)
+    aimShadow(air.sun, camera, Math.max(altitude, 2), up)
+    air.render()
+  }
+
+  const load = (): void => {
+    ready = loadTiles(tilesets, prepare, () => disposed).then(() => {
+      for (let i = 0; current.frame && !disposed && i < WARM_UP_FRAMES; i++) draw()
+    })
+    // A failure is reported to whoever awaits `ready`.
+    ready.catch(() => {})
+  }
+
+  const goTo = (place: Place): void => {
+    moveCamera(camera, place)
+    controls.setCamera(camera)
+    load()
+  }
+
+  story.apply(current)
+  goTo(story.place(current))
+
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    get progress() {
+      return tilesProgress(tilesets)
+    },
+    render() {
+      if (!current.frame) controls.update()
+      draw()
+    },
+    resize(width, height, pixelRatio) {
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
+      for (const tiles of tilesets) {
+        tiles.setResolution(camera, width * pixelRatio, height * pixelRatio)
+      }
+      load()
+    },
+    update(changes) {
+      const before = story.place(current)
+      Object.assign(current, changes)
+      story.apply(current)
+      const place = story.place(current)
+      if (place !== before) goTo(place)
+    },
+    dispose() {
+      disposed = true
+      controls.dispose()
+      story.dispose?.()
+      surface.dispose()
+      terrain.dispose()
+      air.dispose()
+      noise.dispose()
+      void renderer.dispose()
+    }
+  }
+}
+
+/** The ring that marks the point of a drag has a GLSL material, which WebGPURenderer cannot draw. */
+function hidePivot(controls: GlobeControls): void {
+  const { pivotMesh } = controls as unknown as { pivotMesh: { material: { visible: boolean } } }
+  pivotMesh.material.visible = false
+}
