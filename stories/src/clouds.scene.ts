@@ -115,7 +115,11 @@ export async function createClouds(
       }
     }
   })
-  return Object.defineProperty(handle, 'onArgs', { set: value => (onArgs = value) })
+  return Object.defineProperty(handle, 'onArgs', {
+    set(value: typeof onArgs) {
+      onArgs = value
+    }
+  })
 }
 
 /** Gives the same object as long as the arguments are the same. */

@@ -26,6 +26,17 @@ const sky = (preset: CloudPresetName) => ({
   ...layerArgs(cloudPreset(preset).at(0).parameters)
 })
 
+/** The picture says little of thin clouds: more of them, and thicker. */
+const world = {
+  ...sky('fairWeather'),
+  coverage: 0.75,
+  topAltitude: 4000,
+  world: true,
+  day: Date.UTC(2026, 11, 21),
+  hour: 15,
+  exposure: -0.5
+}
+
 const meta: Meta<CloudsArgs> = {
   title: 'Clouds',
   render: mount(createClouds, code, ({ preset }) => preset),
@@ -123,7 +134,7 @@ export const Cockpit: Story = {
 
 /** Towers 10 km high among small cumulus. */
 export const Storm: Story = {
-  args: { ...sky('cumulonimbus'), altitude: 900, heading: 300, pitch: 9 }
+  args: { ...sky('cumulonimbus'), altitude: 450, heading: 300, pitch: 12 }
 }
 
 /** The sun is about to set, and reddens ice clouds from below. */
@@ -136,14 +147,12 @@ export const Cirrus: Story = {
 export const WorldClouds: Story = {
   name: 'World clouds from orbit',
   args: {
-    world: true,
-    longitude: -60,
-    latitude: 20,
+    ...world,
+    longitude: -38,
+    latitude: -34,
     altitude: 400_000,
-    heading: 330,
-    pitch: -28,
-    hour: 16,
-    exposure: -0.5
+    heading: 235,
+    pitch: -28
   }
 }
 
@@ -151,21 +160,26 @@ export const WorldClouds: Story = {
 export const WorldCloudsFromAfar: Story = {
   name: 'World clouds from 15,000 km',
   args: {
-    world: true,
-    longitude: -60,
-    latitude: 20,
-    altitude: 15_000_000,
+    ...world,
+    longitude: -40,
+    latitude: -25,
+    altitude: 12_000_000,
     heading: 0,
-    pitch: -90,
-    hour: 15,
-    exposure: -0.5
+    pitch: -90
   }
 }
 
 /** Balloons, one farther into the cloud than the other. */
 export const InsideACloud: Story = {
   name: 'Inside a cloud',
-  args: { altitude: 1400, heading: 40, pitch: 0, props: 'balloons' }
+  args: {
+    ...sky('overcast'),
+    density: 0.008,
+    altitude: 1350,
+    heading: 140,
+    pitch: 2,
+    props: 'balloons'
+  }
 }
 
 /** Shadows drift over real heights. */

@@ -40,7 +40,7 @@ export function createCockpit(): Props {
   const object = new Group()
   const frame = new MeshStandardMaterial({ color: '#1b1d20', roughness: 0.6 })
   const part = (x: number, y: number, z: number, size: [number, number], turn = 0): void => {
-    const mesh = new Mesh(new BoxGeometry(...size, 0.05), frame)
+    const mesh = new Mesh(new BoxGeometry(...size, 0.01), frame)
     mesh.position.set(x, y, z)
     mesh.rotation.z = turn
     object.add(mesh)
@@ -48,7 +48,7 @@ export function createCockpit(): Props {
   part(0, -0.56, -0.9, [3.2, 0.4])
   part(0, -0.355, -0.88, [3.2, 0.02])
   part(0, 0.55, -0.9, [3.2, 0.16])
-  for (const side of [-1, 1]) part(side * 0.62, 0.1, -0.91, [0.06, 1.3], -side * 0.35)
+  for (const side of [-1, 1]) part(side * 0.62, 0.1, -0.91, [0.06, 1.3], side * 0.35)
   return propsOf(object, camera => {
     object.position.copy(camera.position)
     object.quaternion.copy(camera.quaternion)
