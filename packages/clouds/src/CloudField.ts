@@ -6,6 +6,7 @@ import { renderGroup, texture, texture3D, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { CloudLayers } from './CloudLayers'
 import { CloudNoise } from './CloudNoise'
+import { NightLight } from './NightLight'
 import type { NoiseName } from './noiseSizes'
 import { latticeRotation, layerTurn } from './lattice'
 import {
@@ -59,6 +60,8 @@ export class CloudField {
   readonly noise: CloudNoise
   /** Place, height and up-vector of the camera: shared with the atmosphere's nodes. */
   readonly view: ViewNodes
+  /** What lights clouds in the night. */
+  readonly night = new NightLight()
   /** Radius of the sphere at altitude 0 [m]. */
   readonly radius: UniformNode<'float', number> = uniform(0).setGroup(renderGroup)
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
@@ -71,6 +74,8 @@ export class CloudField {
   readonly array = vec4Array(this.values)
   readonly textures: Readonly<Record<NoiseName, LevelTexture<Vec3>>>
   readonly worldMap: LevelTexture<Vec2> | null
+  /** What it samples; shared, not owned. */
+  readonly worldMapTexture: Texture | null
   /** Width of the world map [texels]. */
   readonly worldMapWidth: number
   /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
@@ -111,6 +116,7 @@ export class CloudField {
     const node = (name: NoiseName): LevelTexture<Vec3> =>
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
     this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
+    this.worldMapTexture = worldMap
     this.worldMap = worldMap === null ? null : (texture(worldMap) as unknown as LevelTexture<Vec2>)
     this.worldMapWidth = (worldMap?.image as { width?: number } | null)?.width ?? 2048
     const { x, z } = atmosphere.ellipsoid.radii
@@ -128,6 +134,7 @@ export class CloudField {
     const elapsed = this.#seconds === null ? 0 : seconds - this.#seconds
     if (Number.isFinite(elapsed)) this.#seconds = seconds
     this.radius.value = bottomRadius
+    this.night.update(view)
     _position.copy(view.up).multiplyScalar(bottomRadius + view.height)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
