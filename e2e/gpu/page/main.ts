@@ -1,6 +1,7 @@
 import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
 import { registeredTests, type Backend } from '../harness/gpu-test'
+import { keepTables, reuseTables } from '../harness/reuse-tables'
 
 export interface TestListing {
   name: string
@@ -38,6 +39,7 @@ window.welkinTests = {
   async run(name, backend) {
     const test = registeredTests.find(candidate => candidate.name === name)
     if (test === undefined) throw new Error(`no test named ${name}`)
+    reuseTables(!test.bakes)
     const { context, finish } = createContext(backend)
     const start = performance.now()
     const problems: string[] = []
@@ -46,6 +48,7 @@ window.welkinTests = {
     } catch (error) {
       problems.push(error instanceof Error ? (error.stack ?? error.message) : String(error))
     }
+    await keepTables()
     const { messages, notes } = await finish()
     problems.push(...messages)
     const milliseconds = performance.now() - start
