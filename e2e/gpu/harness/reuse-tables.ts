@@ -20,18 +20,24 @@ function keyOf(renderer: Renderer, { uniforms }: AtmosphereTables): string {
   return JSON.stringify([backend, ...numbers])
 }
 
-/** Flips rows where the first one read is the bottom one. */
-function topDown(halves: Uint16Array, { width, height }: RenderTarget, renderer: Renderer) {
-  if ('isWebGPUBackend' in renderer.backend) return halves
+/** RGBA texels of a read-back target, top row first. */
+export async function readTexels<T extends Uint8Array | Uint16Array>(
+  renderer: Renderer,
+  target: RenderTarget
+): Promise<T> {
+  const { width, height } = target
+  const texels = (await renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height)) as T
+  if ('isWebGPUBackend' in renderer.backend) return texels
+  const flipped = texels.slice() as T
   const stride = 4 * width
-  const rows = Array.from({ length: height }, (_, y) => halves.slice(y * stride, (y + 1) * stride))
-  return Uint16Array.from(rows.toReversed().flatMap(row => [...row]))
+  for (let y = 0; y < height; y++) {
+    flipped.set(texels.subarray(y * stride, (y + 1) * stride), (height - 1 - y) * stride)
+  }
+  return flipped
 }
 
 async function keep(renderer: Renderer, target: RenderTarget, key: string): Promise<void> {
-  const { width, height } = target
-  const raw = await renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height)
-  const halves = topDown(raw as Uint16Array, target, renderer)
+  const halves = await readTexels<Uint16Array>(renderer, target)
   localStorage.setItem(key, Array.from(halves, half => String.fromCharCode(half)).join(''))
 }
 
@@ -59,15 +65,22 @@ function prepare(tables: AtmosphereTables): void {
     if (kept === null) {
       yield* bake(renderer)
       if (!isReusing) return
-      // Not of interest where a test has disposed of it before it could be read.
-      const reading = keep(renderer, diffuseLight.target, key).catch(() => undefined)
-      _readings.add(reading)
-      void reading.then(() => _readings.delete(reading))
+      waitFor(keep(renderer, diffuseLight.target, key))
       return
     }
     for (let step = 0; step < BAKE_STEPS; step++) yield
     restore(renderer, diffuseLight.target, kept)
   }
+}
+
+/** Whether tables are reused now. */
+export const isReusingTables = (): boolean => isReusing
+
+/** Has {@link keepTables} wait. What a test disposes of before it can be read is not kept. */
+export function waitFor(work: Promise<void>): void {
+  const reading = work.catch(() => undefined)
+  _readings.add(reading)
+  void reading.then(() => _readings.delete(reading))
 }
 
 /** Resolves when tables baked so far can be reused. */

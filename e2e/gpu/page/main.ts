@@ -1,6 +1,7 @@
 import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
 import { registeredTests, type Backend } from '../harness/gpu-test'
+import { loadNoise } from '../harness/reuse-noise'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
 
 export interface TestListing {
@@ -31,6 +32,7 @@ window.welkinTests = {
     const load = modules[suite]
     if (load === undefined) throw new Error(`no suite named ${suite}`)
     await load()
+    await loadNoise()
     return registeredTests
       .filter(test => test.backends.includes(backend))
       .map(({ name, timeoutSeconds }) => ({ name, timeoutSeconds }))

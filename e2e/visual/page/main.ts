@@ -1,6 +1,7 @@
 import { modules } from 'virtual:modules'
 import { ConsoleWatch } from '../../gpu/harness/console'
 import type { Backend } from '../../gpu/harness/gpu-test'
+import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 
 /** What a story's scene module offers; Storybook and this page drive the same thing. */
@@ -73,6 +74,7 @@ window.welkinVisual = {
   },
 
   async shoot(file, story, backend) {
+    await loadNoise()
     const create = await findCreate(file)
     const stories = await load(`${file}.stories`)
     const args = {
