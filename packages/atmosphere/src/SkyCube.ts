@@ -17,6 +17,7 @@ import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import { PrefilteredCube } from './PrefilteredCube'
 import type { SkyLayer } from './SkyLayer'
+import type { SkyOverlay } from './SkyOverlay'
 import { skyColor } from './tsl/sky'
 import type { Vec3 } from './tsl-types'
 import { viewNodes, type ViewNodes } from './ViewNodes'
@@ -57,11 +58,13 @@ export class SkyCube {
   readonly #fromMap = uniform(1).setGroup(renderGroup)
   /** Those that the shader has. */
   #layers: readonly SkyLayer[] | null = null
-  /** Faces drawn; null while it rests. */
+  readonly #overlay: SkyOverlay | null
+  /** Faces drawn, negative while there are steps of the overlay to go; null while it rests. */
   #drawn: number | null = null
 
   /** @param size - Texels along the edge of a face, a power of two. */
-  constructor(atmosphere: Atmosphere, size: number) {
+  constructor(atmosphere: Atmosphere, size: number, overlay: SkyOverlay | null = null) {
+    this.#overlay = overlay
     this.#atmosphere = atmosphere
     this.#view = viewNodes(atmosphere, this.camera)
     this.#faces = new CubeRenderTarget(size, {
@@ -90,7 +93,9 @@ export class SkyCube {
       // With the world's axes a direction in view space is one in world space.
       const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
       const mapped = this.#view.toMapped(raised).normalize().toConst() as Vec3
-      return vec4(skyColor(this.#view, mapped, null).mul(this.#toCube), 1)
+      const sky = skyColor(this.#view, mapped, null)
+      const light = this.#overlay?.over(this.#view, mapped, sky) ?? sky
+      return vec4(light.mul(this.#toCube), 1)
     })()
   }
 
@@ -119,12 +124,12 @@ export class SkyCube {
       this.#box.material.fragmentNode = this.#sky()
       this.#box.material.needsUpdate = true
     }
-    this.#drawn = 0
+    this.#drawn = -(this.#overlay?.steps ?? 0)
     this.#filtered.restart()
   }
 
   /**
-   * Draws the next face, or filters the next part, or does all that is left.
+   * Draws the next step of the overlay or the next face, or filters the next part, or does all that is left.
    *
    * @returns Whether it is complete.
    */
@@ -136,11 +141,12 @@ export class SkyCube {
     renderer.xr.enabled = false
     renderer.setMRT(null)
     let isComplete = false
+    if (this.#drawn < FACES) this.#prepare(renderer, view)
     if (isWhole) {
-      while (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
+      while (this.#drawn < FACES) this.#drawPart(renderer, view, this.#drawn++)
       this.#filtered.filterAll(renderer)
       isComplete = true
-    } else if (this.#drawn < FACES) this.#drawFace(renderer, view, this.#drawn++)
+    } else if (this.#drawn < FACES) this.#drawPart(renderer, view, this.#drawn++)
     else isComplete = this.#filtered.filterNext(renderer)
     if (isComplete) {
       this.#drawn = null
@@ -157,18 +163,25 @@ export class SkyCube {
     this.#fromMap.value = this.#atmosphere.luminanceScale / this.#completedScale
   }
 
-  #drawFace(renderer: Renderer, view: AtmosphereView, face: number): void {
+  #prepare(renderer: Renderer, view: AtmosphereView): void {
     const { layers, luminanceScale, sun, tables } = this.#atmosphere
     // Another camera may have taken the sky volume since the last face.
     view.slot = sun.volumes.volumeFor(renderer, view.eye!, tables.version).slot
     for (const layer of layers) layer.prepare?.(renderer, view)
     this.#view.update({ camera: this.camera })
     for (const layer of layers) layer.update?.(view)
+    this.#toCube.value = this.#scale / luminanceScale
+  }
+
+  #drawPart(renderer: Renderer, view: AtmosphereView, face: number): void {
+    if (face < 0) {
+      this.#overlay?.draw(renderer, view, face + this.#overlay.steps)
+      return
+    }
     if (this.#cameras.coordinateSystem !== renderer.coordinateSystem) {
       this.#cameras.coordinateSystem = renderer.coordinateSystem
       this.#cameras.updateCoordinateSystem()
     }
-    this.#toCube.value = this.#scale / luminanceScale
     renderer.setRenderTarget(this.#faces, face)
     renderer.render(this.#box, this.#cameras.children[face] as PerspectiveCamera)
   }

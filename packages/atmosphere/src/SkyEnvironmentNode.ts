@@ -7,6 +7,7 @@ import type { Atmosphere } from './Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import type { SkyLayer } from './SkyLayer'
 import { SkyCube } from './SkyCube'
+import type { SkyOverlay } from './SkyOverlay'
 import { viewNodes, type ViewNodes } from './ViewNodes'
 
 /** Options of {@link skyEnvironment}. */
@@ -26,6 +27,8 @@ export interface SkyEnvironmentOptions extends EnvironmentOptions {
   angle?: number
   /** How far the camera may climb or sink, as a part of its height (at least 500 m), > 0. */
   climb?: number
+  /** What is in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
+  overlay?: SkyOverlay | null
 }
 
 const RADIANS = Math.PI / 180
@@ -47,7 +50,7 @@ const RESCALING = 1000
  * atmosphere that glow, fog and ground are in it. It is drawn once, and again, in place, when sun or
  * altitude have changed by more than a threshold, parameters of the air at all, or layers, theirs by the
  * count of {@link SkyLayer.version}: a face of the cube a frame, then a part of the filter a
- * frame, fifteen frames for the default size. Until the new map is complete, the old one is mirrored.
+ * frame, fifteen frames for the default size and some more for an overlay. Until the new map is complete, the old one is mirrored.
  * `luminanceScale` acts at once. What is painted on the textures of a `planetGround` is not followed: set
  * {@link needsRedraw}. It is seen from the camera's place: things far away from the camera mirror the camera's sky.
  *
@@ -66,6 +69,8 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   angle: number
   /** See {@link SkyEnvironmentOptions}. */
   climb: number
+  /** See {@link SkyEnvironmentOptions}. */
+  readonly overlay: SkyOverlay | null
   /** Draws all of it before the next frame, whatever has changed. */
   needsRedraw = true
   /** How often it was drawn. */
@@ -73,6 +78,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly #view: ViewNodes
   readonly #cube: SkyCube
   readonly #drawn = new DrawnSky()
+  #overlayVersion = 0
   #frame = -1
   #camera: Camera | null = null
   readonly #release = (): void => this.#free()
@@ -80,7 +86,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   /** @throws If the atmosphere is missing or an option out of range. */
   constructor(
     atmosphere: Atmosphere,
-    { diffuse, size = 256, angle = 0.1, climb = 0.1 }: SkyEnvironmentOptions = {}
+    { diffuse, size = 256, angle = 0.1, climb = 0.1, overlay = null }: SkyEnvironmentOptions = {}
   ) {
     super('vec3')
     if (!atmosphere?.isAtmosphere) {
@@ -100,10 +106,11 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     this.diffuse = diffuse ?? null
     this.angle = angle
     this.climb = climb
+    this.overlay = overlay
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
     this.#view = viewNodes(atmosphere)
-    this.#cube = new SkyCube(atmosphere, size)
+    this.#cube = new SkyCube(atmosphere, size, overlay)
     atmosphere.addEventListener('dispose', this.#release)
   }
 
@@ -131,8 +138,12 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     this.#frame = frameId
     this.#camera = camera
     const cube = this.#cube
-    if (this.needsRedraw || (cube.isIdle && !this.#drawn.resembles(view, this.angle, this.climb))) {
+    const version = this.overlay?.version ?? 0
+    const isSame = (): boolean =>
+      version === this.#overlayVersion && this.#drawn.resembles(view, this.angle, this.climb)
+    if (this.needsRedraw || (cube.isIdle && !isSame())) {
       this.#drawn.set(view)
+      this.#overlayVersion = version
       cube.aim(renderer, camera.matrixWorld)
     }
     if (cube.isIdle) return

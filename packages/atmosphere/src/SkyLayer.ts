@@ -3,6 +3,7 @@ import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from './Atmosphere'
 import type { Spectrum } from './AtmosphereParameters'
 import type { AtmosphereView } from './AtmosphereView'
+import type { LightSource } from './LightSource'
 import type { Bool, Float, Vec3, Vec4 } from './tsl-types'
 import type { Aim, VolumePlace } from './tsl/skyVolume'
 import type { ViewNodes } from './ViewNodes'
@@ -59,6 +60,8 @@ export interface SkyLayer {
   readonly isAdditive?: boolean
   /** The only atmosphere that it can be added to; absent if any will do. */
   readonly atmosphere?: Atmosphere
+  /** The light that it sends to the planet, if it lights more than its own picture. */
+  readonly source?: LightSource
   /** Part of the sun's light that it leaves at a position in world space. */
   eclipse?(position: Vector3): Spectrum
   /**

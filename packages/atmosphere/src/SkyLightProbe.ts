@@ -8,9 +8,24 @@ import type { LightSource } from './LightSource'
 import { linearSRGB } from './tsl/color'
 import { coveredPosition } from './tsl/coveredPosition'
 import { skyIrradiance } from './tsl/skyIrradiance'
-import type { Vec3 } from './tsl-types'
+import type { Float, Vec3, Vec4 } from './tsl-types'
 import type { ViewNodes } from './ViewNodes'
 import { checkAtmosphere, viewNodes } from './ViewNodes'
+
+/** A small plane in the light of sky and ground, as shader nodes. */
+export interface SkyLitPlane {
+  readonly view: ViewNodes
+  /** Where it is, from the camera in the mapped space [m]. */
+  readonly offset: Vec3
+  /** Above the ground [m]. */
+  readonly altitude: Float
+  /** Zenith there. */
+  readonly up: Vec3
+  /** μ_s. */
+  readonly cosSun: Float
+  /** Its normal against the zenith. */
+  readonly cosNormal: Float
+}
 
 /**
  * Light of sky and ground: a light probe whose irradiance is looked up per fragment, at the
@@ -24,6 +39,12 @@ export class SkyLightProbe extends LightProbe {
 
   /** Whose light sky and ground scatter: the sun's. */
   readonly source: LightSource
+
+  /**
+   * What clouds make of the irradiance that a plane has from a clear sky and its ground, for unit
+   * irradiance of the source. Set it before the first render.
+   */
+  overcast: ((plane: SkyLitPlane, clear: Vec4) => Vec4) | null = null
 
   /**
    * @param source - Whose light sky and ground scatter; by default the sun's.
@@ -49,9 +70,11 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
   }
 
   readonly #view: ViewNodes
+  readonly #light: SkyLightProbe
 
   constructor(light: SkyLightProbe) {
     super(light)
+    this.#light = light
     this.#view = viewNodes(light.atmosphere, null, light.source)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
@@ -68,19 +91,23 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
 
   override setup(builder: NodeBuilder): undefined {
     const irradiance = Fn(() => {
-      const { air } = this.#view
-      const offset = this.#view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosSun, up } = this.#view.place(offset)
-      const normal = this.#view.toMapped(normalView).normalize().toConst()
-      const received = skyIrradiance(
+      const view = this.#view
+      const { air } = view
+      const offset = view.toMapped(coveredPosition()).toConst()
+      const { altitude, cosSun, up } = view.place(offset)
+      const normal = view.toMapped(normalView).normalize().toConst()
+      const cosNormal = normal.dot(up)
+      const clear = skyIrradiance(
         air.uniforms,
         air.diffuse!,
         altitude,
-        normal.dot(up),
+        cosNormal,
         cosSun,
-        normal.dot(this.#view.sunDirection)
+        normal.dot(view.sunDirection)
       )
-      return linearSRGB(air.uniforms, received.mul(this.#view.source.irradiance)).mul(
+      const plane = { view, offset, altitude, up, cosSun, cosNormal }
+      const received = this.#light.overcast?.(plane, clear) ?? clear
+      return linearSRGB(air.uniforms, received.mul(view.source.irradiance)).mul(
         (this as unknown as { colorNode: Vec3 }).colorNode
       )
     })()

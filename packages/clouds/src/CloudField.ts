@@ -6,6 +6,7 @@ import { renderGroup, texture, texture3D, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { CloudLayers } from './CloudLayers'
 import { CloudNoise } from './CloudNoise'
+import { NightLight } from './NightLight'
 import type { NoiseName } from './noiseSizes'
 import { latticeRotation, layerTurn } from './lattice'
 import {
@@ -13,9 +14,10 @@ import {
   DETAIL_PERIOD,
   LAYER_STRIDE,
   REGION_PERIOD,
+  FIELD_PERIOD,
+  layerForms,
   layerPeriods,
-  standardWeights,
-  WEATHER_AGAIN
+  weatherScales
 } from './layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
 import { windTurn } from './wind'
@@ -23,6 +25,7 @@ import { windTurn } from './wind'
 const _position = new Vector3()
 const _foot = new Vector3()
 const _point = new Vector3()
+const _stretch = new Vector3()
 const _matrix = new Matrix3()
 const _matrix4 = new Matrix4()
 const _turn = new Quaternion()
@@ -59,6 +62,8 @@ export class CloudField {
   readonly noise: CloudNoise
   /** Place, height and up-vector of the camera: shared with the atmosphere's nodes. */
   readonly view: ViewNodes
+  /** What lights clouds in the night. */
+  readonly night = new NightLight()
   /** Radius of the sphere at altitude 0 [m]. */
   readonly radius: UniformNode<'float', number> = uniform(0).setGroup(renderGroup)
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
@@ -71,6 +76,8 @@ export class CloudField {
   readonly array = vec4Array(this.values)
   readonly textures: Readonly<Record<NoiseName, LevelTexture<Vec3>>>
   readonly worldMap: LevelTexture<Vec2> | null
+  /** What it samples; shared, not owned. */
+  readonly worldMapTexture: Texture | null
   /** Width of the world map [texels]. */
   readonly worldMapWidth: number
   /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
@@ -111,6 +118,7 @@ export class CloudField {
     const node = (name: NoiseName): LevelTexture<Vec3> =>
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
     this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
+    this.worldMapTexture = worldMap
     this.worldMap = worldMap === null ? null : (texture(worldMap) as unknown as LevelTexture<Vec2>)
     this.worldMapWidth = (worldMap?.image as { width?: number } | null)?.width ?? 2048
     const { x, z } = atmosphere.ellipsoid.radii
@@ -128,6 +136,7 @@ export class CloudField {
     const elapsed = this.#seconds === null ? 0 : seconds - this.#seconds
     if (Number.isFinite(elapsed)) this.#seconds = seconds
     this.radius.value = bottomRadius
+    this.night.update(view)
     _position.copy(view.up).multiplyScalar(bottomRadius + view.height)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
@@ -158,7 +167,10 @@ export class CloudField {
     slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
     const { profileExponent, shapeAmount, detailAmount } = parameters
     slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
-    slots[2].fromArray(standardWeights(parameters.weatherWeights))
+    const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
+    const { stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
+    slots[2].fromArray(scales.clouds)
+    slots[11].set(scales.cells, scales.regions, scales.planet, scales.cloudVariance)
     const turn = this.turns[index]
     const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
     const anchor = (
@@ -166,11 +178,13 @@ export class CloudField {
       place: Vector3,
       rotation: Matrix3,
       length: number,
-      periods = 1
+      periods = 1,
+      perStretch = 1
     ): void => {
       _point
         .copy(place)
         .applyQuaternion(turn)
+        .multiply(_stretch.set(perStretch, perStretch, 1))
         .applyMatrix3(rotation)
         .divideScalar(length * periods)
       const [x, y, z] = _point.toArray().map(v => periods * (v - Math.floor(v)))
@@ -179,13 +193,18 @@ export class CloudField {
     for (let row = 0; row < 3; row++) {
       slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
     }
-    anchor(8, _position, latticeRotation.shape, periods.shape)
-    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD)
+    slots[3].w = steepness
+    slots[4].w = sharpness
+    const perStretch = 1 / stretch
+    anchor(8, _position, latticeRotation.shape, periods.shape, 1, perStretch)
+    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD, perStretch)
+    slots[8].w = perStretch
+    slots[9].w = coarseness
+    slots[10].w = anvil
     // The weather is the same all the way up: it is looked up at the foot point.
     anchor(6, _foot, latticeRotation.weather, periods.weather)
     slots[6].w = 1 / periods.weather
-    const again = periods.weather * WEATHER_AGAIN.period
-    anchor(10, _foot, latticeRotation.weatherAgain, again)
+    anchor(10, _foot, latticeRotation.fields, periods.weather * FIELD_PERIOD)
     anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
     slots[7].w = shadow ? 1 : 0
   }

@@ -1,5 +1,5 @@
 import { FragmentPass } from '@welkin/atmosphere'
-import type { AtmosphereView } from '@welkin/atmosphere'
+import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
 import { HalfFloatType, LinearFilter, RenderTarget, Vector3, Vector4 } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
@@ -19,14 +19,14 @@ const WIDENING_HEIGHT = 6000
 /** Highest camera for which maps are drawn [m]: farther away the clouds are a thin skin. */
 const HIGHEST = 150_000
 
-/** Sine of the least angle between sun rays and the plane that the map lies in. */
+/** Sine of the least angle between rays of light and the plane that the map lies in. */
 const LEAST_SLOPE = 0.2
 
 /** Cosine of the angle about the planet's centre after which the plane's origin follows the camera. */
 const ANCHOR_COSINE = Math.cos(0.005)
 
-/** Change of the sun's direction, or of the place in widths, that has all cascades drawn at once. */
-const JUMP = { sun: 0.01, place: 0.5 }
+/** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
+const JUMP = { light: 0.01, place: 0.5 }
 
 const vector3 = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
 const vector4 = (): UniformNode<'vec4', Vector4> => uniform(new Vector4()).setGroup(renderGroup)
@@ -48,10 +48,16 @@ export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
   readonly count: number
+  /** 1 if it is of moonlight, 0 of sunlight. */
+  readonly isMoonlit: UniformNode<'float', number>
+  /** From the camera of the map to the one of the shader, if they are two [m]. */
+  readonly shift?: UniformNode<'vec3', Vector3>
 }
 
 /** What the shader of a cascade reads. Vectors are in the mapped space, from the camera [m]. */
 export interface ShadowRayUniforms {
+  /** Direction to the source of light. */
+  readonly toLight: UniformNode<'vec3', Vector3>
   /** Middle of the cascade in its plane. */
   readonly origin: UniformNode<'vec3', Vector3>
   /** Edges of the cascade. */
@@ -75,11 +81,11 @@ class Cascade {
   isDrawn = false
   halfWidth = 0
   readonly anchor = new Vector3()
-  readonly sun = new Vector3()
-  /** The plane's normal over its cosine to the sun. */
+  readonly light = new Vector3()
+  /** The plane's normal over its cosine to the light. */
   readonly normal = new Vector3()
   readonly across = new Vector3()
-  /** Measures the plane's second axis along sun rays. */
+  /** Measures the plane's second axis along rays of light. */
   readonly measure = new Vector3()
   readonly along = new Vector3()
   /** Of the middle [m]. */
@@ -95,7 +101,8 @@ const _offset = new Vector3()
 const _normal = new Vector3()
 
 /**
- * Beer shadow maps of clouds: optical depth towards the sun, in three cascades about the camera.
+ * Beer shadow maps of clouds: optical depth towards the sun, or towards the moon in the night, in three
+ * cascades about the camera.
  *
  * A texel is a sun ray. It is named by where it crosses a plane among the clouds, level unless the sun
  * is low, so that texels are spread over the ground whatever the sun's height. Each cascade's middle
@@ -111,10 +118,13 @@ export class CloudShadowMap {
   /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
   readonly camera = new Vector3()
   readonly #anchor = new Vector3()
+  /** Whose light the maps are of. */
+  source: LightSource
   #turn = 0
 
   constructor(field: CloudField) {
     this.field = field
+    this.source = field.atmosphere.sun
     const count = HALF_WIDTHS.length
     this.target = new RenderTarget(SIZE * count, SIZE, {
       type: HalfFloatType,
@@ -127,9 +137,11 @@ export class CloudShadowMap {
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
-      count
+      count,
+      isMoonlit: number()
     }
     this.#ray = {
+      toLight: vector3(),
       origin: vector3(),
       across: vector3(),
       along: vector3(),
@@ -152,6 +164,11 @@ export class CloudShadowMap {
   update(renderer: Renderer, view: AtmosphereView): void {
     const radius = this.field.radius.value
     this.camera.copy(view.up).multiplyScalar(radius + view.height)
+    const { night, atmosphere } = this.field
+    const isMoonlit = night.rulesAt(view)
+    this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
+    this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
+    this.#ray.toLight.value.copy(isMoonlit ? night.direction.value : view.sunDirection)
     if (view.height > HIGHEST) {
       for (const cascade of this.#cascades) cascade.isDrawn = false
     } else {
@@ -171,8 +188,8 @@ export class CloudShadowMap {
     const next = [0, 1, 0, 2][this.#turn]
     for (const [index, cascade] of this.#cascades.entries()) {
       const halfWidth = HALF_WIDTHS[index] * scale
-      if (index !== next && this.#fits(cascade, view.sunDirection, halfWidth)) continue
-      this.#place(cascade, view, halfWidth)
+      if (index !== next && this.#fits(cascade, halfWidth)) continue
+      this.#place(cascade, halfWidth)
       this.#setRay(cascade)
       const { viewport, scissor } = this.target
       viewport.set(index * SIZE, 0, SIZE, SIZE)
@@ -194,9 +211,10 @@ export class CloudShadowMap {
     return middle
   }
 
-  #fits(cascade: Cascade, sun: Vector3, halfWidth: number): boolean {
+  #fits(cascade: Cascade, halfWidth: number): boolean {
     if (!cascade.isDrawn || cascade.halfWidth !== halfWidth) return false
-    if (cascade.sun.distanceToSquared(sun) > JUMP.sun ** 2) return false
+    const { value: light } = this.#ray.toLight
+    if (cascade.light.distanceToSquared(light) > JUMP.light ** 2) return false
     _offset.copy(_foot).sub(cascade.anchor)
     const u = cascade.across.dot(_offset) - cascade.center.u
     const v = cascade.measure.dot(_offset) - cascade.center.v
@@ -204,27 +222,28 @@ export class CloudShadowMap {
   }
 
   /** Puts a cascade's middle on the texel nearest to the camera. */
-  #place(cascade: Cascade, { sunDirection: sun }: AtmosphereView, halfWidth: number): void {
+  #place(cascade: Cascade, halfWidth: number): void {
+    const { value: light } = this.#ray.toLight
     const { anchor, across, along, measure, normal, center } = cascade
     anchor.copy(this.#anchor)
-    cascade.sun.copy(sun)
+    cascade.light.copy(light)
     cascade.halfWidth = halfWidth
-    // Level, but leant towards a low sun.
+    // Level, but leant towards a low light.
     _normal.copy(anchor).normalize()
-    across.crossVectors(sun, _normal)
+    across.crossVectors(light, _normal)
     if (across.lengthSq() < 1e-12) across.set(_normal.z, _normal.x, _normal.y).cross(_normal)
     across.normalize()
-    const slope = sun.dot(_normal)
+    const slope = light.dot(_normal)
     if (Math.abs(slope) < LEAST_SLOPE) {
-      const level = along.copy(sun).addScaledVector(_normal, -slope).normalize()
-      // n = up sin a + level cos a with n·s = LEAST_SLOPE, to the sun's side of the plane.
+      const level = along.copy(light).addScaledVector(_normal, -slope).normalize()
+      // n = up sin a + level cos a with n·s = LEAST_SLOPE, to the light's side of the plane.
       const sign = slope < 0 ? -1 : 1
       const lean = Math.asin(LEAST_SLOPE) - Math.asin(Math.abs(slope))
       _normal.multiplyScalar(Math.cos(lean)).addScaledVector(level, sign * Math.sin(lean))
     }
     along.crossVectors(_normal, across)
-    normal.copy(_normal).divideScalar(_normal.dot(sun))
-    measure.copy(along).addScaledVector(normal, -along.dot(sun))
+    normal.copy(_normal).divideScalar(_normal.dot(light))
+    measure.copy(along).addScaledVector(normal, -along.dot(light))
     _offset.copy(_foot).sub(anchor)
     const texel = (2 * halfWidth) / SIZE
     center.u = Math.round(across.dot(_offset) / texel) * texel

@@ -3,9 +3,9 @@ import { Fn, If, float, positionView, renderGroup, uniform } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame, UniformNode } from 'three/webgpu'
 import { viewNodes } from '@welkin/atmosphere'
-import type { AtmosphereView, ViewNodes } from '@welkin/atmosphere'
+import type { AtmosphereView, LightSource, ViewNodes } from '@welkin/atmosphere'
 import type { CloudsNode } from './CloudsNode'
-import { columnTowardsSun } from './tsl/columns'
+import { columnTowards } from './tsl/columns'
 import { sampleShadows } from './tsl/shadowMap'
 import type { Float, Vec3 } from './tsl-types'
 
@@ -13,18 +13,23 @@ const position = (view: AtmosphereView, target: Vector3): Vector3 =>
   target.copy(view.up).multiplyScalar(view.atmosphere.parameters.bottomRadius + view.height)
 
 /**
- * Shadows of clouds on surfaces: the part of the sunlight that passes, for the slot that three has for
- * shadows of its own.
+ * Shadows of clouds on surfaces: the part of the sunlight, or of the moonlight, that passes, for the
+ * slot that three has for shadows of its own.
  *
  * ```ts
  * const sun = new SunDirectionalLight(atmosphere)
  * sun.castShadow = renderer.shadowMap.enabled = true
  * // With three's shadow map of the light; `cloudShadow(cloudsNode)` is of clouds alone.
  * Object.assign(sun.shadow, { shadowNode: cloudShadow(cloudsNode, shadow(sun)) })
+ * // By moonlight; `null` instead of `shadow(moonlight)` for clouds alone.
+ * Object.assign(moonlight.shadow, {
+ *   shadowNode: cloudShadow(cloudsNode, shadow(moonlight), moonlight.source)
+ * })
  * ```
  *
  * It falls on what has `receiveShadow`. Near the camera it is read from the clouds' shadow maps, which
- * are those of the frame before; farther away the weather says how much passes in the mean. Layers whose
+ * are those of the frame before and of the light that is up there, the sun's by day and the moon's by
+ * night; elsewhere the weather says how much passes in the mean. Layers whose
  * `shadow` is false cast none. The clouds' node must be drawn, by any pipeline.
  */
 export class CloudShadowNode extends Node<'float'> {
@@ -36,20 +41,36 @@ export class CloudShadowNode extends Node<'float'> {
   readonly clouds: CloudsNode
   /** Another shadow node, to be multiplied with. */
   shadowNode: Node | null
+  /** Whose light they take. */
+  readonly source: LightSource
   /** Of the camera that renders. */
   readonly #view: ViewNodes
   /** From the clouds' camera, as their maps know it, to the one that renders [m]. */
   readonly #shift: UniformNode<'vec3', Vector3> = uniform(new Vector3()).setGroup(renderGroup)
 
-  /** @throws If the clouds are missing. */
-  constructor(clouds: CloudsNode, shadowNode: Node | null = null) {
+  /** 1 while the maps are of this source's light. */
+  readonly #isMapped = uniform(1).setGroup(renderGroup)
+
+  /**
+   * @param source - Whose light they take; left out, the sun's.
+   * @throws If the clouds are missing, or the source is none.
+   */
+  constructor(
+    clouds: CloudsNode,
+    shadowNode: Node | null = null,
+    source: LightSource = clouds?.atmosphere?.sun
+  ) {
     super('float')
     if (clouds?.shadows === undefined) {
       throw new Error(`CloudShadowNode: clouds must be a CloudsNode, got ${typeof clouds}`)
     }
+    if (source?.irradianceAt === undefined) {
+      throw new Error(`CloudShadowNode: source must be a LightSource, got ${typeof source}`)
+    }
     this.clouds = clouds
     this.shadowNode = shadowNode
-    this.#view = viewNodes(clouds.atmosphere)
+    this.source = source
+    this.#view = viewNodes(clouds.atmosphere, null, source)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
   }
@@ -60,7 +81,9 @@ export class CloudShadowNode extends Node<'float'> {
 
   override update(frame: NodeFrame): undefined {
     const view = this.#view.update(frame)
-    if (view !== undefined) position(view, this.#shift.value).sub(this.clouds.shadows.camera)
+    const { shadows } = this.clouds
+    this.#isMapped.value = shadows.source === this.source ? 1 : 0
+    if (view !== undefined) position(view, this.#shift.value).sub(shadows.camera)
   }
 
   override setup(): Node {
@@ -70,9 +93,10 @@ export class CloudShadowNode extends Node<'float'> {
       const offset = this.#view.toMapped(positionView).add(this.#shift).toConst() as Vec3
       const { shadow, known } = sampleShadows(shadows.nodes, offset, float(0))
       const depth = shadow.toVar()
-      If(known.equal(0), () => {
+      If(known.mul(this.#isMapped).equal(0), () => {
         const distance = offset.length()
-        depth.assign(columnTowardsSun(field, { offset, ...field.view.place(offset), distance }))
+        const sample = { offset, ...field.view.place(offset), distance }
+        depth.assign(columnTowards(field, sample, this.#view.sunDirection))
       })
       // What is scattered within the forward peak arrives with the sun.
       const passing = depth.mul(clouds.light.nodes.depthScale).negate().exp()
@@ -82,5 +106,8 @@ export class CloudShadowNode extends Node<'float'> {
 }
 
 /** Shadows of clouds on surfaces: see {@link CloudShadowNode}. */
-export const cloudShadow = (clouds: CloudsNode, shadowNode: Node | null = null): CloudShadowNode =>
-  new CloudShadowNode(clouds, shadowNode)
+export const cloudShadow = (
+  clouds: CloudsNode,
+  shadowNode: Node | null = null,
+  source?: LightSource
+): CloudShadowNode => new CloudShadowNode(clouds, shadowNode, source)

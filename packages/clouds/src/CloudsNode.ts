@@ -48,7 +48,8 @@ const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', '
 
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
- * atmosphere's sun, sky and ground, with the air in front of them.
+ * atmosphere's sun, sky and ground, in the night by its moon if that was added to it and by the night
+ * sky, with the air in front of them.
  *
  * ```ts
  * const scenePass = pass(scene, camera, { samples: 0 })
@@ -127,6 +128,22 @@ export class CloudsNode extends AtmosphereNode {
   /** @throws If a parameter is out of its range. */
   set quality(quality: CloudQualityName | CloudQuality) {
     this.#quality = resolveQuality(quality)
+  }
+
+  /**
+   * Illuminance of level ground by the night sky, which lights clouds when sun and moon are down [lx].
+   * By default that of `NightLightProbe`.
+   */
+  get nightIlluminance(): number {
+    return this.field.night.illuminance
+  }
+
+  /** @throws If it is negative or not finite. */
+  set nightIlluminance(illuminance: number) {
+    if (!(illuminance >= 0 && illuminance < Infinity)) {
+      throw new Error(`CloudsNode: nightIlluminance must be finite, ≥ 0, got ${illuminance}`)
+    }
+    this.field.night.illuminance = illuminance
   }
 
   /** What is shown instead of clouds; null, the default, for clouds. */

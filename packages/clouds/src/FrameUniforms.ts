@@ -5,6 +5,7 @@ import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import { CloudLayers } from './CloudLayers'
+import { LAYER_STRIDE } from './layerUniforms'
 import { vec4Array } from './tsl-types'
 
 const number = (value = 0): UniformNode<'float', number> => uniform(value).setGroup(renderGroup)
@@ -42,6 +43,19 @@ const CLOUD_CUT = 500
 
 /** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
 const NIGHT = { orders: 5, sine: 0.3 }
+
+/**
+ * What light is multiplied with for half floats to hold that of nights as well.
+ *
+ * @param radius - Of the planet [m].
+ */
+export function nightGain({ up, sunDirection, height }: AtmosphereView, radius: number): number {
+  const depression = -Math.asin(Math.min(Math.max(up.dot(sunDirection), -1), 1))
+  // From high up one sees places where the sun is that much less deep.
+  const dip = Math.acos(radius / (radius + Math.max(height, 0)))
+  const sine = Math.sin(Math.max(depression - dip, 0))
+  return 10 ** (NIGHT.orders * Math.min(sine / NIGHT.sine, 1))
+}
 
 const _projection = new Matrix4()
 const _delta = new Vector3()
@@ -110,7 +124,9 @@ export class FrameUniforms {
     this.projectionInverse.value.copy(camera.projectionMatrixInverse)
     this.near.value = camera.near
     this.far.value = camera.far
-    this.#raiseLight(view)
+    const gain = nightGain(view, field.radius.value)
+    this.gainChange.value = gain / this.gain.value
+    this.gain.value = gain
 
     _position.copy(view.up).multiplyScalar(field.radius.value + view.height)
     const last = this.#camera
@@ -130,8 +146,10 @@ export class FrameUniforms {
       this.drifts[i].set(drift.x, drift.y, drift.z, 0)
       isStill &&= drift.lengthSq() === 0
     })
-    const state = field.values.flatMap((value, i) => (i % 11 < 3 ? value.toArray() : []))
+    const state = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))
     state.push(...view.viewToMapped.elements, ...camera.projectionMatrix.elements)
+    const { direction, irradiance, radiance } = field.night
+    for (const { value } of [direction, irradiance, radiance]) state.push(...value.toArray())
     isStill &&= state.every(
       (value, i) => Math.abs(value - this.#state[i]) <= 1e-9 * Math.abs(value)
     )
@@ -150,13 +168,5 @@ export class FrameUniforms {
     const reach = Math.max(CUT.heights * Math.abs(view.height), CUT.metres)
     if (!(last.distanceTo(_position) < reach)) return true
     return field.drifts.some(drift => !(drift.length() < CLOUD_CUT))
-  }
-
-  /** Half floats hold the light of nights as well if it is raised. */
-  #raiseLight(view: AtmosphereView): void {
-    const sine = Math.min(Math.max(-view.up.dot(view.sunDirection) / NIGHT.sine, 0), 1)
-    const gain = 10 ** (NIGHT.orders * sine)
-    this.gainChange.value = gain / this.gain.value
-    this.gain.value = gain
   }
 }

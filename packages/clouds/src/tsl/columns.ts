@@ -29,22 +29,24 @@ export function cloudColumn(field: CloudField, sample: CloudSample): Float {
 const LOWEST_COSINE = 0.1
 
 /**
- * Optical depth from a place to the sun of all clouds that cast shadows, from the weather alone: one
+ * Optical depth from a place to sun or moon of all clouds that cast shadows, from the weather alone: one
  * look-up a layer, where the ray crosses its middle.
+ *
+ * @param toLight - Direction to the source of light, in the mapped space.
  */
-export function columnTowardsSun(field: CloudField, sample: CloudSample): Float {
+export function columnTowards(field: CloudField, sample: CloudSample, toLight: Vec3): Float {
   const { view } = field
   const sum = float(0).toVar()
-  const cosSun = sample.up.dot(view.sunDirection).toConst() as Float
+  const cosSun = sample.up.dot(toLight).toConst() as Float
   const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
-  forLayers(field, 'sunColumnLayer', index => {
+  forLayers(field, 'lightColumnLayer', index => {
     const layer = layerAt(field, index)
     const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
     const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float
     If(above.mul(layer.shadow).mul(layer.coverage).greaterThan(0), () => {
       const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
       const way = middle.sub(sample.altitude).max(0).div(slope)
-      const offset = sample.offset.add(view.sunDirection.mul(way)).toConst() as Vec3
+      const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
       const { altitude, up } = view.place(offset)
       const there = { offset, altitude, up, distance: sample.distance }
       const foot = footOffset(field, there).toConst()

@@ -1,5 +1,5 @@
 import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
-import { float, int, smoothstep, vec4 } from 'three/tsl'
+import { If, float, int, smoothstep, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { CloudLight } from '../CloudLightTable'
 import type { CloudShadows } from '../CloudShadowMap'
@@ -7,6 +7,7 @@ import type { QualityUniforms } from '../quality'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../tsl-types'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
 import { extinctionNearby, type CloudSample, type KeptWeather } from './density'
+import { isSunk, nightShare } from './night'
 import { sampleShadows } from './shadowMap'
 import { surroundings, type Surroundings } from './shells'
 
@@ -37,6 +38,8 @@ interface Depths {
 /**
  * Optical depths about a sample: a few samples near it, which see what is smaller than the shadow map's
  * texels, and the map beyond. Where there is no map, the cloud is taken to be as dense as it is near.
+ *
+ * @param isMapped - 1 if the map is of this light, else 0.
  */
 function depthsAbout(
   field: CloudField,
@@ -44,6 +47,8 @@ function depthsAbout(
   quality: QualityUniforms,
   kept: KeptWeather,
   sample: CloudSample,
+  toLight: Vec3,
+  isMapped: Float,
   cosSun: Float,
   { base, top }: Surroundings,
   dither: Float
@@ -72,7 +77,7 @@ function depthsAbout(
     const to = float(index).add(1).div(float(count)).toConst() as Float
     const [start, end] = [from.mul(from).mul(reach), to.mul(to).mul(reach)]
     const middle = isUpwards.select(rise.mul(UPWARDS), start.add(end).mul(0.5)).toConst() as Float
-    const direction = isUpwards.select(sample.up, field.view.sunDirection) as Vec3
+    const direction = isUpwards.select(sample.up, toLight) as Vec3
     const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
     const { altitude, up } = field.view.place(offset)
     const { distance } = sample
@@ -84,21 +89,22 @@ function depthsAbout(
       )
     )
   })
-  const beyond = sample.offset.add(field.view.sunDirection.mul(reach)).toConst() as Vec3
+  const beyond = sample.offset.add(toLight.mul(reach)).toConst() as Vec3
   const far = sampleShadows(shadows, beyond, dither)
+  const known = far.known.mul(isMapped).toConst() as Float
   // Where no map is: as near, thinning out towards the top.
   const density = found.y.div(reach).toConst()
   const guess = density.mul(toTop.sub(reach)).toConst()
-  const toSun = found.y.add(far.known.mix(guess, far.toSun)).toConst() as Float
+  const toSun = found.y.add(known.mix(guess, far.toSun)).toConst() as Float
   const behind = cosSun.greaterThan(0).select(fall, rise).mul(slant).mul(density)
-  const through = far.known.mix(toSun.add(behind), far.through.max(toSun)).toConst() as Float
+  const through = known.mix(toSun.add(behind), far.through.max(toSun)).toConst() as Float
   const above = rise.mul(found.x.mul(UPWARDS / 2).add(found.z.mul(0.5)))
   return { toSun, through, above, below: fall.mul(found.x).mul(0.7) }
 }
 
 /** Shares of light in a place's source function: per scaled extinction [1/sr, 1, 1]. */
 export interface CloudShares {
-  /** Of the sun's irradiance. */
+  /** Of the irradiance of the sun, or of the moon where that is the light. */
   sun: Float
   /** Of the mean radiance of the upper and the lower hemisphere. */
   sky: Float
@@ -123,10 +129,24 @@ export function sourceAt(
 ): CloudShares {
   const { view } = field
   const about = surroundings(field, sample.altitude)
-  const cosSun = sample.up.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
+  const isNight = isSunk(field, sample.up.dot(view.sunDirection)).toConst()
+  const toLight = isNight.select(field.night.direction, view.sunDirection).toConst() as Vec3
+  const isMapped = isNight.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
+  const cosSun = sample.up.dot(toLight).clamp(-1, 1).toConst() as Float
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
-  const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
-  const depths = depthsAbout(field, shadows, quality, kept, sample, cosSun, about, dither)
+  const cosViewSun = direction.dot(toLight).clamp(-1, 1).toConst() as Float
+  const depths = depthsAbout(
+    field,
+    shadows,
+    quality,
+    kept,
+    sample,
+    toLight,
+    isMapped,
+    cosSun,
+    about,
+    dither
+  )
   const scale = light.depthScale
   const layered = about.layered.toConst() as Float
   const depthThrough = depths.through.mul(scale).toConst() as Float
@@ -150,17 +170,29 @@ export function sourceAt(
 }
 
 /**
- * Spectral radiance of clouds about a place, of unit irradiance of the sun above the air [1/sr].
+ * Spectral radiance of clouds about a place in the light of sun, moon and night sky, over the sun's
+ * irradiance above the air [1/sr].
  *
  * @param shares - Sums of `CloudShares`.
  */
 export function lightUp(field: CloudField, { altitude, up }: CloudSample, shares: Vec3): Vec4 {
   const { view } = field
   const { uniforms, transmittance, diffuse } = view.air
-  const cosSun = up.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
-  const sun = transmittanceToSun(uniforms, transmittance, altitude, cosSun).mul(shares.x)
-  if (diffuse === null) return sun.mul(view.source.irradiance)
-  const irradiance = horizontalIrradiance(uniforms, diffuse, altitude, cosSun)
-  const ambient = irradiance.up.mul(shares.y).add(irradiance.down.mul(shares.z))
-  return sun.add(ambient.div(Math.PI)).mul(view.source.irradiance)
+  const { night } = field
+  const litFrom = (direction: Vec3): { cosine: Float; light: Vec4 } => {
+    const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
+    const direct = transmittanceToSun(uniforms, transmittance, altitude, cosine).mul(shares.x)
+    if (diffuse === null) return { cosine, light: direct }
+    const irradiance = horizontalIrradiance(uniforms, diffuse, altitude, cosine)
+    const ambient = irradiance.up.mul(shares.y).add(irradiance.down.mul(shares.z))
+    return { cosine, light: direct.add(ambient.div(Math.PI)) }
+  }
+  const sun = litFrom(view.sunDirection)
+  const light = sun.light.mul(view.source.irradiance).toVar() as Vec4
+  If(isSunk(field, sun.cosine), () => {
+    const moonlight = litFrom(night.direction).light.mul(night.irradiance)
+    const sky = night.radiance.mul(uniforms.groundAlbedo.mul(shares.z).add(shares.y))
+    light.addAssign(moonlight.add(sky).mul(nightShare(field, sun.cosine)))
+  })
+  return light
 }

@@ -67,7 +67,7 @@ function stretch(
 export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
   return Fn(() => {
     const { view } = field
-    const along = view.sunDirection
+    const along = ray.toLight
     const at = uv().sub(0.5) as unknown as Vec2
     const start = ray.origin.add(ray.across.mul(at.x)).add(ray.along.mul(at.y)).toConst() as Vec3
     const radius = field.radius.add(view.height).toConst()
@@ -137,7 +137,7 @@ const FADE = 0.1
  * @param dither - Noise in [0, 1), in which cascades meet.
  */
 export function sampleShadows(
-  { map, cascades, count }: CloudShadows,
+  { map, cascades, count, shift }: CloudShadows,
   offset: Vec3,
   dither: Float
 ): SunDepths {
@@ -145,15 +145,16 @@ export function sampleShadows(
     .mul(-FADE)
     .add(0.5 - MARGIN)
     .toConst() as Float
+  const from = (shift === undefined ? offset : offset.add(shift)).toConst()
   const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
   // From the widest to the narrowest: the last that fits stays.
   for (const [index, { u, v, w, isDrawn, halfWidth }] of [...cascades.entries()].toReversed()) {
-    const row = (r: CascadeNodes['u']): Float => r.xyz.dot(offset).add(r.w)
+    const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
     const at = vec2(row(u), row(v)).toConst() as Vec2
-    const from = at.sub(0.5).abs().toConst() as Vec2
+    const aside = at.sub(0.5).abs().toConst() as Vec2
     const above = row(w).toConst() as Float
-    const isInside = from.x
-      .max(from.y)
+    const isInside = aside.x
+      .max(aside.y)
       .lessThan(edge)
       .and(above.abs().lessThan(halfWidth.mul(REACH - MARGIN)))
       .and(isDrawn.greaterThan(0))

@@ -1,0 +1,83 @@
+import type { SkyLightProbe, SkyLitPlane } from '@welkin/atmosphere'
+import { float, mix, renderGroup, uniform } from 'three/tsl'
+import type { CloudsNode } from './CloudsNode'
+import { overcastIrradiance } from './tsl/overcast'
+import type { Vec3, Vec4 } from './tsl-types'
+
+/**
+ * Clouds in the light of the sky on surfaces: see {@link cloudSkyLight}.
+ */
+export class CloudSkyLight {
+  /** Shared, not owned. */
+  readonly probe: SkyLightProbe
+  /** Whose clouds; shared, not owned. */
+  readonly clouds: CloudsNode
+  readonly #strength = uniform(1).setGroup(renderGroup)
+  readonly #overcast: SkyLightProbe['overcast']
+
+  /** @throws If an argument is missing, or they are of two atmospheres. */
+  constructor(probe: SkyLightProbe, clouds: CloudsNode) {
+    if (probe?.overcast === undefined) {
+      throw new Error(`CloudSkyLight: probe must be a SkyLightProbe, got ${typeof probe}`)
+    }
+    if (clouds?.shadows === undefined) {
+      throw new Error(`CloudSkyLight: clouds must be a CloudsNode, got ${typeof clouds}`)
+    }
+    if (probe.atmosphere !== clouds.atmosphere) {
+      throw new Error('CloudSkyLight: clouds must be in the atmosphere of the probe, got another')
+    }
+    this.probe = probe
+    this.clouds = clouds
+    this.#overcast = probe.overcast = (plane, clear) => this.#light(plane, clear)
+  }
+
+  /** How far clouds change the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */
+  get strength(): number {
+    return this.#strength.value
+  }
+
+  /** @throws If it is out of its range. */
+  set strength(strength: number) {
+    if (!(strength >= 0 && strength <= 1)) {
+      throw new Error(`CloudSkyLight: strength must be a number in [0, 1], got ${strength}`)
+    }
+    this.#strength.value = strength
+  }
+
+  #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
+    const { field, light } = this.clouds
+    const { height, up } = plane.view
+    // Between two cameras; a metre more or less is no matter to the weather.
+    const place = up.mul(field.radius.add(height))
+    const shift = place.sub(field.view.up.mul(field.radius.add(field.view.height)))
+    const offset = plane.offset.add(shift).toConst() as Vec3
+    const without = clear.toConst() as Vec4
+    const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
+    return mix(without, cloudy, float(this.#strength))
+  }
+
+  /** Leaves the probe as it was. */
+  dispose(): void {
+    this.strength = 0
+    if (this.probe.overcast === this.#overcast) this.probe.overcast = null
+  }
+}
+
+/**
+ * Has a `SkyLightProbe` give the light that comes through clouds and from them: under an overcast less
+ * than all of a clear day's light, but more than its blue sky's; above the clouds that of the white below.
+ *
+ * ```ts
+ * const sky = new SkyLightProbe(atmosphere)
+ * scene.add(sky)
+ * cloudSkyLight(sky, cloudsNode) // before the first render; `dispose()` ends it
+ * ```
+ *
+ * It is a mean over some kilometres, from the weather alone, and goes together with `cloudShadow`, which
+ * takes from the sun what is given here. Layers whose `shadow` is false have no part in it. A moon's probe
+ * takes it too. Where a material was compiled before, it comes with the material's `needsUpdate`.
+ *
+ * @throws If an argument is missing, or they are of two atmospheres.
+ */
+export const cloudSkyLight = (probe: SkyLightProbe, clouds: CloudsNode): CloudSkyLight =>
+  new CloudSkyLight(probe, clouds)
