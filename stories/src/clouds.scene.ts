@@ -1,4 +1,4 @@
-import { cloudPreset, clouds, cloudShadow } from '@welkin/clouds'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudPresetName, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
 import { cloudCover } from './clouds/cloudCover'
@@ -54,7 +54,7 @@ export async function createClouds(
 
   const handle = await createLand(canvas, post, 55, ({ scene, camera, ...land }) => {
     const { renderer, air } = land
-    const { atmosphere, sun, post } = air
+    const { atmosphere, sun, sky, post } = air
     if (post === undefined) throw new Error('createClouds: there must be a post effect')
     const { pipeline, color, depth } = post
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
@@ -62,8 +62,8 @@ export async function createClouds(
     const layers = cloudPreset(preset)
     const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
     pipeline.outputNode = node
-    // They dim the sun, beside three's own shadow map.
-    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) }) // with three's own
+    cloudSkyLight(sky, node) // the sky's light, through clouds and from them
     // #endregion
 
     const placeOf = placing()
