@@ -45,7 +45,7 @@ function depthsAbout(
   kept: KeptWeather,
   sample: CloudSample,
   cosSun: Float,
-  { base, top }: Surroundings,
+  { base, top }: Pick<Surroundings, 'base' | 'top'>,
   dither: Float
 ): Depths {
   const rise = top.sub(sample.altitude).max(1).toConst()
@@ -109,6 +109,7 @@ export interface CloudShares {
  * What a place sends towards the eye of the light that reaches it.
  *
  * @param dither - Noise in [0, 1), in which cascades of the shadow map meet.
+ * @param about - The layers around the sample, where they are known.
  */
 export function sourceAt(
   field: CloudField,
@@ -119,10 +120,10 @@ export function sourceAt(
   sample: CloudSample,
   direction: Vec3,
   transmittance: Float,
-  dither: Float
+  dither: Float,
+  about: Pick<Surroundings, 'base' | 'top' | 'layered'> = surroundings(field, sample.altitude)
 ): CloudShares {
   const { view } = field
-  const about = surroundings(field, sample.altitude)
   const cosSun = sample.up.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(view.sunDirection).clamp(-1, 1).toConst() as Float
