@@ -36,22 +36,16 @@ export interface CloudsOptions {
 
 /** What the picture shows instead of clouds, for looking into them: white is most. */
 export type CloudsDebug =
-  /** How opaque they are. */
-  | 'opacity'
+  /** How opaque they are, all along the line of sight. */
+  | 'density'
   /** Steps of the last ray marched nearby, of 256. */
   | 'steps'
   /** Distance, by its logarithm: black at 100 m, white at 1000 km. */
-  | 'distance'
+  | 'depth'
   /** Looks that a pixel remembers, of 32. */
   | 'history'
 
-const debugViews: readonly (CloudsDebug | null)[] = [
-  null,
-  'opacity',
-  'steps',
-  'distance',
-  'history'
-]
+const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', 'depth', 'history']
 
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
