@@ -24,7 +24,7 @@ import {
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { groundDistance } from './tsl/shells'
-import type { Float, LevelTexture, Mat3, Vec2, Vec3, Vec4 } from './tsl-types'
+import type { LevelTexture, Mat3, Vec2, Vec3, Vec4 } from './tsl-types'
 
 /** Options of {@link cloudOverlay}. */
 export interface CloudOverlayOptions {

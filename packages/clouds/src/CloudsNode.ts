@@ -17,6 +17,7 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
+import type { CloudPictures } from './tsl/pictures'
 import type { LevelTexture, Vec2, Vec4 } from './tsl-types'
 
 const _size = new Vector2()
@@ -214,26 +215,31 @@ export class CloudsNode extends AtmosphereNode {
 
   override setup(builder: NodeBuilder): Node {
     this.#renderer ??= this.#createRenderer(builder.renderer)
-    const { pictures } = this.#renderer
+    const { marched, pictures } = this.#renderer
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
-      const isFirst = this.#current.equal(0)
       const at = uv() as unknown as Vec2
-      const [first, second] = pictures.map(({ light }) => light.sample(at).level(0).toConst())
-      const clouds = isFirst.select(first, second).toConst() as Vec4
+      const latest = (part: keyof CloudPictures): Vec4 => {
+        const value = vec4(0).toVar() as Vec4
+        const [first, second] = pictures.map(picture => () => {
+          value.assign(picture[part].sample(at).level(0))
+        })
+        If(this.#current.equal(0), first).Else(second)
+        return value
+      }
+      const clouds = latest('light')
       const light = clouds.rgb.mul(this.#exposure)
       const result = vec4(
         color.rgb.mul(clouds.a).add(light),
         color.a.mul(clouds.a).add(clouds.a.oneMinus())
       ).toVar()
       If(this.#debug.greaterThan(0), () => {
-        const places = pictures.map(({ place }) => place.sample(at).level(0).toConst())
-        const place = isFirst.select(places[0], places[1]).toConst() as Vec4
+        const place = latest('place')
         const views = [
           clouds.a.oneMinus(),
-          place.w,
+          marched.place.sample(at).level(0).w,
           exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)),
-          place.z.div(32)
+          place.z.abs().div(32)
         ]
         views.forEach((view, i) => {
           If(this.#debug.equal(i + 1), () => {
