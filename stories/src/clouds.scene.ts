@@ -36,8 +36,11 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   pitch: number
 }
 
-/** Frames in which low quality marches every pixel, and again. */
+/** Frames in which low quality marches every pixel once, and half of them again. */
 const STILL_FRAMES = 24
+
+/** Low for a still: its frames are many. */
+const qualityOf = ({ frame, quality }: CloudsArgs): CloudQualityName => (frame ? 'low' : quality)
 
 /** Name of a layer, for {@link CloudsArgs.shown}. */
 export const shownBy = (preset: CloudPresetName, layer: number): string => `${preset} ${layer}`
@@ -48,7 +51,8 @@ export async function createClouds(
   args: CloudsArgs
 ): Promise<SceneHandle<CloudsArgs>> {
   const worldMap = args.world ? await cloudCover() : null
-  const { preset, quality } = args
+  const { preset } = args
+  const quality = qualityOf(args)
   const post: CloudsArgs = { ...args, path: 'post' }
   let onArgs: SceneHandle<CloudsArgs>['onArgs']
 
@@ -98,7 +102,7 @@ export async function createClouds(
       apply(current) {
         applyTime(renderer, air, current)
         applyLayer(current)
-        node.quality = current.quality
+        node.quality = qualityOf(current)
         node.debugView = current.debug === 'off' ? null : current.debug
         lapse = current.frame ? 0 : current.timeLapse
       },
