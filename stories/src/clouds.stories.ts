@@ -34,7 +34,7 @@ const world = {
   world: true,
   day: Date.UTC(2026, 11, 21),
   hour: 15,
-  exposure: -0.5
+  exposure: -1.25
 }
 
 const meta: Meta<CloudsArgs> = {
@@ -134,9 +134,16 @@ export const Cockpit: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** Towers 10 km high among small cumulus. */
+/** Towers 10 km high among small cumulus, against the sun of the late afternoon. */
 export const Storm: Story = {
-  args: { ...sky('cumulonimbus'), altitude: 450, heading: 300, pitch: 12 },
+  args: {
+    ...sky('cumulonimbus'),
+    altitude: 450,
+    heading: 295,
+    pitch: 12,
+    hour: 22.4,
+    exposure: 0.25
+  },
   tags: ['screenshot', 'webgpu-only']
 }
 
