@@ -199,11 +199,12 @@ export const InsideACloud: Story = {
 export const Shadows: Story = {
   name: 'Cloud shadows on terrain',
   args: {
+    coverage: 0.5,
     longitude: -84.1517,
     latitude: 36.45,
     altitude: 3200,
     heading: 322,
-    pitch: -16,
+    pitch: -20,
     timeLapse: 20
   },
   tags: ['screenshot', 'webgpu-only']
@@ -211,6 +212,6 @@ export const Shadows: Story = {
 
 /** Each preset over the same land; choose one. */
 export const Presets: Story = {
-  args: { ...sky('mixed'), altitude: 1100, heading: 318, pitch: 8 },
+  args: { ...sky('mixed'), altitude: 500, pitch: 12 },
   tags: ['screenshot', 'webgpu-only']
 }
