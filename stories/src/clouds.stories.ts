@@ -124,6 +124,7 @@ type Story = StoryObj<CloudsArgs>
 /** Fair weather over a meadow. */
 export const Cumulus: Story = {
   name: 'Cumulus from the ground',
+  args: { coverage: 0.45, pitch: 18 },
   tags: ['screenshot']
 }
 
