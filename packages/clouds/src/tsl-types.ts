@@ -3,6 +3,7 @@ import {
   Loop as threeLoop,
   outputStruct,
   property,
+  renderGroup,
   uniformArray as threeUniformArray
 } from 'three/tsl'
 import type { Vector4 } from 'three'
@@ -26,13 +27,16 @@ export const loop = (name: string, end: Int | number, body: (index: Int) => void
   nodes({ start: 0, end, type: 'int', name }, inputs => body(inputs[name]))
 }
 
-/** `uniformArray` of four-vectors, whose elements are typed. */
+/**
+ * `uniformArray` of four-vectors, whose elements are typed. In the render group: what is an object's own
+ * does not reach materials that three does not refresh.
+ */
 export interface Vec4Array extends Node {
   array: Vector4[]
   element(index: Int): Vec4
 }
 export const vec4Array = (values: Vector4[]): Vec4Array =>
-  threeUniformArray(values, 'vec4') as unknown as Vec4Array
+  threeUniformArray(values, 'vec4').setGroup(renderGroup) as unknown as Vec4Array
 
 /** A texture node that is read at an explicit level, wherever the control flow is. */
 export interface LevelTexture<UV> extends Node {
