@@ -24,6 +24,7 @@ import type { GpuContext } from './harness/context'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectFinite, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
+import { reuseTables } from './harness/reuse-tables'
 
 const twin = new NoiseTextures()
 const mean = (values: ArrayLike<number>): number =>
@@ -130,6 +131,7 @@ function offsets(
 }
 
 gpuTest('bakes the noise that float64 computes, levels of detail and all', async t => {
+  reuseTables(false)
   const renderer = await t.createRenderer()
   const field = new CloudField(new Atmosphere(), new CloudLayers())
   const start = performance.now()

@@ -38,7 +38,7 @@ import type { Picture } from './harness/picture'
 const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
 const size = { width: 32, height: 32 }
 // Each takes seconds in software.
-const REDRAWS = 6
+const REDRAWS = 3
 /** That a redraw of the default size takes: 6 faces, 9 parts of the filter. */
 const FRAMES = 15
 

@@ -2,7 +2,7 @@ import { readdirSync } from 'node:fs'
 import { join } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
-import type { Browser, Page } from 'playwright-core'
+import type { BrowserContext, Page } from 'playwright-core'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
 import { withLimit } from '../harness/limit'
@@ -26,16 +26,21 @@ const suites = readdirSync(folder)
 
 const report = new Report()
 
-async function openPage(browser: Browser, origin: string): Promise<Page> {
-  const page = await browser.newPage()
+async function openPage(context: BrowserContext, origin: string): Promise<Page> {
+  const page = await context.newPage()
   page.on('pageerror', error => console.log(`      page error: ${error.stack ?? error.message}`))
   await page.goto(`${origin}/index.html`)
   await page.waitForFunction(() => 'welkinTests' in window)
   return page
 }
 
-async function runSuite(browser: Browser, origin: string, suite: string, backend: Backend) {
-  let page = await openPage(browser, origin)
+async function runSuite(
+  context: BrowserContext,
+  origin: string,
+  suite: string,
+  backend: Backend
+): Promise<void> {
+  let page = await openPage(context, origin)
   const list = (): Promise<TestListing[]> =>
     page.evaluate(([s, b]) => window.welkinTests.list(s, b), [suite, backend] as const)
   let tests: TestListing[]
@@ -62,7 +67,7 @@ async function runSuite(browser: Browser, origin: string, suite: string, backend
       report.fail(label, String(error))
       // The page hangs or has crashed: the rest of the suite gets a fresh one.
       await page.close()
-      page = await openPage(browser, origin)
+      page = await openPage(context, origin)
       await withLimit(list(), 60)
     }
   }
@@ -73,9 +78,11 @@ const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${sui
 const bundle = await bundlePage(join(folder, 'page'), files)
 const server = await serveStatic([{ path: '/', folder: bundle }])
 const browser = await launchChromium()
+// Pages of one context share what they store: baked tables.
+const context = await browser.newContext()
 try {
   for (const suite of suites) {
-    for (const backend of backends) await runSuite(browser, server.origin, suite, backend)
+    for (const backend of backends) await runSuite(context, server.origin, suite, backend)
   }
 } finally {
   await browser.close()

@@ -119,9 +119,11 @@ const server = await serveStatic([
   { path: '/', folder: await bundlePage(root, files, [worldData()]) }
 ])
 const browser = await launchChromium()
+// Pages of one context share what they store: baked tables.
+const context = await browser.newContext({ viewport, deviceScaleFactor: 1 })
 
 async function openPage(): Promise<Page> {
-  const page = await browser.newPage({ viewport, deviceScaleFactor: 1 })
+  const page = await context.newPage()
   page.on('pageerror', error => console.log(`      page error: ${error.stack ?? error.message}`))
   await page.goto(`${server.origin}/index.html`)
   await page.waitForFunction(() => 'welkinVisual' in window)

@@ -7,6 +7,8 @@ export interface GpuTest {
   body: (context: GpuContext) => Promise<void> | void
   backends: Backend[]
   timeoutSeconds: number
+  /** Whether atmospheres bake tables of their own; else they take those of earlier tests. */
+  bakes: boolean
 }
 
 /** Tests of the one suite that this page has loaded. */
@@ -21,7 +23,7 @@ export const registeredTests: GpuTest[] = []
 export function gpuTest(
   name: string,
   body: GpuTest['body'],
-  options: Partial<Pick<GpuTest, 'backends' | 'timeoutSeconds'>> = {}
+  options: Partial<Pick<GpuTest, 'backends' | 'timeoutSeconds' | 'bakes'>> = {}
 ): void {
   if (registeredTests.some(test => test.name === name)) {
     throw new Error(`gpuTest: two tests are named '${name}'`)
@@ -29,6 +31,7 @@ export function gpuTest(
   registeredTests.push({
     backends: ['webgpu', 'webgl'],
     timeoutSeconds: 180,
+    bakes: false,
     ...options,
     name,
     body

@@ -1,6 +1,8 @@
 import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
 import { registeredTests, type Backend } from '../harness/gpu-test'
+import { loadNoise } from '../harness/reuse-noise'
+import { keepTables, reuseTables } from '../harness/reuse-tables'
 
 export interface TestListing {
   name: string
@@ -30,6 +32,7 @@ window.welkinTests = {
     const load = modules[suite]
     if (load === undefined) throw new Error(`no suite named ${suite}`)
     await load()
+    await loadNoise()
     return registeredTests
       .filter(test => test.backends.includes(backend))
       .map(({ name, timeoutSeconds }) => ({ name, timeoutSeconds }))
@@ -38,6 +41,7 @@ window.welkinTests = {
   async run(name, backend) {
     const test = registeredTests.find(candidate => candidate.name === name)
     if (test === undefined) throw new Error(`no test named ${name}`)
+    reuseTables(!test.bakes)
     const { context, finish } = createContext(backend)
     const start = performance.now()
     const problems: string[] = []
@@ -46,6 +50,7 @@ window.welkinTests = {
     } catch (error) {
       problems.push(error instanceof Error ? (error.stack ?? error.message) : String(error))
     }
+    await keepTables()
     const { messages, notes } = await finish()
     problems.push(...messages)
     const milliseconds = performance.now() - start

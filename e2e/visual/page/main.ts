@@ -1,6 +1,8 @@
 import { modules } from 'virtual:modules'
 import { ConsoleWatch } from '../../gpu/harness/console'
 import type { Backend } from '../../gpu/harness/gpu-test'
+import { loadNoise } from '../../gpu/harness/reuse-noise'
+import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 
 /** What a story's scene module offers; Storybook and this page drive the same thing. */
 interface SceneView {
@@ -52,6 +54,8 @@ async function findCreate(file: string): Promise<CreateScene> {
   return found[1] as CreateScene
 }
 
+reuseTables(true)
+
 window.welkinVisual = {
   async list() {
     const found: { file: string; story: string; isWebGPUOnly: boolean }[] = []
@@ -70,6 +74,7 @@ window.welkinVisual = {
   },
 
   async shoot(file, story, backend) {
+    await loadNoise()
     const create = await findCreate(file)
     const stories = await load(`${file}.stories`)
     const args = {
@@ -94,6 +99,7 @@ window.welkinVisual = {
     const url = canvas.toDataURL('image/png')
     const milliseconds = performance.now() - start
     await new Promise(resolve => setTimeout(resolve, 20))
+    await keepTables()
     const messages = watch.stop()
     view.dispose()
     canvas.remove()

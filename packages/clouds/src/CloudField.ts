@@ -14,9 +14,10 @@ import {
   DETAIL_PERIOD,
   LAYER_STRIDE,
   REGION_PERIOD,
+  FIELD_PERIOD,
+  layerForms,
   layerPeriods,
-  standardWeights,
-  WEATHER_AGAIN
+  weatherScales
 } from './layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
 import { windTurn } from './wind'
@@ -24,6 +25,7 @@ import { windTurn } from './wind'
 const _position = new Vector3()
 const _foot = new Vector3()
 const _point = new Vector3()
+const _stretch = new Vector3()
 const _matrix = new Matrix3()
 const _matrix4 = new Matrix4()
 const _turn = new Quaternion()
@@ -165,7 +167,10 @@ export class CloudField {
     slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
     const { profileExponent, shapeAmount, detailAmount } = parameters
     slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
-    slots[2].fromArray(standardWeights(parameters.weatherWeights))
+    const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
+    const { stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
+    slots[2].fromArray(scales.clouds)
+    slots[11].set(scales.cells, scales.regions, scales.planet, scales.cloudVariance)
     const turn = this.turns[index]
     const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
     const anchor = (
@@ -173,11 +178,13 @@ export class CloudField {
       place: Vector3,
       rotation: Matrix3,
       length: number,
-      periods = 1
+      periods = 1,
+      perStretch = 1
     ): void => {
       _point
         .copy(place)
         .applyQuaternion(turn)
+        .multiply(_stretch.set(perStretch, perStretch, 1))
         .applyMatrix3(rotation)
         .divideScalar(length * periods)
       const [x, y, z] = _point.toArray().map(v => periods * (v - Math.floor(v)))
@@ -186,13 +193,18 @@ export class CloudField {
     for (let row = 0; row < 3; row++) {
       slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
     }
-    anchor(8, _position, latticeRotation.shape, periods.shape)
-    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD)
+    slots[3].w = steepness
+    slots[4].w = sharpness
+    const perStretch = 1 / stretch
+    anchor(8, _position, latticeRotation.shape, periods.shape, 1, perStretch)
+    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD, perStretch)
+    slots[8].w = perStretch
+    slots[9].w = coarseness
+    slots[10].w = anvil
     // The weather is the same all the way up: it is looked up at the foot point.
     anchor(6, _foot, latticeRotation.weather, periods.weather)
     slots[6].w = 1 / periods.weather
-    const again = periods.weather * WEATHER_AGAIN.period
-    anchor(10, _foot, latticeRotation.weatherAgain, again)
+    anchor(10, _foot, latticeRotation.fields, periods.weather * FIELD_PERIOD)
     anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
     slots[7].w = shadow ? 1 : 0
   }

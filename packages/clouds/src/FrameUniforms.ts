@@ -5,6 +5,7 @@ import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import { CloudLayers } from './CloudLayers'
+import { LAYER_STRIDE } from './layerUniforms'
 import { vec4Array } from './tsl-types'
 
 const number = (value = 0): UniformNode<'float', number> => uniform(value).setGroup(renderGroup)
@@ -145,7 +146,7 @@ export class FrameUniforms {
       this.drifts[i].set(drift.x, drift.y, drift.z, 0)
       isStill &&= drift.lengthSq() === 0
     })
-    const state = field.values.flatMap((value, i) => (i % 11 < 3 ? value.toArray() : []))
+    const state = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))
     state.push(...view.viewToMapped.elements, ...camera.projectionMatrix.elements)
     const { direction, irradiance, radiance } = field.night
     for (const { value } of [direction, irradiance, radiance]) state.push(...value.toArray())

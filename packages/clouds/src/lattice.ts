@@ -10,20 +10,28 @@ function askew(n: number): Quaternion {
   return new Quaternion().setFromAxisAngle(axis.normalize(), 0.7 + 1.754878 * n)
 }
 
-const matrix = (n: number): Matrix3 =>
-  new Matrix3().setFromMatrix4(new Matrix4().makeRotationFromQuaternion(askew(n)))
+/** A turn about the planet's axis, different for each number, and a lean away from it [rad]. */
+function leaning(n: number, lean: number): Quaternion {
+  const axis = new Vector3(Math.cos(2.399963 * n), Math.sin(2.399963 * n), 0)
+  const spin = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), 0.7 + 1.754878 * n)
+  return new Quaternion().setFromAxisAngle(axis, lean).multiply(spin)
+}
+
+const matrix = (rotation: Quaternion): Matrix3 =>
+  new Matrix3().setFromMatrix4(new Matrix4().makeRotationFromQuaternion(rotation))
 
 /**
  * How the lattices of the noise look-ups lie in the planet: each askew to the planet's axes and to the
- * others, so that rows of one never fall on rows of another.
+ * others, so that rows of one never fall on rows of another. The weather leans but a little: what it draws
+ * out across its third axis, the ground cuts in streaks from west to east.
  */
 export const latticeRotation = {
-  weather: /*#__PURE__*/ matrix(0),
-  weatherAgain: /*#__PURE__*/ matrix(4),
-  region: /*#__PURE__*/ matrix(1),
-  shape: /*#__PURE__*/ matrix(2),
-  detail: /*#__PURE__*/ matrix(3)
+  weather: /*#__PURE__*/ matrix(leaning(0, 0.22)),
+  fields: /*#__PURE__*/ matrix(leaning(4, 0.3)),
+  region: /*#__PURE__*/ matrix(askew(1)),
+  shape: /*#__PURE__*/ matrix(askew(2)),
+  detail: /*#__PURE__*/ matrix(askew(3))
 }
 
 /** How a layer's noise is turned against another's before any wind. */
-export const layerTurn = (index: number): Quaternion => askew(10 + index)
+export const layerTurn = (index: number): Quaternion => leaning(10 + index, 0.12)

@@ -1,7 +1,7 @@
 import type { CloudLayerParameters } from './CloudLayer'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
-export const LAYER_STRIDE = 11
+export const LAYER_STRIDE = 12
 
 /** Period of the weather texture for a layer 1200 m thick [m]. */
 const WEATHER_PERIOD = 15_000
@@ -9,23 +9,38 @@ const WEATHER_PERIOD = 15_000
 /** Period of the shape texture for such a layer [m]. */
 const SHAPE_PERIOD = 2600
 
-/** Period of the same texture where it sets the mean coverage of regions [m]. */
-export const REGION_PERIOD = 410_000
+/** Period of the same texture where it holds the systems of whole regions [m]. */
+export const REGION_PERIOD = 2_300_000
+
+/** How far the regions shift the look-ups of the weather, in periods of these: repetitions fall out of step. */
+export const WEATHER_WARP = 0.5
 
 /**
- * How far the regions shift the look-up of the weather [m]: enough for its repetitions to fall out of
- * step, over distances that do not distort it.
+ * The weather is looked up a second time for the fields that clouds gather in, in a lattice without a
+ * common period with the first. Its period in those of the first.
  */
-export const WEATHER_WARP = 8000
+export const FIELD_PERIOD = 3 * Math.sqrt(6)
+
+/** How far both look-ups of the weather shift those of shape and detail [m]. */
+export const SHAPE_WARP = { fields: 2500, clouds: 600 } as const
+
+/** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
+export const PLANET_WAVES = { next: 3.1, last: 1.7, warp: 0.22 } as const
 
 /**
- * The weather is looked up twice, in lattices without a common period: what one repeats, the other
- * does not. Period of the second in those of the first, and its weight.
+ * Weights of the scales that the weather is the sum of, with that of single clouds 1: fields of tens of
+ * kilometres, of the layer's own weather and of large cells; regions; the planet.
  */
-export const WEATHER_AGAIN = { period: Math.sqrt(3), weight: 0.75 } as const
+export const scaleWeights = { fields: 0.6, cells: 0.5, regions: 0.65, planet: 0.4 } as const
 
-/** How far the second look-up of the weather shifts those of shape and detail [m]. */
-export const SHAPE_WARP = 600
+/** Share of finer cells in the regions. */
+export const REGION_CELLS = 0.6
+
+/** How much longer than wide the noise of cirrus is, and of any other cloud. */
+const STRETCH = { cirrus: 9, other: 1 } as const
+
+/** Layers thinner than the first have no anvils, thicker than the second large ones [m]. */
+const ANVILS = [4000, 8000] as const
 
 /** Period of the detail texture [m]. */
 export const DETAIL_PERIOD = 330
@@ -48,30 +63,101 @@ export function layerPeriods({ baseAltitude, topAltitude }: CloudLayerParameters
   const octaves = Math.log2((topAltitude - baseAltitude) / 1200)
   const scale = (share: number): number =>
     2 ** Math.min(Math.max(Math.round(share * octaves), -2), 2)
-  return { weather: WEATHER_PERIOD * scale(0.7), shape: SHAPE_PERIOD * scale(0.5) }
+  return { weather: WEATHER_PERIOD * scale(0.45), shape: SHAPE_PERIOD * scale(0.5) }
+}
+
+/** How much the scales of the weather count in a layer. */
+export interface WeatherScales {
+  /** Factors of the channels where they are single clouds. */
+  readonly clouds: readonly [number, number, number, number]
+  /** Factor of the same sum of channels where they are fields, and of the large cells there. */
+  readonly fields: number
+  readonly cells: number
+  readonly regions: number
+  readonly planet: number
+  /** Shares of the variance. */
+  readonly cloudVariance: number
+  readonly fieldVariance: number
 }
 
 /**
- * Factors of the weather's channels, each uniform in [−½, ½] about its mean: the sum over both look-ups
- * has variance 1. All zero when all weights are.
+ * Factors of the weather's channels, each uniform in [−½, ½] about its mean, and of the planet's waves,
+ * of variance 1: the sum of all has variance 1. No clouds count when all weights are 0.
+ *
+ * @param hasMap - Whether a map has what is larger than fields.
  */
-export function standardWeights(weights: readonly number[]): [number, number, number, number] {
-  const norm =
-    (Math.hypot(...weights) || 1) * Math.hypot(1, WEATHER_AGAIN.weight) * Math.sqrt(1 / 12)
-  const [a, b, c, d] = weights.map(weight => weight / norm)
-  return [a, b, c, d]
+export function weatherScales(weights: readonly number[], hasMap: boolean): WeatherScales {
+  const size = Math.hypot(...weights) || 1
+  const unit = weights.map(weight => weight / size)
+  const { fields, cells, regions, planet } = scaleWeights
+  // Large cells are the third channel.
+  const fieldVariance = fields ** 2 + cells ** 2 + 2 * fields * cells * (unit[2] ?? 0)
+  const large = hasMap ? 0 : 1
+  const variance = 1 + fieldVariance + large * (regions ** 2 + planet ** 2)
+  const factor = Math.sqrt(12 / variance)
+  const [a, b, c, d] = unit.map(weight => weight * factor)
+  return {
+    clouds: [a, b, c, d],
+    fields,
+    cells: cells * factor,
+    regions: (large * regions * factor) / Math.hypot(1, REGION_CELLS),
+    planet: (large * planet) / Math.sqrt(variance),
+    cloudVariance: 1 / variance,
+    fieldVariance: fieldVariance / variance
+  }
+}
+
+const shareOf = (weights: readonly number[], index: number): number =>
+  weights[index] ** 2 / (weights.reduce((sum, weight) => sum + weight ** 2, 0) || 1)
+
+/** What a layer's kind of weather makes of its clouds. */
+export function layerForms({
+  weatherWeights,
+  shapeAmount,
+  baseAltitude,
+  topAltitude
+}: CloudLayerParameters): {
+  /** How much longer than wide the noise is that carves them. */
+  stretch: number
+  /** Fill per change of its weather. */
+  steepness: number
+  /** Density per fullness left: how sharp edges are. */
+  sharpness: number
+  /** Levels of detail by which its weather is coarser than others. */
+  coarseness: number
+  /** How far towers spread at their tops, in [0, 1]. */
+  anvil: number
+} {
+  const { edgeWidth, carvedSharpness, smoothSharpness } = densityShape
+  const fibrous = shareOf(weatherWeights, 3)
+  const mix = (from: number, to: number, share: number): number => from + (to - from) * share
+  const carved = shapeAmount ** 2 * (1 - fibrous)
+  const towers = shareOf(weatherWeights, 2)
+  const tall = (topAltitude - baseAltitude - ANVILS[0]) / (ANVILS[1] - ANVILS[0])
+  return {
+    stretch: mix(STRETCH.other, STRETCH.cirrus, fibrous),
+    steepness: 1 / mix(edgeWidth.other, edgeWidth.cirrus, fibrous),
+    sharpness: mix(smoothSharpness, carvedSharpness, carved),
+    coarseness: towers,
+    anvil: towers * Math.min(Math.max(tall, 0), 1)
+  }
 }
 
 /** Constants of the density function, found by looking at its pictures. */
 export const densityShape = {
-  /** Change of weather noise over which a layer fills from edge to middle. */
-  edgeWidth: 0.5,
+  /** Change of the weather over which a layer fills from edge to middle. */
+  edgeWidth: { cirrus: 1.6, other: 0.5 },
   /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
   meanEdge: 0.44,
   /** Added to the fill at full coverage, taken at none. */
   excess: 0.6,
-  /** How far the regions' coverage departs from the layer's. */
-  regionContrast: 0.5,
+  /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
+  blur: [0, 5],
+  /** Least deviation of what is lost: sharper edges of the cover are of no use. */
+  leastBlur: 0.05,
+  /** Fill that towers lack below their anvils, and how much thinner these are. */
+  anvilReach: 0.4,
+  anvilDensity: 0.35,
   /** The shape carves at least this part of its amount: what is less full is empty for sure. */
   leastCarving: 0.15,
   /** Most that detail takes away. */

@@ -83,7 +83,7 @@ export const weatherChannels: readonly NoiseChannel[] = [
     encoding: 'uniform'
   },
   {
-    terms: [{ kind: 'billow', cells: 3, weight: 1 }, ...octaves('perlin', 3, 3, 0.5)],
+    terms: [{ kind: 'billow', cells: 5, weight: 1 }, ...octaves('perlin', 3, 4, 0.7)],
     encoding: 'uniform'
   },
   {

@@ -18,11 +18,11 @@ const cumulus: Partial<CloudLayerParameters> = {
 const cirrus: Partial<CloudLayerParameters> = {
   baseAltitude: 8500,
   topAltitude: 9600,
-  coverage: 0.45,
-  density: 0.0012,
+  coverage: 0.5,
+  density: 0.0015,
   profileExponent: 1,
-  shapeAmount: 0.3,
-  detailAmount: 0.3,
+  shapeAmount: 0.75,
+  detailAmount: 0.5,
   weatherWeights: [0, 0, 0, 1],
   wind: { east: 28, north: -8 },
   shadow: false
@@ -69,9 +69,9 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     {
       baseAltitude: 700,
       topAltitude: 11_000,
-      coverage: 0.18,
+      coverage: 0.25,
       density: 0.06,
-      profileExponent: 0.45,
+      profileExponent: 0.55,
       shapeAmount: 0.9,
       detailAmount: 0.5,
       weatherWeights: [0, 0, 1, 0],
@@ -85,12 +85,12 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     {
       baseAltitude: 3600,
       topAltitude: 4100,
-      coverage: 0.35,
-      density: 0.008,
+      coverage: 0.3,
+      density: 0.01,
       profileExponent: 0.8,
       shapeAmount: 1,
       detailAmount: 0.6,
-      weatherWeights: [0.4, 0, 0, 1],
+      weatherWeights: [0, 1, 0, 0],
       wind: { east: 16, north: -3 }
     },
     cirrus

@@ -6,12 +6,15 @@ import {
   CURL_PERIOD,
   densityShape,
   DETAIL_PERIOD,
+  FIELD_PERIOD,
+  layerForms,
   layerPeriods,
+  PLANET_WAVES,
+  REGION_CELLS,
   REGION_PERIOD,
   SHAPE_WARP,
-  standardWeights,
-  WEATHER_AGAIN,
-  WEATHER_WARP
+  WEATHER_WARP,
+  weatherScales
 } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
 import { NOISE_SIZE } from '../noiseSizes'
@@ -57,11 +60,41 @@ function placeIn(
   turn: Quaternion,
   rotation: Matrix3,
   period: number,
+  stretch = 1,
   warp = new Vector3()
 ): Vec3Array {
-  const p = position.clone().applyQuaternion(turn).add(warp)
+  const p = position.clone().applyQuaternion(turn)
+  p.set(p.x / stretch, p.y / stretch, p.z).addScaledVector(warp, 1 / stretch)
   p.applyMatrix3(rotation).divideScalar(period)
   return [p.x, p.y, p.z]
+}
+
+/** Part of a noise's variance that its levels of detail have lost. */
+const lost = (level: number): number =>
+  smoothstep(densityShape.blur[0], densityShape.blur[1], level)
+
+/** Φ(z) of the normal distribution to 0.01, as the shader has it. */
+const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
+
+/** Share of the sky that a layer covers around a place, as far as it is known without noise. */
+function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Vector3): number {
+  if (state.worldMap === undefined) return coverage
+  const across = Math.hypot(foot.x, foot.y)
+  const latitude = Math.atan2(foot.z * (state.axialRatio ?? 1), across)
+  const share = clamp(state.worldMap(Math.atan2(foot.y, foot.x), latitude), 0, 1)
+  const covered = share * coverage
+  return covered / Math.max(covered + (1 - share) * (1 - coverage), 1e-6)
+}
+
+/** Waves around the planet, in [−1, 1]. */
+function planetWaves(foot: Vector3, turn: Quaternion): Vec3Array {
+  const { x, y, z } = foot.clone().normalize().applyQuaternion(turn)
+  const { next, last } = PLANET_WAVES
+  return [
+    Math.sin(next * y + last * z),
+    Math.sin(next * z + last * x),
+    Math.sin(next * x + last * y)
+  ]
 }
 
 /**
@@ -81,53 +114,54 @@ export function weatherAt(
   const turn = state.turns[index]
   const foot = position.clone().setLength(state.bottomRadius)
   const footprint = distance * state.pixelAngle
-  const regionPlace = placeIn(foot, turn, latticeRotation.region, REGION_PERIOD)
-  const region = noise
-    .sample('weather', regionPlace, levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather))
-    .slice(0, 3)
-    .map(value => value - 0.5)
-  let share = 0.5 + densityShape.regionContrast * region[2]
-  if (state.worldMap !== undefined) {
-    const across = Math.hypot(foot.x, foot.y)
-    const latitude = Math.atan2(foot.z * (state.axialRatio ?? 1), across)
-    share = clamp(state.worldMap(Math.atan2(foot.y, foot.x), latitude), 0, 1)
+  const c = shareAt(state, layer, foot)
+  const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
+  const { steepness, coarseness } = layerForms(layer)
+
+  const waves = planetWaves(foot, turn)
+  const shifted = (place: Vec3Array, by: readonly number[], factor: number): Vec3Array => {
+    const [x, y, z] = place.map((p, axis) => p + by[axis] * factor)
+    return [x, y, z]
   }
-  const covered = share * layer.coverage
-  const clear = (1 - share) * (1 - layer.coverage)
-  const c = covered / Math.max(covered + clear, 1e-6)
+  const sample = (place: Vec3Array, level: number): number[] =>
+    noise.sample('weather', place, level).map(value => value - 0.5)
+  const regionPlace = placeIn(foot, turn, latticeRotation.region, REGION_PERIOD)
+  const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
+  const region = sample(shifted(regionPlace, waves, PLANET_WAVES.warp), regionLevel)
 
   const period = layerPeriods(layer).weather
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
-  const weights = standardWeights(layer.weatherWeights)
-  const lookUp = (rotation: Matrix3, length: number, levelThere: number): number[] => {
-    const [x, y, z] = placeIn(foot, turn, rotation, length).map(
-      (coordinate, axis) => coordinate + (WEATHER_WARP * region[axis]) / length
-    )
-    return noise.sample('weather', [x, y, z], levelThere).map(value => value - 0.5)
-  }
-  const again = period * WEATHER_AGAIN.period
-  const first = lookUp(latticeRotation.weather, period, level)
-  const second = lookUp(
-    latticeRotation.weatherAgain,
-    again,
-    level - Math.log2(WEATHER_AGAIN.period)
-  )
-  const z = weights.reduce(
-    (sum, weight, i) => sum + weight * (first[i] + WEATHER_AGAIN.weight * second[i]),
-    0
-  )
-  const detailWarp = new Vector3(second[0], second[1], second[2]).multiplyScalar(SHAPE_WARP)
-  const shapeWarp = new Vector3(region[0], region[1], region[2]).multiplyScalar(WEATHER_WARP)
-  const u = 1 / (1 + Math.exp(-1.702 * z))
-  const above = u - (1 - c)
-  const spread = smoothstep(0.5, 4.5, level)
-  const { edgeWidth, excess, meanEdge } = densityShape
+  const fieldLevel = Math.max(level - Math.log2(FIELD_PERIOD), 0)
+  const lookUp = (rotation: Matrix3, length: number, levelThere: number): number[] =>
+    sample(shifted(placeIn(foot, turn, rotation, length), region, WEATHER_WARP), levelThere)
+  const fields = lookUp(latticeRotation.fields, period * FIELD_PERIOD, fieldLevel)
+  const clouds = lookUp(latticeRotation.weather, period, level)
+
+  const dot = (values: number[]): number =>
+    values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
+  const z =
+    dot(clouds) +
+    scales.fields * dot(fields) +
+    scales.cells * fields[2] +
+    scales.regions * (region[2] + REGION_CELLS * region[0]) +
+    (scales.planet * (waves[0] + waves[1] + waves[2])) / Math.sqrt(1.5)
+  const variance =
+    scales.cloudVariance * lost(level - coarseness) +
+    scales.fieldVariance * lost(fieldLevel - 0.5) +
+    (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lost(regionLevel - 0.8)) / 12
+  const odds = clamp(c, 1e-6, 1 - 1e-6)
+  const quantile = Math.log(odds / (1 - odds)) / 1.702
+  const { leastBlur, excess, meanEdge } = densityShape
+  const chance = cumulative((z + quantile) / Math.max(Math.sqrt(variance), leastBlur))
   const surely = excess * (2 * c - 1) ** 5
+  const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(SHAPE_WARP.clouds)
   return {
-    fill: clamp(meanEdge * layer.shapeAmount + above / edgeWidth + surely, 0, 1.3),
-    cover: clamp(0.5 + above / Math.max(spread, 0.02), 0, 1),
-    spread,
-    shapeWarp: shapeWarp.add(detailWarp),
+    fill: meanEdge * layer.shapeAmount + (cumulative(z) - (1 - c)) * steepness + surely,
+    cover: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
+    spread: smoothstep(0.5, 4.5, level - coarseness),
+    shapeWarp: new Vector3(fields[0], fields[1], fields[2])
+      .multiplyScalar(SHAPE_WARP.fields)
+      .add(detailWarp),
     detailWarp
   }
 }
@@ -148,13 +182,21 @@ function carved(
   const turn = state.turns[index]
   const footprint = distance * state.pixelAngle
   const period = layerPeriods(layer).shape
-  const place = placeIn(position, turn, latticeRotation.shape, period, weather.shapeWarp)
+  const { stretch } = layerForms(layer)
+  const place = placeIn(position, turn, latticeRotation.shape, period, stretch, weather.shapeWarp)
   const [whole, finer] = noise.sample('shape', place, levelOf(footprint, period / NOISE_SIZE.shape))
   const heads = whole + 0.3 * (finer - 0.5)
   const left = filled - layer.shapeAmount * Math.max(1 - heads, densityShape.leastCarving)
   const most = layer.detailAmount * densityShape.erosion
   if (!detail) return left - most / 2
-  const fine = placeIn(position, turn, latticeRotation.detail, DETAIL_PERIOD, weather.detailWarp)
+  const fine = placeIn(
+    position,
+    turn,
+    latticeRotation.detail,
+    DETAIL_PERIOD,
+    stretch,
+    weather.detailWarp
+  )
   const level = levelOf(footprint, DETAIL_PERIOD / NOISE_SIZE.detail)
   const [x, y, z] = fine.map(v => v / CURL_PERIOD)
   const curl = noise.sample('detail', [x, y, z], level).slice(1)
@@ -179,30 +221,24 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { carvedSharpness, farFill, smoothSharpness } = densityShape
+  const { anvilDensity, anvilReach, farFill } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
-    const { baseAltitude, topAltitude, density, shapeAmount } = layer
+    const { baseAltitude, topAltitude, density } = layer
     const height = (altitude - baseAltitude) / (topAltitude - baseAltitude)
     if (height <= 0 || height >= 1 || layer.coverage === 0) return
     const weather = weatherAt(state, noise, index, position, distance)
     const { fill, cover, spread } = weather
-    const profile = 1 - (2 * Math.max(height, 1e-4) ** layer.profileExponent - 1) ** 2
-    const left = carved(
-      state,
-      noise,
-      index,
-      weather,
-      position,
-      distance,
-      height,
-      fill * profile,
-      detail
-    )
-    const sharpness = smoothSharpness + (carvedSharpness - smoothSharpness) * shapeAmount ** 2
+    const { sharpness, anvil } = layerForms(layer)
+    const anvilHere = anvil * smoothstep(0.62, 0.8, height)
+    const usual = 1 - (2 * Math.max(height, 1e-4) ** layer.profileExponent - 1) ** 2
+    const profile = usual + anvilHere * (1 - smoothstep(0.9, 1, height) - usual)
+    const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
+    const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
     const depth = Math.max(density * (topAltitude - baseAltitude) * farFill, 1e-4)
     const far = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30)) / depth
-    sum += density * ((1 - spread) * clamp(left * sharpness, 0, 1) + spread * far * profile)
+    const matter = (1 - spread) * clamp(left * sharpness, 0, 1) + spread * far * profile
+    sum += density * matter * (1 + anvilHere * (anvilDensity - 1))
   })
   return sum
 }

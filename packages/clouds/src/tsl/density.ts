@@ -29,18 +29,16 @@ const NOWHERE = 1e6
  */
 const STEEPEST = { weather: 0.03, shape: 0.05 }
 
-const { carvedSharpness, erosion, farFill, leastCarving, smoothSharpness } = densityShape
+const { anvilDensity, anvilReach, erosion, farFill, leastCarving } = densityShape
 
-/** 1 − (2 ĥ^t − 1)²: how much of a layer's air cloud may fill at a height. */
-function heightProfile(layer: LayerNodes, height: Float): Float {
+/** How much of a layer's anvil is at a height, in [0, 1]. */
+const anvilAt = (layer: LayerNodes, height: Float): Float =>
+  layer.anvil.mul(smoothstep(0.62, 0.8, height)).toConst() as Float
+
+/** 1 − (2 ĥ^t − 1)²: how much of a layer's air cloud may fill at a height. Anvils are full up to the top. */
+function heightProfile(layer: LayerNodes, height: Float, anvil: Float): Float {
   const x = height.clamp(1e-4, 1).pow(layer.profileExponent).mul(2).sub(1)
-  return x.mul(x).oneMinus().toConst()
-}
-
-/** How fast density grows from the edge of a cloud inwards. */
-function sharpnessOf({ shapeAmount }: LayerNodes): Float {
-  const carved = shapeAmount.mul(shapeAmount)
-  return carved.mul(carvedSharpness - smoothSharpness).add(smoothSharpness)
+  return anvil.mix(x.mul(x).oneMinus(), smoothstep(1, 0.9, height)).toConst()
 }
 
 /** Size of a texel below which its level 0 is read. */
@@ -58,11 +56,13 @@ function carving(
   detail: boolean
 ): { left: Float; carved: Float } {
   const { shape, detail: frayed } = field.textures
-  const turned = layer.turn(sample.offset).toConst()
+  const stretch = vec3(layer.perStretch, layer.perStretch, 1)
+  const turned = layer.turn(sample.offset).mul(stretch).toConst() as Vec3
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
-  const place = rotate(latticeRotation.shape, turned.add(weather.shapeWarp)).mul(
-    layer.perShapePeriod
-  )
+  const place = rotate(
+    latticeRotation.shape,
+    turned.add(weather.shapeWarp.mul(layer.perStretch))
+  ).mul(layer.perShapePeriod)
   const level = levelOf(footprint, float(1 / NOISE_SIZE.shape).div(layer.perShapePeriod))
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x.add(noise.y.sub(0.5).mul(0.3))
@@ -71,8 +71,11 @@ function carving(
   const most = layer.detailAmount.mul(erosion).toConst() as Float
   if (!detail) return { left: left.sub(most.mul(0.5)), carved }
   // Deep inside, the most that detail takes away changes nothing.
-  If(left.greaterThan(0).and(left.lessThan(most.add(sharpnessOf(layer).reciprocal()))), () => {
-    const fine = rotate(latticeRotation.detail, turned.add(weather.detailWarp))
+  If(left.greaterThan(0).and(left.lessThan(most.add(layer.sharpness.reciprocal()))), () => {
+    const fine = rotate(
+      latticeRotation.detail,
+      turned.add(weather.detailWarp.mul(layer.perStretch))
+    )
       .div(DETAIL_PERIOD)
       .add(layer.detailAnchor)
       .toConst()
@@ -119,6 +122,12 @@ function eachLayer(
   })
 }
 
+/**
+ * Fill of a layer at a height: below anvils, towers are narrower than what they cover.
+ */
+const fillAt = (layer: LayerNodes, { fill }: Pick<CloudWeather, 'fill'>, anvil: Float): Float =>
+  fill.sub(layer.anvil.sub(anvil).mul(anvilReach)).clamp(0, 1.3)
+
 /** Weather without what only the region has to say. */
 type LocalWeather = Pick<CloudWeather, 'fill' | 'cover' | 'spread' | 'shapeWarp' | 'detailWarp'>
 
@@ -129,6 +138,13 @@ interface CloudMatter {
   /** Distance in which there is nothing of the layer, within its altitudes; 0 in clouds [m]. */
   readonly clearance: Float
 }
+
+/** What clouds that are not seen one by one are to stand for. */
+type Unseen =
+  /** Their mean over the sky. */
+  | 'mean'
+  /** The inside of one. */
+  | 'inside'
 
 /**
  * One layer in a given weather.
@@ -141,11 +157,13 @@ function layerMatter(
   weather: LocalWeather,
   sample: CloudSample,
   height: Float,
-  detail: boolean
+  detail: boolean,
+  unseen: Unseen = 'mean'
 ): CloudMatter {
-  const profile = heightProfile(layer, height)
+  const anvil = anvilAt(layer, height)
+  const profile = heightProfile(layer, height, anvil)
   const { fill, spread, cover } = weather
-  const filled = fill.clamp(0, 1.3).mul(profile).toConst() as Float
+  const filled = fillAt(layer, weather, anvil).mul(profile).toConst() as Float
   const density = float(0).toVar()
   const least = layer.shapeAmount.mul(leastCarving).toConst() as Float
   // Whatever the height: profiles are steep.
@@ -156,15 +174,16 @@ function layerMatter(
     .toVar() as Float
   If(filled.greaterThan(least), () => {
     const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
-    density.assign(left.mul(sharpnessOf(layer)).clamp(0, 1))
+    density.assign(left.mul(layer.sharpness).clamp(0, 1))
     clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    density.assign(spread.mix(density, spreadDensity(layer, weather).mul(profile)))
+    const whole = unseen === 'mean' ? spreadDensity(layer, weather) : float(farFill)
+    density.assign(spread.mix(density, whole.mul(profile)))
     clearance.assign(float(0))
   })
   return {
-    extinction: layer.density.mul(density).toConst(),
+    extinction: layer.density.mul(density).mul(anvil.mix(1, anvilDensity)).toConst(),
     clearance: clearance.max(0).toConst()
   }
 }
@@ -228,7 +247,8 @@ export function pairMatter(
 
 /**
  * Extinction near a place whose weather was kept, of its densest layer, without detail [1/m]: a single
- * texture read. Good as far as the weather is the same.
+ * texture read. Good as far as the weather is the same. Of clouds that are not seen one by one, that inside
+ * of them: what light meets there is not their mean.
  */
 export function extinctionNearby(
   field: CloudField,
@@ -247,7 +267,9 @@ export function extinctionNearby(
       shapeWarp,
       detailWarp: shapeWarp
     }
-    extinction.assign(layerMatter(field, layer, weather, sample, height, false).extinction)
+    extinction.assign(
+      layerMatter(field, layer, weather, sample, height, false, 'inside').extinction
+    )
   })
   return extinction
 }
@@ -297,8 +319,9 @@ export function cloudExtinction(field: CloudField, sample: CloudSample, detail: 
 export function cloudBound(field: CloudField, sample: CloudSample): Float {
   const most = float(0).toVar()
   eachLayer(field, sample, (layer, weather, height) => {
-    const filled = weather.fill.clamp(0, 1.3).mul(heightProfile(layer, height))
-    const near = filled.sub(layer.shapeAmount.mul(leastCarving)).mul(sharpnessOf(layer)).clamp(0, 1)
+    const anvil = anvilAt(layer, height)
+    const filled = fillAt(layer, weather, anvil).mul(heightProfile(layer, height, anvil))
+    const near = filled.sub(layer.shapeAmount.mul(leastCarving)).mul(layer.sharpness).clamp(0, 1)
     const far = weather.spread.greaterThan(0).select(weather.cover, float(0))
     most.assign(most.max(near).max(far))
   })

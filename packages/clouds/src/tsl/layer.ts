@@ -29,14 +29,25 @@ export interface LayerNodes {
   perShapePeriod: Float
   /** [1/m]. */
   perWeatherPeriod: Float
-  /** `standardWeights`. */
+  /** `weatherScales`: of single clouds. */
   weights: Vec4
+  /** Factors of the weather's other scales: `weatherScales`. */
+  cells: Float
+  regions: Float
+  planet: Float
+  cloudVariance: Float
+  /** `layerForms`; the reciprocal of its stretch. */
+  perStretch: Float
+  steepness: Float
+  sharpness: Float
+  coarseness: Float
+  anvil: Float
   /**
    * Where the eye and its foot point lie in the periods of the noise, in [0, 1); for detail in
    * [0, `CURL_PERIOD`), since the turbulence has that period.
    */
   weatherAnchor: Vec3
-  weatherAgainAnchor: Vec3
+  fieldAnchor: Vec3
   regionAnchor: Vec3
   shapeAnchor: Vec3
   detailAnchor: Vec3
@@ -51,6 +62,10 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
   const extent = read(0).toConst() as Vec4
   const form = read(1).toConst() as Vec4
   const weather = read(6).toConst() as Vec4
+  const fields = read(10).toConst() as Vec4
+  const shape = read(8).toConst() as Vec4
+  const detail = read(9).toConst() as Vec4
+  const kind = read(11).toConst() as Vec4
   return {
     baseAltitude: extent.x,
     perThickness: extent.y,
@@ -65,10 +80,19 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     weights: read(2),
     perWeatherPeriod: weather.w,
     weatherAnchor: weather.xyz,
-    weatherAgainAnchor: read(10).xyz,
+    fieldAnchor: fields.xyz,
     regionAnchor: read(7).xyz,
-    shapeAnchor: read(8).xyz,
-    detailAnchor: read(9).xyz,
+    shapeAnchor: shape.xyz,
+    detailAnchor: detail.xyz,
+    cells: kind.x,
+    regions: kind.y,
+    planet: kind.z,
+    cloudVariance: kind.w,
+    perStretch: shape.w,
+    steepness: read(3).w,
+    sharpness: read(4).w,
+    coarseness: detail.w,
+    anvil: fields.w,
     turn: v => {
       const [x, y, z] = [3, 4, 5].map(row => read(row).xyz.dot(v))
       return vec3(x, y, z)

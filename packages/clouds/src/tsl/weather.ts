@@ -1,15 +1,18 @@
-import { atan, log2, smoothstep, vec2 } from 'three/tsl'
+import { atan, log2, sin, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
   densityShape,
+  FIELD_PERIOD,
+  PLANET_WAVES,
+  REGION_CELLS,
   REGION_PERIOD,
+  scaleWeights,
   SHAPE_WARP,
-  WEATHER_AGAIN,
   WEATHER_WARP
 } from '../layerUniforms'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { CloudSample } from './density'
 import { rotate, type LayerNodes } from './layer'
 
@@ -29,7 +32,7 @@ export interface CloudWeather {
   detailWarp: Vec3
 }
 
-const { edgeWidth, excess, meanEdge, regionContrast } = densityShape
+const { blur, excess, leastBlur, meanEdge } = densityShape
 
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
@@ -42,40 +45,51 @@ export function footOffset(field: CloudField, { offset, altitude }: CloudSample)
   return offset.sub(up.mul(rise)).mul(scale)
 }
 
-/** Share of the sky that clouds cover around a place, from the world map or the large noise. */
-function regionalCover(
+/** Share of the sky that the world map has covered around a place. */
+function mappedShare(
   field: CloudField,
-  layer: LayerNodes,
-  region: Vec3,
+  worldMap: LevelTexture<Vec2>,
   { up }: CloudSample,
   footprint: Float
 ): Float {
-  const mapped = (): Float => {
-    const across = up.xy.length().max(1e-6).toConst() as Float
-    const longitude = atan(up.y, up.x.abs().max(1e-9).mul(up.x.lessThan(0).select(-1, 1)))
-    // Geodetic, from the latitude on the sphere.
-    const latitude = atan(up.z.mul(field.axialRatio), across)
-    const uv = vec2(longitude.div(2 * Math.PI), latitude.div(Math.PI)).add(0.5)
-    // Meridians meet at the poles: a texel there is narrower.
-    const texel = field.radius.mul(across).mul((2 * Math.PI) / field.worldMapWidth)
-    const level = log2(footprint.div(texel).max(1))
-    return field.worldMap!.sample(uv).level(level).x
-  }
-  const share = (field.worldMap === null ? region.z.mul(regionContrast).add(0.5) : mapped())
-    .clamp(0, 1)
-    .toConst() as Float
+  const across = up.xy.length().max(1e-6).toConst() as Float
+  const longitude = atan(up.y, up.x.abs().max(1e-9).mul(up.x.lessThan(0).select(-1, 1)))
+  // Geodetic, from the latitude on the sphere.
+  const latitude = atan(up.z.mul(field.axialRatio), across)
+  const uv = vec2(longitude.div(2 * Math.PI), latitude.div(Math.PI)).add(0.5)
+  // Meridians meet at the poles: a texel there is narrower.
+  const texel = field.radius.mul(across).mul((2 * Math.PI) / field.worldMapWidth)
+  return worldMap.sample(uv).level(log2(footprint.div(texel).max(1))).x
+}
+
+/** Share of the sky that a layer covers around a place, as far as it is known without noise. */
+function shareAt(
+  field: CloudField,
+  layer: LayerNodes,
+  sample: CloudSample,
+  footprint: Float
+): Float {
+  if (field.worldMap === null) return layer.coverage
+  const share = mappedShare(field, field.worldMap, sample, footprint).clamp(0, 1).toConst() as Float
   // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
   const covered = share.mul(layer.coverage).toConst() as Float
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
-  return covered.div(covered.add(clear).max(1e-6)).toConst()
+  return covered.div(covered.add(clear).max(1e-6)).toConst() as Float
 }
+
+/** Part of a noise's variance that its levels of detail have lost. */
+const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
+
+/** Φ(z) of the normal distribution, to 0.01. */
+const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
 
 /**
  * Weather of a layer at a place.
  *
- * The weather noise u takes every value in [0, 1] equally often, so u > 1 − c holds over the share c of
- * the sky. Samples too far apart to see single clouds read a blurred u: there the threshold becomes a
- * ramp, which keeps the mean.
+ * The weather is a sum of noise on four scales: clouds, the fields that they gather in, regions, and the
+ * planet. Its cumulative distribution u takes every value in [0, 1] equally often, so u > 1 − c holds over
+ * the share c of the sky. Of noise that a sample's footprint blurs, the variance is known: the cover is
+ * the chance that the sum exceeds the same threshold, which keeps the mean at any distance.
  *
  * @param foot - `footOffset` of the sample. Twin: cpu/density.ts
  */
@@ -85,54 +99,93 @@ export function weatherAt(
   foot: Vec3,
   sample: CloudSample
 ): CloudWeather {
+  const { weather } = field.textures
   const turned = layer.turn(foot).toConst() as Vec3
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
-  const regionPlace = rotate(latticeRotation.region, turned)
-    .div(REGION_PERIOD)
-    .add(layer.regionAnchor)
-  const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1))
-  const region = field.textures.weather
-    .sample(regionPlace)
-    .level(regionLevel)
+  const share = shareAt(field, layer, sample, footprint)
+
+  const zenith = layer.turn(sample.up).toConst() as Vec3
+  const { next, last, warp: shift } = PLANET_WAVES
+  const waves = sin(zenith.yzx.mul(next).add(zenith.zxy.mul(last))).toConst() as unknown as Vec3
+  const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
+  const region = weather
+    .sample(
+      rotate(latticeRotation.region, turned)
+        .div(REGION_PERIOD)
+        .add(layer.regionAnchor)
+        .add(waves.mul(shift))
+    )
+    .level(regionLevel as Float)
     .xyz.sub(0.5)
     .toConst() as Vec3
-  const share = regionalCover(field, layer, region, sample, footprint)
+
   const warp = region.mul(WEATHER_WARP).toConst() as Vec3
   const scale = layer.perWeatherPeriod
   const level = log2(footprint.mul(scale).mul(NOISE_SIZE.weather).max(1)).toConst() as Float
-  const first = rotate(latticeRotation.weather, turned).add(warp).mul(scale)
-  const second = rotate(latticeRotation.weatherAgain, turned)
-    .add(warp)
-    .mul(scale.div(WEATHER_AGAIN.period))
-  const noise = field.textures.weather
-    .sample(first.add(layer.weatherAnchor))
+  const fieldLevel = level.sub(Math.log2(FIELD_PERIOD)).max(0).toConst() as Float
+  const fields = weather
+    .sample(
+      rotate(latticeRotation.fields, turned)
+        .mul(scale.div(FIELD_PERIOD))
+        .add(layer.fieldAnchor)
+        .add(warp)
+    )
+    .level(fieldLevel)
+    .sub(0.5)
+    .toConst() as Vec4
+  const clouds = weather
+    .sample(rotate(latticeRotation.weather, turned).mul(scale).add(layer.weatherAnchor).add(warp))
     .level(level)
     .sub(0.5)
     .toConst() as Vec4
-  const again = field.textures.weather
-    .sample(second.add(layer.weatherAgainAnchor))
-    .level(level.sub(Math.log2(WEATHER_AGAIN.period)).max(0))
-    .sub(0.5)
-    .toConst() as Vec4
-  const detailWarp = again.xyz.mul(SHAPE_WARP).toConst() as Vec3
-  const z = noise.add(again.mul(WEATHER_AGAIN.weight)).dot(layer.weights)
-  // Φ(z): as often as not near 0 and 1.
-  const u = z.mul(-1.702).exp().add(1).reciprocal()
-  const above = u.sub(1).add(share).toConst() as Float
-  const spread = smoothstep(0.5, 4.5, level).toConst() as Float
+
+  const z = clouds
+    .add(fields.mul(scaleWeights.fields))
+    .dot(layer.weights)
+    .add(fields.z.mul(layer.cells))
+    .add(region.z.add(region.x.mul(REGION_CELLS)).mul(layer.regions))
+    .add(
+      waves.x
+        .add(waves.y)
+        .add(waves.z)
+        .mul(layer.planet)
+        .mul(Math.sqrt(2 / 3))
+    )
+    .toConst() as Float
+  const cloudLevel = level.sub(layer.coarseness).toConst() as Float
+  const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
+  const fieldVariance = layer.cloudVariance
+    .add(layer.planet.mul(layer.planet))
+    .add(regionVariance)
+    .oneMinus()
+  const variance = layer.cloudVariance
+    .mul(lost(cloudLevel))
+    .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
+    .add(regionVariance.mul(lost(regionLevel.sub(0.8) as Float)))
+  const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
+  const quantile = odds.div(odds.oneMinus()).log().div(1.702)
+  const cover = cumulative(z.add(quantile).div(variance.sqrt().max(leastBlur)))
+
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
   const fill = layer.shapeAmount
     .mul(meanEdge)
-    .add(above.div(edgeWidth))
+    .add(cumulative(z).sub(1).add(share).mul(layer.steepness))
     .add(surely)
     .toConst() as Float
-  const cover = above.div(spread.max(0.02)).add(0.5).clamp(0, 1).toConst() as Float
+  const detailWarp = clouds.xyz.mul(SHAPE_WARP.clouds).toConst() as Vec3
   return {
     fill,
-    cover,
-    spread,
-    shapeWarp: warp.add(detailWarp).toConst(),
+    // Neither more nor less than all: the distribution has tails.
+    cover: cover
+      .sub(0.5)
+      .mul(1.002)
+      .add(0.5)
+      .clamp(0, 1)
+      .mul(share.greaterThan(0).select(1, 0))
+      .toConst(),
+    spread: smoothstep(0.5, 4.5, cloudLevel).toConst() as Float,
+    shapeWarp: detailWarp.add(fields.xyz.mul(SHAPE_WARP.fields)).toConst(),
     detailWarp
   }
 }
