@@ -238,7 +238,7 @@ export class CloudsNode extends AtmosphereNode {
         const views = [
           clouds.a.oneMinus(),
           marched.place.sample(at).level(0).w,
-          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)),
+          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
           place.z.abs().div(32)
         ]
         views.forEach((view, i) => {
