@@ -36,6 +36,12 @@ export interface CloudOverlayOptions {
   drift?: number
 }
 
+/** Frames after which the clouds' shadow maps are those of the clouds as they are. */
+const WAIT = 4
+
+/** Strips of the picture. */
+const STRIPS = 6
+
 /** Light of the default luminance scale, which half floats hold well by day. */
 const STORED_SCALE = 1e-4
 
@@ -46,11 +52,14 @@ interface DrawnClouds {
   readonly layers: readonly CloudLayerParameters[]
   readonly turns: readonly Quaternion[]
   readonly phase: object
+  /** Whether there were shadow maps. */
+  readonly isMapped: boolean
 }
 
 /**
  * Clouds for a `skyEnvironment`: a picture of all directions about its place, an octahedron's net with
- * the nadir in the corners, marched as a cloud node's pictures are but drawn in six strips, one a frame.
+ * the nadir in the corners, marched as a cloud node's pictures are but drawn in six strips, one a frame,
+ * when the clouds' shadow maps have followed.
  *
  * ```ts
  * const overlay = cloudOverlay(cloudsNode)
@@ -61,7 +70,7 @@ interface DrawnClouds {
  * environment.
  */
 export class CloudOverlay implements SkyOverlay {
-  readonly steps = 6
+  readonly steps = WAIT + STRIPS
   /** Whose clouds; shared, not owned. */
   readonly clouds: CloudsNode
   /** How far the wind may carry clouds before they are drawn again [m]. */
@@ -127,10 +136,11 @@ export class CloudOverlay implements SkyOverlay {
   #isAsDrawn(): boolean {
     const drawn = this.#drawn
     if (drawn === null) return false
-    const { field, light } = this.clouds
+    const { field, light, shadows } = this.clouds
     const reach = this.drift / field.atmosphere.parameters.bottomRadius
     return (
       light.phase === drawn.phase &&
+      drawn.isMapped === shadows.isDrawn &&
       drawn.layers.every((parameters, i) => parameters === field.layers.at(i).parameters) &&
       drawn.turns.every((turn, i) => turn.angleTo(field.turns[i]) <= reach)
     )
@@ -144,7 +154,9 @@ export class CloudOverlay implements SkyOverlay {
     if (view.camera !== this.#camera) this.#build(view)
     const field = this.#field
     if (field === null || this.#view?.update({ camera: view.camera }) === undefined) return
-    if (step === 0) this.#begin(view, field)
+    const strip = step - WAIT
+    if (strip < 0) return
+    if (strip === 0) this.#begin(view, field)
     const { atmosphere, shadows } = clouds
     this.#gain.value = this.#raised / atmosphere.luminanceScale
     this.#shift.value
@@ -152,7 +164,7 @@ export class CloudOverlay implements SkyOverlay {
       .multiplyScalar(field.radius.value + view.height)
       .sub(shadows.camera)
     const { width: size } = this.#target
-    const [from, to] = [step, step + 1].map(part => Math.round((part * size) / this.steps))
+    const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
     this.#pass?.render(renderer, this.#target)
   }
@@ -164,7 +176,8 @@ export class CloudOverlay implements SkyOverlay {
     this.#drawn = {
       layers: [...source.layers].map(({ parameters }) => parameters),
       turns: source.turns.map(turn => turn.clone()),
-      phase: this.clouds.light.phase
+      phase: this.clouds.light.phase,
+      isMapped: this.clouds.shadows.isDrawn
     }
     source.turns.forEach((turn, i) => field.turns[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width

@@ -151,6 +151,11 @@ export class CloudShadowMap {
     this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray))
   }
 
+  /** Whether there are maps: not before the first update, and not far away. */
+  get isDrawn(): boolean {
+    return this.#cascades[0].isDrawn
+  }
+
   /** Size on the GPU [bytes]. */
   get bytes(): number {
     return 8 * this.target.width * this.target.height

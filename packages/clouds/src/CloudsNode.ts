@@ -22,13 +22,19 @@ import type { LevelTexture, Vec2, Vec4 } from './tsl-types'
 
 const _size = new Vector2()
 
+/** Slices of its own noise that a node draws in a frame: all in about 28. */
+const NOISE_SLICES = 24
+
 /** Options of {@link clouds}. */
 export interface CloudsOptions {
   /** How finely clouds are marched; by default `'high'`. */
   quality?: CloudQualityName | CloudQuality
   /** Cloud cover of the whole planet: see `CloudFieldOptions`. */
   worldMap?: Texture | null
-  /** Noise to share between nodes; left out, the node makes and owns its own. */
+  /**
+   * Noise to share between nodes, drawn at once if it is not yet. Left out, the node makes and owns its
+   * own, and draws it over its first frames: the sky is clear until then.
+   */
   noise?: CloudNoise
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
@@ -85,6 +91,7 @@ export class CloudsNode extends AtmosphereNode {
   /** Whether pixels remember what was marched before; without, pictures are coarse. */
   accumulates = true
   readonly #ownsLight: boolean
+  readonly #noiseSlices: number
   readonly #uniforms = new QualityUniforms()
   readonly #frame = new FrameUniforms()
   #renderer: CloudRenderer | undefined
@@ -118,6 +125,7 @@ export class CloudsNode extends AtmosphereNode {
     this.field = new CloudField(atmosphere, layers, this.view, { worldMap, noise })
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
+    this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
   }
 
@@ -172,7 +180,9 @@ export class CloudsNode extends AtmosphereNode {
     const { camera, field } = this
     const { renderer } = frame
     if (renderer === null) return
-    field.bake(renderer)
+    const wasReady = field.noise.isReady
+    // Of clouds that appear there is no history.
+    if (field.bake(renderer, this.#noiseSlices) && !wasReady) this.#frame.reset()
     this.light.bake()
     // What is drawn here and now reads the view too.
     const view = this.view.update(frame)
@@ -238,7 +248,7 @@ export class CloudsNode extends AtmosphereNode {
         const views = [
           clouds.a.oneMinus(),
           marched.place.sample(at).level(0).w,
-          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)),
+          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
           place.z.abs().div(32)
         ]
         views.forEach((view, i) => {

@@ -5,6 +5,7 @@ import {
   Loop as threeLoop,
   outputStruct,
   property,
+  renderGroup,
   uniformArray as threeUniformArray
 } from 'three/tsl'
 import type { Vector4 } from 'three'
@@ -33,13 +34,16 @@ export const loop = (
   nodes({ start, end, type: 'int', name }, inputs => body(inputs[name]))
 }
 
-/** `uniformArray` of four-vectors, whose elements are typed. */
+/**
+ * `uniformArray` of four-vectors, whose elements are typed. In the render group: what is an object's own
+ * does not reach materials that three does not refresh.
+ */
 export interface Vec4Array extends Node {
   array: Vector4[]
   element(index: Int): Vec4
 }
 export const vec4Array = (values: Vector4[]): Vec4Array =>
-  threeUniformArray(values, 'vec4') as unknown as Vec4Array
+  threeUniformArray(values, 'vec4').setGroup(renderGroup) as unknown as Vec4Array
 
 /** The bits of four floats. */
 export interface Bits extends Node {

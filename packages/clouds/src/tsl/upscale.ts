@@ -13,7 +13,15 @@ import {
 import { isClear, type Cell } from './cells'
 import { cellPlace, estimate, type Estimate } from './estimate'
 import { interleavedNoise } from './noisePattern'
-import { brightness, CLEAR, encodeDistance, FARTHEST, fits, type CloudPictures } from './pictures'
+import {
+  brightness,
+  CLEAR,
+  encodeDistance,
+  FARTHEST,
+  fits,
+  SAME,
+  type CloudPictures
+} from './pictures'
 import { sightAt, sightEnd, type Sight, type SightNodes } from './sight'
 
 /** Looks of pixels that were marched themselves. */
@@ -28,7 +36,7 @@ const LEAST_MEMORY = 0.1
 
 /**
  * What history may differ from its surroundings besides: what is smaller than a block is not seen in
- * every frame, and is kept while the picture hardly moves. Not what has been seen in too few looks: it may
+ * every frame, and is kept while the picture hardly moves, with things in the same places. Not what has been seen in too few looks: it may
  * be left over from a move.
  */
 const SLACK = { standing: 1, moving: 0.01, young: 1.5, old: 4 }
@@ -54,7 +62,10 @@ function toHalf(value: Vec4, noise: Float): Vec4 {
   )
 }
 
-/** What the last frame had where the clouds of a pixel were, and how many looks it is worth. */
+/**
+ * What the last frame had where the clouds of a pixel were, and how many looks it is worth; and 1 where
+ * nothing moved, neither the clouds nor what was drawn, or less, to 0.
+ */
 function remembered(
   { frame }: SightNodes,
   history: CloudPictures,
@@ -63,7 +74,7 @@ function remembered(
   end: Float,
   distance: Float,
   origin: Vec3
-): { light: Vec4; weight: Float; moved: Float } {
+): { light: Vec4; weight: Float; sameness: Float } {
   const raysBefore = frame.raysBefore as unknown as Mat3
   const clipped = raysBefore
     .mul(place)
@@ -88,7 +99,7 @@ function remembered(
   const { gainChange } = frame
   return {
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    moved: way,
+    sameness: end.sub(about.y).abs().lessThan(SAME).select(way.oneMinus().max(0), 0),
     weight: about.z
       .abs()
       .min(frame.memory.mul(way.div(FAST).oneMinus()).max(LEAST_MEMORY))
@@ -156,9 +167,8 @@ export function upscale(
           const origin = frame.originArray.element(cell.place.w.toInt()).xyz
           const last = remembered(sights, history, pixel, sight, end, now.distance, origin)
           If(last.weight.greaterThan(0), () => {
-            const standing = last.moved.oneMinus().max(0).mul(SLACK.standing)
             const slack = smoothstep(SLACK.young, SLACK.old, last.weight)
-              .mul(standing)
+              .mul(last.sameness.mul(SLACK.standing))
               .max(SLACK.moving)
             const clipped = clip(last.light, now, frame.clipping, slack)
             // What is known well does not learn from marched pixels that are not its own.

@@ -32,7 +32,7 @@ export interface CloudWeather {
   detailWarp: Vec3
 }
 
-const { blur, excess, leastBlur, meanEdge } = densityShape
+const { blur, carvedBlur, excess, leastBlur, meanEdge } = densityShape
 
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
@@ -162,9 +162,10 @@ export function weatherAt(
     .mul(lost(cloudLevel))
     .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
     .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+  const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
   const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
   const quantile = odds.div(odds.oneMinus()).log().div(1.702)
-  const cover = cumulative(z.add(quantile).div(variance.sqrt().max(leastBlur)))
+  const cover = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
 
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)

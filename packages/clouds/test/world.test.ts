@@ -1,0 +1,134 @@
+import { Atmosphere, moon, NIGHT_ILLUMINANCE, SkyLightProbe } from '@welkin/atmosphere'
+import type { AtmosphereView } from '@welkin/atmosphere'
+import { PerspectiveCamera, Vector3 } from 'three'
+import { float, vec4 } from 'three/tsl'
+import { describe, expect, test } from 'vitest'
+import { cloudOverlay, CloudLayers, clouds, cloudShadow, cloudSkyLight } from '../src'
+import { nightGain } from '../src/FrameUniforms'
+import { NightLight } from '../src/NightLight'
+
+const atmosphere = new Atmosphere()
+const camera = new PerspectiveCamera()
+const node = clouds(vec4(0), float(0), camera, atmosphere, new CloudLayers())
+const radius = atmosphere.parameters.bottomRadius
+const degrees = Math.PI / 180
+
+/** What the night needs of a view, with the sun at an elevation [°]. */
+const viewAt = (elevation: number, height = 2, world = atmosphere): AtmosphereView => {
+  const angle = elevation * degrees
+  const view: Partial<AtmosphereView> = {
+    atmosphere: world,
+    camera,
+    height,
+    up: new Vector3(0, 0, 1),
+    sunDirection: new Vector3(Math.cos(angle), 0, Math.sin(angle))
+  }
+  return view as AtmosphereView
+}
+
+describe('NightLight', () => {
+  test('is left out while no place that can be seen is dark', () => {
+    const night = new NightLight()
+    const isSeen = (elevation: number, height: number): boolean => {
+      night.update(viewAt(elevation, height))
+      return night.isSeen.value === 1
+    }
+    expect(isSeen(1, 2)).toBe(false)
+    expect(isSeen(-7, 2)).toBe(true)
+    // 400 km up the horizon is 20° down, and clouds beyond it another 5.6°.
+    expect(isSeen(18, 4e5)).toBe(true)
+    expect(isSeen(22, 4e5)).toBe(false)
+    expect(isSeen(80, 3.6e7)).toBe(true)
+  })
+
+  test('sets in where the sun’s light reaches no cloud, on small planets too', () => {
+    const night = new NightLight()
+    night.update(viewAt(-20))
+    expect(Math.asin(night.sunk.value) / degrees).toBeCloseTo(-6, 6)
+    expect(Math.asin(night.dark.value) / degrees).toBeCloseTo(-8, 6)
+    // Of the highest clouds, and half of the sun's disc.
+    const lowest = -Math.acos(radius / (radius + 30_000)) - atmosphere.parameters.sunAngularRadius
+    expect(Math.asin(night.sunk.value)).toBeLessThan(lowest)
+  })
+
+  test('takes moonlight from a moon that was added, and none by day', () => {
+    const world = new Atmosphere()
+    const luna = moon(world, { direction: new Vector3(0, 1, 0), phase: 0.5 })
+    const night = new NightLight()
+    night.update(viewAt(-20, 2, world))
+    expect(night.source).toBe(null)
+    expect(night.irradiance.value.length()).toBe(0)
+    world.add(luna)
+    night.update(viewAt(-20, 2, world))
+    expect(night.source).toBe(luna.source)
+    expect(night.irradiance.value.toArray()).toEqual([...luna.source.irradianceAt(new Vector3())])
+    expect(night.rulesAt(viewAt(-20, 2, world))).toBe(true)
+    expect(night.rulesAt(viewAt(-5, 2, world))).toBe(false)
+    night.update(viewAt(20, 2, world))
+    expect(night.irradiance.value.length()).toBe(0)
+    expect(night.rulesAt(viewAt(20, 2, world))).toBe(false)
+  })
+})
+
+test('light is raised as deep as night is at the lightest place in sight', () => {
+  expect(nightGain(viewAt(30), radius)).toBe(1)
+  expect(nightGain(viewAt(-40), radius)).toBeCloseTo(1e5, 3)
+  // From 400 km the terminator is seen 20° away.
+  expect(nightGain(viewAt(-15, 4e5), radius)).toBe(1)
+  expect(nightGain(viewAt(-60, 4e5), radius)).toBeCloseTo(1e5, 3)
+})
+
+test('nightIlluminance is that of the night’s probe, and may be set', () => {
+  expect(node.nightIlluminance).toBe(NIGHT_ILLUMINANCE)
+  expect(() => (node.nightIlluminance = NaN)).toThrow(
+    'CloudsNode: nightIlluminance must be finite, ≥ 0, got NaN'
+  )
+  node.nightIlluminance = 0
+  expect(node.nightIlluminance).toBe(0)
+})
+
+describe('cloudSkyLight', () => {
+  test('refuses what is missing or of the wrong kind', () => {
+    const probe = new SkyLightProbe(atmosphere)
+    expect(() => cloudSkyLight(null as never, node)).toThrow('CloudSkyLight: probe must be')
+    expect(() => cloudSkyLight(probe, {} as never)).toThrow('CloudSkyLight: clouds must be')
+    expect(() => cloudSkyLight(new SkyLightProbe(new Atmosphere()), node)).toThrow(
+      'CloudSkyLight: clouds must be in the atmosphere of the probe, got another'
+    )
+  })
+
+  test('leaves the probe as it was', () => {
+    const probe = new SkyLightProbe(atmosphere)
+    const light = cloudSkyLight(probe, node)
+    expect(probe.overcast).not.toBe(null)
+    expect(() => (light.strength = 2)).toThrow('CloudSkyLight: strength must be a number in [0, 1]')
+    light.dispose()
+    expect(probe.overcast).toBe(null)
+    expect(light.strength).toBe(0)
+  })
+})
+
+describe('cloudOverlay', () => {
+  test('refuses what is missing or out of range', () => {
+    expect(() => cloudOverlay(null as never)).toThrow('CloudOverlay: clouds must be a CloudsNode')
+    expect(() => cloudOverlay(node, { size: 8 })).toThrow('CloudOverlay: size must be')
+    expect(() => cloudOverlay(node, { drift: 0 })).toThrow('CloudOverlay: drift must be positive')
+    expect(() => cloudOverlay(node, { quality: 'best' as never })).toThrow(/quality must be one of/)
+  })
+
+  test('has nothing drawn at first', () => {
+    const overlay = cloudOverlay(node)
+    expect(overlay.version).toBe(1)
+    expect(overlay.version).toBe(1)
+    overlay.dispose()
+  })
+})
+
+test('shadows of moonlight need a source of light', () => {
+  expect(() => cloudShadow(node, null, {} as never)).toThrow(
+    'CloudShadowNode: source must be a LightSource, got object'
+  )
+  const luna = moon(atmosphere)
+  expect(cloudShadow(node, null, luna.source).source).toBe(luna.source)
+  expect(cloudShadow(node).source).toBe(atmosphere.sun)
+})
