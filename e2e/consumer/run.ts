@@ -78,11 +78,15 @@ function takeFrame(): Promise<string> {
   })
 }
 
-/** The app's first frame that is not blank. */
-async function firstFrame(page: Page): Promise<PNG> {
-  for (;;) {
+/** Frames after the first that is not blank in which what takes several to draw must have come. */
+const patience = 60
+
+/** The app's first frame that is as it should be, or the last of those that it is given time for. */
+async function firstFrame(page: Page, wrongWith: (png: PNG) => string[]): Promise<PNG> {
+  for (let seen = 0; ;) {
     const png = PNG.sync.read(Buffer.from((await page.evaluate(takeFrame)).split(',')[1], 'base64'))
-    if (!isBlank(png)) return png
+    if (!isBlank(png)) seen++
+    if (seen > patience || (seen > 0 && wrongWith(png).length === 0)) return png
   }
 }
 
@@ -102,7 +106,7 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
     }
     await page.goto(`${origin}/${name}.html`)
     await page.waitForSelector('canvas', { state: 'attached', timeout: 60_000 })
-    const png = await withLimit(firstFrame(page), 120)
+    const png = await withLimit(firstFrame(page, expectations[name]), 120)
     const wrong = expectations[name](png)
     if (wrong.length > 0) {
       const file = join(outputFolder, `consumer-${name}.${backend}.png`)
