@@ -139,7 +139,7 @@ const sizes = [
   [7, 3, 2],
   [24, 14, 1]
 ] as const
-const debugViews: (CloudsDebug | null)[] = ['opacity', 'steps', 'distance', 'history', null]
+const debugViews: (CloudsDebug | null)[] = ['density', 'steps', 'depth', 'history', null]
 
 /** A layer of any kind, extremes more often than not. */
 function randomLayer(next: () => number): Partial<CloudLayerParameters> {
@@ -192,7 +192,7 @@ gpuTest(
       node.time = 1000 * next()
       node.debugView = debugViews[Math.floor(round / 3) % debugViews.length]
       expectLight(await view.draw(), `${label}, ${node.debugView}`)
-      node.debugView = 'opacity'
+      node.debugView = 'density'
       const { data } = await view.draw()
       expectTrue(
         data.every(value => value >= 0 && value <= 1),

@@ -1,4 +1,4 @@
-import { cloudPreset, clouds, cloudShadow } from '@welkin/clouds'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudPresetName, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
 import { cloudCover } from './clouds/cloudCover'
@@ -36,8 +36,11 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   pitch: number
 }
 
-/** Frames in which low quality marches every pixel, and again. */
+/** Frames in which low quality marches every pixel once, and half of them again. */
 const STILL_FRAMES = 24
+
+/** Low for a still: its frames are many. */
+const qualityOf = ({ frame, quality }: CloudsArgs): CloudQualityName => (frame ? 'low' : quality)
 
 /** Name of a layer, for {@link CloudsArgs.shown}. */
 export const shownBy = (preset: CloudPresetName, layer: number): string => `${preset} ${layer}`
@@ -48,13 +51,14 @@ export async function createClouds(
   args: CloudsArgs
 ): Promise<SceneHandle<CloudsArgs>> {
   const worldMap = args.world ? await cloudCover() : null
-  const { preset, quality } = args
+  const { preset } = args
+  const quality = qualityOf(args)
   const post: CloudsArgs = { ...args, path: 'post' }
   let onArgs: SceneHandle<CloudsArgs>['onArgs']
 
   const handle = await createLand(canvas, post, 55, ({ scene, camera, ...land }) => {
     const { renderer, air } = land
-    const { atmosphere, sun, post } = air
+    const { atmosphere, sun, sky, post } = air
     if (post === undefined) throw new Error('createClouds: there must be a post effect')
     const { pipeline, color, depth } = post
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
@@ -62,8 +66,8 @@ export async function createClouds(
     const layers = cloudPreset(preset)
     const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
     pipeline.outputNode = node
-    // They dim the sun, beside three's own shadow map.
-    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) }) // with three's own
+    cloudSkyLight(sky, node) // the sky's light, through clouds and from them
     // #endregion
 
     const placeOf = placing()
@@ -98,7 +102,7 @@ export async function createClouds(
       apply(current) {
         applyTime(renderer, air, current)
         applyLayer(current)
-        node.quality = current.quality
+        node.quality = qualityOf(current)
         node.debugView = current.debug === 'off' ? null : current.debug
         lapse = current.frame ? 0 : current.timeLapse
       },

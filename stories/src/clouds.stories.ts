@@ -34,7 +34,7 @@ const world = {
   world: true,
   day: Date.UTC(2026, 11, 21),
   hour: 15,
-  exposure: -0.5
+  exposure: -1.25
 }
 
 const meta: Meta<CloudsArgs> = {
@@ -123,24 +123,36 @@ type Story = StoryObj<CloudsArgs>
 
 /** Fair weather over a meadow. */
 export const Cumulus: Story = {
-  name: 'Cumulus from the ground'
+  name: 'Cumulus from the ground',
+  args: { coverage: 0.45, pitch: 18 },
+  tags: ['screenshot']
 }
 
 /** Stratocumulus below the windows of an aircraft. */
 export const Cockpit: Story = {
   name: 'Cockpit above a deck',
-  args: { ...sky('stratocumulus'), altitude: 2600, heading: 250, pitch: -5, props: 'cockpit' }
+  args: { ...sky('stratocumulus'), altitude: 2600, heading: 250, pitch: -5, props: 'cockpit' },
+  tags: ['screenshot', 'webgpu-only']
 }
 
-/** Towers 10 km high among small cumulus. */
+/** Towers 10 km high among small cumulus, against the sun of the late afternoon. */
 export const Storm: Story = {
-  args: { ...sky('cumulonimbus'), altitude: 450, heading: 300, pitch: 12 }
+  args: {
+    ...sky('cumulonimbus'),
+    altitude: 450,
+    heading: 295,
+    pitch: 12,
+    hour: 22.4,
+    exposure: 0.25
+  },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The sun is about to set, and reddens ice clouds from below. */
 export const Cirrus: Story = {
   name: 'Cirrus at dusk',
-  args: { ...sky('cirrus'), heading: 290, pitch: 12, hour: 24.6, exposure: 2 }
+  args: { ...sky('cirrus'), heading: 290, pitch: 12, hour: 24.6, exposure: 2 },
+  tags: ['screenshot']
 }
 
 /** The cloud cover of a real day, from 400 km; fly down to the ground. */
@@ -153,7 +165,8 @@ export const WorldClouds: Story = {
     altitude: 400_000,
     heading: 235,
     pitch: -28
-  }
+  },
+  tags: ['screenshot']
 }
 
 /** The same from 15,000 km. */
@@ -179,23 +192,27 @@ export const InsideACloud: Story = {
     heading: 140,
     pitch: 2,
     props: 'balloons'
-  }
+  },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Shadows drift over real heights. */
 export const Shadows: Story = {
   name: 'Cloud shadows on terrain',
   args: {
+    coverage: 0.5,
     longitude: -84.1517,
     latitude: 36.45,
     altitude: 3200,
     heading: 322,
-    pitch: -16,
+    pitch: -20,
     timeLapse: 20
-  }
+  },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Each preset over the same land; choose one. */
 export const Presets: Story = {
-  args: { ...sky('mixed'), altitude: 1100, heading: 318, pitch: 8 }
+  args: { ...sky('mixed'), altitude: 500, pitch: 12 },
+  tags: ['screenshot', 'webgpu-only']
 }
