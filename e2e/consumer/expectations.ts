@@ -35,9 +35,29 @@ function checkQuickStart(png: PNG): string[] {
   return wrong
 }
 
+/** In words what is wrong when the sky has no clouds or nothing else, or the ground is black. */
+function checkClouds(png: PNG): string[] {
+  const wrong: string[] = []
+  let white = 0
+  let blue = 0
+  for (let y = 4; y < 80; y += 4) {
+    for (let x = 4; x < png.width; x += 4) {
+      const [red, , b] = at(png, x, y)
+      if (b > 1.25 * red) blue++
+      else if (red > 120) white++
+    }
+  }
+  if (white < 40) wrong.push(`there are no clouds: ${white} places are bright and not blue`)
+  if (blue < 40) wrong.push(`there is no sky between the clouds: ${blue} places are blue`)
+  const ground = at(png, 60, 170)
+  if (Math.min(...ground) < 20) wrong.push(`the ground is dark: ${ground.join(' ')}`)
+  return wrong
+}
+
 /** Per page of the app (`app/PAGE.html`), what is wrong with its frame of 320×180. */
 export const expectations: Record<string, (png: PNG) => string[]> = {
   index: checkQuickStart,
+  clouds: checkClouds,
   geo: png => [
     ...difference(png, 'the globe', 160, 90, [0x22, 0x55, 0xaa]),
     ...difference(png, 'space', 5, 5, [0, 0, 0])

@@ -11,8 +11,15 @@ const documents = [
   ...['geo', 'atmosphere', 'clouds'].map(p => `packages/${p}/README.md`)
 ]
 
-/** Names of the quick start that the later blocks of its document go on with. */
-const given = `import type { Atmosphere, SunDirectionalLight } from '@welkin/atmosphere'
+/** Modules of the app's pages that are the first block of a document. */
+const pages: Record<string, string | undefined> = {
+  'README.md': 'main.ts',
+  'packages/clouds/README.md': 'clouds.ts'
+}
+
+/** Names of the quick starts that the later blocks of their documents go on with. */
+const given = `import type { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
+import type { CloudLayers, CloudsNode } from '@welkin/clouds'
 import type { PerspectiveCamera, Scene } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 
@@ -22,11 +29,14 @@ declare global {
   const camera: PerspectiveCamera
   const atmosphere: Atmosphere
   const sun: SunDirectionalLight
+  const sky: SkyLightProbe
+  const layers: CloudLayers
+  const cloudsNode: CloudsNode
 }
 `
 
 /**
- * Makes the quick start of the documentation the app's main module, and every other block of code
+ * Makes the quick starts of the documentation modules of the app's pages, and every block of code
  * a module that must compile.
  *
  * @param app - Folder of the app.
@@ -40,7 +50,8 @@ export function writeReadmeModules(root: string, app: string): number {
   for (const document of documents) {
     const blocks = codeBlocks(readFileSync(join(root, document), 'utf8'))
     if (blocks.length === 0) throw new Error(`${document} has no block of TypeScript`)
-    if (document === 'README.md') writeFileSync(join(app, 'src', 'main.ts'), blocks[0])
+    const page = pages[document]
+    if (page !== undefined) writeFileSync(join(app, 'src', page), blocks[0])
     blocks.forEach((code, i) => {
       const name = `${document.replaceAll(/\W/g, '-')}-${i + 1}.ts`
       writeFileSync(join(folder, name), `${code}\nexport {}\n`)

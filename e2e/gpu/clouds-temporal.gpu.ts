@@ -120,7 +120,14 @@ gpuTest(
   t =>
     withShared(t, async shared => {
       const sky = new Sky(shared)
-      let before = await sky.draw(480)
+      // Shadow maps cost a software renderer most of a frame; drawn again they are the same.
+      const { shadows } = sky.node
+      const update = shadows.update.bind(shadows)
+      await sky.draw(24)
+      shadows.update = () => undefined
+      await sky.draw(420)
+      shadows.update = update
+      let before = await sky.draw(36)
       let most = 0
       for (let i = 0; i < 5; i++) {
         const now = await sky.draw()

@@ -16,7 +16,8 @@ const usage = `npm run validate -- [options]
 
   --sky FILE                 spectral radiances, by default e2e/reference/sky.json
   --spectral FILE            sky colours, by default e2e/reference/spectral_sky.json
-  --clouds FILE              clouds of simple shapes, by default e2e/reference/cloud_slab.json
+  --clouds FILE              clouds of simple shapes, by default e2e/reference/cloud_slab.json;
+                             with --path march only if named
   --backend webgpu|webgl     by default webgpu
   --path volume|march        how the air along a ray is found, by default volume
   --json                     print JSON alone; missed goals go to standard error
@@ -82,7 +83,9 @@ async function main(): Promise<void> {
   if (requests.length === 0) throw new Error('there is nothing to compare: name a file')
   const results = await evaluateInBrowser(requests)
 
-  const cloudsFile = input(values.clouds, 'cloud_slab.json')
+  // The air's path makes no difference to them.
+  const hasClouds = values.clouds !== undefined || where.path === 'volume'
+  const cloudsFile = hasClouds ? input(values.clouds, 'cloud_slab.json') : undefined
   const clouds =
     cloudsFile === undefined ? undefined : await validateClouds(cloudsFile, where.backend)
 

@@ -9,7 +9,7 @@ import type { Atmosphere } from '@welkin/atmosphere'
 import type { Camera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import type { WebGPURenderer } from 'three/webgpu'
+import type { Node, WebGPURenderer } from 'three/webgpu'
 import { quickStart } from './quickStart'
 import type { QuickStart } from './quickStart'
 
@@ -26,12 +26,22 @@ function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
   return { atmosphere, sun, sky }
 }
 
+/** The post path's picture: what a further effect, such as clouds, takes and where it goes. */
+export interface AirPost {
+  /** The scene with its air. */
+  readonly color: Node
+  /** The scene's depth. */
+  readonly depth: Node
+  readonly pipeline: RenderPipeline
+}
+
 /** The quick start's sky, haze, sunlight and sky light for a scene, by either path. */
 export class Air {
   readonly atmosphere: Atmosphere
   readonly sun: SunDirectionalLight
   readonly sky: SkyLightProbe
-  private readonly pipeline: RenderPipeline | undefined
+  /** Undefined on the forward path. */
+  readonly post: AirPost | undefined
 
   constructor(
     private readonly renderer: WebGPURenderer,
@@ -47,20 +57,22 @@ export class Air {
     if (path === 'post') {
       scene.backgroundNode = null
       scene.fogNode = null
-      // One sample: the air needs the depth of the very point that the colour is of.
-      const scenePass = pass(scene, camera, { samples: 0 })
-      const color = scenePass.getTextureNode()
+      // #region post effect
+      const scenePass = pass(scene, camera, { samples: 0 }) // one: colour and depth of the same point
       const depth = scenePass.getTextureNode('depth')
-      this.pipeline = new RenderPipeline(renderer)
-      this.pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere)
+      const color = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
+      const pipeline = new RenderPipeline(renderer)
+      pipeline.outputNode = color
+      // #endregion
+      this.post = { color, depth, pipeline }
     }
   }
 
   render(): void {
-    if (this.pipeline === undefined) {
+    if (this.post === undefined) {
       this.renderer.render(this.scene, this.camera)
     } else {
-      this.pipeline.render()
+      this.post.pipeline.render()
     }
   }
 
@@ -68,7 +80,7 @@ export class Air {
     this.scene.remove(this.sun, this.sun.target, this.sky)
     this.sun.dispose()
     this.sky.dispose()
-    this.pipeline?.dispose()
+    this.post?.pipeline.dispose()
     this.atmosphere.dispose()
   }
 }

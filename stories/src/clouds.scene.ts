@@ -1,13 +1,29 @@
-import { aerialPerspective, Atmosphere } from '@welkin/atmosphere'
-import { cloudPreset, clouds } from '@welkin/clouds'
-import type { CloudPresetName, CloudQualityName, CloudsDebug, CloudsNode } from '@welkin/clouds'
-import { MathUtils, PerspectiveCamera, Scene } from 'three'
-import { pass } from 'three/tsl'
-import { RenderPipeline } from 'three/webgpu'
-import { createRenderer, dateOf, exposureOf } from './scene'
-import type { RendererArgs, SceneHandle } from './scene'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudPresetName, CloudQualityName, CloudsDebug } from '@welkin/clouds'
+import { shadow } from 'three/tsl'
+import { cloudCover } from './clouds/cloudCover'
+import { layerArgs, layerParameters } from './clouds/layerArgs'
+import type { LayerArgs } from './clouds/layerArgs'
+import { createBalloons, createCockpit } from './clouds/props'
+import { createLand } from './globe/land'
+import type { Place } from './globe/places'
+import { applyTime } from './scene'
+import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
-export interface CloudsArgs extends RendererArgs {
+export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
+  preset: CloudPresetName
+  /** Which of its layers the layer's arguments are of, from 0. */
+  layer: number
+  /** The preset and the layer that they were of when they were set. */
+  shown: string
+  quality: CloudQualityName
+  /** What is shown instead of the clouds. */
+  debug: CloudsDebug | 'off'
+  /** How many times faster than the clock clouds drift. */
+  timeLapse: number
+  /** Whether the world's cloud cover says where clouds are. */
+  world: boolean
+  props: 'none' | 'cockpit' | 'balloons'
   /** [degrees] */
   longitude: number
   /** [degrees] */
@@ -18,104 +34,104 @@ export interface CloudsArgs extends RendererArgs {
   heading: number
   /** Direction of view above the horizontal [degrees]. */
   pitch: number
-  /** A moment of the day [ms since 1970]. */
-  day: number
-  /** Hour of that day, UTC [h]. */
-  hour: number
-  /** [stops], 0 for daylight. */
-  exposure: number
-  preset: CloudPresetName
-  /** Of the lowest layer, in [0, 1]; −1 for the preset's. */
-  coverage: number
-  quality: CloudQualityName
-  /** What is shown instead of the clouds. */
-  debug: CloudsDebug | 'off'
 }
 
-/** Time of a reproducible frame [s], and frames that fill what pixels remember. */
-const STILL = { time: 0, frames: 48 }
+/** Frames in which low quality marches every pixel once, and half of them again. */
+const STILL_FRAMES = 24
 
+/** Low for a still: its frames are many. */
+const qualityOf = ({ frame, quality }: CloudsArgs): CloudQualityName => (frame ? 'low' : quality)
+
+/** Name of a layer, for {@link CloudsArgs.shown}. */
+export const shownBy = (preset: CloudPresetName, layer: number): string => `${preset} ${layer}`
+
+/** Clouds over the Earth's land, from a meadow to 20,000 km: the same ones all the way. */
 export async function createClouds(
   canvas: HTMLCanvasElement,
   args: CloudsArgs
 ): Promise<SceneHandle<CloudsArgs>> {
-  const renderer = await createRenderer(canvas, args.forceWebGL)
-  const scene = new Scene()
-  const camera = new PerspectiveCamera(60, 1, 1, 1e9)
-  // #region clouds
-  const atmosphere = new Atmosphere()
-  const scenePass = pass(scene, camera, { samples: 0 })
-  const depth = scenePass.getTextureNode('depth')
-  const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
-  const pipeline = new RenderPipeline(renderer)
-  const addClouds = (preset: CloudPresetName, quality: CloudQualityName): CloudsNode => {
-    const node = clouds(air, depth, camera, atmosphere, cloudPreset(preset), { quality })
+  const worldMap = args.world ? await cloudCover() : null
+  const { preset } = args
+  const quality = qualityOf(args)
+  const post: CloudsArgs = { ...args, path: 'post' }
+  let onArgs: SceneHandle<CloudsArgs>['onArgs']
+
+  const handle = await createLand(canvas, post, 55, ({ scene, camera, ...land }) => {
+    const { renderer, air } = land
+    const { atmosphere, sun, sky, post } = air
+    if (post === undefined) throw new Error('createClouds: there must be a post effect')
+    const { pipeline, color, depth } = post
+    atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
+    // #region clouds
+    const layers = cloudPreset(preset)
+    const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
     pipeline.outputNode = node
-    pipeline.needsUpdate = true
-    return node
-  }
-  // #endregion
-  const current = { ...args }
-  let node: CloudsNode | undefined
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) }) // with three's own
+    cloudSkyLight(sky, node) // the sky's light, through clouds and from them
+    // #endregion
 
-  /** A node's layers are its own: another preset takes another node. */
-  const choose = (): void => {
-    node?.dispose()
-    node = addClouds(current.preset, current.quality)
-  }
-  const apply = (): void => {
-    atmosphere.place(current)
-    atmosphere.date = dateOf(current.day, current.hour)
-    renderer.toneMappingExposure = exposureOf(current.exposure)
-    camera.position.set(0, current.altitude, 0)
-    const [pitch, heading] = [current.pitch, current.heading].map(MathUtils.degToRad)
-    camera.rotation.set(pitch, -heading, 0, 'YXZ')
-    camera.updateMatrixWorld()
-    if (node === undefined) return
-    node.quality = current.quality
-    node.debugView = current.debug === 'off' ? null : current.debug
-    node.time = current.frame ? STILL.time : null
-    const { coverage } = cloudPreset(current.preset).at(0).parameters
-    node.field.layers.at(0).set({ coverage: current.coverage < 0 ? coverage : current.coverage })
-  }
-  choose()
-  apply()
+    const placeOf = placing()
+    const props =
+      args.props === 'cockpit'
+        ? createCockpit()
+        : args.props === 'balloons'
+          ? createBalloons(placeOf(args))
+          : null
+    if (props !== null) scene.add(props.object)
 
-  let ready: Promise<void> = Promise.resolve()
-  const settle = async (): Promise<void> => {
-    for (let i = 0; i < STILL.frames; i++) {
-      await new Promise(requestAnimationFrame)
-      pipeline.render()
-    }
-  }
-  return {
-    renderer,
-    scene,
-    camera,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: () => pipeline.render(),
-    resize(width, height, pixelRatio) {
-      renderer.setPixelRatio(pixelRatio)
-      renderer.setSize(width, height, false)
-      camera.aspect = width / height
-      camera.updateProjectionMatrix()
-      if (current.frame) ready = settle()
-    },
-    update(changes) {
-      const { preset } = current
+    /** Whatever layer the arguments are meant for takes them, or they take that of the layer. */
+    const applyLayer = (current: CloudsArgs): void => {
+      const index = Math.min(Math.max(Math.round(current.layer), 0), layers.length - 1)
+      const layer = layers.at(index)
+      const shown = shownBy(preset, index)
+      if (current.shown === shown) {
+        layer.set(layerParameters(current))
+        return
+      }
+      const changes = { ...layerArgs(layer.parameters), layer: index, shown }
       Object.assign(current, changes)
-      if (current.preset !== preset) choose()
-      apply()
-    },
-    dispose() {
-      pipeline.dispose()
-      node?.dispose()
-      scenePass.dispose()
-      atmosphere.dispose()
-      void renderer.dispose()
+      onArgs?.(changes)
     }
+
+    let lapse = args.timeLapse
+    let before = performance.now()
+    node.time = 0
+    return {
+      warmUpFrames: STILL_FRAMES,
+      place: placeOf,
+      apply(current) {
+        applyTime(renderer, air, current)
+        applyLayer(current)
+        node.quality = qualityOf(current)
+        node.debugView = current.debug === 'off' ? null : current.debug
+        lapse = current.frame ? 0 : current.timeLapse
+      },
+      beforeDraw() {
+        const now = performance.now()
+        node.time = (node.time ?? 0) + ((now - before) / 1000) * lapse
+        before = now
+        props?.follow(camera)
+      },
+      dispose() {
+        props?.dispose()
+        node.dispose()
+        worldMap?.dispose()
+      }
+    }
+  })
+  return Object.defineProperty(handle, 'onArgs', {
+    set(value: typeof onArgs) {
+      onArgs = value
+    }
+  })
+}
+
+/** Gives the same object as long as the arguments are the same. */
+function placing(): (args: CloudsArgs) => Place {
+  let latest: Place | undefined
+  return ({ longitude, latitude, altitude, heading, pitch }) => {
+    const place = { label: '', longitude, latitude, height: altitude, heading, pitch }
+    if (JSON.stringify(place) !== JSON.stringify(latest)) latest = place
+    return latest ?? place
   }
 }

@@ -1,62 +1,115 @@
-import { cloudQualities } from '@welkin/clouds'
+import { cloudPreset, cloudQualities } from '@welkin/clouds'
+import type { CloudPresetName } from '@welkin/clouds'
 import type { Meta, StoryObj } from '@storybook/html-vite'
-import { createClouds } from './clouds.scene'
+import { layerArgs, layerArgTypes } from './clouds/layerArgs'
+import { createClouds, shownBy } from './clouds.scene'
 import type { CloudsArgs } from './clouds.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('air.ts', 'post effect')}
+
+${storyCode('clouds.scene.ts', 'clouds')}`
+
 const { forceWebGL, frame } = rendererArgTypes
+const hidden = { table: { disable: true } }
+const camera = { table: { category: 'Camera' } }
+
+/** A preset and the parameters of its lowest layer. */
+const sky = (preset: CloudPresetName) => ({
+  preset,
+  layer: 0,
+  shown: shownBy(preset, 0),
+  ...layerArgs(cloudPreset(preset).at(0).parameters)
+})
+
+/** The picture says little of thin clouds: more of them, and thicker. */
+const world = {
+  ...sky('fairWeather'),
+  coverage: 0.75,
+  topAltitude: 4000,
+  world: true,
+  day: Date.UTC(2026, 11, 21),
+  hour: 15,
+  exposure: -1.25
+}
 
 const meta: Meta<CloudsArgs> = {
   title: 'Clouds',
-  render: mount(createClouds, storyCode('clouds.scene.ts', 'clouds')),
+  render: mount(createClouds, code, ({ preset }) => preset),
   argTypes: {
     preset: {
       name: 'Clouds',
       options: ['fairWeather', 'stratocumulus', 'overcast', 'cumulonimbus', 'cirrus', 'mixed'],
       control: 'select'
     },
-    coverage: {
-      name: 'Coverage',
-      control: { type: 'range', min: -1, max: 1, step: 0.01 },
-      description: 'Of the lowest layer; below 0 the preset’s'
-    },
     quality: { name: 'Quality', options: Object.keys(cloudQualities), control: 'inline-radio' },
     debug: {
-      name: 'Show',
-      options: ['off', 'opacity', 'steps', 'distance', 'history'],
+      name: 'Debug',
+      description: 'What is shown instead of the clouds: white is most',
+      options: ['off', 'density', 'steps', 'depth', 'history'],
       control: 'select'
     },
+    timeLapse: {
+      name: 'Time lapse',
+      description: 'How many times faster than the clock clouds drift',
+      control: { type: 'range', min: 0, max: 100, step: 1 }
+    },
+    ...timeArgTypes,
+    layer: {
+      name: 'Layer',
+      description: 'Which of the layers the parameters below are of, from the lowest',
+      control: { type: 'range', min: 0, max: 3, step: 1 },
+      table: { category: 'Layer' }
+    },
+    ...layerArgTypes,
     altitude: {
       name: 'Altitude [m]',
-      control: { type: 'number', min: 0, max: 1e8 },
-      description: 'Of the camera, above the ellipsoid'
+      control: { type: 'number', min: 2, max: 1e8 },
+      description: 'Where the camera goes, above the ellipsoid; fly on from there with the mouse',
+      ...camera
     },
-    heading: { name: 'Heading [°]', control: { type: 'range', min: 0, max: 360, step: 1 } },
-    pitch: { name: 'Pitch [°]', control: { type: 'range', min: -90, max: 90, step: 1 } },
+    heading: {
+      name: 'Heading [°]',
+      control: { type: 'range', min: 0, max: 360, step: 1 },
+      ...camera
+    },
+    pitch: { name: 'Pitch [°]', control: { type: 'range', min: -90, max: 90, step: 1 }, ...camera },
     longitude: {
       name: 'Longitude [°]',
-      control: { type: 'range', min: -180, max: 180, step: 0.01 }
+      control: { type: 'range', min: -180, max: 180, step: 0.01 },
+      ...camera
     },
-    latitude: { name: 'Latitude [°]', control: { type: 'range', min: -90, max: 90, step: 0.01 } },
-    ...timeArgTypes,
+    latitude: {
+      name: 'Latitude [°]',
+      control: { type: 'range', min: -90, max: 90, step: 0.01 },
+      ...camera
+    },
     forceWebGL,
-    path: { table: { disable: true } },
-    frame
+    frame,
+    shown: hidden,
+    world: hidden,
+    props: hidden,
+    path: hidden
   },
   args: {
-    preset: 'fairWeather',
-    coverage: -1,
+    ...sky('fairWeather'),
     quality: 'medium',
     debug: 'off',
-    altitude: 2,
-    heading: 60,
+    timeLapse: 1,
+    world: false,
+    props: 'none',
+    // 2 m above a meadow.
+    longitude: -84.178,
+    latitude: 36.622,
+    altitude: 341.8,
+    heading: 318,
     pitch: 14,
-    longitude: 20,
-    latitude: 45,
     day: Date.UTC(2026, 5, 21),
-    hour: 7,
+    hour: 15,
     exposure: 0,
     forceWebGL: false,
     path: 'post',
@@ -68,19 +121,98 @@ export default meta
 
 type Story = StoryObj<CloudsArgs>
 
-/** Fair-weather cumulus from the ground. */
-export const Cumulus: Story = {}
-
-/** Above a deck of stratocumulus. */
-export const Cockpit: Story = {
-  args: { preset: 'stratocumulus', altitude: 3000, pitch: -6 }
+/** Fair weather over a meadow. */
+export const Cumulus: Story = {
+  name: 'Cumulus from the ground',
+  args: { coverage: 0.45, pitch: 18 },
+  tags: ['screenshot']
 }
 
-/** Towers among small cumulus. */
-export const Storm: Story = { args: { preset: 'cumulonimbus', heading: 300 } }
+/** Stratocumulus below the windows of an aircraft. */
+export const Cockpit: Story = {
+  name: 'Cockpit above a deck',
+  args: { ...sky('stratocumulus'), altitude: 2600, heading: 250, pitch: -5, props: 'cockpit' },
+  tags: ['screenshot', 'webgpu-only']
+}
 
-/** The camera among cumulus. */
-export const InsideACloud: Story = { args: { altitude: 1500, pitch: 0 } }
+/** Towers 10 km high among small cumulus, against the sun of the late afternoon. */
+export const Storm: Story = {
+  args: {
+    ...sky('cumulonimbus'),
+    altitude: 450,
+    heading: 295,
+    pitch: 12,
+    hour: 22.4,
+    exposure: 0.25
+  },
+  tags: ['screenshot', 'webgpu-only']
+}
 
-/** From 400 km. */
-export const Orbit: Story = { args: { altitude: 400_000, pitch: -50 } }
+/** The sun is about to set, and reddens ice clouds from below. */
+export const Cirrus: Story = {
+  name: 'Cirrus at dusk',
+  args: { ...sky('cirrus'), heading: 290, pitch: 12, hour: 24.6, exposure: 2 },
+  tags: ['screenshot']
+}
+
+/** The cloud cover of a real day, from 400 km; fly down to the ground. */
+export const WorldClouds: Story = {
+  name: 'World clouds from orbit',
+  args: {
+    ...world,
+    longitude: -38,
+    latitude: -34,
+    altitude: 400_000,
+    heading: 235,
+    pitch: -28
+  },
+  tags: ['screenshot']
+}
+
+/** The same from 15,000 km. */
+export const WorldCloudsFromAfar: Story = {
+  name: 'World clouds from 15,000 km',
+  args: {
+    ...world,
+    longitude: -40,
+    latitude: -25,
+    altitude: 12_000_000,
+    heading: 0,
+    pitch: -90
+  }
+}
+
+/** Balloons, one farther into the cloud than the other. */
+export const InsideACloud: Story = {
+  name: 'Inside a cloud',
+  args: {
+    ...sky('overcast'),
+    density: 0.008,
+    altitude: 1350,
+    heading: 140,
+    pitch: 2,
+    props: 'balloons'
+  },
+  tags: ['screenshot', 'webgpu-only']
+}
+
+/** Shadows drift over real heights. */
+export const Shadows: Story = {
+  name: 'Cloud shadows on terrain',
+  args: {
+    coverage: 0.5,
+    longitude: -84.1517,
+    latitude: 36.45,
+    altitude: 3200,
+    heading: 322,
+    pitch: -20,
+    timeLapse: 20
+  },
+  tags: ['screenshot', 'webgpu-only']
+}
+
+/** Each preset over the same land; choose one. */
+export const Presets: Story = {
+  args: { ...sky('mixed'), altitude: 500, pitch: 12 },
+  tags: ['screenshot', 'webgpu-only']
+}

@@ -37,25 +37,34 @@ const STYLE = `
  * loaded, and sets `data-ready="true"` on the body.
  *
  * @param code - What a user writes for it: shown on request.
+ * @param restartsWith - What of the arguments takes a new scene when it changes.
  */
 export function mount<Args extends RendererArgs>(
   create: CreateScene<Args>,
-  code: string
+  code: string,
+  restartsWith: (args: Args) => string = () => ''
 ): (args: Args, context: { id: string }) => HTMLElement {
   return (args, { id }) => {
-    const key = [id, args.forceWebGL, args.path, args.frame].join(' ')
+    const key = [id, args.forceWebGL, args.path, args.frame, restartsWith(args)].join(' ')
     if (mounted?.key === key && mounted.element.isConnected) {
       mounted.update(args)
     } else {
       mounted?.dispose()
-      mounted = start(key, create, code, args)
+      mounted = start(key, id, create, code, args)
     }
     return mounted.element
   }
 }
 
+/** Has the controls of a story show what its scene changed. */
+async function showArgs(storyId: string, updatedArgs: object): Promise<void> {
+  const { addons } = await import('storybook/preview-api')
+  addons.getChannel().emit('updateStoryArgs', { storyId, updatedArgs })
+}
+
 function start<Args extends RendererArgs>(
   key: string,
+  id: string,
   create: CreateScene<Args>,
   code: string,
   args: Args
@@ -115,6 +124,7 @@ function start<Args extends RendererArgs>(
       return
     }
     handle = created
+    handle.onArgs = changes => void showArgs(id, changes)
     window.welkinScene = created as unknown as SceneHandle<never>
     handle.update(latest)
     resize()

@@ -17,6 +17,8 @@ export interface SceneHandle<Args> {
   /** @param pixelRatio - Device pixels per CSS pixel; width and height are CSS pixels. */
   resize(width: number, height: number, pixelRatio: number): void
   update(args: Partial<Args>): void
+  /** Called with arguments that the scene changed of itself; whoever shows them sets it. */
+  onArgs?: (changes: Partial<Args>) => void
   dispose(): void
 }
 

@@ -1,6 +1,6 @@
 import { codeRegion } from './codeRegion'
 
-const sources = import.meta.glob<string>(['./quickStart.ts', './*.scene.ts'], {
+const sources = import.meta.glob<string>(['./quickStart.ts', './air.ts', './*.scene.ts'], {
   query: '?raw',
   import: 'default',
   eager: true

@@ -20,12 +20,15 @@ function imageryDirectory(): string {
   return join(engine, 'Source/Assets/Textures/NaturalEarthII')
 }
 
-/** Pictures of the whole Earth that a story uses: colours, open water, lights. */
-const EARTH_PICTURES = ['earth-blue-marble.jpg', 'earth-water.png', 'earth-night.jpg']
+/** Pictures of the whole Earth that a story uses: colours, open water, lights; clouds. */
+const PICTURES: Record<string, string[]> = {
+  earth: ['earth-blue-marble.jpg', 'earth-water.png', 'earth-night.jpg'],
+  clouds: ['clouds.png']
+}
 
-function earthDirectory(): string {
+function exampleDirectory(name: string): string {
   const entry = createRequire(import.meta.url).resolve('three-globe')
-  return join(dirname(dirname(entry)), 'example/img')
+  return join(dirname(dirname(entry)), 'example', name)
 }
 
 function filesUnder(directory: string): string[] {
@@ -37,7 +40,7 @@ function filesUnder(directory: string): string[] {
 /**
  * Serves the stories' local data in development and adds it to a build: no network is needed for either.
  *
- * `world-data/earth/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the imagery in the `@cesium/engine` package; `world-data/terrain/` is made here
+ * `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the imagery in the `@cesium/engine` package; `world-data/terrain/` is made here
  * from the heights in `data/`, the first time and whenever they or the script change.
  */
 export function worldData(): Plugin {
@@ -47,7 +50,8 @@ export function worldData(): Plugin {
     buildStart() {
       directories.set('natural-earth', imageryDirectory())
       directories.set('terrain', ensureTerrain())
-      directories.set('earth', earthDirectory())
+      directories.set('earth', exampleDirectory('img'))
+      directories.set('clouds', exampleDirectory('clouds'))
     },
     configureServer(server) {
       server.middlewares.use((request, response, next) => {
@@ -74,9 +78,7 @@ export function worldData(): Plugin {
     generateBundle() {
       for (const [name, directory] of directories) {
         const files =
-          name === 'earth'
-            ? EARTH_PICTURES.map(picture => join(directory, picture))
-            : filesUnder(directory)
+          PICTURES[name]?.map(picture => join(directory, picture)) ?? filesUnder(directory)
         for (const file of files) {
           const path = relative(directory, file).split(sep).join('/')
           this.emitFile({

@@ -1,3 +1,5 @@
 import { defineConfig } from 'vite'
 
-export default defineConfig({ build: { rolldownOptions: { input: ['index.html', 'geo.html'] } } })
+const pages = ['index', 'geo', 'clouds'].map(name => `${name}.html`)
+
+export default defineConfig({ build: { rolldownOptions: { input: pages } } })

@@ -1,5 +1,5 @@
 import { FloatType, RenderTarget } from 'three'
-import { exp, float, Fn, Loop, screenCoordinate, vec3 } from 'three/tsl'
+import { exp, float, Fn, Loop, screenCoordinate, uniform, vec3 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type WebGPURenderer } from 'three/webgpu'
 import type { CloudField } from '@welkin/clouds'
 import { cloudExtinction } from '../../../packages/clouds/src/tsl/density'
@@ -11,6 +11,7 @@ export class CloudColumns {
   readonly #quad: QuadMesh
   /** How often the shader was built. */
   builds = 0
+  readonly #distance = uniform(2000)
 
   /**
    * @param size - Pixels along an edge.
@@ -31,6 +32,7 @@ export class CloudColumns {
       this.builds++
       setup(builder)
     }
+    const distance = this.#distance as unknown as Node<'float'>
     this.#material.fragmentNode = Fn(() => {
       const { up } = field.view
       const side = up.yzx.cross(up).normalize().toConst()
@@ -50,12 +52,17 @@ export class CloudColumns {
         const drop = square.div(radius.mul(radius).sub(square).sqrt().add(radius))
         const offset = level.add(up.mul(height.sub(drop))).toConst() as unknown as Node<'vec3'>
         const { altitude, up: zenith } = field.view.place(offset)
-        const sample = { offset, altitude, up: zenith, distance: float(2000) as Node<'float'> }
+        const sample = { offset, altitude, up: zenith, distance }
         depth.addAssign(cloudExtinction(field, sample, false).mul((top - base) / steps))
       })
       return vec3(exp(depth.negate()), depth, 0)
     })() as never
     this.#quad = new QuadMesh(this.#material)
+  }
+
+  /** From where the clouds are seen, all from equally far: sets the level of detail [m]. */
+  set distance(metres: number) {
+    this.#distance.value = metres
   }
 
   /** Pixels of `[transmittance, optical depth]`, channel by channel. */
@@ -105,4 +112,26 @@ export function powerSpectrum(picture: readonly number[], size: number): number[
   for (let row = 0; row < size; row++) line(row * size, 1)
   for (let column = 0; column < size; column++) line(column, size)
   return real.map((x, i) => x * x + imaginary[i] ** 2)
+}
+
+/** The wave of a square picture whose power stands out the most from those that are as long. */
+export function highestPeak(
+  picture: readonly number[],
+  size: number,
+  shortest = 4
+): { ratio: number; wave: [number, number] } {
+  const power = powerSpectrum(picture, size)
+  const signed = (i: number): number => (i > size / 2 ? i - size : i)
+  const waveOf = (i: number): [number, number] => [signed(i % size), signed(Math.floor(i / size))]
+  const rings: number[][] = Array.from({ length: size }, () => [])
+  power.forEach((p, i) => rings[Math.round(Math.hypot(...waveOf(i)))].push(p))
+  const means = rings.map(ring => ring.reduce((a, b) => a + b, 0) / ring.length)
+  let highest: { ratio: number; wave: [number, number] } = { ratio: 0, wave: [0, 0] }
+  power.forEach((p, i) => {
+    const wave = waveOf(i)
+    const ring = Math.round(Math.hypot(...wave))
+    if (ring < shortest || ring > size / 2) return
+    if (p / means[ring] > highest.ratio) highest = { ratio: p / means[ring], wave }
+  })
+  return highest
 }

@@ -163,7 +163,8 @@ export class CloudField {
     const { parameters } = this.layers.at(index)
     const periods = layerPeriods(parameters)
     const slots = this.values.slice(index * LAYER_STRIDE, (index + 1) * LAYER_STRIDE)
-    const { baseAltitude, topAltitude, coverage, density, shadow } = parameters
+    const { baseAltitude, topAltitude, density, shadow } = parameters
+    const coverage = this.noise.isReady ? parameters.coverage : 0
     slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
     const { profileExponent, shapeAmount, detailAmount } = parameters
     slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
@@ -209,7 +210,7 @@ export class CloudField {
     slots[7].w = shadow ? 1 : 0
   }
 
-  /** Draws missing noise: `CloudNoise.update`. */
+  /** Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. */
   bake(renderer: Renderer, slices = Infinity): boolean {
     return this.noise.update(renderer, slices)
   }

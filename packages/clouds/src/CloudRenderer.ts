@@ -1,6 +1,6 @@
 import { aerialPerspectiveTo, FragmentPass, linearSRGB } from '@welkin/atmosphere'
 import { HalfFloatType, LinearFilter, RenderTarget } from 'three'
-import { Fn, If, float, texture, uv, vec4 } from 'three/tsl'
+import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import type { CloudLight } from './CloudLightTable'
@@ -9,8 +9,10 @@ import type { FrameUniforms } from './FrameUniforms'
 import type { QualityUniforms } from './quality'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
-import { sightAt, type SightNodes } from './tsl/sight'
-import { encodeDistance, upscale, type CloudPictures } from './tsl/upscale'
+import { gatherCells } from './tsl/cells'
+import { encodeDistance, type CloudPictures } from './tsl/pictures'
+import { sightAt, sightEnd, type SightNodes } from './tsl/sight'
+import { upscale } from './tsl/upscale'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from './tsl-types'
 
 /** What the pictures of clouds are made from. */
@@ -47,10 +49,10 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
-      const { direction, directionView, end } = sightAt(
-        sights,
-        pixel.add(0.5).div(frame.size).toConst()
-      )
+      const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
+      const sight = sightAt(sights, at)
+      const { direction, directionView } = sight
+      const end = sightEnd(sights, at, sight)
       const marched = marchClouds(field, light, shadows, quality, {
         direction,
         end,
@@ -65,7 +67,7 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
         color.assign(vec4(seen.mul(frame.gain), marched.transmittance))
       })
       const distance = encodeDistance(marched.distance)
-      place.assign(vec4(distance, encodeDistance(end), float(0), marched.steps.div(256)))
+      place.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
       return vec4(0)
     })()
   )
@@ -78,10 +80,14 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
 export class CloudRenderer {
   readonly #frame: FrameUniforms
   readonly #marched = pictureTarget('Welkin.CloudsMarched')
+  readonly #cells = pictureTarget('Welkin.CloudsCells')
   /** The picture, and that of the last frame, in turns. */
   readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`))
   readonly #march: FragmentPass
+  readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
+  /** What was marched in the latest frame. */
+  readonly marched = picturesOf(this.#marched)
   /** Both pictures: the shader chooses by {@link current}. */
   readonly pictures: readonly CloudPictures[] = this.#accumulated.map(picturesOf)
   /** Which one is the latest. */
@@ -90,18 +96,26 @@ export class CloudRenderer {
   constructor(scene: CloudScene) {
     this.#frame = scene.sights.frame
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
-    const marched = picturesOf(this.#marched)
+    const { marched } = this
+    this.#gather = new FragmentPass(
+      'Welkin.CloudsGather',
+      gatherCells(scene.field, scene.sights, marched)
+    )
+    const cells = picturesOf(this.#cells)
     this.#upscale = this.#accumulated.map((_, i) => {
       const history = picturesOf(this.#accumulated[1 - i])
-      const output = upscale(scene.field, scene.sights, marched, history)
+      const output = upscale(scene.sights, marched, cells, history)
       return new FragmentPass('Welkin.CloudsUpscale', output)
     })
   }
 
+  get #targets(): RenderTarget[] {
+    return [this.#marched, this.#cells, ...this.#accumulated]
+  }
+
   /** Size on the GPU [bytes]. */
   get bytes(): number {
-    const targets = [this.#marched, ...this.#accumulated]
-    return targets.reduce((sum, { width, height }) => sum + 16 * width * height, 0)
+    return this.#targets.reduce((sum, { width, height }) => sum + 16 * width * height, 0)
   }
 
   /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */
@@ -112,6 +126,7 @@ export class CloudRenderer {
       this.#frame.reset()
     }
     this.#marched.setSize(Math.ceil(width / block), Math.ceil(height / block))
+    this.#cells.setSize(this.#marched.width + 1, this.#marched.height + 1)
     this.#frame.size.value.set(width, height)
     this.#frame.marchedSize.value.set(this.#marched.width, this.#marched.height)
   }
@@ -119,13 +134,14 @@ export class CloudRenderer {
   /** Draws a frame; `FrameUniforms.next` goes first. */
   render(renderer: Renderer): void {
     this.#march.render(renderer, this.#marched)
+    this.#gather.render(renderer, this.#cells)
     this.current = 1 - this.current
     this.#upscale[this.current].render(renderer, this.#accumulated[this.current])
   }
 
   /** Frees the pictures. */
   dispose(): void {
-    for (const target of [this.#marched, ...this.#accumulated]) target.dispose()
-    for (const pass of [this.#march, ...this.#upscale]) pass.dispose()
+    for (const target of this.#targets) target.dispose()
+    for (const pass of [this.#march, this.#gather, ...this.#upscale]) pass.dispose()
   }
 }

@@ -17,9 +17,13 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
+import type { CloudPictures } from './tsl/pictures'
 import type { LevelTexture, Vec2, Vec4 } from './tsl-types'
 
 const _size = new Vector2()
+
+/** Slices of its own noise that a node draws in a frame: all in about 28. */
+const NOISE_SLICES = 24
 
 /** Options of {@link clouds}. */
 export interface CloudsOptions {
@@ -27,7 +31,10 @@ export interface CloudsOptions {
   quality?: CloudQualityName | CloudQuality
   /** Cloud cover of the whole planet: see `CloudFieldOptions`. */
   worldMap?: Texture | null
-  /** Noise to share between nodes; left out, the node makes and owns its own. */
+  /**
+   * Noise to share between nodes, drawn at once if it is not yet. Left out, the node makes and owns its
+   * own, and draws it over its first frames: the sky is clear until then.
+   */
   noise?: CloudNoise
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
@@ -35,22 +42,16 @@ export interface CloudsOptions {
 
 /** What the picture shows instead of clouds, for looking into them: white is most. */
 export type CloudsDebug =
-  /** How opaque they are. */
-  | 'opacity'
+  /** How opaque they are, all along the line of sight. */
+  | 'density'
   /** Steps of the last ray marched nearby, of 256. */
   | 'steps'
   /** Distance, by its logarithm: black at 100 m, white at 1000 km. */
-  | 'distance'
+  | 'depth'
   /** Looks that a pixel remembers, of 32. */
   | 'history'
 
-const debugViews: readonly (CloudsDebug | null)[] = [
-  null,
-  'opacity',
-  'steps',
-  'distance',
-  'history'
-]
+const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', 'depth', 'history']
 
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
@@ -90,6 +91,7 @@ export class CloudsNode extends AtmosphereNode {
   /** Whether pixels remember what was marched before; without, pictures are coarse. */
   accumulates = true
   readonly #ownsLight: boolean
+  readonly #noiseSlices: number
   readonly #uniforms = new QualityUniforms()
   readonly #frame = new FrameUniforms()
   #renderer: CloudRenderer | undefined
@@ -123,6 +125,7 @@ export class CloudsNode extends AtmosphereNode {
     this.field = new CloudField(atmosphere, layers, this.view, { worldMap, noise })
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
+    this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
   }
 
@@ -177,7 +180,9 @@ export class CloudsNode extends AtmosphereNode {
     const { camera, field } = this
     const { renderer } = frame
     if (renderer === null) return
-    field.bake(renderer)
+    const wasReady = field.noise.isReady
+    // Of clouds that appear there is no history.
+    if (field.bake(renderer, this.#noiseSlices) && !wasReady) this.#frame.reset()
     this.light.bake()
     // What is drawn here and now reads the view too.
     const view = this.view.update(frame)
@@ -220,26 +225,31 @@ export class CloudsNode extends AtmosphereNode {
 
   override setup(builder: NodeBuilder): Node {
     this.#renderer ??= this.#createRenderer(builder.renderer)
-    const { pictures } = this.#renderer
+    const { marched, pictures } = this.#renderer
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
-      const isFirst = this.#current.equal(0)
       const at = uv() as unknown as Vec2
-      const [first, second] = pictures.map(({ light }) => light.sample(at).level(0).toConst())
-      const clouds = isFirst.select(first, second).toConst() as Vec4
+      const latest = (part: keyof CloudPictures): Vec4 => {
+        const value = vec4(0).toVar() as Vec4
+        const [first, second] = pictures.map(picture => () => {
+          value.assign(picture[part].sample(at).level(0))
+        })
+        If(this.#current.equal(0), first).Else(second)
+        return value
+      }
+      const clouds = latest('light')
       const light = clouds.rgb.mul(this.#exposure)
       const result = vec4(
         color.rgb.mul(clouds.a).add(light),
         color.a.mul(clouds.a).add(clouds.a.oneMinus())
       ).toVar()
       If(this.#debug.greaterThan(0), () => {
-        const places = pictures.map(({ place }) => place.sample(at).level(0).toConst())
-        const place = isFirst.select(places[0], places[1]).toConst() as Vec4
+        const place = latest('place')
         const views = [
           clouds.a.oneMinus(),
-          place.w,
-          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)),
-          place.z.div(32)
+          marched.place.sample(at).level(0).w,
+          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
+          place.z.abs().div(32)
         ]
         views.forEach((view, i) => {
           If(this.#debug.equal(i + 1), () => {

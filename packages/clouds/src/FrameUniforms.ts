@@ -1,4 +1,4 @@
-import { Matrix4, Vector2, Vector3, Vector4 } from 'three'
+import { Matrix3, Matrix4, Vector2, Vector3, Vector4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import type { AtmosphereView } from '@welkin/atmosphere'
 import { renderGroup, uniform } from 'three/tsl'
@@ -10,6 +10,7 @@ import { vec4Array } from './tsl-types'
 
 const number = (value = 0): UniformNode<'float', number> => uniform(value).setGroup(renderGroup)
 const vector2 = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
+const matrix3 = (): UniformNode<'mat3', Matrix3> => uniform(new Matrix3()).setGroup(renderGroup)
 const matrix4 = (): UniformNode<'mat4', Matrix4> => uniform(new Matrix4()).setGroup(renderGroup)
 
 /** Order in which the pixels of a block are marched: neighbours in time are far apart. */
@@ -63,9 +64,10 @@ export function nightGain({ up, sunDirection, height }: AtmosphereView, radius: 
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
 
-const _projection = new Matrix4()
+const _toPrevious = new Matrix4()
 const _delta = new Vector3()
 const _position = new Vector3()
+const _origin = new Vector4()
 
 /** What changes from frame to frame: sizes, jitter, and where the last frame's pixels were. */
 export class FrameUniforms {
@@ -82,11 +84,13 @@ export class FrameUniforms {
   readonly projectionInverse: UniformNode<'mat4', Matrix4> = matrix4()
   readonly near = number()
   readonly far = number()
-  /** From an offset in the mapped space [m] to clip space of the last frame. */
-  readonly toPrevious: UniformNode<'mat4', Matrix4> = matrix4()
-  /** How far each layer has moved since, xyz [m]. */
-  readonly drifts: Vector4[] = Array.from({ length: CloudLayers.maxLayers }, () => new Vector4())
-  readonly driftArray = vec4Array(this.drifts)
+  /** From (x, y, 1) of a pixel in normalized device coordinates to a ray through it, in view space. */
+  readonly rays: UniformNode<'mat3', Matrix3> = matrix3()
+  /** From such a place to where in clip space (x, y, w) of the last frame its ray led. */
+  readonly raysBefore: UniformNode<'mat3', Matrix3> = matrix3()
+  /** Where there, in that space, the eye would have been from which each layer has stayed where it is. */
+  readonly origins: Vector4[] = Array.from({ length: CloudLayers.maxLayers }, () => new Vector4())
+  readonly originArray = vec4Array(this.origins)
   /** 0 where there is no last frame. */
   readonly hasHistory = number()
   /** Most looks that a pixel remembers. */
@@ -144,17 +148,26 @@ export class FrameUniforms {
     const isCut = last === null || !usesHistory || isDusk || this.#isCut(view, field, last)
     this.hasHistory.value = isCut ? 0 : 1
     let isStill = !isCut
+    const { elements: e } = camera.projectionMatrixInverse
+    // Two places on a ray are two depths: any between near and far gives its direction.
+    const [x, y, z] = [0, 1, 2].map(row => 0.5 * e[8 + row] + e[12 + row])
+    const rays = this.rays.value.set(e[0], e[4], x, e[1], e[5], y, e[2], e[6], z)
     if (last !== null) {
       _delta.copy(_position).sub(last)
-      _projection
+      _toPrevious
         .makeTranslation(_delta)
         .premultiply(this.#fromMapped)
         .premultiply(this.#projection)
-      this.toPrevious.value.copy(_projection)
+      const { elements: p } = _toPrevious
+      this.raysBefore.value
+        .set(p[0], p[4], p[8], p[1], p[5], p[9], p[3], p[7], p[11])
+        .multiply(view.viewToMapped)
+        .multiply(rays)
       isStill &&= _delta.lengthSq() < 1e-12
     }
     field.drifts.forEach((drift, i) => {
-      this.drifts[i].set(drift.x, drift.y, drift.z, 0)
+      const { x, y, z, w } = _origin.set(-drift.x, -drift.y, -drift.z, 1).applyMatrix4(_toPrevious)
+      this.origins[i].set(x, y, w, z)
       isStill &&= drift.lengthSq() === 0
     })
     const matter = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))

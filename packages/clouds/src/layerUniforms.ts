@@ -148,18 +148,22 @@ export const densityShape = {
   /** Change of the weather over which a layer fills from edge to middle. */
   edgeWidth: { cirrus: 1.6, other: 0.5 },
   /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
-  meanEdge: 0.44,
+  meanEdge: 0.5,
   /** Added to the fill at full coverage, taken at none. */
   excess: 0.6,
   /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
   blur: [0, 5],
-  /** Least deviation of what is lost: sharper edges of the cover are of no use. */
+  /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
+  carvedBlur: 0.25,
   leastBlur: 0.05,
   /** Fill that towers lack below their anvils, and how much thinner these are. */
   anvilReach: 0.4,
   anvilDensity: 0.35,
   /** The shape carves at least this part of its amount: what is less full is empty for sure. */
   leastCarving: 0.15,
+  /** What the shape carves less where its levels of detail have lost it, per amount, and these levels. */
+  lostCarving: 0.09,
+  shapeBlur: [0, 5],
   /** Most that detail takes away. */
   erosion: 0.22,
   /** Density per fullness left, of smooth layers and of carved ones: how sharp edges are. */

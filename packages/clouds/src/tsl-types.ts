@@ -1,5 +1,7 @@
 // What @types/three 0.187 lacks or gets wrong, in one place.
 import {
+  floatBitsToInt,
+  intBitsToFloat,
   Loop as threeLoop,
   outputStruct,
   property,
@@ -19,12 +21,17 @@ export type Mat3 = Node<'mat3'>
 export type Mat4 = Node<'mat4'>
 
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
-export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {
+export const loop = (
+  name: string,
+  end: Int | number,
+  body: (index: Int) => void,
+  start: Int | number = 0
+): void => {
   const nodes = threeLoop as unknown as (
-    range: { start: number; end: Int | number; type: string; name: string },
+    range: { start: Int | number; end: Int | number; type: string; name: string },
     body: (inputs: Record<string, Int>) => void
   ) => void
-  nodes({ start: 0, end, type: 'int', name }, inputs => body(inputs[name]))
+  nodes({ start, end, type: 'int', name }, inputs => body(inputs[name]))
 }
 
 /**
@@ -37,6 +44,14 @@ export interface Vec4Array extends Node {
 }
 export const vec4Array = (values: Vector4[]): Vec4Array =>
   threeUniformArray(values, 'vec4').setGroup(renderGroup) as unknown as Vec4Array
+
+/** The bits of four floats. */
+export interface Bits extends Node {
+  add(n: Int): Bits
+  bitAnd(n: Int): Bits
+}
+export const toBits = (value: Vec4): Bits => floatBitsToInt(value) as unknown as Bits
+export const fromBits = (bits: Bits): Vec4 => intBitsToFloat(bits) as unknown as Vec4
 
 /** A texture node that is read at an explicit level, wherever the control flow is. */
 export interface LevelTexture<UV> extends Node {

@@ -38,8 +38,8 @@ describe('CloudsNode', () => {
     expect(node.debugView).toBe(null)
     node.debugView = 'history'
     expect(node.debugView).toBe('history')
-    expect(() => (node.debugView = 'density' as never)).toThrow(
-      'CloudsNode: debugView must be null or one of opacity, steps, distance, history, got density'
+    expect(() => (node.debugView = 'opacity' as never)).toThrow(
+      'CloudsNode: debugView must be null or one of density, steps, depth, history, got opacity'
     )
     expect(node.debugView).toBe('history')
     node.dispose()

@@ -28,6 +28,8 @@ export interface Land {
 export interface LandStory<Args> {
   /** Where its arguments put the camera: it moves when that is another object. */
   place(args: Args): Place
+  /** Frames to draw before one counts; {@link WARM_UP_FRAMES} if left out. */
+  readonly warmUpFrames?: number
   /** Follows its arguments. */
   apply(args: Args): void
   /** @param altitude - Of the camera above the ellipsoid [m]. */
@@ -62,6 +64,7 @@ export async function createLand<Args extends RendererArgs>(
 
   const air = new Air(renderer, scene, camera, args.path)
   const story = create({ renderer, scene, camera, air, noise })
+  const { warmUpFrames = WARM_UP_FRAMES } = story
   prepareShadow(air.sun)
 
   const controls = new GlobeControls(ground, camera, args.frame ? undefined : canvas)
@@ -92,7 +95,7 @@ export async function createLand<Args extends RendererArgs>(
 
   const load = (): void => {
     ready = loadTiles(tilesets, prepare, () => disposed).then(() => {
-      for (let i = 0; current.frame && !disposed && i < WARM_UP_FRAMES; i++) draw()
+      for (let i = 0; current.frame && !disposed && i < warmUpFrames; i++) draw()
     })
     // A failure is reported to whoever awaits `ready`.
     ready.catch(() => {})

@@ -151,8 +151,9 @@ export function weatherAt(
     (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lost(regionLevel - 0.8)) / 12
   const odds = clamp(c, 1e-6, 1 - 1e-6)
   const quantile = Math.log(odds / (1 - odds)) / 1.702
-  const { leastBlur, excess, meanEdge } = densityShape
-  const chance = cumulative((z + quantile) / Math.max(Math.sqrt(variance), leastBlur))
+  const { carvedBlur, leastBlur, excess, meanEdge } = densityShape
+  const edges = Math.max(carvedBlur * layer.shapeAmount, leastBlur)
+  const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
   const surely = excess * (2 * c - 1) ** 5
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(SHAPE_WARP.clouds)
   return {
@@ -184,9 +185,12 @@ function carved(
   const period = layerPeriods(layer).shape
   const { stretch } = layerForms(layer)
   const place = placeIn(position, turn, latticeRotation.shape, period, stretch, weather.shapeWarp)
-  const [whole, finer] = noise.sample('shape', place, levelOf(footprint, period / NOISE_SIZE.shape))
-  const heads = whole + 0.3 * (finer - 0.5)
-  const left = filled - layer.shapeAmount * Math.max(1 - heads, densityShape.leastCarving)
+  const level = levelOf(footprint, period / NOISE_SIZE.shape)
+  const [whole, finer] = noise.sample('shape', place, level)
+  const { leastCarving, lostCarving, shapeBlur } = densityShape
+  const heads =
+    whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(shapeBlur[0], shapeBlur[1], level)
+  const left = filled - layer.shapeAmount * Math.max(1 - heads, leastCarving)
   const most = layer.detailAmount * densityShape.erosion
   if (!detail) return left - most / 2
   const fine = placeIn(
@@ -197,11 +201,11 @@ function carved(
     stretch,
     weather.detailWarp
   )
-  const level = levelOf(footprint, DETAIL_PERIOD / NOISE_SIZE.detail)
+  const fineLevel = levelOf(footprint, DETAIL_PERIOD / NOISE_SIZE.detail)
   const [x, y, z] = fine.map(v => v / CURL_PERIOD)
-  const curl = noise.sample('detail', [x, y, z], level).slice(1)
+  const curl = noise.sample('detail', [x, y, z], fineLevel).slice(1)
   const [a, b, c] = fine.map((v, axis) => v + (CURL_AMOUNT / CURL_SCALE) * (curl[axis] - 0.5))
-  const fray = noise.sample('detail', [a, b, c], level)[0]
+  const fray = noise.sample('detail', [a, b, c], fineLevel)[0]
   const wispy = smoothstep(0.1, 0.35, height)
   return left - most * (fray + (1 - 2 * fray) * wispy)
 }
@@ -237,7 +241,10 @@ export function cloudExtinction(
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
     const depth = Math.max(density * (topAltitude - baseAltitude) * farFill, 1e-4)
     const far = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30)) / depth
-    const matter = (1 - spread) * clamp(left * sharpness, 0, 1) + spread * far * profile
+    const near = clamp(left * sharpness, 0, 1)
+    const through =
+      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * profile * depth)
+    const matter = spread === 0 ? near : -Math.log(Math.max(through, 1e-30)) / depth
     sum += density * matter * (1 + anvilHere * (anvilDensity - 1))
   })
   return sum

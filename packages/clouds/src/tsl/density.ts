@@ -4,8 +4,8 @@ import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import { CURL_AMOUNT, CURL_PERIOD, densityShape, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
-import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { forLayers, layerAt, rotate, type LayerNodes } from './layer'
+import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
 import { footOffset, weatherAt, type CloudWeather } from './weather'
 
 /** A place in the air, as seen from the field's camera. */
@@ -24,16 +24,18 @@ export interface CloudSample {
 const NOWHERE = 1e6
 
 /**
- * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
- * periods of the weather, and where its shape is besides, in periods of the shape.
+ * Distances over which the fill of a layer changes by 1: where its weather is steep, in periods of the
+ * weather, and where its shape is besides, in periods of the shape. It is steeper in places, by up to
+ * three times; but at the edges that are missed then, noise leaves next to nothing.
  */
-const STEEPEST = { weather: 0.03, shape: 0.05 }
+const STEEPEST = { weather: 0.09, shape: 0.12 }
 
-const { anvilDensity, anvilReach, erosion, farFill, leastCarving } = densityShape
+const { anvilDensity, anvilReach, erosion, farFill, leastCarving, lostCarving, shapeBlur } =
+  densityShape
 
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>
-  layer.anvil.mul(smoothstep(0.62, 0.8, height)).toConst() as Float
+  layer.anvil.mul(smoothstep(0.62, 0.8, height)).toConst()
 
 /** 1 − (2 ĥ^t − 1)²: how much of a layer's air cloud may fill at a height. Anvils are full up to the top. */
 function heightProfile(layer: LayerNodes, height: Float, anvil: Float): Float {
@@ -65,7 +67,9 @@ function carving(
   ).mul(layer.perShapePeriod)
   const level = levelOf(footprint, float(1 / NOISE_SIZE.shape).div(layer.perShapePeriod))
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
-  const heads = noise.x.add(noise.y.sub(0.5).mul(0.3))
+  const heads = noise.x
+    .add(noise.y.sub(0.5).mul(0.3))
+    .add(smoothstep(shapeBlur[0], shapeBlur[1], level).mul(lostCarving))
   const carved = layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)).toConst() as Float
   const left = filled.sub(carved).toVar() as Float & { subAssign: (n: Float) => void }
   const most = layer.detailAmount.mul(erosion).toConst() as Float
@@ -90,12 +94,23 @@ function carving(
   return { left, carved }
 }
 
+/** Optical depth of a cloud from top to base. */
+const columnOf = (layer: LayerNodes): Float =>
+  layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst()
+
 /** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
 export function spreadDensity(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const depth = layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst() as Float
+  const depth = columnOf(layer)
   const blocked = cover.mul(depth.negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
   return blocked.oneMinus().max(1e-30).log().negate().div(depth)
+}
+
+/** Between two densities, such that the light that columns of them let through is mixed. */
+function mixedDensity(layer: LayerNodes, a: Float, b: Float, share: Float): Float {
+  const depth = columnOf(layer)
+  const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
+  return through.max(1e-30).log().negate().div(depth)
 }
 
 /** Height in a layer from 0 to 1. */
@@ -146,6 +161,19 @@ type Unseen =
   /** The inside of one. */
   | 'inside'
 
+/** Whether there may be cloud of a layer in a weather, whatever the noise. */
+const mayFill = (layer: LayerNodes, { fill, spread, cover }: LocalWeather): Bool =>
+  fill.greaterThan(layer.shapeAmount.mul(leastCarving)).or(spread.mul(cover).greaterThan(0))
+
+/** Distance in which the weather lets no cloud of a layer be, whatever the height: profiles are steep [m]. */
+const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
+  layer.shapeAmount
+    .mul(leastCarving)
+    .sub(fill)
+    .mul(STEEPEST.weather)
+    .div(layer.perWeatherPeriod)
+    .max(0)
+
 /**
  * One layer in a given weather.
  *
@@ -166,12 +194,7 @@ function layerMatter(
   const filled = fillAt(layer, weather, anvil).mul(profile).toConst() as Float
   const density = float(0).toVar()
   const least = layer.shapeAmount.mul(leastCarving).toConst() as Float
-  // Whatever the height: profiles are steep.
-  const clearance = least
-    .sub(fill)
-    .mul(STEEPEST.weather)
-    .div(layer.perWeatherPeriod)
-    .toVar() as Float
+  const clearance = clearanceIn(layer, weather).toVar() as Float
   If(filled.greaterThan(least), () => {
     const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
     density.assign(left.mul(layer.sharpness).clamp(0, 1))
@@ -179,7 +202,7 @@ function layerMatter(
   })
   If(spread.mul(cover).greaterThan(0), () => {
     const whole = unseen === 'mean' ? spreadDensity(layer, weather) : float(farFill)
-    density.assign(spread.mix(density, whole.mul(profile)))
+    density.assign(mixedDensity(layer, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
   return {
@@ -207,11 +230,16 @@ export interface PairMatter {
 /**
  * Clouds at two places near each other, with detail, in the weather in the middle between them: looking
  * that up takes longer than the rest, and it is kilometres wide.
+ *
+ * @param middle - All three have to be within the altitudes of the same layers.
+ * @param samples - Make the samples, where they are needed.
+ * @param range - The layers that are looked at.
  */
 export function pairMatter(
   field: CloudField,
   middle: CloudSample,
-  samples: readonly [CloudSample, CloudSample]
+  samples: readonly (() => CloudSample)[],
+  range: LayerRange
 ): PairMatter {
   const sum = vec2(0).toVar() as Vec2
   const clearance = float(NOWHERE).toVar()
@@ -219,20 +247,22 @@ export function pairMatter(
   const shapeWarp = vec3(0).toVar() as Vec3
   const most = float(0).toVar()
   const foot = footOffset(field, middle).toConst()
-  forLayers(field, 'pairLayer', index => {
+  const look = (index: Int): void => {
     const layer = layerAt(field, index)
-    const heights = samples.map(({ altitude }) => heightIn(layer, altitude))
-    const mayHoldAny = mayHold(layer, heights[0]).or(mayHold(layer, heights[1]))
-    If(mayHoldAny, () => {
+    If(mayHold(layer, heightIn(layer, middle.altitude)), () => {
       const weather = weatherAt(field, layer, foot, middle)
       const found = vec2(0).toVar() as Vec2
-      samples.forEach((sample, i) => {
-        If(mayHold(layer, heights[i]), () => {
-          const matter = layerMatter(field, layer, weather, sample, heights[i], true)
+      const clear = clearanceIn(layer, weather).toVar() as Float
+      If(mayFill(layer, weather), () => {
+        samples.forEach((sampleAt, i) => {
+          const sample = sampleAt()
+          const height = heightIn(layer, sample.altitude)
+          const matter = layerMatter(field, layer, weather, sample, height, true)
           found.addAssign(i === 0 ? vec2(matter.extinction, 0) : vec2(0, matter.extinction))
-          if (i === 1) clearance.assign(clearance.min(matter.clearance))
+          if (i === 1) clear.assign(matter.clearance)
         })
       })
+      clearance.assign(clearance.min(clear))
       sum.addAssign(found)
       const both = found.x.add(found.y).toConst() as Float
       If(both.greaterThan(most), () => {
@@ -241,7 +271,8 @@ export function pairMatter(
         shapeWarp.assign(weather.shapeWarp)
       })
     })
-  })
+  }
+  forLayers(field, 'pairLayer', look, range)
   return { extinction: sum, clearance, weather: { values, shapeWarp } }
 }
 

@@ -100,8 +100,24 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
   }
 }
 
-/** Calls back for each layer, with code for one if there is one. */
-export function forLayers(field: CloudField, name: string, body: (index: Int) => void): void {
-  if (field.layers.length === 1) body(int(0))
-  else loop(name, field.layers.length, body)
+/** Layers that follow each other: from the first one to before the last. */
+export interface LayerRange {
+  readonly first: Int
+  readonly last: Int
+}
+
+/**
+ * Calls back for each layer, with code for one if there is one.
+ *
+ * @param range - Which ones; all if it is left out.
+ */
+export function forLayers(
+  field: CloudField,
+  name: string,
+  body: (index: Int) => void,
+  range?: LayerRange
+): void {
+  const { length } = field.layers
+  if (length === 1) body(int(0))
+  else loop(name, range?.last ?? length, body, range?.first)
 }

@@ -50,7 +50,7 @@ function depthsAbout(
   toLight: Vec3,
   isMapped: Float,
   cosSun: Float,
-  { base, top }: Surroundings,
+  { base, top }: Pick<Surroundings, 'base' | 'top'>,
   dither: Float
 ): Depths {
   const rise = top.sub(sample.altitude).max(1).toConst()
@@ -115,6 +115,7 @@ export interface CloudShares {
  * What a place sends towards the eye of the light that reaches it.
  *
  * @param dither - Noise in [0, 1), in which cascades of the shadow map meet.
+ * @param about - The layers around the sample, where they are known.
  */
 export function sourceAt(
   field: CloudField,
@@ -125,10 +126,10 @@ export function sourceAt(
   sample: CloudSample,
   direction: Vec3,
   transmittance: Float,
-  dither: Float
+  dither: Float,
+  about: Pick<Surroundings, 'base' | 'top' | 'layered'> = surroundings(field, sample.altitude)
 ): CloudShares {
   const { view } = field
-  const about = surroundings(field, sample.altitude)
   const isNight = isSunk(field, sample.up.dot(view.sunDirection)).toConst()
   const toLight = isNight.select(field.night.direction, view.sunDirection).toConst() as Vec3
   const isMapped = isNight.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float

@@ -1,15 +1,19 @@
-import { Break, If, float, vec2, vec3, vec4 } from 'three/tsl'
+import { Break, If, float, int, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { CloudLight } from '../CloudLightTable'
 import type { CloudShadows } from '../CloudShadowMap'
 import type { QualityUniforms } from '../quality'
-import { loop, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { loop, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { pairMatter, type CloudSample } from './density'
 import { lightUp, OPAQUE, sourceAt } from './lighting'
 import { FAR_AWAY, nextShell, surroundings } from './shells'
 
 /** Least number of steps through a layer that is thinner than a few samples are wide. */
 const LEAST_STEPS = 4
+
+/** Vertical optical depth of a layer below which it takes fewer steps, and the least part of them. */
+const THIN = 4
+const LEAST_EFFORT = 0.35
 
 /** Part of a ray's light over which the light at one sample may stand for its successors. */
 const SHARED_LIGHT = 0.05
@@ -67,6 +71,14 @@ export function marchClouds(
   /** End of the stretch between two shells. */
   const shell = float(0).toVar()
   const longest = float(FAR_AWAY).toVar()
+  /** The layers on it. */
+  const about = {
+    base: float(0).toVar(),
+    top: float(0).toVar(),
+    layered: float(0).toVar(),
+    range: { first: int(0).toVar() as Int, last: int(0).toVar() as Int }
+  }
+  const growth = float(0).toVar()
   const entry = float(0).toVar()
   /** Of the next pair's length: the first one of a row is cut short, by chance, so that no layers show. */
   const part = jitter.toVar()
@@ -99,29 +111,42 @@ export function marchClouds(
       shell.assign(next)
       part.assign(jitter)
       const { altitude } = view.place(direction.mul(position.add(next).mul(0.5)))
-      const { base, top } = surroundings(field, altitude)
+      const found = surroundings(field, altitude)
+      about.base.assign(found.base)
+      about.top.assign(found.top)
+      about.layered.assign(found.layered)
+      about.range.first.assign(found.range.first)
+      about.range.last.assign(found.range.last)
+      // What is thin all the way through has no hard edges.
+      const ease = found.depth.div(THIN).clamp(LEAST_EFFORT, 1).toConst() as Float
+      growth.assign(quality.stepGrowth.div(ease))
       const span = next.sub(position).toConst()
       const footprint = position.mul(field.pixelAngle)
       longest.assign(
         span
-          .div(quality.layerSteps)
+          .div(quality.layerSteps.mul(ease).max(LEAST_STEPS))
           .max(footprint.min(span.div(LEAST_STEPS)))
           .max(1)
       )
-      If(base.greaterThan(top), () => {
+      If(found.base.greaterThan(found.top), () => {
         position.assign(next)
       }).ElseIf(entry.equal(0), () => {
         entry.assign(position.max(1))
       })
     }).Else(() => {
-      const growing = position.mul(quality.stepGrowth).max(quality.shortestStep)
+      const growing = position.mul(growth).max(quality.shortestStep)
       const left = shell.sub(position).toConst()
       const whole = growing.min(longest).toConst() as Float
       const length = whole.mul(part).min(left.mul(0.5)).max(0.01).toConst() as Float
       part.assign(1)
       const ahead = [0.5, 1.5].map(at => length.mul(at).toConst() as Float)
-      const [first, second] = ahead.map(distance => sampleAt(position.add(distance)))
-      const matter = pairMatter(field, sampleAt(position.add(length)), [first, second])
+      const places = ahead.map(distance => position.add(distance).toConst() as Float)
+      const matter = pairMatter(
+        field,
+        sampleAt(position.add(length)),
+        places.map(at => () => sampleAt(at)),
+        about.range
+      )
       const depth = matter.extinction.mul(light.depthScale).mul(length).toConst() as Vec2
       const through = depth.negate().exp().toConst() as Vec2
       const seen = vec2(
@@ -130,7 +155,7 @@ export function marchClouds(
       ).toConst() as Vec2
       const both = seen.x.add(seen.y).toConst() as Float
       If(both.greaterThan(1e-7), () => {
-        const at = first.distance.mul(seen.x).add(second.distance.mul(seen.y)).toConst()
+        const at = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
         sinceLit.addAssign(both)
         If(sinceLit.greaterThan(SHARED_LIGHT), () => {
           const { weather } = matter
@@ -144,7 +169,8 @@ export function marchClouds(
             sample,
             direction,
             transmittance,
-            jitter
+            jitter,
+            about
           )
           source.assign(vec3(sun, sky, ground))
           sinceLit.assign(0)

@@ -1,7 +1,7 @@
-import { If, float } from 'three/tsl'
+import { If, float, int } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import type { Float } from '../tsl-types'
-import { forLayers, layerAt } from './layer'
+import type { Float, Int } from '../tsl-types'
+import { forLayers, layerAt, type LayerRange } from './layer'
 
 /** Farther than anything [m]. */
 export const FAR_AWAY = 1e12
@@ -63,6 +63,10 @@ export interface Surroundings {
   top: Float
   /** 1 where clouds are plane-parallel layers, 0 where each is as wide as it is deep. */
   layered: Float
+  /** Greatest vertical optical depth of a layer. */
+  depth: Float
+  /** All of them, and perhaps others between. */
+  range: LayerRange
 }
 
 /** Coverages between which single clouds grow together to a layer. */
@@ -73,6 +77,9 @@ export function surroundings(field: CloudField, altitude: Float): Surroundings {
   const base = float(FAR_AWAY).toVar()
   const top = float(-FAR_AWAY).toVar()
   const coverage = float(0).toVar()
+  const depth = float(0).toVar()
+  const first = int(field.layers.length).toVar() as Int
+  const last = int(0).toVar() as Int
   forLayers(field, 'surroundingLayer', index => {
     const layer = layerAt(field, index)
     const layerTop = layer.baseAltitude.add(layer.thickness).toConst()
@@ -84,8 +91,12 @@ export function surroundings(field: CloudField, altitude: Float): Surroundings {
       base.assign(base.min(layer.baseAltitude))
       top.assign(top.max(layerTop))
       coverage.assign(coverage.max(layer.coverage))
+      depth.assign(depth.max(layer.density.mul(layer.thickness)))
+      first.assign(index.lessThan(first).select(index, first))
+      last.assign(index.add(1))
     })
   })
   const [from, to] = GROWING_TOGETHER
-  return { base, top, layered: coverage.smoothstep(from, to) }
+  const layered = coverage.smoothstep(from, to).toConst() as Float
+  return { base, top, layered, depth, range: { first, last } }
 }

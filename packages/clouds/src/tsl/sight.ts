@@ -1,17 +1,26 @@
-import { If, float, getViewPosition, isBackgroundDepth, logarithmicDepthToViewZ } from 'three/tsl'
+import {
+  If,
+  float,
+  getViewPosition,
+  isBackgroundDepth,
+  logarithmicDepthToViewZ,
+  vec3
+} from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { FrameUniforms } from '../FrameUniforms'
-import type { Float, Mat4, Vec2, Vec3 } from '../tsl-types'
-import { groundDistance } from './shells'
+import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../tsl-types'
+import { FAR_AWAY, groundDistance } from './shells'
 
 /** A line of sight through a pixel. */
 export interface Sight {
+  /** Normalized device coordinates of the pixel, and 1. */
+  place: Vec3
+  /** Length of `FrameUniforms.rays` times `place`, in the mapped space [m]. */
+  length: Float
   /** Unit length, in the mapped space. */
   direction: Vec3
   /** The same in view space, for each metre of the mapped space [world units/m]. */
   directionView: Vec3
-  /** Distance to what was drawn, or to the ground; `FAR_AWAY` where there is neither [m]. */
-  end: Float
 }
 
 /** How a camera's pixels are turned to lines of sight. */
@@ -24,25 +33,41 @@ export interface SightNodes {
 }
 
 /** The line of sight of a place in the picture; to be called inside of a shader function. */
-export function sightAt({ field, frame, depthAt, isLogarithmic }: SightNodes, uv: Vec2): Sight {
-  const { view } = field
-  const inverse = frame.projectionInverse as unknown as Mat4
-  const depth = depthAt(uv).toConst() as Float
-  // Any depth that is neither near nor far gives the direction.
-  const middle = getViewPosition(uv, float(0.5), inverse).toConst() as Vec3
-  const mapped = view.toMapped(middle).toConst() as Vec3
+export function sightAt({ field, frame }: SightNodes, uv: Vec2): Sight {
+  const place = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
+  const ray = (frame.rays as unknown as Mat3).mul(place).toConst() as Vec3
+  const mapped = field.view.toMapped(ray).toConst() as Vec3
   const length = mapped.length().toConst() as Float
   const direction = mapped.div(length).toConst() as Vec3
-  const end = groundDistance(field, direction.dot(view.up).clamp(-1, 1).toConst()).toVar()
-  If(isBackgroundDepth(depth).not(), () => {
-    const at = isLogarithmic
-      ? middle.mul(logarithmicDepthToViewZ(depth, frame.near, frame.far).div(middle.z))
-      : getViewPosition(uv, depth, inverse)
-    end.assign(end.min(view.toMapped(at).length()))
-  })
-  return {
-    direction,
-    directionView: middle.div(length).toConst(),
-    end
+  return { place, length, direction, directionView: ray.div(length).toConst() }
+}
+
+/**
+ * Distance along a line of sight to what was drawn, or to the ground; `FAR_AWAY` where there is neither
+ * [m]. To be called inside of a shader function.
+ *
+ * @param isOpen - Where it holds, the ground is known not to be in sight.
+ */
+export function sightEnd(
+  { field, frame, depthAt, isLogarithmic }: SightNodes,
+  uv: Vec2,
+  { direction, directionView }: Sight,
+  isOpen?: Bool
+): Float {
+  const depth = depthAt(uv).toConst() as Float
+  const cosView = direction.dot(field.view.up).clamp(-1, 1).toConst() as Float
+  const end = float(FAR_AWAY).toVar()
+  const findGround = (): void => {
+    end.assign(groundDistance(field, cosView))
   }
+  if (isOpen === undefined) findGround()
+  else If(isOpen.not(), findGround)
+  If(isBackgroundDepth(depth).not(), () => {
+    const inverse = frame.projectionInverse as unknown as Mat4
+    const viewZ = isLogarithmic
+      ? logarithmicDepthToViewZ(depth, frame.near, frame.far)
+      : getViewPosition(uv, depth, inverse).z
+    end.assign(end.min(float(viewZ).div(directionView.z)))
+  })
+  return end
 }

@@ -32,7 +32,7 @@ export interface CloudWeather {
   detailWarp: Vec3
 }
 
-const { blur, excess, leastBlur, meanEdge } = densityShape
+const { blur, carvedBlur, excess, leastBlur, meanEdge } = densityShape
 
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
@@ -74,7 +74,7 @@ function shareAt(
   // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
   const covered = share.mul(layer.coverage).toConst() as Float
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
-  return covered.div(covered.add(clear).max(1e-6)).toConst() as Float
+  return covered.div(covered.add(clear).max(1e-6)).toConst()
 }
 
 /** Part of a noise's variance that its levels of detail have lost. */
@@ -115,7 +115,7 @@ export function weatherAt(
         .add(layer.regionAnchor)
         .add(waves.mul(shift))
     )
-    .level(regionLevel as Float)
+    .level(regionLevel)
     .xyz.sub(0.5)
     .toConst() as Vec3
 
@@ -161,10 +161,11 @@ export function weatherAt(
   const variance = layer.cloudVariance
     .mul(lost(cloudLevel))
     .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
-    .add(regionVariance.mul(lost(regionLevel.sub(0.8) as Float)))
+    .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+  const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
   const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
   const quantile = odds.div(odds.oneMinus()).log().div(1.702)
-  const cover = cumulative(z.add(quantile).div(variance.sqrt().max(leastBlur)))
+  const cover = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
 
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
@@ -184,7 +185,7 @@ export function weatherAt(
       .clamp(0, 1)
       .mul(share.greaterThan(0).select(1, 0))
       .toConst(),
-    spread: smoothstep(0.5, 4.5, cloudLevel).toConst() as Float,
+    spread: smoothstep(0.5, 4.5, cloudLevel).toConst(),
     shapeWarp: detailWarp.add(fields.xyz.mul(SHAPE_WARP.fields)).toConst(),
     detailWarp
   }

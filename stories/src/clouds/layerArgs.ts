@@ -1,0 +1,90 @@
+import type { CloudLayerParameters } from '@welkin/clouds'
+import type { ArgTypes } from '@storybook/html-vite'
+
+/** A layer's parameters, each a control of its own. Units are those of `CloudLayerParameters`. */
+export interface LayerArgs {
+  baseAltitude: number
+  topAltitude: number
+  coverage: number
+  density: number
+  profileExponent: number
+  shapeAmount: number
+  detailAmount: number
+  /** Weights of the weather's channels. */
+  cumulus: number
+  stratocumulus: number
+  cumulonimbus: number
+  cirrus: number
+  windEast: number
+  windNorth: number
+  shadow: boolean
+}
+
+/** Thinnest layer that controls make [m]. */
+const THINNEST = 50
+
+export function layerArgs(parameters: CloudLayerParameters): LayerArgs {
+  const { weatherWeights, wind, ...rest } = parameters
+  const [cumulus, stratocumulus, cumulonimbus, cirrus] = weatherWeights
+  return {
+    ...rest,
+    cumulus,
+    stratocumulus,
+    cumulonimbus,
+    cirrus,
+    windEast: wind.east,
+    windNorth: wind.north
+  }
+}
+
+/** The other way round. A layer upside down becomes a thin one at its base. */
+export function layerParameters(args: LayerArgs): CloudLayerParameters {
+  const { baseAltitude, topAltitude, coverage, density, profileExponent } = args
+  const { shapeAmount, detailAmount, shadow } = args
+  return {
+    baseAltitude,
+    topAltitude: Math.max(topAltitude, baseAltitude + THINNEST),
+    coverage,
+    density,
+    profileExponent,
+    shapeAmount,
+    detailAmount,
+    shadow,
+    weatherWeights: [args.cumulus, args.stratocumulus, args.cumulonimbus, args.cirrus],
+    wind: { east: args.windEast, north: args.windNorth }
+  }
+}
+
+const category = 'Layer'
+
+const range = (name: string, min: number, max: number, step: number, description = '') => ({
+  name,
+  description,
+  control: { type: 'range', min, max, step } as const,
+  table: { category }
+})
+
+const weather = (name: string) =>
+  range(`Weather: ${name}`, 0, 1, 0.05, 'Weight of this channel of the weather')
+
+export const layerArgTypes: ArgTypes<LayerArgs> = {
+  baseAltitude: range('Base [m]', 0, 12_000, 50, 'Above the ellipsoid'),
+  topAltitude: range('Top [m]', 50, 14_000, 50, 'Above the ellipsoid'),
+  coverage: range('Coverage', 0, 1, 0.01, 'Share of the sky that is covered'),
+  density: range('Density [1/m]', 0, 0.1, 0.0005, 'Extinction of the densest cloud'),
+  profileExponent: range('Profile exponent', 0.1, 4, 0.05, 'Below 1 densest low down'),
+  shapeAmount: range('Shape', 0, 1, 0.01, 'How far the shape noise carves the layer'),
+  detailAmount: range('Detail', 0, 1, 0.01, 'How far the detail noise frays edges'),
+  cumulus: weather('cumulus'),
+  stratocumulus: weather('stratocumulus'),
+  cumulonimbus: weather('cumulonimbus'),
+  cirrus: weather('cirrus'),
+  windEast: range('Wind to the east [m/s]', -60, 60, 1),
+  windNorth: range('Wind to the north [m/s]', -60, 60, 1),
+  shadow: {
+    name: 'Shadow',
+    description: 'Whether the layer casts shadows',
+    control: 'boolean',
+    table: { category }
+  }
+}
