@@ -30,6 +30,9 @@ const MOVING_FRAMES = 24
 /** Looks that a pixel remembers even then. */
 const MOVING_LOOKS = 4
 
+/** Looks after which nothing is left of the light before a change: (3/4)¹² is 3 %. */
+const FORGETTING_LOOKS = 12
+
 /** Looks that a pixel remembers in a picture that stands still. */
 const STILL_LOOKS = 256
 
@@ -176,7 +179,7 @@ export class FrameUniforms {
     const isSunStill = this.#sun.distanceToSquared(view.sunDirection) < 1e-12
     if (isCut) this.#forgetting = 0
     else if (isSunStill && isSame(matter, this.#matter)) this.#forgetting--
-    else this.#forgetting = MOVING_LOOKS * order.length
+    else this.#forgetting = FORGETTING_LOOKS * order.length
     const aim = [...view.viewToMapped.elements, ...camera.projectionMatrix.elements]
     isStill &&= this.#forgetting <= 0 && isSame(aim, this.#aim)
     this.memory.value = isStill ? STILL_LOOKS : Math.max(MOVING_FRAMES / order.length, MOVING_LOOKS)

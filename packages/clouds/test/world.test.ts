@@ -91,8 +91,8 @@ test('a picture forgets the light of before at motion’s pace, then rests; anot
   const rest = next(50)
   expect(rest.hasHistory).toBe(1)
   expect(next(40).looks).toBeLessThan(rest.looks / 10)
-  // Four looks at each of four pixels.
-  for (let frame = 1; frame < 16; frame++) expect(next(40).looks).toBeLessThan(rest.looks / 10)
+  // Twelve looks at each of four pixels.
+  for (let frame = 1; frame < 48; frame++) expect(next(40).looks).toBeLessThan(rest.looks / 10)
   expect(next(40)).toEqual(rest)
   expect(next(-40).hasHistory).toBe(0)
   expect(next(-40)).toEqual(rest)
