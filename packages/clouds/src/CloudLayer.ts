@@ -10,7 +10,7 @@ export interface CloudLayerParameters {
   readonly baseAltitude: number
   /** Altitude of the layer's top above the ellipsoid [m], at most 30,000. */
   readonly topAltitude: number
-  /** Share of the sky that the layer covers, in [0, 1]. */
+  /** Share of the sky that the layer covers, in [0, 1]: of the planet's; regions have more or less. */
   readonly coverage: number
   /** Extinction coefficient of the densest cloud [1/m], in [0, 1]; cumulus has about 0.05. */
   readonly density: number

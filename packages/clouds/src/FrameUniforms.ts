@@ -30,6 +30,9 @@ const MOVING_FRAMES = 24
 /** Looks that a pixel remembers even then. */
 const MOVING_LOOKS = 4
 
+/** Looks after which nothing is left of the light before a change: (3/4)¹² is 3 %. */
+const FORGETTING_LOOKS = 12
+
 /** Looks that a pixel remembers in a picture that stands still. */
 const STILL_LOOKS = 256
 
@@ -41,6 +44,9 @@ const CUT = { heights: 0.3, metres: 300 }
 
 /** A move of the clouds within a frame after which they are others [m]. */
 const CLOUD_CUT = 500
+
+/** Factor of the gain within a frame after which light is another. */
+const LIGHT_CUT = 4
 
 /** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
 const NIGHT = { orders: 5, sine: 0.3 }
@@ -57,6 +63,9 @@ export function nightGain({ up, sunDirection, height }: AtmosphereView, radius: 
   const sine = Math.sin(Math.max(depression - dip, 0))
   return 10 ** (NIGHT.orders * Math.min(sine / NIGHT.sine, 1))
 }
+
+const isSame = (values: readonly number[], before: readonly number[]): boolean =>
+  values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
 
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
@@ -99,7 +108,11 @@ export class FrameUniforms {
   readonly #projection = new Matrix4()
   /** Displacements in the mapped space to view space of the last frame. */
   readonly #fromMapped = new Matrix4()
-  #state: number[] = []
+  /** What light and clouds are made from, and how the camera looks. */
+  #matter: number[] = []
+  #aim: number[] = []
+  /** Frames until pixels have forgotten what was before the last change of light or clouds. */
+  #forgetting = 0
 
   /** Has the next frame start anew. */
   reset(): void {
@@ -134,7 +147,8 @@ export class FrameUniforms {
 
     _position.copy(view.up).multiplyScalar(field.radius.value + view.height)
     const last = this.#camera
-    const isCut = last === null || !usesHistory || this.#isCut(view, field, last)
+    const isDusk = Math.abs(Math.log(this.gainChange.value)) > Math.log(LIGHT_CUT)
+    const isCut = last === null || !usesHistory || isDusk || this.#isCut(view, field, last)
     this.hasHistory.value = isCut ? 0 : 1
     let isStill = !isCut
     const { elements: e } = camera.projectionMatrixInverse
@@ -159,18 +173,20 @@ export class FrameUniforms {
       this.origins[i].set(x, y, w, z)
       isStill &&= drift.lengthSq() === 0
     })
-    const state = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))
-    state.push(...view.viewToMapped.elements, ...camera.projectionMatrix.elements)
+    const matter = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))
     const { direction, irradiance, radiance } = field.night
-    for (const { value } of [direction, irradiance, radiance]) state.push(...value.toArray())
-    isStill &&= state.every(
-      (value, i) => Math.abs(value - this.#state[i]) <= 1e-9 * Math.abs(value)
-    )
-    isStill &&= this.#sun.distanceToSquared(view.sunDirection) < 1e-12
+    for (const { value } of [direction, irradiance, radiance]) matter.push(...value.toArray())
+    const isSunStill = this.#sun.distanceToSquared(view.sunDirection) < 1e-12
+    if (isCut) this.#forgetting = 0
+    else if (isSunStill && isSame(matter, this.#matter)) this.#forgetting--
+    else this.#forgetting = FORGETTING_LOOKS * order.length
+    const aim = [...view.viewToMapped.elements, ...camera.projectionMatrix.elements]
+    isStill &&= this.#forgetting <= 0 && isSame(aim, this.#aim)
     this.memory.value = isStill ? STILL_LOOKS : Math.max(MOVING_FRAMES / order.length, MOVING_LOOKS)
     this.clipping.value = isStill ? CLIPPING.still : CLIPPING.moving
 
-    this.#state = state
+    this.#matter = matter
+    this.#aim = aim
     this.#sun.copy(view.sunDirection)
     this.#projection.copy(camera.projectionMatrix)
     this.#fromMapped.setFromMatrix3(view.viewToMapped).invert()

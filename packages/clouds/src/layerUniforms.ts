@@ -21,8 +21,8 @@ export const WEATHER_WARP = 0.5
  */
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
-/** How far both look-ups of the weather shift those of shape and detail [m]. */
-export const SHAPE_WARP = { fields: 2500, clouds: 600 } as const
+/** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
+export const SHAPE_WARP = { fields: 0.95, clouds: 0.23 } as const
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
 export const PLANET_WAVES = { next: 3.1, last: 1.7, warp: 0.22 } as const
@@ -148,13 +148,13 @@ export const densityShape = {
   /** Change of the weather over which a layer fills from edge to middle. */
   edgeWidth: { cirrus: 1.6, other: 0.5 },
   /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
-  meanEdge: 0.5,
+  meanEdge: 0.53,
   /** Added to the fill at full coverage, taken at none. */
   excess: 0.6,
   /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
   blur: [0, 5],
   /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
-  carvedBlur: 0.25,
+  carvedBlur: 0.34,
   leastBlur: 0.05,
   /** Fill that towers lack below their anvils, and how much thinner these are. */
   anvilReach: 0.4,

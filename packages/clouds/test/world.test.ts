@@ -1,10 +1,10 @@
 import { Atmosphere, moon, NIGHT_ILLUMINANCE, SkyLightProbe } from '@welkin/atmosphere'
 import type { AtmosphereView } from '@welkin/atmosphere'
-import { PerspectiveCamera, Vector3 } from 'three'
+import { Matrix3, PerspectiveCamera, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, test } from 'vitest'
 import { cloudOverlay, CloudLayers, clouds, cloudShadow, cloudSkyLight } from '../src'
-import { nightGain } from '../src/FrameUniforms'
+import { FrameUniforms, nightGain } from '../src/FrameUniforms'
 import { NightLight } from '../src/NightLight'
 
 const atmosphere = new Atmosphere()
@@ -76,6 +76,26 @@ test('light is raised as deep as night is at the lightest place in sight', () =>
   // From 400 km the terminator is seen 20° away.
   expect(nightGain(viewAt(-15, 4e5), radius)).toBe(1)
   expect(nightGain(viewAt(-60, 4e5), radius)).toBeCloseTo(1e5, 3)
+})
+
+test('a picture forgets the light of before at motion’s pace, then rests; another light starts anew', () => {
+  const frames = new FrameUniforms()
+  node.field.radius.value = radius
+  const next = (elevation: number): { looks: number; hasHistory: number } => {
+    const view = Object.assign(viewAt(elevation), { viewToMapped: new Matrix3() })
+    node.field.night.update(view)
+    frames.next(camera, view, node.field, 2, true)
+    return { looks: frames.memory.value, hasHistory: frames.hasHistory.value }
+  }
+  expect(next(50).hasHistory).toBe(0)
+  const rest = next(50)
+  expect(rest.hasHistory).toBe(1)
+  expect(next(40).looks).toBeLessThan(rest.looks / 10)
+  // Twelve looks at each of four pixels.
+  for (let frame = 1; frame < 48; frame++) expect(next(40).looks).toBeLessThan(rest.looks / 10)
+  expect(next(40)).toEqual(rest)
+  expect(next(-40).hasHistory).toBe(0)
+  expect(next(-40)).toEqual(rest)
 })
 
 test('nightIlluminance is that of the night’s probe, and may be set', () => {

@@ -129,7 +129,7 @@ export function weatherAt(
   const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
   const region = sample(shifted(regionPlace, waves, PLANET_WAVES.warp), regionLevel)
 
-  const period = layerPeriods(layer).weather
+  const { weather: period, shape: shapePeriod } = layerPeriods(layer)
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const fieldLevel = Math.max(level - Math.log2(FIELD_PERIOD), 0)
   const lookUp = (rotation: Matrix3, length: number, levelThere: number): number[] =>
@@ -155,13 +155,15 @@ export function weatherAt(
   const edges = Math.max(carvedBlur * layer.shapeAmount, leastBlur)
   const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
   const surely = excess * (2 * c - 1) ** 5
-  const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(SHAPE_WARP.clouds)
+  const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
+    SHAPE_WARP.clouds * shapePeriod
+  )
   return {
     fill: meanEdge * layer.shapeAmount + (cumulative(z) - (1 - c)) * steepness + surely,
     cover: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
     spread: smoothstep(0.5, 4.5, level - coarseness),
     shapeWarp: new Vector3(fields[0], fields[1], fields[2])
-      .multiplyScalar(SHAPE_WARP.fields)
+      .multiplyScalar(SHAPE_WARP.fields * shapePeriod)
       .add(detailWarp),
     detailWarp
   }

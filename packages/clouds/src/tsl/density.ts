@@ -24,11 +24,10 @@ export interface CloudSample {
 const NOWHERE = 1e6
 
 /**
- * Distances over which the fill of a layer changes by 1: where its weather is steep, in periods of the
- * weather, and where its shape is besides, in periods of the shape. It is steeper in places, by up to
- * three times; but at the edges that are missed then, noise leaves next to nothing.
+ * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
+ * periods of the weather, and where its shape is besides, in periods of the shape.
  */
-const STEEPEST = { weather: 0.09, shape: 0.12 }
+const STEEPEST = { weather: 0.03, shape: 0.05 }
 
 const { anvilDensity, anvilReach, erosion, farFill, leastCarving, lostCarving, shapeBlur } =
   densityShape

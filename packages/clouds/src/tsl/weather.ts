@@ -174,7 +174,8 @@ export function weatherAt(
     .add(cumulative(z).sub(1).add(share).mul(layer.steepness))
     .add(surely)
     .toConst() as Float
-  const detailWarp = clouds.xyz.mul(SHAPE_WARP.clouds).toConst() as Vec3
+  const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
+  const detailWarp = clouds.xyz.mul(shapePeriod).mul(SHAPE_WARP.clouds).toConst() as Vec3
   return {
     fill,
     // Neither more nor less than all: the distribution has tails.
@@ -186,7 +187,7 @@ export function weatherAt(
       .mul(share.greaterThan(0).select(1, 0))
       .toConst(),
     spread: smoothstep(0.5, 4.5, cloudLevel).toConst(),
-    shapeWarp: detailWarp.add(fields.xyz.mul(SHAPE_WARP.fields)).toConst(),
+    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(SHAPE_WARP.fields)).toConst(),
     detailWarp
   }
 }
