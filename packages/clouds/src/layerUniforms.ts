@@ -148,13 +148,13 @@ export const densityShape = {
   /** Change of the weather over which a layer fills from edge to middle. */
   edgeWidth: { cirrus: 1.6, other: 0.5 },
   /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
-  meanEdge: 0.53,
+  meanEdge: 0.535,
   /** Added to the fill at full coverage, taken at none. */
   excess: 0.6,
   /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
   blur: [0, 5],
   /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
-  carvedBlur: 0.34,
+  carvedBlur: 0.4,
   leastBlur: 0.05,
   /** Fill that towers lack below their anvils, and how much thinner these are. */
   anvilReach: 0.4,
