@@ -37,7 +37,7 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
 }
 
 /** Frames in which low quality marches every pixel once, and half of them again. */
-const STILL_FRAMES = 24
+const STILL_FRAMES = 60
 
 /** Low for a still: its frames are many. */
 const qualityOf = ({ frame, quality }: CloudsArgs): CloudQualityName => (frame ? 'low' : quality)

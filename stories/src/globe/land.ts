@@ -37,6 +37,9 @@ export interface LandStory<Args> {
   dispose?(): void
 }
 
+/** Of the frames before one that counts, those in which the land is drawn anew. */
+const LAST_FRAMES = 3
+
 /**
  * A scene on the Earth's land, in a world that is ECEF, in metres.
  *
@@ -94,8 +97,12 @@ export async function createLand<Args extends RendererArgs>(
   }
 
   const load = (): void => {
-    ready = loadTiles(tilesets, prepare, () => disposed).then(() => {
-      for (let i = 0; current.frame && !disposed && i < warmUpFrames; i++) draw()
+    ready = loadTiles(tilesets, prepare, () => disposed).then(async () => {
+      for (let i = 0; current.frame && !disposed && i < warmUpFrames; i++) {
+        // Passes draw their scene once in an animation frame: shadows of clouds are there in the last.
+        if (i > 0 && i >= warmUpFrames - LAST_FRAMES) await new Promise(requestAnimationFrame)
+        draw()
+      }
     })
     // A failure is reported to whoever awaits `ready`.
     ready.catch(() => {})
