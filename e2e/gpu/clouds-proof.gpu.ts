@@ -28,6 +28,10 @@ class SparseNoise extends CloudNoise {
     super()
   }
 
+  override get isReady(): boolean {
+    return this.slices === 0 || super.isReady
+  }
+
   override update(renderer: WebGPURenderer): boolean {
     return this.slices > 0 ? super.update(renderer, this.slices) : true
   }
