@@ -1,4 +1,4 @@
-import { atan, log2, sin, smoothstep, vec2 } from 'three/tsl'
+import { atan, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
@@ -84,6 +84,27 @@ const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
 const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
 
 /**
+ * sin x to 10⁻⁶. A GPU's own may be off by 2⁻¹¹, and by more beyond ±π: as the waves shift the regions, and
+ * these all that is smaller, it would move clouds by metres, and otherwise on every GPU.
+ */
+function sine(x: Vec3): Vec3 {
+  // Folded into [−π/2, π/2], where a polynomial of least maximum error is good.
+  const turns = x.div(2 * Math.PI).add(0.25)
+  const fold = turns.fract().sub(0.5).abs().sub(0.25)
+  const y = fold.mul(-2 * Math.PI).toConst() as Vec3
+  const square = y.mul(y).toConst() as Vec3
+  return square
+    .mul(-1.8363654e-4)
+    .add(8.3063252e-3)
+    .mul(square)
+    .sub(0.16664828)
+    .mul(square)
+    .add(0.99999662)
+    .mul(y)
+    .toConst()
+}
+
+/**
  * Weather of a layer at a place.
  *
  * The weather is a sum of noise on four scales: clouds, the fields that they gather in, regions, and the
@@ -106,7 +127,7 @@ export function weatherAt(
 
   const zenith = layer.turn(sample.up).toConst() as Vec3
   const { next, last, warp: shift } = PLANET_WAVES
-  const waves = sin(zenith.yzx.mul(next).add(zenith.zxy.mul(last))).toConst() as unknown as Vec3
+  const waves = sine(zenith.yzx.mul(next).add(zenith.zxy.mul(last)))
   const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
   const region = weather
     .sample(
