@@ -1,5 +1,5 @@
-import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
-import type { CloudPresetName, CloudQualityName, CloudsDebug } from '@welkin/clouds'
+import { cloudPreset, cloudQualities, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudPresetName, CloudQuality, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
 import { cloudCover } from './clouds/cloudCover'
 import { layerArgs, layerParameters } from './clouds/layerArgs'
@@ -36,11 +36,11 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   pitch: number
 }
 
-/** Frames in which low quality marches every pixel once, and half of them again. */
-const STILL_FRAMES = 60
+/** A still marches every pixel in every frame, coarsely: a few frames converge. */
+const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 6 }
 
-/** Low for a still: its frames are many. */
-const qualityOf = ({ frame, quality }: CloudsArgs): CloudQualityName => (frame ? 'low' : quality)
+const qualityOf = ({ frame, quality }: CloudsArgs): CloudQuality | CloudQualityName =>
+  frame ? STILL.quality : quality
 
 /** Name of a layer, for {@link CloudsArgs.shown}. */
 export const shownBy = (preset: CloudPresetName, layer: number): string => `${preset} ${layer}`
@@ -97,7 +97,7 @@ export async function createClouds(
     let before = performance.now()
     node.time = 0
     return {
-      warmUpFrames: STILL_FRAMES,
+      warmUpFrames: STILL.frames,
       place: placeOf,
       apply(current) {
         applyTime(renderer, air, current)
@@ -110,6 +110,7 @@ export async function createClouds(
         const now = performance.now()
         node.time = (node.time ?? 0) + ((now - before) / 1000) * lapse
         before = now
+        if (args.frame) node.field.bake(renderer)
         props?.follow(camera)
       },
       dispose() {
