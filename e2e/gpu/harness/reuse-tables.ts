@@ -90,7 +90,7 @@ export async function keepTables(): Promise<void> {
 
 /**
  * From now on, has atmospheres take tables of diffuse light that this or another page of the browser's
- * session has baked, of the same parameters on the same backend: bit for bit what they would bake, for
+ * run of tests has baked, of the same parameters on the same backend: bit for bit what they would bake, for
  * a hundredth of the time. A software renderer takes seconds for a bake, longer than for most tests.
  *
  * @param reuse - False: from now on, each bakes its own.
