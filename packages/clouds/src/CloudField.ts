@@ -1,9 +1,10 @@
 import { Matrix3, Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
 import type { Texture } from 'three'
-import { viewNodes } from '@welkin/atmosphere'
+import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
-import { renderGroup, texture, texture3D, uniform } from 'three/tsl'
-import type { Renderer, UniformNode } from 'three/webgpu'
+import { texture, texture3D } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
 import { CloudLayers } from './CloudLayers'
 import { CloudNoise } from './CloudNoise'
 import { NightLight } from './NightLight'
@@ -20,6 +21,7 @@ import {
   weatherScales
 } from './layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
+import { number } from './uniforms'
 import { windTurn } from './wind'
 
 const _position = new Vector3()
@@ -65,9 +67,9 @@ export class CloudField {
   /** What lights clouds in the night. */
   readonly night = new NightLight()
   /** Radius of the sphere at altitude 0 [m]. */
-  readonly radius: UniformNode<'float', number> = uniform(0).setGroup(renderGroup)
+  readonly radius = number()
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
-  readonly pixelAngle: UniformNode<'float', number> = uniform(1e-3).setGroup(renderGroup)
+  readonly pixelAngle = number(1e-3)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
   readonly values: Vector4[] = Array.from(
     { length: CloudLayers.maxLayers * LAYER_STRIDE },
@@ -101,14 +103,10 @@ export class CloudField {
     view: ViewNodes = viewNodes(atmosphere),
     { worldMap = null, noise }: CloudFieldOptions = {}
   ) {
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`CloudField: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
-    if (!(layers instanceof CloudLayers)) {
-      throw new Error(`CloudField: layers must be CloudLayers, got ${typeof layers}`)
-    }
+    checkAtmosphere('CloudField', atmosphere)
+    if (!(layers instanceof CloudLayers)) fail('CloudField', 'layers must be CloudLayers', layers)
     if (worldMap !== null && worldMap.wrapS !== RepeatWrapping) {
-      throw new Error(`CloudField: worldMap.wrapS must be RepeatWrapping, got ${worldMap.wrapS}`)
+      fail('CloudField', 'worldMap.wrapS must be RepeatWrapping', worldMap.wrapS)
     }
     this.atmosphere = atmosphere
     this.layers = layers

@@ -1,3 +1,4 @@
+import { fail } from '@welkin/geo'
 import { CloudLayer, type CloudLayerParameters } from './CloudLayer'
 
 /**
@@ -21,8 +22,8 @@ export class CloudLayers implements Iterable<CloudLayer> {
    */
   constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}]) {
     if (!Array.isArray(layers) || layers.length < 1 || layers.length > CloudLayers.maxLayers) {
-      const got = Array.isArray(layers) ? layers.length : typeof layers
-      throw new Error(`CloudLayers: layers must be 1 to ${CloudLayers.maxLayers}, got ${got}`)
+      const got = Array.isArray(layers) ? layers.length : layers
+      fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, got)
     }
     this.#layers = layers.map((layer: CloudLayer | Partial<CloudLayerParameters>) =>
       layer instanceof CloudLayer ? layer : new CloudLayer(layer)
@@ -36,9 +37,7 @@ export class CloudLayers implements Iterable<CloudLayer> {
   /** @throws Error when there is no layer of this index. */
   at(index: number): CloudLayer {
     const layer = this.#layers[index]
-    if (layer === undefined) {
-      throw new Error(`CloudLayers: index must be 0 to ${this.length - 1}, got ${index}`)
-    }
+    if (layer === undefined) fail('CloudLayers', `index must be 0 to ${this.length - 1}`, index)
     return layer
   }
 

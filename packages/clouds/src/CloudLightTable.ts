@@ -6,11 +6,14 @@ import {
   RGBAFormat,
   type TypedArray
 } from 'three'
-import { renderGroup, texture3D, uniform } from 'three/tsl'
+import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
+import { checkOptions } from '@welkin/atmosphere'
+import { checkRanges } from './check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { CLOUD_LIGHT_LAYERS, CLOUD_LIGHT_SIZE, fillCloudLight } from './cpu/cloudLightTable'
 import type { LevelTexture, Vec3 } from './tsl-types'
+import { number } from './uniforms'
 
 /** Droplets of fair-weather clouds: a strong forward peak and a weak broad back lobe. */
 const defaults: CloudPhaseParameters = {
@@ -20,25 +23,12 @@ const defaults: CloudPhaseParameters = {
   scatteringAlbedo: 0.99999
 }
 
-const ranges: Record<keyof CloudPhaseParameters, readonly [number, number]> = {
+const ranges = {
   forwardAsymmetry: [0, 0.95],
   backwardAsymmetry: [-0.95, 0.95],
   forwardShare: [0, 1],
   scatteringAlbedo: [0, 0.99999]
-}
-
-function requirePhase(phase: CloudPhaseParameters): void {
-  for (const [name, value] of Object.entries(phase)) {
-    if (!(name in ranges)) throw new Error(`CloudLightTable: there is no parameter ${name}`)
-    const [lowest, highest] = ranges[name as keyof CloudPhaseParameters]
-    if (typeof value === 'number' && value >= lowest && value <= highest) continue
-    throw new Error(
-      `CloudLightTable: ${name} must be a number in [${lowest}, ${highest}], got ${String(value)}`
-    )
-  }
-}
-
-const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
+} as const satisfies Record<keyof CloudPhaseParameters, readonly [number, number]>
 
 /** What the shader functions of cloud light read: see tsl/cloudLight.ts. */
 export interface CloudLight {
@@ -119,7 +109,8 @@ export class CloudLightTable {
    */
   set(changes: Partial<CloudPhaseParameters>): this {
     const phase = Object.freeze({ ...this.#phase, ...changes })
-    requirePhase(phase)
+    checkOptions('CloudLightTable', phase, ...Object.keys(ranges))
+    checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
     this.#isDirty = true
     const { depthScale, moments } = scalePhase(phase)

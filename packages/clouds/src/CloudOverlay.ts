@@ -4,13 +4,15 @@ import {
   linearSRGB,
   octahedralDirection,
   octahedralPoint,
+  tableTarget,
   viewNodes
 } from '@welkin/atmosphere'
 import type { AtmosphereView, SkyOverlay, ViewNodes } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, Matrix3, RenderTarget, Vector3 } from 'three'
-import type { Camera, Quaternion } from 'three'
-import { Fn, If, float, renderGroup, texture, uniform, uv, vec3, vec4 } from 'three/tsl'
+import { fail } from '@welkin/geo'
+import type { Camera, Quaternion, RenderTarget } from 'three'
+import { Fn, If, float, texture, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { checkClouds } from './check'
 import { CloudField } from './CloudField'
 import type { CloudLayerParameters } from './CloudLayer'
 import type { CloudsNode } from './CloudsNode'
@@ -25,6 +27,7 @@ import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { groundDistance } from './tsl/shells'
 import type { LevelTexture, Mat3, Vec2, Vec3, Vec4 } from './tsl-types'
+import { matrix3, number, vector3 } from './uniforms'
 
 /** Options of {@link cloudOverlay}. */
 export interface CloudOverlayOptions {
@@ -44,8 +47,6 @@ const STRIPS = 6
 
 /** Light of the default luminance scale, which half floats hold well by day. */
 const STORED_SCALE = 1e-4
-
-const vector = () => uniform(new Vector3()).setGroup(renderGroup)
 
 /** What clouds were like when they were drawn. */
 interface DrawnClouds {
@@ -79,17 +80,17 @@ export class CloudOverlay implements SkyOverlay {
   readonly #picture: LevelTexture<Vec2>
   readonly #quality = new QualityUniforms()
   /** Level axes of the picture; the third is the zenith at its place. All in the mapped space. */
-  readonly #across = vector()
-  readonly #along = vector()
-  readonly #up = vector()
+  readonly #across = vector3()
+  readonly #along = vector3()
+  readonly #up = vector3()
   /** Displacements in the mapped space to view space. */
-  readonly #fromMapped = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly #fromMapped = matrix3()
   /** Stored light per light. */
-  readonly #gain = uniform(1).setGroup(renderGroup)
+  readonly #gain = number(1)
   /** The same without the luminance scale of then. */
   #raised = STORED_SCALE
   /** From the camera of the shadow maps [m]. */
-  readonly #shift = vector()
+  readonly #shift = vector3()
   #camera: Camera | null = null
   #view: ViewNodes | null = null
   #field: CloudField | null = null
@@ -102,23 +103,15 @@ export class CloudOverlay implements SkyOverlay {
     clouds: CloudsNode,
     { size = 256, quality = 'low', drift = 200 }: CloudOverlayOptions = {}
   ) {
-    if (clouds?.shadows === undefined) {
-      throw new Error(`CloudOverlay: clouds must be a CloudsNode, got ${typeof clouds}`)
-    }
+    checkClouds('CloudOverlay', clouds)
     if (!(Number.isInteger(size) && size >= 16 && size <= 2048)) {
-      throw new Error(`CloudOverlay: size must be an integer in [16, 2048], got ${size}`)
+      fail('CloudOverlay', 'size must be an integer in [16, 2048]', size)
     }
-    if (!(drift > 0)) throw new Error(`CloudOverlay: drift must be positive, got ${drift}`)
+    if (!(drift > 0)) fail('CloudOverlay', 'drift must be positive', drift)
     this.clouds = clouds
     this.drift = drift
     this.#quality.set(resolveQuality(quality))
-    this.#target = new RenderTarget(size, size, {
-      type: HalfFloatType,
-      depthBuffer: false,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter
-    })
-    this.#target.texture.name = 'Welkin.CloudOverlay'
+    this.#target = tableTarget('Welkin.CloudOverlay', size, size)
     this.#target.scissorTest = true
     this.#picture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
   }

@@ -1,5 +1,5 @@
-import { aerialPerspectiveTo, FragmentPass, linearSRGB } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, RenderTarget } from 'three'
+import { aerialPerspectiveTo, FragmentPass, linearSRGB, tableTarget } from '@welkin/atmosphere'
+import type { RenderTarget } from 'three'
 import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
@@ -24,17 +24,7 @@ export interface CloudScene {
   readonly sights: SightNodes
 }
 
-function pictureTarget(name: string): RenderTarget {
-  const target = new RenderTarget(1, 1, {
-    count: 2,
-    type: HalfFloatType,
-    depthBuffer: false,
-    minFilter: LinearFilter,
-    magFilter: LinearFilter
-  })
-  for (const [i, part] of ['light', 'place'].entries()) target.textures[i].name = `${name}.${part}`
-  return target
-}
+const pictureTarget = (name: string): RenderTarget => tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
 
 function picturesOf({ textures }: RenderTarget): CloudPictures {
   const [light, place] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
@@ -79,10 +69,10 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
  */
 export class CloudRenderer {
   readonly #frame: FrameUniforms
-  readonly #marched = pictureTarget('Welkin.CloudsMarched')
-  readonly #cells = pictureTarget('Welkin.CloudsCells')
+  readonly #marched = pictureTarget('Marched')
+  readonly #cells = pictureTarget('Cells')
   /** The picture, and that of the last frame, in turns. */
-  readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`))
+  readonly #accumulated = [0, 1].map(i => pictureTarget(`${i}`))
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]

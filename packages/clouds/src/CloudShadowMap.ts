@@ -1,11 +1,13 @@
-import { FragmentPass } from '@welkin/atmosphere'
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, RenderTarget, Vector3, Vector4 } from 'three'
-import { renderGroup, texture, uniform } from 'three/tsl'
+import { Vector3 } from 'three'
+import type { RenderTarget, Vector4 } from 'three'
+import { texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import { shadowRay } from './tsl/shadowMap'
 import type { LevelTexture, Vec2 } from './tsl-types'
+import { number, vector3, vector4 } from './uniforms'
 
 /** Texels along an edge of a cascade. */
 const SIZE = 256
@@ -27,10 +29,6 @@ const ANCHOR_COSINE = Math.cos(0.005)
 
 /** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
 const JUMP = { light: 0.01, place: 0.5 }
-
-const vector3 = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
-const vector4 = (): UniformNode<'vec4', Vector4> => uniform(new Vector4()).setGroup(renderGroup)
-const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
 
 /** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane. */
 export interface CascadeNodes {
@@ -126,13 +124,7 @@ export class CloudShadowMap {
     this.field = field
     this.source = field.atmosphere.sun
     const count = HALF_WIDTHS.length
-    this.target = new RenderTarget(SIZE * count, SIZE, {
-      type: HalfFloatType,
-      depthBuffer: false,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter
-    })
-    this.target.texture.name = 'Welkin.CloudShadows'
+    this.target = tableTarget('Welkin.CloudShadows', SIZE * count, SIZE)
     this.#cascades = HALF_WIDTHS.map(() => new Cascade(this.target))
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,

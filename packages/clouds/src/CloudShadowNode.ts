@@ -1,13 +1,15 @@
-import { Vector3 } from 'three'
-import { Fn, If, float, positionView, renderGroup, uniform } from 'three/tsl'
+import type { Vector3 } from 'three'
+import { Fn, If, float, positionView } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
-import type { NodeFrame, UniformNode } from 'three/webgpu'
-import { viewNodes } from '@welkin/atmosphere'
+import type { NodeFrame } from 'three/webgpu'
+import { checkSource, viewNodes } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource, ViewNodes } from '@welkin/atmosphere'
+import { checkClouds } from './check'
 import type { CloudsNode } from './CloudsNode'
 import { columnTowards } from './tsl/columns'
 import { sampleShadows } from './tsl/shadowMap'
 import type { Float, Vec3 } from './tsl-types'
+import { number, vector3 } from './uniforms'
 
 const position = (view: AtmosphereView, target: Vector3): Vector3 =>
   target.copy(view.up).multiplyScalar(view.atmosphere.parameters.bottomRadius + view.height)
@@ -46,10 +48,10 @@ export class CloudShadowNode extends Node<'float'> {
   /** Of the camera that renders. */
   readonly #view: ViewNodes
   /** From the clouds' camera, as their maps know it, to the one that renders [m]. */
-  readonly #shift: UniformNode<'vec3', Vector3> = uniform(new Vector3()).setGroup(renderGroup)
+  readonly #shift = vector3()
 
   /** 1 while the maps are of this source's light. */
-  readonly #isMapped = uniform(1).setGroup(renderGroup)
+  readonly #isMapped = number(1)
 
   /**
    * @param source - Whose light they take; left out, the sun's.
@@ -61,12 +63,8 @@ export class CloudShadowNode extends Node<'float'> {
     source: LightSource = clouds?.atmosphere?.sun
   ) {
     super('float')
-    if (clouds?.shadows === undefined) {
-      throw new Error(`CloudShadowNode: clouds must be a CloudsNode, got ${typeof clouds}`)
-    }
-    if (source?.irradianceAt === undefined) {
-      throw new Error(`CloudShadowNode: source must be a LightSource, got ${typeof source}`)
-    }
+    checkClouds('CloudShadowNode', clouds)
+    checkSource('CloudShadowNode', 'source', source)
     this.clouds = clouds
     this.shadowNode = shadowNode
     this.source = source

@@ -1,8 +1,12 @@
 import type { SkyLightProbe, SkyLitPlane } from '@welkin/atmosphere'
-import { float, mix, renderGroup, uniform } from 'three/tsl'
+import { checkRange } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
+import { float, mix } from 'three/tsl'
+import { checkClouds } from './check'
 import type { CloudsNode } from './CloudsNode'
 import { overcastIrradiance } from './tsl/overcast'
 import type { Vec3, Vec4 } from './tsl-types'
+import { number } from './uniforms'
 
 /**
  * Clouds in the light of the sky on surfaces: see {@link cloudSkyLight}.
@@ -12,19 +16,17 @@ export class CloudSkyLight {
   readonly probe: SkyLightProbe
   /** Whose clouds; shared, not owned. */
   readonly clouds: CloudsNode
-  readonly #strength = uniform(1).setGroup(renderGroup)
+  readonly #strength = number(1)
   readonly #overcast: SkyLightProbe['overcast']
 
   /** @throws If an argument is missing, or they are of two atmospheres. */
   constructor(probe: SkyLightProbe, clouds: CloudsNode) {
     if (probe?.overcast === undefined) {
-      throw new Error(`CloudSkyLight: probe must be a SkyLightProbe, got ${typeof probe}`)
+      fail('CloudSkyLight', 'probe must be a SkyLightProbe', probe)
     }
-    if (clouds?.shadows === undefined) {
-      throw new Error(`CloudSkyLight: clouds must be a CloudsNode, got ${typeof clouds}`)
-    }
+    checkClouds('CloudSkyLight', clouds)
     if (probe.atmosphere !== clouds.atmosphere) {
-      throw new Error('CloudSkyLight: clouds must be in the atmosphere of the probe, got another')
+      fail('CloudSkyLight', 'clouds must be in the atmosphere of the probe', 'another')
     }
     this.probe = probe
     this.clouds = clouds
@@ -38,9 +40,7 @@ export class CloudSkyLight {
 
   /** @throws If it is out of its range. */
   set strength(strength: number) {
-    if (!(strength >= 0 && strength <= 1)) {
-      throw new Error(`CloudSkyLight: strength must be a number in [0, 1], got ${strength}`)
-    }
+    checkRange('CloudSkyLight', 'strength', strength, 0, 1)
     this.#strength.value = strength
   }
 

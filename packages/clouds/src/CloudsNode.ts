@@ -1,5 +1,6 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
+import { checkNonNegative, fail } from '@welkin/geo'
 import { Vector2 } from 'three'
 import type { Camera, PerspectiveCamera, Texture } from 'three'
 import { Fn, If, exp2, uniform, uv, vec3, vec4 } from 'three/tsl'
@@ -111,12 +112,10 @@ export class CloudsNode extends AtmosphereNode {
   ) {
     super(atmosphere, camera)
     for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
-      if (value === undefined || value === null) {
-        throw new Error(`CloudsNode: ${name} is missing, got ${value}`)
-      }
+      if (value === undefined || value === null) fail('CloudsNode', `${name} is missing`, value)
     }
     if (!isPerspective(camera)) {
-      throw new Error(`CloudsNode: camera must be a PerspectiveCamera, got ${camera.type}`)
+      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera.type)
     }
     this.colorNode = colorNode
     this.depthNode = depthNode
@@ -149,9 +148,7 @@ export class CloudsNode extends AtmosphereNode {
 
   /** @throws If it is negative or not finite. */
   set nightIlluminance(illuminance: number) {
-    if (!(illuminance >= 0 && illuminance < Infinity)) {
-      throw new Error(`CloudsNode: nightIlluminance must be finite, ≥ 0, got ${illuminance}`)
-    }
+    checkNonNegative('CloudsNode', 'nightIlluminance', illuminance)
     this.field.night.illuminance = illuminance
   }
 
@@ -165,7 +162,7 @@ export class CloudsNode extends AtmosphereNode {
     const index = debugViews.indexOf(view)
     if (index < 0) {
       const names = debugViews.slice(1).join(', ')
-      throw new Error(`CloudsNode: debugView must be null or one of ${names}, got ${view}`)
+      fail('CloudsNode', `debugView must be null or one of ${names}`, view)
     }
     this.#debug.value = index
   }

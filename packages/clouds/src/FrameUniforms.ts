@@ -1,17 +1,11 @@
-import { Matrix3, Matrix4, Vector2, Vector3, Vector4 } from 'three'
+import { Matrix4, Vector3, Vector4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import type { AtmosphereView } from '@welkin/atmosphere'
-import { renderGroup, uniform } from 'three/tsl'
-import type { UniformNode } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import { CloudLayers } from './CloudLayers'
 import { LAYER_STRIDE } from './layerUniforms'
 import { vec4Array } from './tsl-types'
-
-const number = (value = 0): UniformNode<'float', number> => uniform(value).setGroup(renderGroup)
-const vector2 = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
-const matrix3 = (): UniformNode<'mat3', Matrix3> => uniform(new Matrix3()).setGroup(renderGroup)
-const matrix4 = (): UniformNode<'mat4', Matrix4> => uniform(new Matrix4()).setGroup(renderGroup)
+import { matrix3, matrix4, number, vector2 } from './uniforms'
 
 /** Order in which the pixels of a block are marched: neighbours in time are far apart. */
 const ORDERS: Readonly<Record<number, readonly number[]>> = {
@@ -84,13 +78,13 @@ export class FrameUniforms {
   readonly jitter = vector2()
   /** Shifts the noise of steps, in [0, 1). */
   readonly noiseShift = number()
-  readonly projectionInverse: UniformNode<'mat4', Matrix4> = matrix4()
+  readonly projectionInverse = matrix4()
   readonly near = number()
   readonly far = number()
   /** From (x, y, 1) of a pixel in normalized device coordinates to a ray through it, in view space. */
-  readonly rays: UniformNode<'mat3', Matrix3> = matrix3()
+  readonly rays = matrix3()
   /** From such a place to where in clip space (x, y, w) of the last frame its ray led. */
-  readonly raysBefore: UniformNode<'mat3', Matrix3> = matrix3()
+  readonly raysBefore = matrix3()
   /** Where there, in that space, the eye would have been from which each layer has stayed where it is. */
   readonly origins: Vector4[] = Array.from({ length: CloudLayers.maxLayers }, () => new Vector4())
   readonly originArray = vec4Array(this.origins)

@@ -1,7 +1,7 @@
 import { NIGHT_ILLUMINANCE, ofLuminance } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
-import { MathUtils, Vector3, Vector4 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
+import { MathUtils, Vector3 } from 'three'
+import { number, vector3, vector4 } from './uniforms'
 
 /** Altitude above which there are no clouds [m]. */
 const HIGHEST = 30_000
@@ -22,16 +22,16 @@ const _direction = new Vector3()
  */
 export class NightLight {
   /** 1 while clouds may be seen where the sun has set, else 0. */
-  readonly isSeen = uniform(0).setGroup(renderGroup)
+  readonly isSeen = number()
   /** Sines of the sun's height below which moonlight sets in, and below which all of it counts. */
-  readonly sunk = uniform(-1).setGroup(renderGroup)
-  readonly dark = uniform(-1).setGroup(renderGroup)
+  readonly sunk = number(-1)
+  readonly dark = number(-1)
   /** To the moon, in the mapped space. */
-  readonly direction = uniform(new Vector3(0, 0, 1)).setGroup(renderGroup)
+  readonly direction = vector3(0, 0, 1)
   /** Of the moon above the air, over `solarIrradiance`; 0 without a moon. */
-  readonly irradiance = uniform(new Vector4()).setGroup(renderGroup)
+  readonly irradiance = vector4()
   /** Mean radiance of the night sky, over `solarIrradiance` [1/sr]. */
-  readonly radiance = uniform(new Vector4()).setGroup(renderGroup)
+  readonly radiance = vector4()
   /** Of level ground by the night sky [lx]. */
   illuminance = NIGHT_ILLUMINANCE
   /** The moon; null if there is none. */

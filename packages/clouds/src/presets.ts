@@ -1,4 +1,5 @@
 import type { CloudLayerParameters } from './CloudLayer'
+import { named } from './check'
 import { CloudLayers } from './CloudLayers'
 
 type Layers = readonly Partial<CloudLayerParameters>[]
@@ -110,9 +111,5 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
  * @throws If there is no preset of this name.
  */
 export function cloudPreset(name: CloudPresetName): CloudLayers {
-  if (!Object.hasOwn(presets, name)) {
-    const names = Object.keys(presets).join(', ')
-    throw new Error(`cloudPreset: name must be one of ${names}, got ${name}`)
-  }
-  return new CloudLayers(presets[name])
+  return new CloudLayers(named('cloudPreset', 'name', presets, name))
 }

@@ -1,5 +1,8 @@
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
+import { fail } from '@welkin/geo'
+import { checkRanges, named } from './check'
+import { number } from './uniforms'
 
 /** How finely clouds are marched. All may be changed at any time; nothing is recompiled. */
 export interface CloudQuality {
@@ -31,14 +34,14 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 12, layerSteps: 32, sunSteps: 4, block: 2 }
 }
 
-const ranges: Record<keyof CloudQuality, readonly [number, number]> = {
+const ranges = {
   steps: [1, 1024],
   stepGrowth: [1e-3, 1],
   shortestStep: [0.1, 1000],
   layerSteps: [1, 256],
   sunSteps: [1, 16],
   block: [1, 4]
-}
+} as const satisfies Record<keyof CloudQuality, readonly [number, number]>
 
 /**
  * The quality of a name, or the given one.
@@ -47,25 +50,16 @@ const ranges: Record<keyof CloudQuality, readonly [number, number]> = {
  */
 export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQuality {
   if (typeof quality === 'string') {
-    if (Object.hasOwn(cloudQualities, quality)) return cloudQualities[quality]
-    const names = Object.keys(cloudQualities).join(', ')
-    throw new Error(`CloudsNode: quality must be one of ${names}, got ${quality}`)
+    return named('CloudsNode', 'quality', cloudQualities, quality)
   }
-  for (const [name, [lowest, highest]] of Object.entries(ranges)) {
-    const value: unknown = quality?.[name as keyof CloudQuality]
-    if (typeof value === 'number' && value >= lowest && value <= highest) continue
-    throw new Error(
-      `CloudsNode: quality.${name} must be a number in [${lowest}, ${highest}], got ${String(value)}`
-    )
-  }
+  checkRanges('CloudsNode', quality, ranges, 'quality.')
   if (!Number.isInteger(quality.block)) {
-    throw new Error(`CloudsNode: quality.block must be 1, 2, 3 or 4, got ${quality.block}`)
+    fail('CloudsNode', 'quality.block must be 1, 2, 3 or 4', quality.block)
   }
   return Object.freeze({ ...quality })
 }
 
 const whole = (): UniformNode<'int', number> => uniform(1, 'int').setGroup(renderGroup)
-const number = (): UniformNode<'float', number> => uniform(1).setGroup(renderGroup)
 
 /** A {@link CloudQuality} as shader uniforms. */
 export class QualityUniforms {

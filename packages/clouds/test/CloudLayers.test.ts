@@ -9,10 +9,13 @@ const invalid: [Partial<CloudLayerParameters>, RegExp][] = [
   [{ density: NaN }, /density must be .* got NaN/],
   [{ profileExponent: 0 }, /profileExponent must be .* got 0/],
   [{ weatherWeights: [0, 0, 0, 2] }, /weatherWeights\[3\] must be .* got 2/],
-  [{ weatherWeights: [0, 0] as never }, /weatherWeights must be 4 numbers, got \[0,0\]/],
+  [
+    { weatherWeights: [0, 0] as never },
+    /weatherWeights must be an array of 4 values, got \[0, 0\]/
+  ],
   [{ wind: { east: Infinity, north: 0 } }, /wind.east must be .* got Infinity/],
   [{ shadow: 1 as never }, /shadow must be true or false, got 1/],
-  [{ covrage: 1 } as never, /no parameter covrage/]
+  [{ covrage: 1 } as never, /options must be baseAltitude, .* got covrage/]
 ]
 
 describe('CloudLayer', () => {

@@ -24,7 +24,7 @@ describe('CloudsNode', () => {
     expect(node.quality).toBe(cloudQualities.low)
     expect(() => (node.quality = 'best' as never)).toThrow(/one of low, medium, high, ultra/)
     const wrong = { ...cloudQualities.high, steps: NaN }
-    expect(() => (node.quality = wrong)).toThrow(/quality\.steps must be a number in \[1, 1024\]/)
+    expect(() => (node.quality = wrong)).toThrow(/quality\.steps must be in \[1, 1024\]/)
     const between = { ...cloudQualities.high, block: 2.5 }
     expect(() => (node.quality = between)).toThrow(/quality\.block must be 1, 2, 3 or 4, got 2\.5/)
     expect(node.quality).toBe(cloudQualities.low)
@@ -49,7 +49,7 @@ describe('CloudsNode', () => {
 describe('cloudShadow', () => {
   test('refuses what are no clouds', () => {
     expect(() => cloudShadow(new CloudLayers() as never)).toThrow(
-      'CloudShadowNode: clouds must be a CloudsNode, got object'
+      'CloudShadowNode: clouds must be a CloudsNode, got CloudLayers'
     )
   })
 })

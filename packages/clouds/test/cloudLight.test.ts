@@ -64,7 +64,7 @@ describe('cloud-light table', () => {
     [{ forwardAsymmetry: 1 }, /forwardAsymmetry must be .* got 1/],
     [{ forwardShare: NaN }, /forwardShare must be .* got NaN/],
     [{ scatteringAlbedo: 1 }, /scatteringAlbedo must be .* got 1/],
-    [{ asymmetry: 0.8 }, /no parameter asymmetry/]
+    [{ asymmetry: 0.8 }, /options must be forwardAsymmetry, .* got asymmetry/]
   ] as [object, RegExp][])('rejects %o', ([parameters, message]) => {
     expect(() => new CloudLightTable(parameters)).toThrow(message)
   })
