@@ -1,4 +1,4 @@
-import { Matrix3, Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
+import { Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
 import type { Texture } from 'three'
 import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
@@ -28,8 +28,7 @@ const _position = new Vector3()
 const _foot = new Vector3()
 const _point = new Vector3()
 const _stretch = new Vector3()
-const _matrix = new Matrix3()
-const _matrix4 = new Matrix4()
+const _matrix = new Matrix4()
 const _turn = new Quaternion()
 
 /** Options of {@link CloudField}. */
@@ -43,6 +42,10 @@ export interface CloudFieldOptions {
   /** Noise to share between fields; left out, the field makes and owns its own. */
   noise?: CloudNoise
 }
+
+/** A camera's place, from the planet's centre in the mapped space [m]. */
+export const eyePosition = ({ atmosphere, up, height }: AtmosphereView, target: Vector3): Vector3 =>
+  target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
 
 /**
  * Where the clouds are, as shaders see it: layers, weather and wind as uniforms, and noise.
@@ -135,7 +138,7 @@ export class CloudField {
     if (Number.isFinite(elapsed)) this.#seconds = seconds
     this.radius.value = bottomRadius
     this.night.update(view)
-    _position.copy(view.up).multiplyScalar(bottomRadius + view.height)
+    eyePosition(view, _position)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
@@ -156,56 +159,52 @@ export class CloudField {
     this.drifts[index].copy(_point).sub(_point.applyQuaternion(_turn))
   }
 
-  /** Copies a layer's parameters, and its anchors for the eye and the point of the ground below it. */
+  /**
+   * Copies a layer's parameters, and its anchors for the eye and the point of the ground below it: what
+   * `layerAt` reads.
+   */
   #write(index: number): void {
     const { parameters } = this.layers.at(index)
-    const periods = layerPeriods(parameters)
-    const slots = this.values.slice(index * LAYER_STRIDE, (index + 1) * LAYER_STRIDE)
-    const { baseAltitude, topAltitude, density, shadow } = parameters
+    const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
     const coverage = this.noise.isReady ? parameters.coverage : 0
-    slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
-    const { profileExponent, shapeAmount, detailAmount } = parameters
-    slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
+    const periods = layerPeriods(parameters)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
     const { stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
-    slots[2].fromArray(scales.clouds)
-    slots[11].set(scales.cells, scales.regions, scales.planet, scales.cloudVariance)
     const turn = this.turns[index]
-    const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
+    const { elements: e } = _matrix.makeRotationFromQuaternion(turn)
+    const perStretch = 1 / stretch
     const anchor = (
-      slot: number,
       place: Vector3,
-      rotation: Matrix3,
+      rotation: Quaternion,
       length: number,
-      periods = 1,
-      perStretch = 1
-    ): void => {
+      periodsKept = 1,
+      across = 1
+    ): number[] =>
       _point
         .copy(place)
         .applyQuaternion(turn)
-        .multiply(_stretch.set(perStretch, perStretch, 1))
-        .applyMatrix3(rotation)
-        .divideScalar(length * periods)
-      const [x, y, z] = _point.toArray().map(v => periods * (v - Math.floor(v)))
-      slots[slot].set(x, y, z, slots[slot].w)
-    }
-    for (let row = 0; row < 3; row++) {
-      slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
-    }
-    slots[3].w = steepness
-    slots[4].w = sharpness
-    const perStretch = 1 / stretch
-    anchor(8, _position, latticeRotation.shape, periods.shape, 1, perStretch)
-    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD, perStretch)
-    slots[8].w = perStretch
-    slots[9].w = coarseness
-    slots[10].w = anvil
-    // The weather is the same all the way up: it is looked up at the foot point.
-    anchor(6, _foot, latticeRotation.weather, periods.weather)
-    slots[6].w = 1 / periods.weather
-    anchor(10, _foot, latticeRotation.fields, periods.weather * FIELD_PERIOD)
-    anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
-    slots[7].w = shadow ? 1 : 0
+        .multiply(_stretch.set(across, across, 1))
+        .applyQuaternion(rotation)
+        .divideScalar(length * periodsKept)
+        .toArray()
+        .map(v => periodsKept * (v - Math.floor(v)))
+    const { weather, region, shape, detail, fields } = latticeRotation
+    const vectors = [
+      [baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density],
+      [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
+      scales.clouds,
+      [e[0], e[4], e[8], steepness],
+      [e[1], e[5], e[9], sharpness],
+      [e[2], e[6], e[10], 0],
+      // The weather is the same all the way up: it is looked up at the foot point.
+      [...anchor(_foot, weather, periods.weather), 1 / periods.weather],
+      [...anchor(_foot, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
+      [...anchor(_position, shape, periods.shape, 1, perStretch), perStretch],
+      [...anchor(_position, detail, DETAIL_PERIOD, CURL_PERIOD, perStretch), coarseness],
+      [...anchor(_foot, fields, periods.weather * FIELD_PERIOD), anvil],
+      [scales.cells, scales.regions, scales.planet, scales.cloudVariance]
+    ]
+    vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }
 
   /** Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. */

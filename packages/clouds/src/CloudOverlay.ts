@@ -1,7 +1,5 @@
 import {
-  aerialPerspectiveTo,
   FragmentPass,
-  linearSRGB,
   octahedralDirection,
   octahedralPoint,
   tableTarget,
@@ -10,24 +8,26 @@ import {
 import type { AtmosphereView, SkyOverlay, ViewNodes } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import type { Camera, Quaternion, RenderTarget } from 'three'
-import { Fn, If, float, texture, uniform, uv, vec3, vec4 } from 'three/tsl'
+import { Fn, float, texture, uniform, uv, vec3 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from './check'
-import { CloudField } from './CloudField'
+import { CloudField, eyePosition } from './CloudField'
 import type { CloudLayerParameters } from './CloudLayer'
 import type { CloudsNode } from './CloudsNode'
-import { nightGain } from './FrameUniforms'
+import { nightGain } from './NightLight'
 import {
   QualityUniforms,
   resolveQuality,
   type CloudQuality,
   type CloudQualityName
 } from './quality'
+import { withAirBefore } from './tsl/airBefore'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { groundDistance } from './tsl/shells'
 import type { LevelTexture, Mat3, Vec2, Vec3, Vec4 } from './tsl-types'
 import { matrix3, number, vector3 } from './uniforms'
+import { eastAt } from './wind'
 
 /** Options of {@link cloudOverlay}. */
 export interface CloudOverlayOptions {
@@ -152,10 +152,7 @@ export class CloudOverlay implements SkyOverlay {
     if (strip === 0) this.#begin(view, field)
     const { atmosphere, shadows } = clouds
     this.#gain.value = this.#raised / atmosphere.luminanceScale
-    this.#shift.value
-      .copy(view.up)
-      .multiplyScalar(field.radius.value + view.height)
-      .sub(shadows.camera)
+    eyePosition(view, this.#shift.value).sub(shadows.camera)
     const { width: size } = this.#target
     const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
@@ -179,10 +176,8 @@ export class CloudOverlay implements SkyOverlay {
     field.update(view, 0)
     this.#raised = STORED_SCALE * nightGain(view, field.radius.value)
     this.#fromMapped.value.copy(view.viewToMapped).invert()
-    const [up, across] = [this.#up.value.copy(view.up), this.#across.value]
-    across.set(-up.y, up.x, 0)
-    if (across.lengthSq() < 1e-12) across.set(0, 1, 0)
-    this.#along.value.crossVectors(up, across.normalize())
+    const across = eastAt(this.#up.value.copy(view.up), this.#across.value)
+    this.#along.value.crossVectors(view.up, across)
   }
 
   /** Makes its field and shader, for the environment's camera. */
@@ -221,17 +216,8 @@ export class CloudOverlay implements SkyOverlay {
         end,
         jitter: interleavedNoise(pixel, float(0))
       })
-      const opacity = marched.transmittance.oneMinus().toConst()
-      const result = vec4(0, 0, 0, 1).toVar()
-      If(opacity.greaterThan(0), () => {
-        const offset = direction.mul(marched.distance)
-        const toView = this.#fromMapped as unknown as Mat3
-        const air = aerialPerspectiveTo(view, toView.mul(offset).toConst())
-        const seen = linearSRGB(view.air.uniforms, marched.radiance).mul(air.transmittance)
-        const lit = seen.add(air.inScatter.mul(opacity)).mul(this.#gain)
-        result.assign(vec4(lit, marched.transmittance))
-      })
-      return result
+      const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
+      return withAirBefore(view, marched, directionView, this.#gain)
     })()
   }
 

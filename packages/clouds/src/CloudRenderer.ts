@@ -1,12 +1,13 @@
-import { aerialPerspectiveTo, FragmentPass, linearSRGB, tableTarget } from '@welkin/atmosphere'
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { RenderTarget } from 'three'
-import { Fn, If, texture, uv, vec4 } from 'three/tsl'
+import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import type { CloudLight } from './CloudLightTable'
 import type { CloudShadows } from './CloudShadowMap'
 import type { FrameUniforms } from './FrameUniforms'
 import type { QualityUniforms } from './quality'
+import { withAirBefore } from './tsl/airBefore'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { gatherCells } from './tsl/cells'
@@ -34,7 +35,6 @@ function picturesOf({ textures }: RenderTarget): CloudPictures {
 /** Marches one pixel of each block: light with the air in front of it, and where it is. */
 function marchPixels({ field, light, shadows, quality, sights }: CloudScene): TwoOutputs {
   const { frame } = sights
-  const { view } = field
   return twoOutputs(([color, place]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
@@ -48,14 +48,7 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
         end,
         jitter: interleavedNoise(block, frame.noiseShift)
       })
-      const opacity = marched.transmittance.oneMinus().toConst()
-      color.assign(vec4(0, 0, 0, marched.transmittance))
-      If(opacity.greaterThan(0), () => {
-        const air = aerialPerspectiveTo(view, directionView.mul(marched.distance))
-        const spectral = linearSRGB(view.air.uniforms, marched.radiance)
-        const seen = spectral.mul(air.transmittance).add(air.inScatter.mul(opacity))
-        color.assign(vec4(seen.mul(frame.gain), marched.transmittance))
-      })
+      color.assign(withAirBefore(field.view, marched, directionView, frame.gain))
       const distance = encodeDistance(marched.distance)
       place.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
       return vec4(0)

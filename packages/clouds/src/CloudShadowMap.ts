@@ -4,7 +4,7 @@ import { Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
-import type { CloudField } from './CloudField'
+import { eyePosition, type CloudField } from './CloudField'
 import { shadowRay } from './tsl/shadowMap'
 import type { LevelTexture, Vec2 } from './tsl-types'
 import { number, vector3, vector4 } from './uniforms'
@@ -160,7 +160,7 @@ export class CloudShadowMap {
    */
   update(renderer: Renderer, view: AtmosphereView): void {
     const radius = this.field.radius.value
-    this.camera.copy(view.up).multiplyScalar(radius + view.height)
+    eyePosition(view, this.camera)
     const { night, atmosphere } = this.field
     const isMoonlit = night.rulesAt(view)
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun

@@ -1,18 +1,15 @@
-import type { Vector3 } from 'three'
 import { Fn, If, float, positionView } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import { checkSource, viewNodes } from '@welkin/atmosphere'
-import type { AtmosphereView, LightSource, ViewNodes } from '@welkin/atmosphere'
+import type { LightSource, ViewNodes } from '@welkin/atmosphere'
 import { checkClouds } from './check'
+import { eyePosition } from './CloudField'
 import type { CloudsNode } from './CloudsNode'
 import { columnTowards } from './tsl/columns'
 import { sampleShadows } from './tsl/shadowMap'
 import type { Float, Vec3 } from './tsl-types'
 import { number, vector3 } from './uniforms'
-
-const position = (view: AtmosphereView, target: Vector3): Vector3 =>
-  target.copy(view.up).multiplyScalar(view.atmosphere.parameters.bottomRadius + view.height)
 
 /**
  * Shadows of clouds on surfaces: the part of the sunlight, or of the moonlight, that passes, for the
@@ -81,7 +78,7 @@ export class CloudShadowNode extends Node<'float'> {
     const view = this.#view.update(frame)
     const { shadows } = this.clouds
     this.#isMapped.value = shadows.source === this.source ? 1 : 0
-    if (view !== undefined) position(view, this.#shift.value).sub(shadows.camera)
+    if (view !== undefined) eyePosition(view, this.#shift.value).sub(shadows.camera)
   }
 
   override setup(): Node {

@@ -1,9 +1,10 @@
 import { Matrix4, Vector3, Vector4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import type { AtmosphereView } from '@welkin/atmosphere'
-import type { CloudField } from './CloudField'
+import { eyePosition, type CloudField } from './CloudField'
 import { CloudLayers } from './CloudLayers'
 import { LAYER_STRIDE } from './layerUniforms'
+import { nightGain } from './NightLight'
 import { vec4Array } from './tsl-types'
 import { matrix3, matrix4, number, vector2 } from './uniforms'
 
@@ -41,22 +42,6 @@ const CLOUD_CUT = 500
 
 /** Factor of the gain within a frame after which light is another. */
 const LIGHT_CUT = 4
-
-/** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
-const NIGHT = { orders: 5, sine: 0.3 }
-
-/**
- * What light is multiplied with for half floats to hold that of nights as well.
- *
- * @param radius - Of the planet [m].
- */
-export function nightGain({ up, sunDirection, height }: AtmosphereView, radius: number): number {
-  const depression = -Math.asin(Math.min(Math.max(up.dot(sunDirection), -1), 1))
-  // From high up one sees places where the sun is that much less deep.
-  const dip = Math.acos(radius / (radius + Math.max(height, 0)))
-  const sine = Math.sin(Math.max(depression - dip, 0))
-  return 10 ** (NIGHT.orders * Math.min(sine / NIGHT.sine, 1))
-}
 
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
@@ -139,7 +124,7 @@ export class FrameUniforms {
     this.gainChange.value = gain / this.gain.value
     this.gain.value = gain
 
-    _position.copy(view.up).multiplyScalar(field.radius.value + view.height)
+    eyePosition(view, _position)
     const last = this.#camera
     const isDusk = Math.abs(Math.log(this.gainChange.value)) > Math.log(LIGHT_CUT)
     const isCut = last === null || !usesHistory || isDusk || this.#isCut(view, field, last)

@@ -13,6 +13,28 @@ const HIGHEST = 30_000
 const SUNK = MathUtils.degToRad(6)
 const DUSK = MathUtils.degToRad(2)
 
+/** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
+const NIGHT = { orders: 5, sine: 0.3 }
+
+/** How far below the level the horizon is from an altitude, on a sphere [rad]. */
+const dip = (radius: number, altitude: number): number =>
+  Math.acos(radius / (radius + Math.max(altitude, 0)))
+
+/** Height of the sun over the level [rad]. */
+const sunHeight = ({ up, sunDirection }: AtmosphereView): number =>
+  Math.asin(MathUtils.clamp(up.dot(sunDirection), -1, 1))
+
+/**
+ * What light is multiplied with for half floats to hold that of nights as well.
+ *
+ * @param radius - Of the planet [m].
+ */
+export function nightGain(view: AtmosphereView, radius: number): number {
+  // From high up one sees places where the sun is that much less deep.
+  const depression = -sunHeight(view) - dip(radius, view.height)
+  return 10 ** (NIGHT.orders * MathUtils.clamp(Math.sin(depression) / NIGHT.sine, 0, 1))
+}
+
 const _position = new Vector3()
 const _direction = new Vector3()
 
@@ -39,16 +61,15 @@ export class NightLight {
 
   /** Follows the camera and the moon. */
   update(view: AtmosphereView): void {
-    const { atmosphere, camera, height, up, sunDirection } = view
+    const { atmosphere, camera, height } = view
     const { bottomRadius, sunAngularRadius } = atmosphere.parameters
-    const dip = (altitude: number): number =>
-      Math.acos(bottomRadius / (bottomRadius + Math.max(altitude, 0)))
-    const sunk = Math.max(SUNK, dip(HIGHEST) + 1.1 * sunAngularRadius)
+    const reach = dip(bottomRadius, HIGHEST)
+    const sunk = Math.max(SUNK, reach + 1.1 * sunAngularRadius)
     this.sunk.value = -Math.sin(sunk)
     this.dark.value = -Math.sin(sunk + DUSK)
     // As far as clouds can be seen, the sun is at most that much lower than at the camera.
-    const sunHeight = Math.asin(MathUtils.clamp(up.dot(sunDirection), -1, 1))
-    this.isSeen.value = sunHeight - dip(height) - dip(HIGHEST) < -sunk ? 1 : 0
+    const lowest = sunHeight(view) - dip(bottomRadius, height) - reach
+    this.isSeen.value = lowest < -sunk ? 1 : 0
     this.source = atmosphere.layers.find(layer => layer.source !== undefined)?.source ?? null
     this.irradiance.value.setScalar(0)
     if (this.isSeen.value === 0) return

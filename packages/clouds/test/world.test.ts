@@ -4,8 +4,8 @@ import { Matrix3, PerspectiveCamera, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, test } from 'vitest'
 import { cloudOverlay, CloudLayers, clouds, cloudShadow, cloudSkyLight } from '../src'
-import { FrameUniforms, nightGain } from '../src/FrameUniforms'
-import { NightLight } from '../src/NightLight'
+import { FrameUniforms } from '../src/FrameUniforms'
+import { NightLight, nightGain } from '../src/NightLight'
 
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()

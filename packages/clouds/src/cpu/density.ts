@@ -1,4 +1,4 @@
-import { Vector3, type Matrix3, type Quaternion } from 'three'
+import { Vector3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../CloudLayer'
 import { latticeRotation } from '../lattice'
 import {
@@ -58,14 +58,14 @@ const levelOf = (footprint: number, texel: number): number =>
 function placeIn(
   position: Vector3,
   turn: Quaternion,
-  rotation: Matrix3,
+  rotation: Quaternion,
   period: number,
   stretch = 1,
   warp = new Vector3()
 ): Vec3Array {
   const p = position.clone().applyQuaternion(turn)
   p.set(p.x / stretch, p.y / stretch, p.z).addScaledVector(warp, 1 / stretch)
-  p.applyMatrix3(rotation).divideScalar(period)
+  p.applyQuaternion(rotation).divideScalar(period)
   return [p.x, p.y, p.z]
 }
 
@@ -132,7 +132,7 @@ export function weatherAt(
   const { weather: period, shape: shapePeriod } = layerPeriods(layer)
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const fieldLevel = Math.max(level - Math.log2(FIELD_PERIOD), 0)
-  const lookUp = (rotation: Matrix3, length: number, levelThere: number): number[] =>
+  const lookUp = (rotation: Quaternion, length: number, levelThere: number): number[] =>
     sample(shifted(placeIn(foot, turn, rotation, length), region, WEATHER_WARP), levelThere)
   const fields = lookUp(latticeRotation.fields, period * FIELD_PERIOD, fieldLevel)
   const clouds = lookUp(latticeRotation.weather, period, level)

@@ -1,14 +1,14 @@
 import { int, vec3 } from 'three/tsl'
-import type { Matrix3 } from 'three'
+import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { LAYER_STRIDE } from '../layerUniforms'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../tsl-types'
 
 /** A vector turned by a constant rotation. */
-export const rotate = (rotation: Matrix3, v: Vec3): Vec3 => {
-  const e = rotation.elements
+export const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
+  const { elements: e } = new Matrix4().makeRotationFromQuaternion(rotation)
   // Three builds constant matrices row by row, variable ones column by column.
-  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 3], e[row + 6]).dot(v))
+  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 4], e[row + 8]).dot(v))
   return vec3(x, y, z)
 }
 
