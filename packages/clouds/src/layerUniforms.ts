@@ -1,4 +1,5 @@
 import type { CloudLayerParameters } from './CloudLayer'
+import { carvedSharpness, edgeWidth, smoothSharpness } from './densityShape'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 12
@@ -128,7 +129,6 @@ export function layerForms({
   /** How far towers spread at their tops, in [0, 1]. */
   anvil: number
 } {
-  const { edgeWidth, carvedSharpness, smoothSharpness } = densityShape
   const fibrous = shareOf(weatherWeights, 3)
   const mix = (from: number, to: number, share: number): number => from + (to - from) * share
   const carved = shapeAmount ** 2 * (1 - fibrous)
@@ -142,33 +142,3 @@ export function layerForms({
     anvil: towers * Math.min(Math.max(tall, 0), 1)
   }
 }
-
-/** Constants of the density function, found by looking at its pictures. */
-export const densityShape = {
-  /** Change of the weather over which a layer fills from edge to middle. */
-  edgeWidth: { cirrus: 1.6, other: 0.5 },
-  /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
-  meanEdge: 0.535,
-  /** Added to the fill at full coverage, taken at none. */
-  excess: 0.6,
-  /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
-  blur: [0, 5],
-  /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
-  carvedBlur: 0.4,
-  leastBlur: 0.05,
-  /** Fill that towers lack below their anvils, and how much thinner these are. */
-  anvilReach: 0.4,
-  anvilDensity: 0.35,
-  /** The shape carves at least this part of its amount: what is less full is empty for sure. */
-  leastCarving: 0.15,
-  /** What the shape carves less where its levels of detail have lost it, per amount, and these levels. */
-  lostCarving: 0.09,
-  shapeBlur: [0, 5],
-  /** Most that detail takes away. */
-  erosion: 0.22,
-  /** Density per fullness left, of smooth layers and of carved ones: how sharp edges are. */
-  smoothSharpness: 1.5,
-  carvedSharpness: 6,
-  /** Mean density of a cloudy column over the densest. */
-  farFill: 0.6
-} as const

@@ -1,10 +1,10 @@
 import { Vector3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../CloudLayer'
+import * as densityShape from '../densityShape'
 import { latticeRotation } from '../lattice'
 import {
   CURL_AMOUNT,
   CURL_PERIOD,
-  densityShape,
   DETAIL_PERIOD,
   FIELD_PERIOD,
   layerForms,

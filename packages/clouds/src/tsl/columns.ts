@@ -1,12 +1,10 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { densityShape } from '../layerUniforms'
+import { farFill } from '../densityShape'
 import type { Float, Vec3 } from '../tsl-types'
 import { spreadDensity, type CloudSample } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
-
-const { farFill } = densityShape
 
 /**
  * Vertical optical depth of all clouds above or below a place of the ground, from the weather alone.

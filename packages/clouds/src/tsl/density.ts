@@ -1,8 +1,17 @@
 import { If, float, int, log2, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
+import {
+  anvilDensity,
+  anvilReach,
+  erosion,
+  farFill,
+  leastCarving,
+  lostCarving,
+  shapeBlur
+} from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
-import { CURL_AMOUNT, CURL_PERIOD, densityShape, DETAIL_PERIOD } from '../layerUniforms'
+import { CURL_AMOUNT, CURL_PERIOD, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
 import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
@@ -28,9 +37,6 @@ const NOWHERE = 1e6
  * periods of the weather, and where its shape is besides, in periods of the shape.
  */
 const STEEPEST = { weather: 0.03, shape: 0.05 }
-
-const { anvilDensity, anvilReach, erosion, farFill, leastCarving, lostCarving, shapeBlur } =
-  densityShape
 
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>

@@ -4,7 +4,7 @@ import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { CloudLight } from '../CloudLightTable'
 import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
-import { densityShape } from '../layerUniforms'
+import { farFill } from '../densityShape'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
@@ -79,7 +79,7 @@ export function sheetsAbout(
       const foot = footOffset(field, sample).toConst()
       const { cover } = weatherAt(field, layer, foot, sample)
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
-      const depth = layer.density.mul(densityShape.farFill).mul(light.depthScale).toConst() as Float
+      const depth = layer.density.mul(farFill).mul(light.depthScale).toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
       const passing = (part: Float): Float => cover.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {

@@ -1,9 +1,9 @@
 import { atan, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
+import { blur, carvedBlur, excess, leastBlur, meanEdge } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
-  densityShape,
   FIELD_PERIOD,
   PLANET_WAVES,
   REGION_CELLS,
@@ -31,8 +31,6 @@ export interface CloudWeather {
   shapeWarp: Vec3
   detailWarp: Vec3
 }
-
-const { blur, carvedBlur, excess, leastBlur, meanEdge } = densityShape
 
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:

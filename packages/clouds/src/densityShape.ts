@@ -1,0 +1,38 @@
+// Constants of the density function, found by looking at its pictures.
+
+/** Change of the weather over which a layer fills from edge to middle. */
+export const edgeWidth = { cirrus: 1.6, other: 0.5 } as const
+
+/** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
+export const meanEdge = 0.535
+
+/** Added to the fill at full coverage, taken at none. */
+export const excess = 0.6
+
+/** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
+export const blur = [0, 5] as const
+
+/** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
+export const carvedBlur = 0.4
+export const leastBlur = 0.05
+
+/** Fill that towers lack below their anvils, and how much thinner these are. */
+export const anvilReach = 0.4
+export const anvilDensity = 0.35
+
+/** The shape carves at least this part of its amount: what is less full is empty for sure. */
+export const leastCarving = 0.15
+
+/** What the shape carves less where its levels of detail have lost it, per amount, and these levels. */
+export const lostCarving = 0.09
+export const shapeBlur = [0, 5] as const
+
+/** Most that detail takes away. */
+export const erosion = 0.22
+
+/** Density per fullness left, of smooth layers and of carved ones: how sharp edges are. */
+export const smoothSharpness = 1.5
+export const carvedSharpness = 6
+
+/** Mean density of a cloudy column over the densest. */
+export const farFill = 0.6
