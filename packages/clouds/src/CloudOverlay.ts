@@ -7,12 +7,12 @@ import {
 } from '@welkin/atmosphere'
 import type { AtmosphereView, SkyOverlay, ViewNodes } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
-import type { Camera, Quaternion, RenderTarget } from 'three'
-import { Fn, float, texture, uniform, uv, vec3 } from 'three/tsl'
+import { Vector3 } from 'three'
+import type { Quaternion, RenderTarget } from 'three'
+import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from './check'
 import { CloudField, eyePosition } from './CloudField'
-import type { CloudLayerParameters } from './CloudLayer'
 import type { CloudsNode } from './CloudsNode'
 import { nightGain } from './NightLight'
 import {
@@ -25,9 +25,8 @@ import { withAirBefore } from './tsl/airBefore'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { groundDistance } from './tsl/shells'
-import type { LevelTexture, Mat3, Vec2, Vec3, Vec4 } from './tsl-types'
-import { matrix3, number, vector3 } from './uniforms'
-import { eastAt } from './wind'
+import type { LevelTexture, Mat3, Mat4, Vec2, Vec3 } from './tsl-types'
+import { matrix3, matrix4, number, vector3 } from './uniforms'
 
 /** Options of {@link cloudOverlay}. */
 export interface CloudOverlayOptions {
@@ -48,13 +47,19 @@ const STRIPS = 6
 /** Light of the default luminance scale, which half floats hold well by day. */
 const STORED_SCALE = 1e-4
 
-/** What clouds were like when they were drawn. */
-interface DrawnClouds {
-  readonly layers: readonly CloudLayerParameters[]
+const _center = new Vector3()
+const _pole = new Vector3(0, 0, 1)
+
+/** Change of the direction to the moon, or of its light's strength, that shows. */
+const MOON_CHANGE = 2e-3
+
+/** What clouds are like, by all that shows. */
+interface CloudState {
+  /** What has to stay as it is. */
+  readonly things: readonly unknown[]
   readonly turns: readonly Quaternion[]
-  readonly phase: object
-  /** Whether there were shadow maps. */
-  readonly isMapped: boolean
+  /** Direction to the moon times its strength; 0 by day. */
+  readonly moonlight: Vector3
 }
 
 /**
@@ -67,8 +72,8 @@ interface DrawnClouds {
  * scene.environmentNode = skyEnvironment(atmosphere, { overlay })
  * ```
  *
- * It is drawn again with the environment, and when layers are changed or have drifted. Use one per
- * environment.
+ * It is drawn again with the environment, and when layers are changed or have drifted, or the moon that
+ * lights them has moved. Use one per environment.
  */
 export class CloudOverlay implements SkyOverlay {
   readonly steps = WAIT + STRIPS
@@ -79,10 +84,8 @@ export class CloudOverlay implements SkyOverlay {
   readonly #target: RenderTarget
   readonly #picture: LevelTexture<Vec2>
   readonly #quality = new QualityUniforms()
-  /** Level axes of the picture; the third is the zenith at its place. All in the mapped space. */
-  readonly #across = vector3()
-  readonly #along = vector3()
-  readonly #up = vector3()
+  /** Axes of the picture, east, north and the zenith at its place, to those of the mapped space. */
+  readonly #axes = matrix4()
   /** Displacements in the mapped space to view space. */
   readonly #fromMapped = matrix3()
   /** Stored light per light. */
@@ -91,11 +94,9 @@ export class CloudOverlay implements SkyOverlay {
   #raised = STORED_SCALE
   /** From the camera of the shadow maps [m]. */
   readonly #shift = vector3()
-  #camera: Camera | null = null
-  #view: ViewNodes | null = null
   #field: CloudField | null = null
   #pass: FragmentPass | null = null
-  #drawn: DrawnClouds | null = null
+  #drawn: CloudState | null = null
   #version = 0
 
   /** @throws If the clouds are missing, or an option is out of its range. */
@@ -126,31 +127,43 @@ export class CloudOverlay implements SkyOverlay {
     return this.#isAsDrawn() ? this.#version : this.#version + 1
   }
 
-  #isAsDrawn(): boolean {
-    const drawn = this.#drawn
-    if (drawn === null) return false
+  #state(): CloudState {
     const { field, light, shadows } = this.clouds
-    const reach = this.drift / field.atmosphere.parameters.bottomRadius
+    const { direction, illuminance, irradiance } = field.night
+    return {
+      things: [
+        light.phase,
+        shadows.isDrawn,
+        illuminance,
+        ...[...field.layers].map(({ parameters }) => parameters)
+      ],
+      turns: field.turns.map(turn => turn.clone()),
+      moonlight: direction.value.clone().multiplyScalar(irradiance.value.y)
+    }
+  }
+
+  #isAsDrawn(): boolean {
+    if (this.#drawn === null) return false
+    const { things, turns, moonlight } = this.#drawn
+    const now = this.#state()
+    const reach = this.drift / this.clouds.atmosphere.parameters.bottomRadius
     return (
-      light.phase === drawn.phase &&
-      drawn.isMapped === shadows.isDrawn &&
-      drawn.layers.every((parameters, i) => parameters === field.layers.at(i).parameters) &&
-      drawn.turns.every((turn, i) => turn.angleTo(field.turns[i]) <= reach)
+      things.every((thing, i) => thing === now.things[i]) &&
+      turns.every((turn, i) => turn.angleTo(now.turns[i]) <= reach) &&
+      moonlight.distanceTo(now.moonlight) <= MOON_CHANGE * moonlight.length()
     )
   }
 
   /** See `SkyOverlay.draw`. */
   draw(renderer: Renderer, view: AtmosphereView, step: number): void {
-    const { clouds } = this
-    clouds.field.bake(renderer)
-    clouds.light.bake()
-    if (view.camera !== this.#camera) this.#build(view)
-    const field = this.#field
-    if (field === null || this.#view?.update({ camera: view.camera }) === undefined) return
+    const { atmosphere, field: source, light, shadows } = this.clouds
+    source.bake(renderer)
+    light.bake()
+    const field = view.camera === this.#field?.view.camera ? this.#field : this.#build(view)
+    if (field.view.update(view) === undefined) return
     const strip = step - WAIT
     if (strip < 0) return
     if (strip === 0) this.#begin(view, field)
-    const { atmosphere, shadows } = clouds
     this.#gain.value = this.#raised / atmosphere.luminanceScale
     eyePosition(view, this.#shift.value).sub(shadows.camera)
     const { width: size } = this.#target
@@ -161,75 +174,51 @@ export class CloudOverlay implements SkyOverlay {
 
   /** Takes clouds, sun and place as they are for all steps. */
   #begin(view: AtmosphereView, field: CloudField): void {
-    const source = this.clouds.field
+    const { turns, night } = this.clouds.field
     if (!this.#isAsDrawn()) this.#version++
-    this.#drawn = {
-      layers: [...source.layers].map(({ parameters }) => parameters),
-      turns: source.turns.map(turn => turn.clone()),
-      phase: this.clouds.light.phase,
-      isMapped: this.clouds.shadows.isDrawn
-    }
-    source.turns.forEach((turn, i) => field.turns[i].copy(turn))
+    this.#drawn = this.#state()
+    turns.forEach((turn, i) => field.turns[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width
-    field.night.illuminance = source.night.illuminance
+    field.night.illuminance = night.illuminance
     // On a clock that stands still: the turns are the other field's.
     field.update(view, 0)
     this.#raised = STORED_SCALE * nightGain(view, field.radius.value)
     this.#fromMapped.value.copy(view.viewToMapped).invert()
-    const across = eastAt(this.#up.value.copy(view.up), this.#across.value)
-    this.#along.value.crossVectors(view.up, across)
+    // East is across pole and zenith.
+    this.#axes.value.lookAt(view.up, _center, _pole)
   }
 
   /** Makes its field and shader, for the environment's camera. */
-  #build(view: AtmosphereView): void {
-    const { atmosphere, field, light, shadows } = this.clouds
-    this.#camera = view.camera
-    const nodes = (this.#view = viewNodes(atmosphere, view.camera))
-    const { noise, worldMapTexture: worldMap } = field
-    const seen = (this.#field = new CloudField(atmosphere, field.layers, nodes, {
-      noise,
-      worldMap
-    }))
-    this.#pass?.dispose()
-    this.#pass = new FragmentPass('Welkin.CloudOverlay', this.#march(seen, nodes, light, shadows))
-  }
-
-  #march(
-    field: CloudField,
-    view: ViewNodes,
-    light: CloudsNode['light'],
-    shadows: CloudsNode['shadows']
-  ): Vec4 {
-    return Fn(() => {
+  #build({ camera }: AtmosphereView): CloudField {
+    const { atmosphere, field: source, light, shadows } = this.clouds
+    const { layers, noise, worldMapTexture: worldMap } = source
+    const view = viewNodes(atmosphere, camera)
+    const field = new CloudField(atmosphere, layers, view, { noise, worldMap })
+    const picture = Fn(() => {
       const at = uv() as unknown as Vec2
       const local = octahedralDirection(at.mul(2).sub(1)).toConst()
-      const direction = this.#across
-        .mul(local.x)
-        .add(this.#along.mul(local.y))
-        .add(this.#up.mul(local.z))
-        .toConst() as Vec3
+      const direction = (this.#axes as unknown as Mat4).mul(vec4(local, 0)).xyz.toConst() as Vec3
       const end = groundDistance(field, direction.dot(view.up).clamp(-1, 1).toConst())
       const maps = { ...shadows.nodes, shift: this.#shift }
       const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
-      const marched = marchClouds(field, light.nodes, maps, this.#quality, {
-        direction,
-        end,
-        jitter: interleavedNoise(pixel, float(0))
-      })
+      const jitter = interleavedNoise(pixel, float(0))
+      const ray = { direction, end, jitter }
+      const marched = marchClouds(field, light.nodes, maps, this.#quality, ray)
       const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
       return withAirBefore(view, marched, directionView, this.#gain)
-    })()
+    })
+    this.#pass?.dispose()
+    this.#pass = new FragmentPass('Welkin.CloudOverlay', picture())
+    return (this.#field = field)
   }
 
   /** See `SkyOverlay.over`. */
   over(_view: ViewNodes, direction: Vec3, sky: Vec3): Vec3 {
     const { atmosphere } = this.clouds
     const scale = uniform(1).onRenderUpdate(() => atmosphere.luminanceScale / this.#raised)
-    const local = vec3(
-      direction.dot(this.#across),
-      direction.dot(this.#along),
-      direction.dot(this.#up)
-    ).toConst()
+    const local = transpose(this.#axes as unknown as Mat4)
+      .mul(vec4(direction, 0))
+      .xyz.toConst()
     const at = octahedralPoint(local).mul(0.5).add(0.5)
     const clouds = this.#picture.sample(at).level(0).toConst()
     return sky.mul(clouds.a).add(clouds.rgb.mul(scale))
@@ -240,7 +229,7 @@ export class CloudOverlay implements SkyOverlay {
     this.#target.dispose()
     this.#pass?.dispose()
     this.#field?.dispose()
-    this.#pass = this.#camera = this.#field = this.#drawn = null
+    this.#pass = this.#field = this.#drawn = null
   }
 }
 
