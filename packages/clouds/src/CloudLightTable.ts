@@ -1,11 +1,4 @@
-import {
-  Data3DTexture,
-  DataUtils,
-  HalfFloatType,
-  LinearFilter,
-  RGBAFormat,
-  type TypedArray
-} from 'three'
+import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray } from 'three'
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { checkOptions } from '@welkin/atmosphere'
@@ -74,7 +67,6 @@ export class CloudLightTable {
     const texels = new Uint16Array(4 * positions * depths * CLOUD_LIGHT_LAYERS)
     this.texture = new Data3DTexture(texels, positions, depths, CLOUD_LIGHT_LAYERS)
     this.texture.name = 'Welkin.CloudLight'
-    this.texture.format = RGBAFormat
     this.texture.type = HalfFloatType
     this.texture.minFilter = this.texture.magFilter = LinearFilter
     this.texture.needsUpdate = true

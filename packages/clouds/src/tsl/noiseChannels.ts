@@ -13,7 +13,7 @@ import { billow, perlin } from './noise'
 const terms = { perlin, billow }
 
 /** Φ(z) of the normal distribution, to 0.01. */
-const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
+export const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
 
 /**
  * One channel of a noise texture.

@@ -15,6 +15,7 @@ import {
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { CloudSample } from './density'
 import { rotate, type LayerNodes } from './layer'
+import { cumulative } from './noiseChannels'
 
 /** What the weather says of a place in a layer. */
 export interface CloudWeather {
@@ -77,9 +78,6 @@ function shareAt(
 
 /** Part of a noise's variance that its levels of detail have lost. */
 const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
-
-/** Φ(z) of the normal distribution, to 0.01. */
-const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
 
 /**
  * sin x to 10⁻⁶. A GPU's own may be off by 2⁻¹¹, and by more beyond ±π: as the waves shift the regions, and
