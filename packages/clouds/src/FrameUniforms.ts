@@ -32,10 +32,12 @@ const FORGETTING_LOOKS = 12
 const STILL_LOOKS = 256
 
 /** How far history may be from its surroundings, in standard deviations. */
-const CLIPPING = { moving: 1.25, still: 8 }
+const MOVING_CLIPPING = 1.25
+const STILL_CLIPPING = 8
 
 /** A move of the camera within a frame after which it is somewhere else: in heights, and at least [m]. */
-const CUT = { heights: 0.3, metres: 300 }
+const CUT_HEIGHTS = 0.3
+const CUT_METRES = 300
 
 /** A move of the clouds within a frame after which they are others [m]. */
 const CLOUD_CUT = 500
@@ -126,8 +128,12 @@ export class FrameUniforms {
 
     eyePosition(view, _position)
     const last = this.#camera
-    const isDusk = Math.abs(Math.log(this.gainChange.value)) > Math.log(LIGHT_CUT)
-    const isCut = last === null || !usesHistory || isDusk || this.#isCut(view, field, last)
+    const reach = Math.max(CUT_HEIGHTS * Math.abs(view.height), CUT_METRES)
+    const isCut =
+      !usesHistory ||
+      !(last !== null && last.distanceTo(_position) < reach) ||
+      Math.abs(Math.log(this.gainChange.value)) > Math.log(LIGHT_CUT) ||
+      field.drifts.some(drift => !(drift.length() < CLOUD_CUT))
     this.hasHistory.value = isCut ? 0 : 1
     let isStill = !isCut
     const { elements: e } = camera.projectionMatrixInverse
@@ -152,9 +158,11 @@ export class FrameUniforms {
       this.origins[i].set(x, y, w, z)
       isStill &&= drift.lengthSq() === 0
     })
-    const matter = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))
     const { direction, irradiance, radiance } = field.night
-    for (const { value } of [direction, irradiance, radiance]) matter.push(...value.toArray())
+    const matter = [
+      ...field.values.filter((_, i) => i % LAYER_STRIDE < 3),
+      ...[direction, irradiance, radiance].map(({ value }) => value)
+    ].flatMap(vector => vector.toArray())
     const isSunStill = this.#sun.distanceToSquared(view.sunDirection) < 1e-12
     if (isCut) this.#forgetting = 0
     else if (isSunStill && isSame(matter, this.#matter)) this.#forgetting--
@@ -162,7 +170,7 @@ export class FrameUniforms {
     const aim = [...view.viewToMapped.elements, ...camera.projectionMatrix.elements]
     isStill &&= this.#forgetting <= 0 && isSame(aim, this.#aim)
     this.memory.value = isStill ? STILL_LOOKS : Math.max(MOVING_FRAMES / order.length, MOVING_LOOKS)
-    this.clipping.value = isStill ? CLIPPING.still : CLIPPING.moving
+    this.clipping.value = isStill ? STILL_CLIPPING : MOVING_CLIPPING
 
     this.#matter = matter
     this.#aim = aim
@@ -170,11 +178,5 @@ export class FrameUniforms {
     this.#projection.copy(camera.projectionMatrix)
     this.#fromMapped.setFromMatrix3(view.viewToMapped).invert()
     this.#camera = (last ?? new Vector3()).copy(_position)
-  }
-
-  #isCut(view: AtmosphereView, field: CloudField, last: Vector3): boolean {
-    const reach = Math.max(CUT.heights * Math.abs(view.height), CUT.metres)
-    if (!(last.distanceTo(_position) < reach)) return true
-    return field.drifts.some(drift => !(drift.length() < CLOUD_CUT))
   }
 }

@@ -14,7 +14,8 @@ const SUNK = MathUtils.degToRad(6)
 const DUSK = MathUtils.degToRad(2)
 
 /** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
-const NIGHT = { orders: 5, sine: 0.3 }
+const NIGHT_ORDERS = 5
+const NIGHT_SINE = 0.3
 
 /** How far below the level the horizon is from an altitude, on a sphere [rad]. */
 const dip = (radius: number, altitude: number): number =>
@@ -32,7 +33,7 @@ const sunHeight = ({ up, sunDirection }: AtmosphereView): number =>
 export function nightGain(view: AtmosphereView, radius: number): number {
   // From high up one sees places where the sun is that much less deep.
   const depression = -sunHeight(view) - dip(radius, view.height)
-  return 10 ** (NIGHT.orders * MathUtils.clamp(Math.sin(depression) / NIGHT.sine, 0, 1))
+  return 10 ** (NIGHT_ORDERS * MathUtils.clamp(Math.sin(depression) / NIGHT_SINE, 0, 1))
 }
 
 const _position = new Vector3()

@@ -1,7 +1,8 @@
 // Constants of the density function, found by looking at its pictures.
 
-/** Change of the weather over which a layer fills from edge to middle. */
-export const edgeWidth = { cirrus: 1.6, other: 0.5 } as const
+/** Change of the weather over which a layer fills from edge to middle: of any cloud but cirrus, and of that. */
+export const edgeWidth = 0.5
+export const cirrusEdgeWidth = 1.6
 
 /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
 export const meanEdge = 0.535

@@ -1,5 +1,5 @@
 import type { CloudLayerParameters } from './CloudLayer'
-import { carvedSharpness, edgeWidth, smoothSharpness } from './densityShape'
+import { carvedSharpness, cirrusEdgeWidth, edgeWidth, smoothSharpness } from './densityShape'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 12
@@ -37,11 +37,12 @@ export const scaleWeights = { fields: 0.6, cells: 0.5, regions: 0.65, planet: 0.
 /** Share of finer cells in the regions. */
 export const REGION_CELLS = 0.6
 
-/** How much longer than wide the noise of cirrus is, and of any other cloud. */
-const STRETCH = { cirrus: 9, other: 1 } as const
+/** How much longer than wide the noise of cirrus is. */
+const CIRRUS_STRETCH = 9
 
 /** Layers thinner than the first have no anvils, thicker than the second large ones [m]. */
-const ANVILS = [4000, 8000] as const
+const LEAST_ANVIL = 4000
+const LARGE_ANVIL = 8000
 
 /** Period of the detail texture [m]. */
 export const DETAIL_PERIOD = 330
@@ -133,10 +134,10 @@ export function layerForms({
   const mix = (from: number, to: number, share: number): number => from + (to - from) * share
   const carved = shapeAmount ** 2 * (1 - fibrous)
   const towers = shareOf(weatherWeights, 2)
-  const tall = (topAltitude - baseAltitude - ANVILS[0]) / (ANVILS[1] - ANVILS[0])
+  const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
-    stretch: mix(STRETCH.other, STRETCH.cirrus, fibrous),
-    steepness: 1 / mix(edgeWidth.other, edgeWidth.cirrus, fibrous),
+    stretch: mix(1, CIRRUS_STRETCH, fibrous),
+    steepness: 1 / mix(edgeWidth, cirrusEdgeWidth, fibrous),
     sharpness: mix(smoothSharpness, carvedSharpness, carved),
     coarseness: towers,
     anvil: towers * Math.min(Math.max(tall, 0), 1)

@@ -29,7 +29,8 @@ export interface CloudSheets {
 }
 
 /** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
-const REACH = { heights: 2, least: 1500 }
+const REACH_HEIGHTS = 2
+const LEAST_REACH = 1500
 
 /** Transmittances of a cloud by Eddington's approximation. Twin: cpu/overcast.ts */
 export function eddington(
@@ -73,7 +74,7 @@ export function sheetsAbout(
     const layer = layerAt(field, index)
     If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
       const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
-      const footprint = rise.mul(REACH.heights).max(REACH.least)
+      const footprint = rise.mul(REACH_HEIGHTS).max(LEAST_REACH)
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
       const foot = footOffset(field, sample).toConst()
