@@ -36,14 +36,12 @@ export function symmetricEigen(a: Matrix): { values: number[]; vectors: Matrix }
         const tangent = Math.sign(theta || 1) / (Math.abs(theta) + Math.hypot(theta, 1))
         const cosine = 1 / Math.hypot(tangent, 1)
         const sine = tangent * cosine
-        for (const row of [a, vectors].flat()) {
-          ;[row[p], row[q]] = [cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]]
-        }
-        for (let k = 0; k < size; k++) {
-          const [x, y] = [a[p][k], a[q][k]]
-          a[p][k] = cosine * x - sine * y
-          a[q][k] = sine * x + cosine * y
-        }
+        const turned = (x: number, y: number): [number, number] => [
+          cosine * x - sine * y,
+          sine * x + cosine * y
+        ]
+        for (const row of [...a, ...vectors]) [row[p], row[q]] = turned(row[p], row[q])
+        for (let k = 0; k < size; k++) [a[p][k], a[q][k]] = turned(a[p][k], a[q][k])
       }
     }
     if (rest < 1e-30) break

@@ -1,12 +1,5 @@
 import { float, vec3 } from 'three/tsl'
-import {
-  cellsOf,
-  CURL_CELLS,
-  CURL_SCALE,
-  noiseStatistics,
-  seedOf,
-  type NoiseChannel
-} from '../noiseRecipes'
+import { CURL_CELLS, CURL_SCALE, noiseStatistics, seedOf, type NoiseChannel } from '../noiseRecipes'
 import type { Float, Vec3 } from '../tsl-types'
 import { billow, perlin } from './noise'
 
@@ -27,7 +20,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   let place = p
   if (warp !== undefined) {
     const shift = (axis: number): Float =>
-      perlin(p, vec3(...cellsOf(warp.cells)), float(seedOf(index, parts.length + axis)))
+      perlin(p, vec3(warp.cells), float(seedOf(index, parts.length + axis)))
     place = p.add(vec3(shift(0), shift(1), shift(2)).mul(warp.amount)).toConst()
   }
   let variance = 0
@@ -35,7 +28,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   parts.forEach(({ kind, cells, weight }, i) => {
     const { mean, deviation } = noiseStatistics[kind]
     variance += (weight * deviation) ** 2
-    const noise = terms[kind](place, vec3(...cellsOf(cells)), float(seedOf(index, i)))
+    const noise = terms[kind](place, vec3(...cells), float(seedOf(index, i)))
     sum = sum.add(noise.sub(mean).mul(weight))
   })
   const z = sum.div(Math.sqrt(variance)).toConst() as Float

@@ -19,14 +19,8 @@ export interface CloudSheetNodes {
   beam: Float
 }
 
-/** Clouds above and below a place. */
-export interface CloudSheets {
-  above: CloudSheetNodes
-  below: CloudSheetNodes
-  /** Altitude of the tops above and below the place; the place's own where there are none [m]. */
-  topAbove: Float
-  topBelow: Float
-}
+/** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
+export type PlacedSheet = CloudSheetNodes & { top: Float }
 
 /** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
 const REACH_HEIGHTS = 2
@@ -63,7 +57,7 @@ export function sheetsAbout(
   altitude: Float,
   up: Vec3,
   cosSun: Float
-): CloudSheets {
+): { above: PlacedSheet; below: PlacedSheet } {
   const mu = cosSun.max(LOWEST_OVERCAST_SUN).toConst() as Float
   const distance = offset.length().toConst() as Float
   /** Sums of 1/t − 1 for diffuse light and the sun's, and of tops by the first. */
@@ -94,21 +88,16 @@ export function sheetsAbout(
       add(below, layer.thickness.sub(over), top.min(altitude))
     })
   })
-  const sheet = (sum: Vec3): { diffuse: Float; direct: Float } => ({
+  const sheet = (sum: Vec3, through: Float): PlacedSheet => ({
     diffuse: sum.x.add(1).reciprocal().toConst(),
-    direct: sum.y.add(1).reciprocal().toConst()
-  })
-  const top = (sum: Vec3): Float =>
-    sum.x
+    direct: sum.y.add(1).reciprocal().toConst(),
+    beam: through,
+    top: sum.x
       .greaterThan(1e-6)
       .select(sum.z.div(sum.x.max(1e-6)), altitude)
       .toConst()
-  return {
-    above: { ...sheet(above), beam },
-    below: { ...sheet(below), beam: float(1) },
-    topAbove: top(above),
-    topBelow: top(below)
-  }
+  })
+  return { above: sheet(above, beam), below: sheet(below, float(1)) }
 }
 
 /** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
@@ -133,9 +122,10 @@ export function cloudyIrradiance(
   below: CloudSheetNodes,
   cosNormal: Float
 ): Vec4 {
+  const reflected = below.diffuse.oneMinus().toConst() as Float
   /** Of light on the ground that leaves the clouds over it. */
-  const escaping = albedo.mul(below.diffuse.oneMinus()).oneMinus().reciprocal().mul(below.diffuse)
-  const whiteness = albedo.mul(escaping).mul(below.diffuse).add(below.diffuse.oneMinus())
+  const escaping = albedo.mul(reflected).oneMinus().reciprocal().mul(below.diffuse)
+  const whiteness = albedo.mul(escaping).mul(below.diffuse).add(reflected)
   const passing = sun.above.mul(above.direct).add(sky.here.mul(above.diffuse))
   const bounced = passing.div(whiteness.mul(above.diffuse.oneMinus()).oneMinus())
   const more = bounced
@@ -145,7 +135,7 @@ export function cloudyIrradiance(
   const beam = sun.below.mul(above.beam).toConst() as Vec4
   const diffuse = sky.below.mul(above.diffuse).add(more).toConst() as Vec4
   const onGround = beam.mul(below.direct).add(diffuse.mul(below.diffuse)).mul(escaping)
-  const clouds = beam.mul(below.direct.oneMinus()).add(diffuse.mul(below.diffuse.oneMinus()))
+  const clouds = beam.mul(below.direct.oneMinus()).add(diffuse.mul(reflected))
   const part = onGround.div(sun.below.add(sky.below).max(1e-20))
   const lower = ground.mul(part.sub(above.diffuse)).add(clouds)
   return plane
@@ -170,17 +160,17 @@ export function overcastIrradiance(
   clear: Vec4
 ): Vec4 {
   const { uniforms, transmittance, diffuse } = view.air
-  const sheets = sheetsAbout(field, light, offset, altitude, up, cosSun)
+  const { above, below } = sheetsAbout(field, light, offset, altitude, up, cosSun)
   const sunAt = (height: Float): Vec4 =>
     transmittanceToSun(uniforms, transmittance, height, cosSun).mul(cosSun.max(0)).toConst()
   const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosSun)
-  const onClouds = horizontalIrradiance(uniforms, diffuse!, sheets.topBelow, cosSun)
+  const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosSun)
   const lights: ClearLightNodes = {
-    sun: { above: sunAt(sheets.topAbove), below: sunAt(sheets.topBelow) },
+    sun: { above: sunAt(above.top), below: sunAt(below.top) },
     sky: { here: here.up.toConst(), below: onClouds.up.toConst() },
     ground: here.down.toConst(),
     plane: clear,
     albedo: uniforms.groundAlbedo
   }
-  return cloudyIrradiance(lights, sheets.above, sheets.below, cosNormal)
+  return cloudyIrradiance(lights, above, below, cosNormal)
 }
