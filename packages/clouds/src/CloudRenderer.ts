@@ -1,5 +1,6 @@
 import { aerialPerspectiveTo, FragmentPass, linearSRGB } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, RenderTarget } from 'three'
+import { HalfFloatType, LinearFilter, RenderTarget, UnsignedByteType } from 'three'
+import type { Texture } from 'three'
 import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
@@ -24,7 +25,8 @@ export interface CloudScene {
   readonly sights: SightNodes
 }
 
-function pictureTarget(name: string): RenderTarget {
+/** @param isPacked - Whether places are bytes. */
+function pictureTarget(name: string, isPacked = false): RenderTarget {
   const target = new RenderTarget(1, 1, {
     count: 2,
     type: HalfFloatType,
@@ -33,6 +35,7 @@ function pictureTarget(name: string): RenderTarget {
     magFilter: LinearFilter
   })
   for (const [i, part] of ['light', 'place'].entries()) target.textures[i].name = `${name}.${part}`
+  if (isPacked) target.textures[1].type = UnsignedByteType
   return target
 }
 
@@ -82,7 +85,7 @@ export class CloudRenderer {
   readonly #marched = pictureTarget('Welkin.CloudsMarched')
   readonly #cells = pictureTarget('Welkin.CloudsCells')
   /** The picture, and that of the last frame, in turns. */
-  readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`))
+  readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`, true))
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
@@ -115,7 +118,12 @@ export class CloudRenderer {
 
   /** Size on the GPU [bytes]. */
   get bytes(): number {
-    return this.#targets.reduce((sum, { width, height }) => sum + 16 * width * height, 0)
+    const bytes = ({ type }: Texture): number => (type === UnsignedByteType ? 4 : 8)
+    return this.#targets.reduce(
+      (sum, { width, height, textures }) =>
+        sum + width * height * textures.reduce((all, one) => all + bytes(one), 0),
+      0
+    )
   }
 
   /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */

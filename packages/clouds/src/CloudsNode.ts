@@ -17,7 +17,7 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import type { CloudPictures } from './tsl/pictures'
+import { unpack, type CloudPictures } from './tsl/pictures'
 import type { LevelTexture, Vec2, Vec4 } from './tsl-types'
 
 const _size = new Vector2()
@@ -244,7 +244,7 @@ export class CloudsNode extends AtmosphereNode {
         color.a.mul(clouds.a).add(clouds.a.oneMinus())
       ).toVar()
       If(this.#debug.greaterThan(0), () => {
-        const place = latest('place')
+        const place = unpack(latest('place'))
         const views = [
           clouds.a.oneMinus(),
           marched.place.sample(at).level(0).w,
