@@ -1,5 +1,5 @@
 import { aerialPerspectiveTo, FragmentPass, linearSRGB } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, RenderTarget, UnsignedByteType } from 'three'
+import { HalfFloatType, LinearFilter, NearestFilter, RenderTarget, UnsignedByteType } from 'three'
 import type { Texture } from 'three'
 import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -8,6 +8,7 @@ import type { CloudLight } from './CloudLightTable'
 import type { CloudShadows } from './CloudShadowMap'
 import type { FrameUniforms } from './FrameUniforms'
 import type { QualityUniforms } from './quality'
+import { approachClouds, TILE } from './tsl/approach'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { gatherCells } from './tsl/cells'
@@ -45,12 +46,17 @@ function picturesOf({ textures }: RenderTarget): CloudPictures {
 }
 
 /** Marches one pixel of each block: light with the air in front of it, and where it is. */
-function marchPixels({ field, light, shadows, quality, sights }: CloudScene): TwoOutputs {
+function marchPixels(
+  { field, light, shadows, quality, sights }: CloudScene,
+  clear: LevelTexture<Vec2>
+): TwoOutputs {
   const { frame } = sights
   const { view } = field
   return twoOutputs(([color, place]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
+      const tiles = frame.marchedSize.div(TILE).ceil().mul(TILE)
+      const tile = block.add(0.5).div(tiles).toConst() as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
       const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
       const sight = sightAt(sights, at)
@@ -59,7 +65,8 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
       const marched = marchClouds(field, light, shadows, quality, {
         direction,
         end,
-        jitter: interleavedNoise(block, frame.noiseShift)
+        jitter: interleavedNoise(block, frame.noiseShift),
+        start: frame.isAmong.greaterThan(0).select(clear.sample(tile).level(0).x, 0)
       })
       const opacity = marched.transmittance.oneMinus().toConst()
       color.assign(vec4(0, 0, 0, marched.transmittance))
@@ -86,6 +93,13 @@ export class CloudRenderer {
   readonly #cells = pictureTarget('Welkin.CloudsCells')
   /** The picture, and that of the last frame, in turns. */
   readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`, true))
+  readonly #approached = new RenderTarget(1, 1, {
+    type: HalfFloatType,
+    depthBuffer: false,
+    minFilter: NearestFilter,
+    magFilter: NearestFilter
+  })
+  readonly #approach: FragmentPass
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
@@ -98,7 +112,9 @@ export class CloudRenderer {
 
   constructor(scene: CloudScene) {
     this.#frame = scene.sights.frame
-    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
+    const clear = texture(this.#approached.texture) as unknown as LevelTexture<Vec2>
+    this.#approach = new FragmentPass('Welkin.CloudsApproach', approachClouds(scene.sights))
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, clear))
     const { marched } = this
     this.#gather = new FragmentPass(
       'Welkin.CloudsGather',
@@ -113,7 +129,7 @@ export class CloudRenderer {
   }
 
   get #targets(): RenderTarget[] {
-    return [this.#marched, this.#cells, ...this.#accumulated]
+    return [this.#approached, this.#marched, this.#cells, ...this.#accumulated]
   }
 
   /** Size on the GPU [bytes]. */
@@ -134,6 +150,8 @@ export class CloudRenderer {
       this.#frame.reset()
     }
     this.#marched.setSize(Math.ceil(width / block), Math.ceil(height / block))
+    const { width: across, height: down } = this.#marched
+    this.#approached.setSize(Math.ceil(across / TILE), Math.ceil(down / TILE))
     this.#cells.setSize(this.#marched.width + 1, this.#marched.height + 1)
     this.#frame.size.value.set(width, height)
     this.#frame.marchedSize.value.set(this.#marched.width, this.#marched.height)
@@ -141,6 +159,7 @@ export class CloudRenderer {
 
   /** Draws a frame; `FrameUniforms.next` goes first. */
   render(renderer: Renderer): void {
+    if (this.#frame.isAmong.value > 0) this.#approach.render(renderer, this.#approached)
     this.#march.render(renderer, this.#marched)
     this.#gather.render(renderer, this.#cells)
     this.current = 1 - this.current
@@ -150,6 +169,6 @@ export class CloudRenderer {
   /** Frees the pictures. */
   dispose(): void {
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#march, this.#gather, ...this.#upscale]) pass.dispose()
+    for (const pass of [this.#approach, this.#march, this.#gather, ...this.#upscale]) pass.dispose()
   }
 }

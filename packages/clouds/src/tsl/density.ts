@@ -131,7 +131,7 @@ function eachLayer(
     const layer = layerAt(field, index)
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
-      body(layer, weatherAt(field, layer, foot, sample), height)
+      body(layer, weatherAt(field, layer, foot, sample, 'where spread'), height)
     })
   })
 }
@@ -172,6 +172,27 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
     .mul(STEEPEST.weather)
     .div(layer.perWeatherPeriod)
     .max(0)
+
+/**
+ * Distance from a place in which no cloud is, whatever the noise [m].
+ */
+export function clearanceAt(field: CloudField, sample: CloudSample): Float {
+  const clearance = float(NOWHERE).toVar()
+  const foot = footOffset(field, sample).toConst()
+  forLayers(field, 'clearLayer', index => {
+    const layer = layerAt(field, index)
+    If(layer.coverage.greaterThan(0), () => {
+      const weather = weatherAt(field, layer, foot, sample, 'where spread')
+      const isSeen = weather.spread.mul(weather.cover).equal(0)
+      const { altitude } = sample
+      const { baseAltitude, thickness } = layer
+      const apart = baseAltitude.sub(altitude).max(altitude.sub(baseAltitude).sub(thickness))
+      const clear = isSeen.select(clearanceIn(layer, weather), 0).max(apart)
+      clearance.assign(clearance.min(clear))
+    })
+  })
+  return clearance
+}
 
 /**
  * One layer in a given weather.
@@ -249,7 +270,7 @@ export function pairMatter(
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
     If(mayHold(layer, heightIn(layer, middle.altitude)), () => {
-      const weather = weatherAt(field, layer, foot, middle)
+      const weather = weatherAt(field, layer, foot, middle, 'where spread')
       const found = vec2(0).toVar() as Vec2
       const clear = clearanceIn(layer, weather).toVar() as Float
       If(mayFill(layer, weather), () => {
@@ -317,7 +338,7 @@ export function layerPair(
   add: (extinction: Float, index: number) => void
 ): void {
   const foot = footOffset(field, middle).toConst()
-  const weather = weatherAt(field, layer, foot, middle)
+  const weather = weatherAt(field, layer, foot, middle, 'where spread')
   samples.forEach((sample, i) => {
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
