@@ -68,6 +68,11 @@ export class CloudField {
   readonly radius: UniformNode<'float', number> = uniform(0).setGroup(renderGroup)
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
   readonly pixelAngle: UniformNode<'float', number> = uniform(1e-3).setGroup(renderGroup)
+  /**
+   * What an optical depth counts in the light that clouds let through: `CloudLight.depthScale` where
+   * there is such a light. Clouds that are not seen one by one let the same through.
+   */
+  readonly depthScale: UniformNode<'float', number> = uniform(1).setGroup(renderGroup)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
   readonly values: Vector4[] = Array.from(
     { length: CloudLayers.maxLayers * LAYER_STRIDE },

@@ -181,6 +181,7 @@ export class CloudOverlay implements SkyOverlay {
     }
     source.turns.forEach((turn, i) => field.turns[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width
+    field.depthScale.value = source.depthScale.value
     field.night.illuminance = source.night.illuminance
     // On a clock that stands still: the turns are the other field's.
     field.update(view, 0)

@@ -190,6 +190,7 @@ export class CloudsNode extends AtmosphereNode {
     const { width, height } = sizeOf(renderer)
     this.#uniforms.set(this.#quality)
     field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
+    field.depthScale.value = this.light.nodes.depthScale.value
     field.update(view, this.time ?? frame.time)
     this.shadows.update(renderer, view)
     this.#renderer ??= this.#createRenderer(renderer)

@@ -147,7 +147,10 @@ export class FrameUniforms {
     this.jitter.value.set(index % block, Math.floor(index / block))
     if (this.block.value !== block) this.reset()
     this.block.value = block
-    this.noiseShift.value = usesHistory ? (this.#count * GOLDEN_RATIO) % 1 : 0
+    // Of each pixel's looks, which are whole rounds apart; and of the pixels of a block.
+    const round = Math.floor(this.#count / order.length)
+    const shift = round * GOLDEN_RATIO + index / order.length
+    this.noiseShift.value = usesHistory ? shift % 1 : 0
     this.#count++
     this.projectionInverse.value.copy(camera.projectionMatrixInverse)
     this.isAmong.value = isAmongClouds(view.height, field) ? 1 : 0

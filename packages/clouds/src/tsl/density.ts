@@ -93,21 +93,31 @@ function carving(
   return { left, carved }
 }
 
-/** Optical depth of a cloud from top to base. */
-const columnOf = (layer: LayerNodes): Float =>
-  layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst()
+/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
+const columnOf = ({ depthScale }: CloudField, layer: LayerNodes): Float =>
+  layer.density.mul(layer.thickness).mul(farFill).mul(depthScale).max(1e-4).toConst()
 
 /** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const depth = columnOf(layer)
+export function spreadDensity(
+  field: CloudField,
+  layer: LayerNodes,
+  { cover }: Pick<CloudWeather, 'cover'>
+): Float {
+  const depth = columnOf(field, layer)
   const blocked = cover.mul(depth.negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
   return blocked.oneMinus().max(1e-30).log().negate().div(depth)
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
-function mixedDensity(layer: LayerNodes, a: Float, b: Float, share: Float): Float {
-  const depth = columnOf(layer)
+function mixedDensity(
+  field: CloudField,
+  layer: LayerNodes,
+  a: Float,
+  b: Float,
+  share: Float
+): Float {
+  const depth = columnOf(field, layer)
   const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
   return through.max(1e-30).log().negate().div(depth)
 }
@@ -221,8 +231,8 @@ function layerMatter(
     clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const whole = unseen === 'mean' ? spreadDensity(layer, weather) : float(farFill)
-    density.assign(mixedDensity(layer, density, whole.mul(profile).toConst(), spread))
+    const whole = unseen === 'mean' ? spreadDensity(field, layer, weather) : float(farFill)
+    density.assign(mixedDensity(field, layer, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
   return {
