@@ -14,16 +14,17 @@ import {
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
-import { gpuMilliseconds, gpuPasses, type BenchDevice } from './device'
+import { gpuMilliseconds, gpuPasses, nextFrame, type BenchDevice } from './device'
 import { placeCamera, setSun } from './scene'
 import { median } from './statistics'
 
-/** Where clouds are looked at from. */
+/** Where clouds are looked at from: longitudes of a broken sky, and of a closed one to be inside of [°]. */
 export const cloudViews = [
-  { name: 'ground', altitude: 2, pitch: 12 },
-  { name: 'inside', altitude: 1500, pitch: 0 },
-  { name: '10 km', altitude: 10_000, pitch: -8 },
-  { name: '400 km', altitude: 400_000, pitch: -12 }
+  { name: 'ground', altitude: 2, pitch: 12, longitude: 151.75 },
+  { name: 'among', altitude: 1500, pitch: 0, longitude: 151.75 },
+  { name: 'inside', altitude: 1500, pitch: 0, longitude: 150 },
+  { name: '10 km', altitude: 10_000, pitch: -8, longitude: 151.75 },
+  { name: '400 km', altitude: 400_000, pitch: -12, longitude: 151.75 }
 ] as const
 
 export type CloudViewName = (typeof cloudViews)[number]['name']
@@ -89,8 +90,8 @@ export class CloudBench {
     this.#target = new RenderTarget(width, height)
   }
 
-  look({ altitude, pitch }: (typeof cloudViews)[number], sunElevation = 40): void {
-    placeCamera(this.#camera, altitude)
+  look({ altitude, pitch, longitude }: (typeof cloudViews)[number], sunElevation = 40): void {
+    placeCamera(this.#camera, altitude, longitude)
     this.#camera.rotateX((pitch * Math.PI) / 180)
     this.#camera.updateMatrixWorld()
     setSun(this.#atmosphere, this.#camera, sunElevation)
@@ -116,6 +117,7 @@ export class CloudBench {
   }
 
   draw(isStill = false): void {
+    nextFrame()
     this.node.time = isStill ? 0 : this.#frame++ / 60
     this.#renderer.setRenderTarget(this.#target)
     this.#pipeline.render()

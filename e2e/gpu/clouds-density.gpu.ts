@@ -17,7 +17,7 @@ import {
 import { NoiseTextures } from '../../packages/clouds/src/cpu/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../packages/clouds/src/noiseSizes'
 import { cloudColumn } from '../../packages/clouds/src/tsl/columns'
-import { cloudBound, cloudExtinction } from '../../packages/clouds/src/tsl/density'
+import { clearanceAt, cloudBound, cloudExtinction } from '../../packages/clouds/src/tsl/density'
 import { random } from './harness/atmosphere'
 import { CloudColumns, highestPeak } from './harness/cloud-columns'
 import type { GpuContext } from './harness/context'
@@ -239,6 +239,50 @@ gpuTest('bounds the density from above, in every preset', async t => {
       if (extinction === 0) empty++
     })
     t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
+    scene.dispose()
+  }
+})
+
+gpuTest('has clear air as far as it says', async t => {
+  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus'] as const) {
+    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+    const { field } = scene
+    const inputs = offsets(scene.eye, 2048, 30_000, 5, share => 3000 * share)
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const here = { offset, ...field.view.place(offset), distance: input.w }
+      const clearance = clearanceAt(field, here).toConst()
+      const most = float(0).toVar()
+      const count = 24
+      Loop(count, ({ i }) => {
+        // Spread over the ball.
+        const index = float(i)
+        const z = index
+          .add(0.5)
+          .mul(2 / count)
+          .oneMinus()
+          .toConst()
+        const across = z.mul(z).oneMinus().sqrt()
+        const angle = index.mul(2.399963)
+        const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
+        const radius = clearance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
+        const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
+        most.assign(most.max(scene.extinction(there, input.w, true)))
+      })
+      return vec4(clearance, most, scene.extinction(offset, input.w, true), 1)
+    })
+    let clear = 0
+    inputs.forEach((_, i) => {
+      const [clearance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
+      expectTrue(clearance >= 0, `${name}: a clearance of ${clearance}`)
+      expectTrue(
+        clearance === 0 || most === 0,
+        `${name}: ${most} within ${clearance} m of clear air`
+      )
+      if (clearance > 100 && extinction === 0) clear++
+    })
+    t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
+    expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
     scene.dispose()
   }
 })

@@ -73,6 +73,11 @@ export class CloudField {
   readonly radius = number()
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
   readonly pixelAngle = number(1e-3)
+  /**
+   * What an optical depth counts in the light that clouds let through: `CloudLight.depthScale` where
+   * there is such a light. Clouds that are not seen one by one let the same through.
+   */
+  readonly depthScale = number(1)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
   readonly values: Vector4[] = Array.from(
     { length: CloudLayers.maxLayers * LAYER_STRIDE },

@@ -174,11 +174,12 @@ export class CloudOverlay implements SkyOverlay {
 
   /** Takes clouds, sun and place as they are for all steps. */
   #begin(view: AtmosphereView, field: CloudField): void {
-    const { turns, night } = this.clouds.field
+    const { turns, night, depthScale } = this.clouds.field
     if (!this.#isAsDrawn()) this.#version++
     this.#drawn = this.#state()
     turns.forEach((turn, i) => field.turns[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width
+    field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance
     // On a clock that stands still: the turns are the other field's.
     field.update(view, 0)

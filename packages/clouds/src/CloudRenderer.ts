@@ -1,5 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { RenderTarget } from 'three'
+import { NearestFilter, UnsignedByteType } from 'three'
+import type { RenderTarget, Texture } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
@@ -8,6 +9,7 @@ import type { CloudShadows } from './CloudShadowMap'
 import type { FrameUniforms } from './FrameUniforms'
 import type { QualityUniforms } from './quality'
 import { withAirBefore } from './tsl/airBefore'
+import { approachClouds, TILE } from './tsl/approach'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { gatherCells } from './tsl/cells'
@@ -25,7 +27,12 @@ export interface CloudScene {
   readonly sights: SightNodes
 }
 
-const pictureTarget = (name: string): RenderTarget => tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
+/** @param isPacked - Whether places are bytes. */
+function pictureTarget(name: string, isPacked = false): RenderTarget {
+  const target = tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
+  if (isPacked) target.textures[1].type = UnsignedByteType
+  return target
+}
 
 function picturesOf({ textures }: RenderTarget): CloudPictures {
   const [light, place] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
@@ -33,11 +40,16 @@ function picturesOf({ textures }: RenderTarget): CloudPictures {
 }
 
 /** Marches one pixel of each block: light with the air in front of it, and where it is. */
-function marchPixels({ field, light, shadows, quality, sights }: CloudScene): TwoOutputs {
+function marchPixels(
+  { field, light, shadows, quality, sights }: CloudScene,
+  clear: LevelTexture<Vec2>
+): TwoOutputs {
   const { frame } = sights
   return twoOutputs(([color, place]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
+      const tiles = frame.marchedSize.div(TILE).ceil().mul(TILE)
+      const tile = block.add(0.5).div(tiles).toConst() as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
       const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
       const sight = sightAt(sights, at)
@@ -46,7 +58,8 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
       const marched = marchClouds(field, light, shadows, quality, {
         direction,
         end,
-        jitter: interleavedNoise(block, frame.noiseShift)
+        jitter: interleavedNoise(block, frame.noiseShift),
+        start: frame.isAmong.greaterThan(0).select(clear.sample(tile).level(0).x, 0)
       })
       color.assign(withAirBefore(field.view, marched, directionView, frame.gain))
       const distance = encodeDistance(marched.distance)
@@ -65,7 +78,9 @@ export class CloudRenderer {
   readonly #marched = pictureTarget('Marched')
   readonly #cells = pictureTarget('Cells')
   /** The picture, and that of the last frame, in turns. */
-  readonly #accumulated = [0, 1].map(i => pictureTarget(`${i}`))
+  readonly #accumulated = [0, 1].map(i => pictureTarget(`${i}`, true))
+  readonly #approached = tableTarget('Welkin.CloudsApproach', 1, 1, 1, NearestFilter)
+  readonly #approach: FragmentPass
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
@@ -78,7 +93,9 @@ export class CloudRenderer {
 
   constructor(scene: CloudScene) {
     this.#frame = scene.sights.frame
-    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
+    const clear = texture(this.#approached.texture) as unknown as LevelTexture<Vec2>
+    this.#approach = new FragmentPass('Welkin.CloudsApproach', approachClouds(scene.sights))
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, clear))
     const { marched } = this
     this.#gather = new FragmentPass(
       'Welkin.CloudsGather',
@@ -93,12 +110,17 @@ export class CloudRenderer {
   }
 
   get #targets(): RenderTarget[] {
-    return [this.#marched, this.#cells, ...this.#accumulated]
+    return [this.#approached, this.#marched, this.#cells, ...this.#accumulated]
   }
 
   /** Size on the GPU [bytes]. */
   get bytes(): number {
-    return this.#targets.reduce((sum, { width, height }) => sum + 16 * width * height, 0)
+    const bytes = ({ type }: Texture): number => (type === UnsignedByteType ? 4 : 8)
+    return this.#targets.reduce(
+      (sum, { width, height, textures }) =>
+        sum + width * height * textures.reduce((all, one) => all + bytes(one), 0),
+      0
+    )
   }
 
   /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */
@@ -109,6 +131,8 @@ export class CloudRenderer {
       this.#frame.reset()
     }
     this.#marched.setSize(Math.ceil(width / block), Math.ceil(height / block))
+    const { width: across, height: down } = this.#marched
+    this.#approached.setSize(Math.ceil(across / TILE), Math.ceil(down / TILE))
     this.#cells.setSize(this.#marched.width + 1, this.#marched.height + 1)
     this.#frame.size.value.set(width, height)
     this.#frame.marchedSize.value.set(this.#marched.width, this.#marched.height)
@@ -116,6 +140,7 @@ export class CloudRenderer {
 
   /** Draws a frame; `FrameUniforms.next` goes first. */
   render(renderer: Renderer): void {
+    if (this.#frame.isAmong.value > 0) this.#approach.render(renderer, this.#approached)
     this.#march.render(renderer, this.#marched)
     this.#gather.render(renderer, this.#cells)
     this.current = 1 - this.current
@@ -125,6 +150,6 @@ export class CloudRenderer {
   /** Frees the pictures. */
   dispose(): void {
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#march, this.#gather, ...this.#upscale]) pass.dispose()
+    for (const pass of [this.#approach, this.#march, this.#gather, ...this.#upscale]) pass.dispose()
   }
 }

@@ -18,7 +18,7 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import type { CloudPictures } from './tsl/pictures'
+import { unpack, type CloudPictures } from './tsl/pictures'
 import type { LevelTexture, Vec2, Vec4 } from './tsl-types'
 
 const _size = new Vector2()
@@ -187,6 +187,7 @@ export class CloudsNode extends AtmosphereNode {
     const { width, height } = sizeOf(renderer)
     this.#uniforms.set(this.#quality)
     field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
+    field.depthScale.value = this.light.nodes.depthScale.value
     field.update(view, this.time ?? frame.time)
     this.shadows.update(renderer, view)
     this.#renderer ??= this.#createRenderer(renderer)
@@ -241,7 +242,7 @@ export class CloudsNode extends AtmosphereNode {
         color.a.mul(clouds.a).add(clouds.a.oneMinus())
       ).toVar()
       If(this.#debug.greaterThan(0), () => {
-        const place = latest('place')
+        const place = unpack(latest('place'))
         const views = [
           clouds.a.oneMinus(),
           marched.place.sample(at).level(0).w,

@@ -48,6 +48,15 @@ const LIGHT_CUT = 4
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
 
+/** Below or above a layer by less, an eye is among its clouds [m]. */
+const NEARBY = 200
+
+const isAmongClouds = (height: number, { layers }: CloudField): boolean =>
+  [...layers].some(({ parameters: { baseAltitude, topAltitude, coverage } }) => {
+    const middle = 0.5 * (baseAltitude + topAltitude)
+    return coverage > 0 && Math.abs(height - middle) < topAltitude - middle + NEARBY
+  })
+
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
 const _position = new Vector3()
@@ -80,6 +89,8 @@ export class FrameUniforms {
   /** Most looks that a pixel remembers. */
   readonly memory = number(1)
   readonly clipping = number(1)
+  /** 1 for an eye among the clouds, which looks for clear air in tiles first; else 0. */
+  readonly isAmong = number()
   /** Stored light per light, and what light of the last frame has to be multiplied with. */
   readonly gain = number(1)
   readonly gainChange = number(1)
@@ -117,9 +128,13 @@ export class FrameUniforms {
     this.jitter.value.set(index % block, Math.floor(index / block))
     if (this.block.value !== block) this.reset()
     this.block.value = block
-    this.noiseShift.value = usesHistory ? (this.#count * GOLDEN_RATIO) % 1 : 0
+    // Of each pixel's looks, which are whole rounds apart; and of the pixels of a block.
+    const round = Math.floor(this.#count / order.length)
+    const shift = round * GOLDEN_RATIO + index / order.length
+    this.noiseShift.value = usesHistory ? shift % 1 : 0
     this.#count++
     this.projectionInverse.value.copy(camera.projectionMatrixInverse)
+    this.isAmong.value = isAmongClouds(view.height, field) ? 1 : 0
     this.near.value = camera.near
     this.far.value = camera.far
     const gain = nightGain(view, field.radius.value)

@@ -18,7 +18,7 @@ export function cloudColumn(field: CloudField, sample: CloudSample): Float {
     const layer = layerAt(field, index)
     const weather = weatherAt(field, layer, foot, sample)
     const depth = layer.density.mul(layer.thickness).mul(farFill)
-    sum.addAssign(depth.mul(spreadDensity(layer, weather)))
+    sum.addAssign(depth.mul(spreadDensity(field, layer, weather)))
   })
   return sum
 }
@@ -50,7 +50,12 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
       const foot = footOffset(field, there).toConst()
       const weather = weatherAt(field, layer, foot, there)
       const depth = layer.density.mul(layer.thickness).mul(farFill)
-      sum.addAssign(depth.mul(spreadDensity(layer, weather)).mul(above).div(slope))
+      sum.addAssign(
+        depth
+          .mul(spreadDensity(field, layer, weather))
+          .mul(above)
+          .div(slope)
+      )
     })
   })
   return sum

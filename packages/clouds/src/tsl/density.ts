@@ -100,21 +100,31 @@ function carving(
   return { left, carved }
 }
 
-/** Optical depth of a cloud from top to base. */
-const columnOf = (layer: LayerNodes): Float =>
-  layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst()
+/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
+const columnOf = ({ depthScale }: CloudField, layer: LayerNodes): Float =>
+  layer.density.mul(layer.thickness).mul(farFill).mul(depthScale).max(1e-4).toConst()
 
 /** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const depth = columnOf(layer)
+export function spreadDensity(
+  field: CloudField,
+  layer: LayerNodes,
+  { cover }: Pick<CloudWeather, 'cover'>
+): Float {
+  const depth = columnOf(field, layer)
   const blocked = cover.mul(depth.negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
   return blocked.oneMinus().max(1e-30).log().negate().div(depth)
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
-function mixedDensity(layer: LayerNodes, a: Float, b: Float, share: Float): Float {
-  const depth = columnOf(layer)
+function mixedDensity(
+  field: CloudField,
+  layer: LayerNodes,
+  a: Float,
+  b: Float,
+  share: Float
+): Float {
+  const depth = columnOf(field, layer)
   const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
   return through.max(1e-30).log().negate().div(depth)
 }
@@ -138,7 +148,7 @@ function eachLayer(
     const layer = layerAt(field, index)
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
-      body(layer, weatherAt(field, layer, foot, sample), height)
+      body(layer, weatherAt(field, layer, foot, sample, 'where spread'), height)
     })
   })
 }
@@ -181,6 +191,27 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
     .max(0)
 
 /**
+ * Distance from a place in which no cloud is, whatever the noise [m].
+ */
+export function clearanceAt(field: CloudField, sample: CloudSample): Float {
+  const clearance = float(NOWHERE).toVar()
+  const foot = footOffset(field, sample).toConst()
+  forLayers(field, 'clearLayer', index => {
+    const layer = layerAt(field, index)
+    If(layer.coverage.greaterThan(0), () => {
+      const weather = weatherAt(field, layer, foot, sample, 'where spread')
+      const isSeen = weather.spread.mul(weather.cover).equal(0)
+      const { altitude } = sample
+      const { baseAltitude, thickness } = layer
+      const apart = baseAltitude.sub(altitude).max(altitude.sub(baseAltitude).sub(thickness))
+      const clear = isSeen.select(clearanceIn(layer, weather), 0).max(apart)
+      clearance.assign(clearance.min(clear))
+    })
+  })
+  return clearance
+}
+
+/**
  * One layer in a given weather.
  *
  * @param height - In the layer, in (0, 1).
@@ -207,8 +238,8 @@ function layerMatter(
     clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const whole = unseen === 'mean' ? spreadDensity(layer, weather) : float(farFill)
-    density.assign(mixedDensity(layer, density, whole.mul(profile).toConst(), spread))
+    const whole = unseen === 'mean' ? spreadDensity(field, layer, weather) : float(farFill)
+    density.assign(mixedDensity(field, layer, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
   return {
@@ -256,7 +287,7 @@ export function pairMatter(
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
     If(mayHold(layer, heightIn(layer, middle.altitude)), () => {
-      const weather = weatherAt(field, layer, foot, middle)
+      const weather = weatherAt(field, layer, foot, middle, 'where spread')
       const found = vec2(0).toVar() as Vec2
       const clear = clearanceIn(layer, weather).toVar() as Float
       If(mayFill(layer, weather), () => {
@@ -324,7 +355,7 @@ export function layerPair(
   add: (extinction: Float, index: number) => void
 ): void {
   const foot = footOffset(field, middle).toConst()
-  const weather = weatherAt(field, layer, foot, middle)
+  const weather = weatherAt(field, layer, foot, middle, 'where spread')
   samples.forEach((sample, i) => {
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {

@@ -1,4 +1,4 @@
-import { atan, log2, smoothstep, vec2 } from 'three/tsl'
+import { If, atan, float, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { blur, carvedBlur, excess, leastBlur, meanEdge } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
@@ -110,13 +110,16 @@ function sine(x: Vec3): Vec3 {
  * the share c of the sky. Of noise that a sample's footprint blurs, the variance is known: the cover is
  * the chance that the sum exceeds the same threshold, which keeps the mean at any distance.
  *
- * @param foot - `footOffset` of the sample. Twin: cpu/density.ts
+ * @param foot - `footOffset` of the sample.
+ * @param where - Where its cover is wanted, which takes a third of the time: elsewhere it is 0.
+ *   Twin: cpu/density.ts
  */
 export function weatherAt(
   field: CloudField,
   layer: LayerNodes,
   foot: Vec3,
-  sample: CloudSample
+  sample: CloudSample,
+  where: 'everywhere' | 'where spread' = 'everywhere'
 ): CloudWeather {
   const { weather } = field.textures
   const turned = layer.turn(foot).toConst() as Vec3
@@ -171,19 +174,28 @@ export function weatherAt(
     )
     .toConst() as Float
   const cloudLevel = level.sub(layer.coarseness).toConst() as Float
-  const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
-  const fieldVariance = layer.cloudVariance
-    .add(layer.planet.mul(layer.planet))
-    .add(regionVariance)
-    .oneMinus()
-  const variance = layer.cloudVariance
-    .mul(lost(cloudLevel))
-    .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
-    .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
-  const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
-  const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
-  const quantile = odds.div(odds.oneMinus()).log().div(1.702)
-  const cover = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
+  const spread = smoothstep(0.5, 4.5, cloudLevel).toConst() as Float
+  const cover = float(0).toVar()
+  const findCover = (): void => {
+    const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
+    const fieldVariance = layer.cloudVariance
+      .add(layer.planet.mul(layer.planet))
+      .add(regionVariance)
+      .oneMinus()
+    const variance = layer.cloudVariance
+      .mul(lost(cloudLevel))
+      .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
+      .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+    const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
+    const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
+    const quantile = odds.div(odds.oneMinus()).log().div(1.702)
+    const chance = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
+    // Neither more nor less than all: the distribution has tails.
+    const all = chance.sub(0.5).mul(1.002).add(0.5).clamp(0, 1)
+    cover.assign(share.greaterThan(0).select(all, 0))
+  }
+  if (where === 'everywhere') findCover()
+  else If(spread.greaterThan(0), findCover)
 
   const tilt = share.mul(2).sub(1).toConst() as Float
   const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
@@ -196,15 +208,8 @@ export function weatherAt(
   const detailWarp = clouds.xyz.mul(shapePeriod).mul(SHAPE_WARP.clouds).toConst() as Vec3
   return {
     fill,
-    // Neither more nor less than all: the distribution has tails.
-    cover: cover
-      .sub(0.5)
-      .mul(1.002)
-      .add(0.5)
-      .clamp(0, 1)
-      .mul(share.greaterThan(0).select(1, 0))
-      .toConst(),
-    spread: smoothstep(0.5, 4.5, cloudLevel).toConst(),
+    cover,
+    spread,
     shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(SHAPE_WARP.fields)).toConst(),
     detailWarp
   }
