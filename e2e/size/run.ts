@@ -1,7 +1,8 @@
 import { readFileSync } from 'node:fs'
+import { basename } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { gzipSync } from 'node:zlib'
-import { build } from 'esbuild'
+import { build } from 'vite'
 import { Report } from '../harness/report'
 
 interface Budget {
@@ -16,7 +17,10 @@ interface Budget {
 
 const kilobytes = (bytes: number): string => `${(bytes / 1000).toFixed(2)} kB`
 
-/** Minifies what an app takes along that uses these names of the built packages. */
+const folder = fileURLToPath(new URL('.', import.meta.url))
+const entry = 'virtual:app'
+
+/** Minifies what an app takes along that uses these names of the built packages, as the quick starts have it: by Vite. */
 async function gzippedSize(imports: Budget['imports'][], external: string[]): Promise<number> {
   const lines = imports
     .flatMap(Object.entries<string[] | '*'>)
@@ -25,20 +29,34 @@ async function gzippedSize(imports: Budget['imports'][], external: string[]): Pr
         ? `export * from '${module}'`
         : `export { ${names.join(', ')} } from '${module}'`
     )
-  const { outputFiles } = await build({
-    stdin: { contents: lines.join('\n'), resolveDir: fileURLToPath(new URL('.', import.meta.url)) },
-    bundle: true,
-    minify: true,
-    write: false,
-    format: 'esm',
-    target: 'es2022',
-    legalComments: 'none',
-    logLevel: 'silent',
-    external: ['three', 'three/*', ...external],
-    // The built files, as a user gets them, not the sources that tsconfig's paths lead to.
-    tsconfigRaw: {}
+  const result = await build({
+    root: folder,
+    configFile: false,
+    logLevel: 'error',
+    publicDir: false,
+    plugins: [
+      {
+        name: 'welkin:app',
+        // As if it were a file here: packages are found from this folder.
+        resolveId: id => (id === entry ? `${folder}${basename(entry)}.js` : undefined),
+        load: id => (id.endsWith(`${basename(entry)}.js`) ? lines.join('\n') : undefined)
+      }
+    ],
+    build: {
+      write: false,
+      target: 'es2022',
+      minify: true,
+      modulePreload: { polyfill: false },
+      rolldownOptions: {
+        input: entry,
+        preserveEntrySignatures: 'strict',
+        external: ['three', /^three\//, ...external]
+      }
+    }
   })
-  return gzipSync(outputFiles[0].contents, { level: 9 }).length
+  const [{ output }] = [result].flat() as { output: { code?: string }[] }[]
+  const code = output.map(chunk => chunk.code ?? '').join('')
+  return gzipSync(code, { level: 9 }).length
 }
 
 const file = new URL('budgets.json', import.meta.url)
