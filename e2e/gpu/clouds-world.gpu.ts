@@ -317,6 +317,22 @@ gpuTest(
     for (let i = 0; i < 30; i++) renderer.render(scene, eye)
     expectTrue(environment.redraws === 2, 'nothing changes, and it is drawn again')
 
+    // The moon counts by night only.
+    const { version } = overlay
+    luna.direction = towards(50, 60)
+    await draw()
+    expectTrue(overlay.version === version, 'by day the moon counts')
+    atmosphere.setSunAngles(-40, 250)
+    luna.phase = 0.5
+    await draw()
+    while (environment.redraws < 3 && frames++ < 80) renderer.render(scene, eye)
+    const drawn = overlay.version
+    await draw()
+    expectTrue(overlay.version === drawn, 'a moon that stands still counts')
+    luna.direction = towards(50, 62)
+    await draw()
+    expectTrue(overlay.version > drawn, 'a moon that moves by night does not count')
+
     cloudy.dispose()
     expectTrue(probe.overcast === null, 'the probe keeps its clouds')
     environment.dispose()

@@ -9,7 +9,9 @@ import {
   FIELD_PERIOD,
   layerForms,
   layerPeriods,
-  PLANET_WAVES,
+  LAST_WAVES,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
   SHAPE_WARP,
@@ -89,11 +91,10 @@ function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Ve
 /** Waves around the planet, in [−1, 1]. */
 function planetWaves(foot: Vector3, turn: Quaternion): Vec3Array {
   const { x, y, z } = foot.clone().normalize().applyQuaternion(turn)
-  const { next, last } = PLANET_WAVES
   return [
-    Math.sin(next * y + last * z),
-    Math.sin(next * z + last * x),
-    Math.sin(next * x + last * y)
+    Math.sin(NEXT_WAVES * y + LAST_WAVES * z),
+    Math.sin(NEXT_WAVES * z + LAST_WAVES * x),
+    Math.sin(NEXT_WAVES * x + LAST_WAVES * y)
   ]
 }
 
@@ -127,7 +128,7 @@ export function weatherAt(
     noise.sample('weather', place, level).map(value => value - 0.5)
   const regionPlace = placeIn(foot, turn, latticeRotation.region, REGION_PERIOD)
   const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
-  const region = sample(shifted(regionPlace, waves, PLANET_WAVES.warp), regionLevel)
+  const region = sample(shifted(regionPlace, waves, PLANET_WARP), regionLevel)
 
   const { weather: period, shape: shapePeriod } = layerPeriods(layer)
   const level = levelOf(footprint, period / NOISE_SIZE.weather)

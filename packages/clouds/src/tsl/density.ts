@@ -36,7 +36,8 @@ const NOWHERE = 1e6
  * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
  * periods of the weather, and where its shape is besides, in periods of the shape.
  */
-const STEEPEST = { weather: 0.03, shape: 0.05 }
+const STEEPEST_WEATHER = 0.03
+const STEEPEST_SHAPE = 0.05
 
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>
@@ -185,7 +186,7 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
   layer.shapeAmount
     .mul(leastCarving)
     .sub(fill)
-    .mul(STEEPEST.weather)
+    .mul(STEEPEST_WEATHER)
     .div(layer.perWeatherPeriod)
     .max(0)
 
@@ -234,7 +235,7 @@ function layerMatter(
   If(filled.greaterThan(least), () => {
     const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
     density.assign(left.mul(layer.sharpness).clamp(0, 1))
-    clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
+    clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
     const whole = unseen === 'mean' ? spreadDensity(field, layer, weather) : float(farFill)

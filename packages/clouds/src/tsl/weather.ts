@@ -5,10 +5,12 @@ import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
   FIELD_PERIOD,
-  PLANET_WAVES,
+  FIELD_WEIGHT,
+  LAST_WAVES,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  scaleWeights,
   SHAPE_WARP,
   WEATHER_WARP
 } from '../layerUniforms'
@@ -125,15 +127,14 @@ export function weatherAt(
   const share = shareAt(field, layer, sample, footprint)
 
   const zenith = layer.turn(sample.up).toConst() as Vec3
-  const { next, last, warp: shift } = PLANET_WAVES
-  const waves = sine(zenith.yzx.mul(next).add(zenith.zxy.mul(last)))
+  const waves = sine(zenith.yzx.mul(NEXT_WAVES).add(zenith.zxy.mul(LAST_WAVES)))
   const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
   const region = weather
     .sample(
       rotate(latticeRotation.region, turned)
         .div(REGION_PERIOD)
         .add(layer.regionAnchor)
-        .add(waves.mul(shift))
+        .add(waves.mul(PLANET_WARP))
     )
     .level(regionLevel)
     .xyz.sub(0.5)
@@ -160,7 +161,7 @@ export function weatherAt(
     .toConst() as Vec4
 
   const z = clouds
-    .add(fields.mul(scaleWeights.fields))
+    .add(fields.mul(FIELD_WEIGHT))
     .dot(layer.weights)
     .add(fields.z.mul(layer.cells))
     .add(region.z.add(region.x.mul(REGION_CELLS)).mul(layer.regions))
