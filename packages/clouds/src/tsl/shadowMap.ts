@@ -148,7 +148,7 @@ export function sampleShadows(
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
   const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
   // From the widest to the narrowest: the last that fits stays.
-  for (const [index, { u, v, w, isDrawn, halfWidth }] of [...cascades.entries()].toReversed()) {
+  for (const { u, v, w, isDrawn, square, halfWidth } of cascades.toReversed()) {
     const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
     const at = vec2(row(u), row(v)).toConst() as Vec2
     const aside = at.sub(0.5).abs().toConst() as Vec2
@@ -159,7 +159,7 @@ export function sampleShadows(
       .and(above.abs().lessThan(halfWidth.mul(REACH - MARGIN)))
       .and(isDrawn.greaterThan(0))
     If(isInside, () => {
-      place.assign(vec4(at.x.add(index).div(count), at.y, above, 1))
+      place.assign(vec4(at.x.add(square).div(count), at.y, above, 1))
     })
   }
   const known = place.w.toConst() as Float
