@@ -169,7 +169,7 @@ export class CloudField {
     const { profileExponent, shapeAmount, detailAmount } = parameters
     slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
-    const { stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
+    const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
     slots[2].fromArray(scales.clouds)
     slots[11].set(scales.cells, scales.regions, scales.planet, scales.cloudVariance)
     const turn = this.turns[index]
@@ -196,6 +196,7 @@ export class CloudField {
     }
     slots[3].w = steepness
     slots[4].w = sharpness
+    slots[5].w = fibrous
     const perStretch = 1 / stretch
     anchor(8, _position, latticeRotation.shape, periods.shape, 1, perStretch)
     anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD, perStretch)

@@ -119,6 +119,8 @@ export function layerForms({
 }: CloudLayerParameters): {
   /** How much longer than wide the noise is that carves them. */
   stretch: number
+  /** How much of its weather is that of cirrus, in [0, 1]. */
+  fibrous: number
   /** Fill per change of its weather. */
   steepness: number
   /** Density per fullness left: how sharp edges are. */
@@ -135,6 +137,7 @@ export function layerForms({
   const towers = shareOf(weatherWeights, 2)
   const tall = (topAltitude - baseAltitude - ANVILS[0]) / (ANVILS[1] - ANVILS[0])
   return {
+    fibrous,
     stretch: mix(STRETCH.other, STRETCH.cirrus, fibrous),
     steepness: 1 / mix(edgeWidth.other, edgeWidth.cirrus, fibrous),
     sharpness: mix(smoothSharpness, carvedSharpness, carved),
@@ -153,6 +156,8 @@ export const densityShape = {
   excess: 0.6,
   /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
   blur: [0, 5],
+  /** Least variance of blurred weather that is made up for. */
+  leastVariance: 0.05,
   /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
   carvedBlur: 0.4,
   leastBlur: 0.05,
@@ -169,6 +174,11 @@ export const densityShape = {
   /** Density per fullness left, of smooth layers and of carved ones: how sharp edges are. */
   smoothSharpness: 1.5,
   carvedSharpness: 6,
-  /** Mean density of a cloudy column over the densest. */
-  farFill: 0.6
+  /** Mean of the height profile. */
+  profileMean: 0.6,
+  /** Mean density of a cloudy column over the densest; where towers have anvils, most of it is thin. */
+  solidFill: 0.6,
+  anvilFill: 0.12,
+  /** The same of fibrous clouds, by cover c: a₀ + a₁c² + a₂c³²; fitted to columns seen from near. */
+  fibrousFill: [0.05, 0.15, 0.35]
 } as const

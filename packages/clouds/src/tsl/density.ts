@@ -6,7 +6,7 @@ import { CURL_AMOUNT, CURL_PERIOD, densityShape, DETAIL_PERIOD } from '../layerU
 import { CURL_SCALE } from '../noiseRecipes'
 import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
-import { footOffset, weatherAt, type CloudWeather } from './weather'
+import { footOffset, squared, weatherAt, type CloudWeather } from './weather'
 
 /** A place in the air, as seen from the field's camera. */
 export interface CloudSample {
@@ -29,8 +29,18 @@ const NOWHERE = 1e6
  */
 const STEEPEST = { weather: 0.03, shape: 0.05 }
 
-const { anvilDensity, anvilReach, erosion, farFill, leastCarving, lostCarving, shapeBlur } =
-  densityShape
+const {
+  anvilDensity,
+  anvilFill,
+  anvilReach,
+  erosion,
+  solidFill,
+  fibrousFill,
+  leastCarving,
+  lostCarving,
+  profileMean,
+  shapeBlur
+} = densityShape
 
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>
@@ -93,21 +103,27 @@ function carving(
   return { left, carved }
 }
 
-/** Optical depth of a cloud from top to base. */
-const columnOf = (layer: LayerNodes): Float =>
-  layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst()
+/** Mean density of a cloudy column over the densest. */
+export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
+  const [thin, more, most] = fibrousFill
+  const square = squared(cover, 1)
+  const fibres = square.mul(more).add(squared(square, 4).mul(most)).add(thin)
+  return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
+}
 
-/** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const depth = columnOf(layer)
-  const blocked = cover.mul(depth.negate().exp().oneMinus())
+/** Optical depth of a cloud from top to base. */
+const columnOf = (layer: LayerNodes, weather: Pick<CloudWeather, 'cover'>): Float =>
+  layer.density.mul(layer.thickness).mul(columnFill(layer, weather)).max(1e-4).toConst()
+
+/** Optical depth that takes as much light as the clouds of a cell do, were they spread evenly over it. */
+export function spreadDepth(layer: LayerNodes, weather: Pick<CloudWeather, 'cover'>): Float {
+  const blocked = weather.cover.mul(columnOf(layer, weather).negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
-  return blocked.oneMinus().max(1e-30).log().negate().div(depth)
+  return blocked.oneMinus().max(1e-30).log().negate().toConst()
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
-function mixedDensity(layer: LayerNodes, a: Float, b: Float, share: Float): Float {
-  const depth = columnOf(layer)
+function mixedDensity(depth: Float, a: Float, b: Float, share: Float): Float {
   const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
   return through.max(1e-30).log().negate().div(depth)
 }
@@ -200,8 +216,13 @@ function layerMatter(
     clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const whole = unseen === 'mean' ? spreadDensity(layer, weather) : float(farFill)
-    density.assign(mixedDensity(layer, density, whole.mul(profile).toConst(), spread))
+    const depth = columnOf(layer, weather)
+    const inside = columnFill(layer, weather)
+    const whole =
+      unseen === 'mean'
+        ? spreadDepth(layer, weather).div(depth).mul(inside).div(profileMean)
+        : inside
+    density.assign(mixedDensity(depth, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
   return {

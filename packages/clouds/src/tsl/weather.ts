@@ -32,7 +32,7 @@ export interface CloudWeather {
   detailWarp: Vec3
 }
 
-const { blur, carvedBlur, excess, leastBlur, meanEdge } = densityShape
+const { blur, carvedBlur, excess, leastBlur, leastVariance, meanEdge } = densityShape
 
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
@@ -76,6 +76,10 @@ function shareAt(
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
   return covered.div(covered.add(clear).max(1e-6)).toConst()
 }
+
+/** x squared, that squared, and so on. */
+export const squared = (x: Float, times: number): Float =>
+  times === 0 ? x : squared(x.mul(x).toConst(), times - 1)
 
 /** Part of a noise's variance that its levels of detail have lost. */
 const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
@@ -183,16 +187,19 @@ export function weatherAt(
     .mul(lost(cloudLevel))
     .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
     .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+    .toConst() as Float
   const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
   const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
   const quantile = odds.div(odds.oneMinus()).log().div(1.702)
   const cover = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
 
+  // Blurred clouds are as many as sharp ones.
+  const sharp = z.mul(variance.oneMinus().max(leastVariance).inverseSqrt())
   const tilt = share.mul(2).sub(1).toConst() as Float
-  const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
+  const surely = squared(tilt, 4).mul(tilt).mul(excess)
   const fill = layer.shapeAmount
     .mul(meanEdge)
-    .add(cumulative(z).sub(1).add(share).mul(layer.steepness))
+    .add(cumulative(sharp).sub(1).add(share).mul(layer.steepness))
     .add(surely)
     .toConst() as Float
   const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
