@@ -22,7 +22,7 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 0.95, clouds: 0.23 } as const
+export const SHAPE_WARP = { fields: 1.1, clouds: 0.3 } as const
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
 export const PLANET_WAVES = { next: 3.1, last: 1.7, warp: 0.22 } as const
