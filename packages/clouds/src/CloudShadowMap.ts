@@ -116,7 +116,6 @@ const _foot = new Vector3()
 const _offset = new Vector3()
 const _normal = new Vector3()
 const _drift = new Vector3()
-const _layerDrift = new Vector3()
 const _turn = new Quaternion()
 
 /**
