@@ -1,6 +1,6 @@
 import { Atmosphere } from '@welkin/atmosphere'
 import { CloudLayers, CloudNoise, cloudPreset, cloudQualities, clouds } from '@welkin/clouds'
-import { Matrix3, PerspectiveCamera, Vector3, type Quaternion } from 'three'
+import { PerspectiveCamera, Vector3, type Quaternion } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { latticeRotation } from '../../packages/clouds/src/lattice'
@@ -56,7 +56,7 @@ function axesOf(atmosphere: Atmosphere, turn: Quaternion): Map<string, number> {
     for (const axis of [0, 1, 2]) {
       const normal = new Vector3()
         .setComponent(axis, 1)
-        .applyMatrix3(new Matrix3().copy(rotation).transpose())
+        .applyQuaternion(rotation.clone().invert())
         .applyQuaternion(turn.clone().invert())
       axes.set(`${name} ${'xyz'[axis]}`, Math.atan2(normal.dot(back), normal.dot(right)))
     }

@@ -108,7 +108,11 @@ export function alignment(picture: readonly number[], size: number, longest: num
     if (!isHalf || count < longest - 2 || count > shortest + 2) return []
     return [{ p, wave, count, angle: Math.atan2(wave[1], wave[0]) }]
   })
-  const rings = Map.groupBy(waves, ({ count }) => Math.round(count))
+  const rings = new Map<number, typeof waves>()
+  for (const wave of waves) {
+    const ring = Math.round(wave.count)
+    rings.set(ring, [...(rings.get(ring) ?? []), wave])
+  }
   const ratios = waves
     .filter(({ count }) => count >= longest && count <= shortest)
     .map(wave => {
