@@ -28,7 +28,8 @@ const LEAST_SLOPE = 0.2
 const ANCHOR_COSINE = Math.cos(0.005)
 
 /** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
-const JUMP = { light: 0.01, place: 0.5 }
+const LIGHT_JUMP = 0.01
+const PLACE_JUMP = 0.5
 
 /** Frames over which a cascade is drawn anew. */
 const STRIPS = 4
@@ -37,7 +38,9 @@ const STRIPS = 4
  * What a cascade is drawn anew for: moves of its middle [texels], moves of layers against each other
  * [texels], and changes of the light's direction, which move the far end of its rays by a tenth of a texel.
  */
-const STALE = { place: 8, drift: 0.25, light: 6e-4 }
+const STALE_PLACE = 8
+const STALE_DRIFT = 0.25
+const STALE_LIGHT = 6e-4
 
 /** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane. */
 export interface CascadeNodes {
@@ -298,8 +301,8 @@ export class CloudShadowMap {
   #fits(drawing: Drawing, halfWidth: number): boolean {
     return (
       drawing.halfWidth === halfWidth &&
-      drawing.light.distanceTo(this.#light) < JUMP.light &&
-      this.#distance(drawing) < JUMP.place * halfWidth
+      drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
+      this.#distance(drawing) < PLACE_JUMP * halfWidth
     )
   }
 
@@ -308,11 +311,11 @@ export class CloudShadowMap {
     const texel = (2 * halfWidth) / SIZE
     const place = this.#distance(drawing)
     return (
-      place > STALE.place * texel ||
-      light.distanceTo(this.#light) > STALE.light ||
+      place > STALE_PLACE * texel ||
+      light.distanceTo(this.#light) > STALE_LIGHT ||
       this.#inputs.some((value, i) => value !== inputs[i]) ||
       [...this.field.layers].some(
-        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE.drift * texel
+        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
       )
     )
   }
