@@ -125,10 +125,11 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
           const step = isCutting.select(clear.sub(cloudy).div(3), length).toConst() as Float
           const from = isCutting.select(clear.sub(step.mul(0.5)), place).toConst() as Float
           const found = vec2(0).toVar() as Vec2
-          const [middle, first, second] = [1, 0.5, 1.5].map((steps): CloudSample => {
+          const sampleAt = (steps: number): CloudSample => {
             const offset = start.add(along.mul(from.sub(step.mul(steps)))).toConst() as Vec3
             return { offset, ...view.place(offset), distance }
-          })
+          }
+          const [middle, first, second] = [1, 0.5, 1.5].map(sampleAt)
           layerPair(field, layer, middle, [first, second], (extinction, i) => {
             found.addAssign(i === 0 ? vec2(extinction, 0) : vec2(0, extinction))
           })
