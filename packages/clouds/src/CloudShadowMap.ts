@@ -42,7 +42,7 @@ const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
 const STALE_LIGHT = 6e-4
 
-/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane. */
+/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
 export interface CascadeNodes {
   readonly u: UniformNode<'vec4', Vector4>
   readonly v: UniformNode<'vec4', Vector4>
@@ -51,8 +51,6 @@ export interface CascadeNodes {
   readonly isDrawn: UniformNode<'float', number>
   /** Which of the map's squares it is in. */
   readonly square: UniformNode<'float', number>
-  /** [m]. */
-  readonly halfWidth: UniformNode<'float', number>
 }
 
 /** A shadow map as shaders see it. */
@@ -163,8 +161,7 @@ export class CloudShadowMap {
         v: vector4(),
         w: vector4(),
         isDrawn: number(),
-        square: number(),
-        halfWidth: number()
+        square: number()
       },
       isDrawn: false,
       drawing: new Drawing(i, field.turns)
@@ -373,14 +370,13 @@ export class CloudShadowMap {
       if (!isDrawn) continue
       const { square, halfWidth, anchor, across, measure, normal, center } = drawing
       nodes.square.value = square
-      nodes.halfWidth.value = halfWidth
       _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(drawing, _drift))
       const row = (target: Vector4, axis: Vector3, shift: number, width: number): void => {
         target.set(axis.x, axis.y, axis.z, axis.dot(_offset) + shift).divideScalar(width)
       }
       row(nodes.u.value, across, halfWidth - center.u, 2 * halfWidth)
       row(nodes.v.value, measure, halfWidth - center.v, 2 * halfWidth)
-      row(nodes.w.value, normal, 0, 1)
+      row(nodes.w.value, normal, 0, halfWidth)
     }
   }
 
