@@ -23,7 +23,7 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 0.95, clouds: 0.23 } as const
+export const SHAPE_WARP = { fields: 1.1, clouds: 0.3 } as const
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
 export const NEXT_WAVES = 3.1
@@ -126,6 +126,8 @@ export function layerForms({
 }: CloudLayerParameters): {
   /** How much longer than wide the noise is that carves them. */
   stretch: number
+  /** How much of its weather is that of cirrus, in [0, 1]. */
+  fibrous: number
   /** Fill per change of its weather. */
   steepness: number
   /** Density per fullness left: how sharp edges are. */
@@ -141,6 +143,7 @@ export function layerForms({
   const towers = shareOf(weatherWeights, 2)
   const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
+    fibrous,
     stretch: mix(1, CIRRUS_STRETCH, fibrous),
     steepness: 1 / mix(edgeWidth, cirrusEdgeWidth, fibrous),
     sharpness: mix(smoothSharpness, carvedSharpness, carved),
