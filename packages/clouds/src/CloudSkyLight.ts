@@ -45,7 +45,8 @@ export class CloudSkyLight {
   }
 
   #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
-    const { field, light } = this.clouds
+    const { field, light, isDisposed } = this.clouds
+    if (isDisposed) return clear
     const { height, up } = plane.view
     // Between two cameras; a metre more or less is no matter to the weather.
     const place = up.mul(field.radius.add(height))
