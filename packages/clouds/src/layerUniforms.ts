@@ -121,6 +121,8 @@ export function layerForms({
 }: CloudLayerParameters): {
   /** How much longer than wide the noise is that carves them. */
   stretch: number
+  /** How much of its weather is that of cirrus, in [0, 1]. */
+  fibrous: number
   /** Fill per change of its weather. */
   steepness: number
   /** Density per fullness left: how sharp edges are. */
@@ -136,6 +138,7 @@ export function layerForms({
   const towers = shareOf(weatherWeights, 2)
   const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
+    fibrous,
     stretch: mix(1, CIRRUS_STRETCH, fibrous),
     steepness: 1 / mix(edgeWidth, cirrusEdgeWidth, fibrous),
     sharpness: mix(smoothSharpness, carvedSharpness, carved),

@@ -2,12 +2,14 @@ import { If, float, int, log2, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import {
   anvilDensity,
+  anvilFill,
   anvilReach,
   erosion,
-  farFill,
+  fibrousFill,
   leastCarving,
   lostCarving,
-  shapeBlur
+  shapeBlur,
+  solidFill
 } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
@@ -15,7 +17,7 @@ import { CURL_AMOUNT, CURL_PERIOD, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
 import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
-import { footOffset, weatherAt, type CloudWeather } from './weather'
+import { footOffset, squared, weatherAt, type CloudWeather } from './weather'
 
 /** A place in the air, as seen from the field's camera. */
 export interface CloudSample {
@@ -99,31 +101,46 @@ function carving(
   return { left, carved }
 }
 
-/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
-const columnOf = ({ depthScale }: CloudField, layer: LayerNodes): Float =>
-  layer.density.mul(layer.thickness).mul(farFill).mul(depthScale).max(1e-4).toConst()
+/** Mean density of a cloudy column over the densest. */
+export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
+  const [thin, more, most] = fibrousFill
+  const square = squared(cover, 1)
+  const fibres = square.mul(more).add(squared(square, 5).mul(most)).add(thin)
+  return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
+}
 
-/** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(
+/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
+const columnOf = (
+  { depthScale }: CloudField,
+  layer: LayerNodes,
+  weather: Pick<CloudWeather, 'cover'>
+): Float =>
+  layer.density
+    .mul(layer.thickness)
+    .mul(columnFill(layer, weather))
+    .mul(depthScale)
+    .max(1e-4)
+    .toConst()
+
+/** Optical depth that takes as much light as the clouds of a cell do, were they spread evenly over it. */
+export function spreadDepth(
   field: CloudField,
   layer: LayerNodes,
-  { cover }: Pick<CloudWeather, 'cover'>
+  weather: Pick<CloudWeather, 'cover'>
 ): Float {
-  const depth = columnOf(field, layer)
-  const blocked = cover.mul(depth.negate().exp().oneMinus())
+  const blocked = weather.cover.mul(columnOf(field, layer, weather).negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
-  return blocked.oneMinus().max(1e-30).log().negate().div(depth)
+  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
+}
+
+/** Mean over a layer's heights of what they let cloud fill, with anvils as dense as they are. */
+function profileMean(layer: LayerNodes): Float {
+  const e = layer.profileExponent
+  return e.mul(4).div(e.add(1).mul(e.mul(2).add(1)))
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
-function mixedDensity(
-  field: CloudField,
-  layer: LayerNodes,
-  a: Float,
-  b: Float,
-  share: Float
-): Float {
-  const depth = columnOf(field, layer)
+function mixedDensity(depth: Float, a: Float, b: Float, share: Float): Float {
   const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
   return through.max(1e-30).log().negate().div(depth)
 }
@@ -237,8 +254,14 @@ function layerMatter(
     clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const whole = unseen === 'mean' ? spreadDensity(field, layer, weather) : float(farFill)
-    density.assign(mixedDensity(field, layer, density, whole.mul(profile).toConst(), spread))
+    const whole =
+      unseen === 'mean'
+        ? spreadDepth(field, layer, weather)
+            .mul(layer.perThickness)
+            .div(layer.density.mul(profileMean(layer)).max(1e-9))
+        : columnFill(layer, weather)
+    const depth = columnOf(field, layer, weather)
+    density.assign(mixedDensity(depth, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
   return {

@@ -1,6 +1,6 @@
 import { If, atan, float, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { blur, carvedBlur, excess, leastBlur, meanEdge } from '../densityShape'
+import { blur, carvedBlur, excess, leastBlur, leastVariance, meanEdge } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
@@ -75,6 +75,10 @@ function shareAt(
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
   return covered.div(covered.add(clear).max(1e-6)).toConst()
 }
+
+/** x squared, that squared, and so on. */
+export const squared = (x: Float, times: number): Float =>
+  times === 0 ? x : squared(x.mul(x).toConst(), times - 1)
 
 /** Part of a noise's variance that its levels of detail have lost. */
 const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
@@ -175,6 +179,8 @@ export function weatherAt(
   const cloudLevel = level.sub(layer.coarseness).toConst() as Float
   const spread = smoothstep(0.5, 4.5, cloudLevel).toConst() as Float
   const cover = float(0).toVar()
+  /** Blurred clouds are as many as sharp ones. */
+  const sharp = z.toVar() as Float
   const findCover = (): void => {
     const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
     const fieldVariance = layer.cloudVariance
@@ -185,6 +191,8 @@ export function weatherAt(
       .mul(lost(cloudLevel))
       .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
       .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+      .toConst() as Float
+    sharp.mulAssign(variance.oneMinus().max(leastVariance).inverseSqrt())
     const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
     const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
     const quantile = odds.div(odds.oneMinus()).log().div(1.702)
@@ -197,10 +205,10 @@ export function weatherAt(
   else If(spread.greaterThan(0), findCover)
 
   const tilt = share.mul(2).sub(1).toConst() as Float
-  const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
+  const surely = squared(tilt, 5).mul(tilt).mul(excess)
   const fill = layer.shapeAmount
     .mul(meanEdge)
-    .add(cumulative(z).sub(1).add(share).mul(layer.steepness))
+    .add(cumulative(sharp).sub(1).add(share).mul(layer.steepness))
     .add(surely)
     .toConst() as Float
   const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
