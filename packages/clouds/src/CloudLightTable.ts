@@ -43,7 +43,7 @@ export interface CloudLight {
  * Light scattered many times in clouds: the first three Legendre moments of its source in plane-parallel
  * slabs, by depth, thickness and sun angle, and the same for light from the sky, for one phase function.
  *
- * Solved on the CPU in 28 steps of 2 to 6 ms (0.05 to 0.17 s in all, measured on a busy machine of two
+ * Solved on the CPU in 28 steps of 2 to 5 ms (0.07 to 0.12 s in all, measured on a busy machine of two
  * cores); the same numbers on both backends; 0.24 MB on the GPU. Until the last step is
  * done the old table stands; before the first it is black.
  *
