@@ -19,7 +19,7 @@ import { NOISE_SIZE, type NoiseName } from '../../packages/clouds/src/noiseSizes
 import { cloudColumn } from '../../packages/clouds/src/tsl/columns'
 import { clearanceAt, cloudBound, cloudExtinction } from '../../packages/clouds/src/tsl/density'
 import { random } from './harness/atmosphere'
-import { CloudColumns, highestPeak } from './harness/cloud-columns'
+import { CloudColumns, highestPeak, PlanetColumns } from './harness/cloud-columns'
 import type { GpuContext } from './harness/context'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectFinite, expectTrue } from './harness/expect'
@@ -358,24 +358,61 @@ gpuTest('keeps the clouds of an area from 2 km to the whole globe', async t => {
   const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
   const columns = new CloudColumns(scene.field, 128, 200_000, 12)
   const misses: string[] = []
-  for (const [coverage, longitude] of [
-    [0.2, 20],
-    [0.4, 20],
-    [0.7, 20],
-    [0.4, -120],
-    [0.7, -120]
+  // Optical depths as they are, and as a march counts them.
+  for (const [coverage, longitude, depthScale] of [
+    [0.03, 20, 0.6],
+    [0.05, 20, 0.6],
+    [0.1, 20, 0.6],
+    [0.2, 20, 1],
+    [0.4, 20, 0.6],
+    [0.7, 20, 1],
+    [0.4, -120, 1],
+    [0.7, -120, 0.6]
   ]) {
     layers.at(0).set({ coverage })
+    scene.field.depthScale.value = depthScale
     scene.field.atmosphere.place({ longitude, latitude: 45 })
     scene.update()
     const means: number[] = []
     for (const distance of [2e3, 1e4, 3e4, 1e5, 2e5, 4e5, 1e6, 3e6]) {
       columns.distance = distance
-      means.push(1 - mean((await columns.draw(scene.renderer)).light))
+      const { depth } = await columns.draw(scene.renderer)
+      means.push(1 - mean(depth.map(tau => Math.exp(-depthScale * tau))))
     }
     t.note(`${coverage} at ${longitude}°: opacity ${means.map(x => x.toFixed(3)).join(' ')}`)
     const worst = Math.max(...means.map(x => Math.abs(x - means[0])))
     if (worst > 0.04) misses.push(`coverage ${coverage}: opacity changes by ${worst}`)
+  }
+  expectTrue(misses.length === 0, misses.join(', '))
+  columns.dispose()
+  scene.dispose()
+})
+
+gpuTest('covers what is asked for, from near and far', async t => {
+  const layers = new CloudLayers([{}])
+  const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+  const { field } = scene
+  const [size, steps, depthScale] = [96, 16, 0.6]
+  field.depthScale.value = depthScale
+  const columns = new PlanetColumns(field, size, steps)
+  const misses: string[] = []
+  for (const [name, index] of [
+    ['fairWeather', 0],
+    ['stratocumulus', 0],
+    ['cumulonimbus', 0]
+  ] as const) {
+    for (const coverage of [0, 0.03, 0.1, 0.2, 0.5, 0.8, 0.95, 1]) {
+      layers.at(0).set({ ...cloudPreset(name).at(index).parameters, coverage })
+      scene.update()
+      const found: number[] = []
+      for (const distance of [500, 3e5, 1e6, 2e7]) {
+        const depth = await columns.draw(scene.renderer, layers.at(0).parameters, distance)
+        found.push(1 - mean(depth.map(tau => Math.exp(-depthScale * tau))))
+      }
+      t.note(`${name} ${coverage}: ${found.map(x => x.toFixed(3)).join(' ')}`)
+      const worst = Math.max(...found.map(x => Math.abs(x - coverage)))
+      if (worst > 0.05) misses.push(`${name}: ${found.join(' ')} for ${coverage}`)
+    }
   }
   expectTrue(misses.length === 0, misses.join(', '))
   columns.dispose()

@@ -1,3 +1,4 @@
+import { checkRange } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { CloudLayer, type CloudLayerParameters } from './CloudLayer'
 
@@ -18,20 +19,37 @@ export class CloudLayers implements Iterable<CloudLayer> {
   /**
    * @param layers - Layers, shared with the caller, or parameters of new ones. Left out: one
    *   layer of scattered fair-weather cumulus.
+   * @param count - How many layers there are at least, for a later `copy`: further ones cover nothing.
    * @throws Error when there is no layer, more than four, or a parameter is out of its range.
    */
-  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}]) {
+  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}], count = 1) {
     if (!Array.isArray(layers) || layers.length < 1 || layers.length > CloudLayers.maxLayers) {
       const got = Array.isArray(layers) ? layers.length : layers
       fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, got)
     }
-    this.#layers = layers.map((layer: CloudLayer | Partial<CloudLayerParameters>) =>
-      layer instanceof CloudLayer ? layer : new CloudLayer(layer)
-    )
+    checkRange('CloudLayers', 'count', count, 1, CloudLayers.maxLayers)
+    const all: (CloudLayer | Partial<CloudLayerParameters>)[] = [...layers]
+    while (all.length < count) all.push({ coverage: 0 })
+    this.#layers = all.map(layer => (layer instanceof CloudLayer ? layer : new CloudLayer(layer)))
   }
 
   get length(): number {
     return this.#layers.length
+  }
+
+  /**
+   * Takes the parameters of other layers; what is left over covers nothing then.
+   *
+   * @throws Error when there are more of them than here.
+   */
+  copy(other: CloudLayers): this {
+    if (other.length > this.length) {
+      fail('CloudLayers', `layers must be at most ${this.length}`, other.length)
+    }
+    this.#layers.forEach((layer, i) => {
+      layer.set(i < other.length ? other.at(i).parameters : { coverage: 0 })
+    })
+    return this
   }
 
   /** @throws Error when there is no layer of this index. */

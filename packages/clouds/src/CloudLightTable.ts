@@ -49,7 +49,7 @@ export interface CloudLight {
  *
  * ```ts
  * const light = new CloudLightTable()
- * light.bake()                                   // or a step a frame: light.steps()
+ * light.bake()                                   // or a step a frame: light.update(1)
  * const source = cloudSource(light.nodes, sample)
  * ```
  */
@@ -58,6 +58,8 @@ export class CloudLightTable {
   readonly nodes: CloudLight
   #phase: CloudPhaseParameters
   #isDirty = true
+  #isReady = false
+  #steps: Generator<void, void, void> | null = null
 
   /**
    * @param phase - What differs from droplets of fair-weather clouds.
@@ -81,6 +83,7 @@ export class CloudLightTable {
     }
     this.#phase = defaults
     this.set(phase)
+    this.#apply()
   }
 
   /** The phase function: a frozen object, replaced by each `set`. */
@@ -93,9 +96,14 @@ export class CloudLightTable {
     return this.#isDirty
   }
 
+  /** Whether there is a table, of this phase function or the one before. */
+  get isReady(): boolean {
+    return this.#isReady
+  }
+
   /**
-   * Changes the phase function; nothing changes when the result would not be valid. The table follows
-   * at the next bake.
+   * Changes the phase function; nothing changes when the result would not be valid. Light follows when
+   * the table is solved.
    *
    * @throws Error naming the parameter and its value when one is out of its range.
    */
@@ -105,6 +113,12 @@ export class CloudLightTable {
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
     this.#isDirty = true
+    return this
+  }
+
+  /** Has shaders know the phase function. */
+  #apply(): void {
+    const phase = this.#phase
     const { depthScale, moments } = scalePhase(phase)
     this.nodes.depthScale.value = depthScale
     this.nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
@@ -112,7 +126,6 @@ export class CloudLightTable {
     for (const name of ['forwardAsymmetry', 'backwardAsymmetry', 'forwardShare'] as const) {
       this.nodes[name].value = phase[name]
     }
-    return this
   }
 
   /** Computes the table step by step. Starts over when the phase function changes on the way. */
@@ -128,13 +141,27 @@ export class CloudLightTable {
       if (this.#phase !== phase) continue
       data.forEach((value, i) => (texels[i] = DataUtils.toHalfFloat(value)))
       this.texture.needsUpdate = true
+      this.#apply()
+      this.#isReady = true
       this.#isDirty = false
+    }
+  }
+
+  /**
+   * Goes on with the table, if the phase function has changed.
+   *
+   * @param count - How many of its steps at most.
+   */
+  update(count: number): void {
+    for (let i = 0; i < count && this.#isDirty; i++) {
+      this.#steps ??= this.steps()
+      if (this.#steps.next().done === true) this.#steps = null
     }
   }
 
   /** Computes the table at once, if the phase function has changed. */
   bake(): void {
-    for (const _ of this.steps()) continue
+    this.update(Infinity)
   }
 
   /** Frees the table. */

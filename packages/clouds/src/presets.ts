@@ -108,8 +108,9 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
  *
+ * @param count - How many layers there are at least, to take other presets by `copy` later.
  * @throws If there is no preset of this name.
  */
-export function cloudPreset(name: CloudPresetName): CloudLayers {
-  return new CloudLayers(named('cloudPreset', 'name', presets, name))
+export function cloudPreset(name: CloudPresetName, count = 1): CloudLayers {
+  return new CloudLayers(named('cloudPreset', 'name', presets, name), count)
 }

@@ -1,3 +1,4 @@
+import { checkOptions } from '@welkin/atmosphere'
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { fail } from '@welkin/geo'
@@ -52,6 +53,7 @@ export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQ
   if (typeof quality === 'string') {
     return named('CloudsNode', 'quality', cloudQualities, quality)
   }
+  checkOptions('CloudsNode.quality', quality, ...Object.keys(ranges))
   checkRanges('CloudsNode', quality, ranges, 'quality.')
   if (!Number.isInteger(quality.block)) {
     fail('CloudsNode', 'quality.block must be 1, 2, 3 or 4', quality.block)

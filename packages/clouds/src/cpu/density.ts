@@ -155,7 +155,7 @@ export function weatherAt(
   const { carvedBlur, leastBlur, leastVariance, excess, meanEdge } = densityShape
   const edges = Math.max(carvedBlur * layer.shapeAmount, leastBlur)
   const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
-  const surely = excess * (2 * c - 1) ** 17
+  const surely = excess * (2 * c - 1) ** 33
   const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
     SHAPE_WARP.clouds * shapePeriod
@@ -229,7 +229,7 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilFill, anvilReach, fibrousFill, profileMean, solidFill } = densityShape
+  const { anvilDensity, anvilFill, anvilReach, fibrousFill, solidFill } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -244,11 +244,13 @@ export function cloudExtinction(
     const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
     const [thin, more, most] = fibrousFill
-    const fibres = thin + more * cover ** 2 + most * cover ** 32
+    const fibres = thin + more * cover ** 2 + most * cover ** 64
     const solid = solidFill + anvil * (anvilFill - solidFill)
     const columnFill = solid + fibrous * (fibres - solid)
     const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)
     const spreadDepth = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30))
+    const e = layer.profileExponent
+    const profileMean = (4 * e) / ((e + 1) * (2 * e + 1))
     const far = ((spreadDepth / depth) * columnFill) / profileMean
     const near = clamp(left * sharpness, 0, 1)
     const through =

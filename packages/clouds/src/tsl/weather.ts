@@ -181,6 +181,8 @@ export function weatherAt(
   const spread = smoothstep(0.5, 4.5, cloudLevel).toConst() as Float
   /** Of the weather that levels of detail have lost: none near by. */
   const variance = float(0).toVar()
+  /** Blurred clouds are as many as sharp ones. */
+  const sharp = z.toVar() as Float
   If(level.greaterThan(0), () => {
     const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
     const fieldVariance = layer.cloudVariance
@@ -193,6 +195,7 @@ export function weatherAt(
         .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
         .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
     )
+    sharp.mulAssign(variance.oneMinus().max(leastVariance).inverseSqrt())
   })
   const cover = float(0).toVar()
   const findCover = (): void => {
@@ -207,10 +210,8 @@ export function weatherAt(
   if (where === 'everywhere') findCover()
   else If(spread.greaterThan(0), findCover)
 
-  // Blurred clouds are as many as sharp ones.
-  const sharp = z.mul(variance.oneMinus().max(leastVariance).inverseSqrt())
   const tilt = share.mul(2).sub(1).toConst() as Float
-  const surely = squared(tilt, 4).mul(tilt).mul(excess)
+  const surely = squared(tilt, 5).mul(tilt).mul(excess)
   const fill = layer.shapeAmount
     .mul(meanEdge)
     .add(cumulative(sharp).sub(1).add(share).mul(layer.steepness))
