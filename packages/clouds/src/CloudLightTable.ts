@@ -1,7 +1,6 @@
 import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray } from 'three'
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { checkOptions } from '@welkin/atmosphere'
 import { checkRanges } from './check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { depths, layers, positions } from './cpu/cloudLightSize'
@@ -109,7 +108,6 @@ export class CloudLightTable {
    */
   set(changes: Partial<CloudPhaseParameters>): this {
     const phase = Object.freeze({ ...this.#phase, ...changes })
-    checkOptions('CloudLightTable', phase, ...Object.keys(ranges))
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
     this.#isDirty = true
