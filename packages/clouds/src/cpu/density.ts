@@ -10,6 +10,7 @@ import {
   layerForms,
   layerPeriods,
   LAST_WAVES,
+  mapShift,
   NEXT_WAVES,
   PLANET_WARP,
   REGION_CELLS,
@@ -36,6 +37,8 @@ export interface CloudState {
   readonly worldMap?: (longitude: number, latitude: number) => number
   /** a/b of the ellipsoid; only the map needs it. */
   readonly axialRatio?: number
+  /** Width of the map [texels]. */
+  readonly worldMapWidth?: number
 }
 
 /** A layer's weather at a place: see `CloudWeather` of tsl/weather.ts. */
@@ -79,11 +82,18 @@ const lost = (level: number): number => smoothstep(0, densityShape.blur, level)
 const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
 
 /** Share of the sky that a layer covers around a place, as far as it is known without noise. */
-function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Vector3): number {
+function shareAt(
+  state: CloudState,
+  { coverage }: CloudLayerParameters,
+  foot: Vector3,
+  shift: Vector3
+): number {
   if (state.worldMap === undefined) return coverage
-  const across = Math.hypot(foot.x, foot.y)
-  const latitude = Math.atan2(foot.z * (state.axialRatio ?? 1), across)
-  const share = clamp(state.worldMap(Math.atan2(foot.y, foot.x), latitude), 0, 1)
+  const { x, y, z } = foot
+    .clone()
+    .addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048) * foot.length())
+  const latitude = Math.atan2(z * (state.axialRatio ?? 1), Math.hypot(x, y))
+  const share = clamp(state.worldMap(Math.atan2(y, x), latitude), 0, 1)
   const covered = share * coverage
   return covered / Math.max(covered + (1 - share) * (1 - coverage), 1e-6)
 }
@@ -115,7 +125,6 @@ export function weatherAt(
   const turn = state.turns[index]
   const foot = position.clone().setLength(state.bottomRadius)
   const footprint = distance * state.pixelAngle
-  const c = shareAt(state, layer, foot)
   const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
   const { steepness, coarseness } = layerForms(layer)
 
@@ -137,6 +146,7 @@ export function weatherAt(
     sample(shifted(placeIn(foot, turn, rotation, length), region, WEATHER_WARP), levelThere)
   const fields = lookUp(latticeRotation.fields, period * FIELD_PERIOD, fieldLevel)
   const clouds = lookUp(latticeRotation.weather, period, level)
+  const c = shareAt(state, layer, foot, new Vector3(fields[2], fields[0], fields[1]))
 
   const dot = (values: number[]): number =>
     values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
