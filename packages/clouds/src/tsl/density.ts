@@ -5,7 +5,9 @@ import {
   anvilFill,
   anvilReach,
   erosion,
-  fibrousFill,
+  moreFibres,
+  mostFibres,
+  thinFibres,
   leastCarving,
   lostCarving,
   shapeBlur,
@@ -77,7 +79,7 @@ function carving(
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x
     .add(noise.y.sub(0.5).mul(0.3))
-    .add(smoothstep(shapeBlur[0], shapeBlur[1], level).mul(lostCarving))
+    .add(smoothstep(0, shapeBlur, level).mul(lostCarving))
   const carved = layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)).toConst() as Float
   const left = filled.sub(carved).toVar() as Float & { subAssign: (n: Float) => void }
   const most = layer.detailAmount.mul(erosion).toConst() as Float
@@ -104,9 +106,8 @@ function carving(
 
 /** Mean density of a cloudy column over the densest. */
 export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const [thin, more, most] = fibrousFill
   const square = squared(cover, 1)
-  const fibres = square.mul(more).add(squared(square, 5).mul(most)).add(thin)
+  const fibres = square.mul(moreFibres).add(squared(square, 5).mul(mostFibres)).add(thinFibres)
   return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
 }
 
@@ -161,7 +162,7 @@ function eachLayer(
   body: (layer: LayerNodes, weather: CloudWeather, height: Float) => void
 ): void {
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'cloudLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
@@ -213,7 +214,7 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
 export function clearanceAt(field: CloudField, sample: CloudSample): Float {
   const clearance = float(NOWHERE).toVar()
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'clearLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     If(layer.coverage.greaterThan(0), () => {
       const weather = weatherAt(field, layer, foot, sample, 'where spread')
@@ -332,7 +333,7 @@ export function pairMatter(
       })
     })
   }
-  forLayers(field, 'pairLayer', look, range)
+  forLayers(field, look, range)
   return { extinction: sum, clearance, weather: { values, shapeWarp } }
 }
 
