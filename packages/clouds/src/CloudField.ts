@@ -181,7 +181,7 @@ export class CloudField {
     const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
     const periods = layerPeriods(parameters)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
-    const { stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
+    const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
     const turn = this.turns[index]
     const { elements: e } = _matrix.makeRotationFromQuaternion(turn)
     const perStretch = 1 / stretch
@@ -207,7 +207,7 @@ export class CloudField {
       scales.clouds,
       [e[0], e[4], e[8], steepness],
       [e[1], e[5], e[9], sharpness],
-      [e[2], e[6], e[10], 0],
+      [e[2], e[6], e[10], fibrous],
       // The weather is the same all the way up: it is looked up at the foot point.
       [...anchor(_foot, weather, periods.weather), 1 / periods.weather],
       [...anchor(_foot, region, REGION_PERIOD), parameters.shadow ? 1 : 0],

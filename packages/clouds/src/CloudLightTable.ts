@@ -4,7 +4,8 @@ import type { UniformNode } from 'three/webgpu'
 import { checkOptions } from '@welkin/atmosphere'
 import { checkRanges } from './check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
-import { CLOUD_LIGHT_LAYERS, CLOUD_LIGHT_SIZE, fillCloudLight } from './cpu/cloudLightTable'
+import { depths, layers, positions } from './cpu/cloudLightSize'
+import { fillCloudLight } from './cpu/cloudLightTable'
 import type { LevelTexture, Vec3 } from './tsl-types'
 import { number } from './uniforms'
 
@@ -64,9 +65,8 @@ export class CloudLightTable {
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   constructor(phase: Partial<CloudPhaseParameters> = {}) {
-    const { positions, depths } = CLOUD_LIGHT_SIZE
-    const texels = new Uint16Array(4 * positions * depths * CLOUD_LIGHT_LAYERS)
-    this.texture = new Data3DTexture(texels, positions, depths, CLOUD_LIGHT_LAYERS)
+    const texels = new Uint16Array(4 * positions * depths * layers)
+    this.texture = new Data3DTexture(texels, positions, depths, layers)
     this.texture.name = 'Welkin.CloudLight'
     this.texture.type = HalfFloatType
     this.texture.minFilter = this.texture.magFilter = LinearFilter

@@ -40,7 +40,7 @@ export interface CloudOverlayOptions {
 }
 
 /** Frames after which the clouds' shadow maps are those of the clouds as they are. */
-const WAIT = 4
+const WAIT = 12
 
 /** Strips of the picture. */
 const STRIPS = 6

@@ -13,6 +13,9 @@ export const excess = 0.6
 /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
 export const blur = [0, 5] as const
 
+/** Least variance of blurred weather that is made up for. */
+export const leastVariance = 0.05
+
 /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
 export const carvedBlur = 0.4
 export const leastBlur = 0.05
@@ -35,5 +38,12 @@ export const erosion = 0.22
 export const smoothSharpness = 1.5
 export const carvedSharpness = 6
 
-/** Mean density of a cloudy column over the densest. */
-export const farFill = 0.6
+/** Mean of the height profile. */
+export const profileMean = 0.6
+
+/** Mean density of a cloudy column over the densest; where towers have anvils, most of it is thin. */
+export const solidFill = 0.6
+export const anvilFill = 0.12
+
+/** The same of fibrous clouds, by cover c: a₀ + a₁c² + a₂c³²; fitted to columns seen from near. */
+export const fibrousFill = [0.05, 0.15, 0.35] as const

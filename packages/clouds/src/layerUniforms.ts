@@ -23,16 +23,21 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 0.95, clouds: 0.23 } as const
+export const SHAPE_WARP = { fields: 1.1, clouds: 0.3 } as const
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
-export const PLANET_WAVES = { next: 3.1, last: 1.7, warp: 0.22 } as const
+export const NEXT_WAVES = 3.1
+export const LAST_WAVES = 1.7
+export const PLANET_WARP = 0.22
 
 /**
  * Weights of the scales that the weather is the sum of, with that of single clouds 1: fields of tens of
  * kilometres, of the layer's own weather and of large cells; regions; the planet.
  */
-export const scaleWeights = { fields: 0.6, cells: 0.5, regions: 0.65, planet: 0.4 } as const
+export const FIELD_WEIGHT = 0.6
+const CELL_WEIGHT = 0.5
+const REGION_WEIGHT = 0.65
+const PLANET_WEIGHT = 0.4
 
 /** Share of finer cells in the regions. */
 export const REGION_CELLS = 0.6
@@ -91,19 +96,19 @@ export interface WeatherScales {
 export function weatherScales(weights: readonly number[], hasMap: boolean): WeatherScales {
   const size = Math.hypot(...weights) || 1
   const unit = weights.map(weight => weight / size)
-  const { fields, cells, regions, planet } = scaleWeights
   // Large cells are the third channel.
-  const fieldVariance = fields ** 2 + cells ** 2 + 2 * fields * cells * (unit[2] ?? 0)
+  const fieldVariance =
+    FIELD_WEIGHT ** 2 + CELL_WEIGHT ** 2 + 2 * FIELD_WEIGHT * CELL_WEIGHT * (unit[2] ?? 0)
   const large = hasMap ? 0 : 1
-  const variance = 1 + fieldVariance + large * (regions ** 2 + planet ** 2)
+  const variance = 1 + fieldVariance + large * (REGION_WEIGHT ** 2 + PLANET_WEIGHT ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   return {
     clouds: [a, b, c, d],
-    fields,
-    cells: cells * factor,
-    regions: (large * regions * factor) / Math.hypot(1, REGION_CELLS),
-    planet: (large * planet) / Math.sqrt(variance),
+    fields: FIELD_WEIGHT,
+    cells: CELL_WEIGHT * factor,
+    regions: (large * REGION_WEIGHT * factor) / Math.hypot(1, REGION_CELLS),
+    planet: (large * PLANET_WEIGHT) / Math.sqrt(variance),
     cloudVariance: 1 / variance,
     fieldVariance: fieldVariance / variance
   }
@@ -121,6 +126,8 @@ export function layerForms({
 }: CloudLayerParameters): {
   /** How much longer than wide the noise is that carves them. */
   stretch: number
+  /** How much of its weather is that of cirrus, in [0, 1]. */
+  fibrous: number
   /** Fill per change of its weather. */
   steepness: number
   /** Density per fullness left: how sharp edges are. */
@@ -136,6 +143,7 @@ export function layerForms({
   const towers = shareOf(weatherWeights, 2)
   const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
+    fibrous,
     stretch: mix(1, CIRRUS_STRETCH, fibrous),
     steepness: 1 / mix(edgeWidth, cirrusEdgeWidth, fibrous),
     sharpness: mix(smoothSharpness, carvedSharpness, carved),

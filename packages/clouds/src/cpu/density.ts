@@ -9,7 +9,9 @@ import {
   FIELD_PERIOD,
   layerForms,
   layerPeriods,
-  PLANET_WAVES,
+  LAST_WAVES,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
   SHAPE_WARP,
@@ -89,11 +91,10 @@ function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Ve
 /** Waves around the planet, in [−1, 1]. */
 function planetWaves(foot: Vector3, turn: Quaternion): Vec3Array {
   const { x, y, z } = foot.clone().normalize().applyQuaternion(turn)
-  const { next, last } = PLANET_WAVES
   return [
-    Math.sin(next * y + last * z),
-    Math.sin(next * z + last * x),
-    Math.sin(next * x + last * y)
+    Math.sin(NEXT_WAVES * y + LAST_WAVES * z),
+    Math.sin(NEXT_WAVES * z + LAST_WAVES * x),
+    Math.sin(NEXT_WAVES * x + LAST_WAVES * y)
   ]
 }
 
@@ -127,7 +128,7 @@ export function weatherAt(
     noise.sample('weather', place, level).map(value => value - 0.5)
   const regionPlace = placeIn(foot, turn, latticeRotation.region, REGION_PERIOD)
   const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
-  const region = sample(shifted(regionPlace, waves, PLANET_WAVES.warp), regionLevel)
+  const region = sample(shifted(regionPlace, waves, PLANET_WARP), regionLevel)
 
   const { weather: period, shape: shapePeriod } = layerPeriods(layer)
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
@@ -151,15 +152,16 @@ export function weatherAt(
     (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lost(regionLevel - 0.8)) / 12
   const odds = clamp(c, 1e-6, 1 - 1e-6)
   const quantile = Math.log(odds / (1 - odds)) / 1.702
-  const { carvedBlur, leastBlur, excess, meanEdge } = densityShape
+  const { carvedBlur, leastBlur, leastVariance, excess, meanEdge } = densityShape
   const edges = Math.max(carvedBlur * layer.shapeAmount, leastBlur)
   const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
-  const surely = excess * (2 * c - 1) ** 5
+  const surely = excess * (2 * c - 1) ** 17
+  const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
     SHAPE_WARP.clouds * shapePeriod
   )
   return {
-    fill: meanEdge * layer.shapeAmount + (cumulative(z) - (1 - c)) * steepness + surely,
+    fill: meanEdge * layer.shapeAmount + (cumulative(sharp) - (1 - c)) * steepness + surely,
     cover: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
     spread: smoothstep(0.5, 4.5, level - coarseness),
     shapeWarp: new Vector3(fields[0], fields[1], fields[2])
@@ -227,7 +229,7 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilReach, farFill } = densityShape
+  const { anvilDensity, anvilFill, anvilReach, fibrousFill, profileMean, solidFill } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -235,14 +237,19 @@ export function cloudExtinction(
     if (height <= 0 || height >= 1 || layer.coverage === 0) return
     const weather = weatherAt(state, noise, index, position, distance)
     const { fill, cover, spread } = weather
-    const { sharpness, anvil } = layerForms(layer)
+    const { fibrous, sharpness, anvil } = layerForms(layer)
     const anvilHere = anvil * smoothstep(0.62, 0.8, height)
     const usual = 1 - (2 * Math.max(height, 1e-4) ** layer.profileExponent - 1) ** 2
     const profile = usual + anvilHere * (1 - smoothstep(0.9, 1, height) - usual)
     const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
-    const depth = Math.max(density * (topAltitude - baseAltitude) * farFill, 1e-4)
-    const far = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30)) / depth
+    const [thin, more, most] = fibrousFill
+    const fibres = thin + more * cover ** 2 + most * cover ** 32
+    const solid = solidFill + anvil * (anvilFill - solidFill)
+    const columnFill = solid + fibrous * (fibres - solid)
+    const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)
+    const spreadDepth = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30))
+    const far = ((spreadDepth / depth) * columnFill) / profileMean
     const near = clamp(left * sharpness, 0, 1)
     const through =
       (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * profile * depth)

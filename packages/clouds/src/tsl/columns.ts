@@ -1,8 +1,7 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { farFill } from '../densityShape'
 import type { Float, Vec3 } from '../tsl-types'
-import { spreadDensity, type CloudSample } from './density'
+import { spreadDepth, type CloudSample } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
 
@@ -17,8 +16,7 @@ export function cloudColumn(field: CloudField, sample: CloudSample): Float {
   forLayers(field, 'cloudColumnLayer', index => {
     const layer = layerAt(field, index)
     const weather = weatherAt(field, layer, foot, sample)
-    const depth = layer.density.mul(layer.thickness).mul(farFill)
-    sum.addAssign(depth.mul(spreadDensity(field, layer, weather)))
+    sum.addAssign(spreadDepth(field, layer, weather))
   })
   return sum
 }
@@ -49,13 +47,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
       const there = { offset, altitude, up, distance: sample.distance }
       const foot = footOffset(field, there).toConst()
       const weather = weatherAt(field, layer, foot, there)
-      const depth = layer.density.mul(layer.thickness).mul(farFill)
-      sum.addAssign(
-        depth
-          .mul(spreadDensity(field, layer, weather))
-          .mul(above)
-          .div(slope)
-      )
+      sum.addAssign(spreadDepth(field, layer, weather).mul(above).div(slope))
     })
   })
   return sum

@@ -2,12 +2,15 @@ import { If, float, int, log2, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import {
   anvilDensity,
+  anvilFill,
   anvilReach,
   erosion,
-  farFill,
+  fibrousFill,
   leastCarving,
   lostCarving,
-  shapeBlur
+  profileMean,
+  shapeBlur,
+  solidFill
 } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
@@ -15,7 +18,7 @@ import { CURL_AMOUNT, CURL_PERIOD, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
 import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
-import { footOffset, weatherAt, type CloudWeather } from './weather'
+import { footOffset, squared, weatherAt, type CloudWeather } from './weather'
 
 /** A place in the air, as seen from the field's camera. */
 export interface CloudSample {
@@ -36,7 +39,8 @@ const NOWHERE = 1e6
  * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
  * periods of the weather, and where its shape is besides, in periods of the shape.
  */
-const STEEPEST = { weather: 0.03, shape: 0.05 }
+const STEEPEST_WEATHER = 0.03
+const STEEPEST_SHAPE = 0.05
 
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>
@@ -99,31 +103,40 @@ function carving(
   return { left, carved }
 }
 
-/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
-const columnOf = ({ depthScale }: CloudField, layer: LayerNodes): Float =>
-  layer.density.mul(layer.thickness).mul(farFill).mul(depthScale).max(1e-4).toConst()
+/** Mean density of a cloudy column over the densest. */
+export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
+  const [thin, more, most] = fibrousFill
+  const square = squared(cover, 1)
+  const fibres = square.mul(more).add(squared(square, 4).mul(most)).add(thin)
+  return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
+}
 
-/** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(
+/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
+const columnOf = (
+  { depthScale }: CloudField,
+  layer: LayerNodes,
+  weather: Pick<CloudWeather, 'cover'>
+): Float =>
+  layer.density
+    .mul(layer.thickness)
+    .mul(columnFill(layer, weather))
+    .mul(depthScale)
+    .max(1e-4)
+    .toConst()
+
+/** Optical depth that takes as much light as the clouds of a cell do, were they spread evenly over it. */
+export function spreadDepth(
   field: CloudField,
   layer: LayerNodes,
-  { cover }: Pick<CloudWeather, 'cover'>
+  weather: Pick<CloudWeather, 'cover'>
 ): Float {
-  const depth = columnOf(field, layer)
-  const blocked = cover.mul(depth.negate().exp().oneMinus())
+  const blocked = weather.cover.mul(columnOf(field, layer, weather).negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
-  return blocked.oneMinus().max(1e-30).log().negate().div(depth)
+  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
-function mixedDensity(
-  field: CloudField,
-  layer: LayerNodes,
-  a: Float,
-  b: Float,
-  share: Float
-): Float {
-  const depth = columnOf(field, layer)
+function mixedDensity(depth: Float, a: Float, b: Float, share: Float): Float {
   const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
   return through.max(1e-30).log().negate().div(depth)
 }
@@ -185,7 +198,7 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
   layer.shapeAmount
     .mul(leastCarving)
     .sub(fill)
-    .mul(STEEPEST.weather)
+    .mul(STEEPEST_WEATHER)
     .div(layer.perWeatherPeriod)
     .max(0)
 
@@ -234,11 +247,20 @@ function layerMatter(
   If(filled.greaterThan(least), () => {
     const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
     density.assign(left.mul(layer.sharpness).clamp(0, 1))
-    clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
+    clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const whole = unseen === 'mean' ? spreadDensity(field, layer, weather) : float(farFill)
-    density.assign(mixedDensity(field, layer, density, whole.mul(profile).toConst(), spread))
+    const depth = columnOf(field, layer, weather)
+    const inside = columnFill(layer, weather)
+    const whole =
+      unseen === 'mean'
+        ? spreadDepth(field, layer, weather)
+            .mul(field.depthScale)
+            .div(depth)
+            .mul(inside)
+            .div(profileMean)
+        : inside
+    density.assign(mixedDensity(depth, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
   return {

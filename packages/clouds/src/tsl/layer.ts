@@ -38,6 +38,7 @@ export interface LayerNodes {
   cloudVariance: Float
   /** `layerForms`; the reciprocal of its stretch. */
   perStretch: Float
+  fibrous: Float
   steepness: Float
   sharpness: Float
   coarseness: Float
@@ -89,6 +90,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     planet: kind.z,
     cloudVariance: kind.w,
     perStretch: shape.w,
+    fibrous: read(5).w,
     steepness: read(3).w,
     sharpness: read(4).w,
     coarseness: detail.w,

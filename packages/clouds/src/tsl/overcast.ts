@@ -4,8 +4,8 @@ import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { CloudLight } from '../CloudLightTable'
 import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
-import { farFill } from '../densityShape'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
+import { columnFill } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
 
@@ -72,9 +72,13 @@ export function sheetsAbout(
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
       const foot = footOffset(field, sample).toConst()
-      const { cover } = weatherAt(field, layer, foot, sample)
+      const weather = weatherAt(field, layer, foot, sample)
+      const { cover } = weather
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
-      const depth = layer.density.mul(farFill).mul(light.depthScale).toConst() as Float
+      const depth = layer.density
+        .mul(columnFill(layer, weather))
+        .mul(light.depthScale)
+        .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
       const passing = (part: Float): Float => cover.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {

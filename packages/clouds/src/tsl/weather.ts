@@ -1,14 +1,16 @@
 import { If, atan, float, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { blur, carvedBlur, excess, leastBlur, meanEdge } from '../densityShape'
+import { blur, carvedBlur, excess, leastBlur, leastVariance, meanEdge } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
   FIELD_PERIOD,
-  PLANET_WAVES,
+  FIELD_WEIGHT,
+  LAST_WAVES,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  scaleWeights,
   SHAPE_WARP,
   WEATHER_WARP
 } from '../layerUniforms'
@@ -76,6 +78,10 @@ function shareAt(
   return covered.div(covered.add(clear).max(1e-6)).toConst()
 }
 
+/** x squared, that squared, and so on. */
+export const squared = (x: Float, times: number): Float =>
+  times === 0 ? x : squared(x.mul(x).toConst(), times - 1)
+
 /** Part of a noise's variance that its levels of detail have lost. */
 const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
 
@@ -125,15 +131,14 @@ export function weatherAt(
   const share = shareAt(field, layer, sample, footprint)
 
   const zenith = layer.turn(sample.up).toConst() as Vec3
-  const { next, last, warp: shift } = PLANET_WAVES
-  const waves = sine(zenith.yzx.mul(next).add(zenith.zxy.mul(last)))
+  const waves = sine(zenith.yzx.mul(NEXT_WAVES).add(zenith.zxy.mul(LAST_WAVES)))
   const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
   const region = weather
     .sample(
       rotate(latticeRotation.region, turned)
         .div(REGION_PERIOD)
         .add(layer.regionAnchor)
-        .add(waves.mul(shift))
+        .add(waves.mul(PLANET_WARP))
     )
     .level(regionLevel)
     .xyz.sub(0.5)
@@ -160,7 +165,7 @@ export function weatherAt(
     .toConst() as Vec4
 
   const z = clouds
-    .add(fields.mul(scaleWeights.fields))
+    .add(fields.mul(FIELD_WEIGHT))
     .dot(layer.weights)
     .add(fields.z.mul(layer.cells))
     .add(region.z.add(region.x.mul(REGION_CELLS)).mul(layer.regions))
@@ -174,17 +179,23 @@ export function weatherAt(
     .toConst() as Float
   const cloudLevel = level.sub(layer.coarseness).toConst() as Float
   const spread = smoothstep(0.5, 4.5, cloudLevel).toConst() as Float
-  const cover = float(0).toVar()
-  const findCover = (): void => {
+  /** Of the weather that levels of detail have lost: none near by. */
+  const variance = float(0).toVar()
+  If(level.greaterThan(0), () => {
     const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
     const fieldVariance = layer.cloudVariance
       .add(layer.planet.mul(layer.planet))
       .add(regionVariance)
       .oneMinus()
-    const variance = layer.cloudVariance
-      .mul(lost(cloudLevel))
-      .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
-      .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+    variance.assign(
+      layer.cloudVariance
+        .mul(lost(cloudLevel))
+        .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
+        .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+    )
+  })
+  const cover = float(0).toVar()
+  const findCover = (): void => {
     const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
     const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
     const quantile = odds.div(odds.oneMinus()).log().div(1.702)
@@ -196,11 +207,13 @@ export function weatherAt(
   if (where === 'everywhere') findCover()
   else If(spread.greaterThan(0), findCover)
 
+  // Blurred clouds are as many as sharp ones.
+  const sharp = z.mul(variance.oneMinus().max(leastVariance).inverseSqrt())
   const tilt = share.mul(2).sub(1).toConst() as Float
-  const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
+  const surely = squared(tilt, 4).mul(tilt).mul(excess)
   const fill = layer.shapeAmount
     .mul(meanEdge)
-    .add(cumulative(z).sub(1).add(share).mul(layer.steepness))
+    .add(cumulative(sharp).sub(1).add(share).mul(layer.steepness))
     .add(surely)
     .toConst() as Float
   const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
