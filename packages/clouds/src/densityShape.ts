@@ -38,12 +38,9 @@ export const erosion = 0.22
 export const smoothSharpness = 1.5
 export const carvedSharpness = 6
 
-/** Mean of the height profile. */
-export const profileMean = 0.6
-
 /** Mean density of a cloudy column over the densest; where towers have anvils, most of it is thin. */
 export const solidFill = 0.6
 export const anvilFill = 0.12
 
-/** The same of fibrous clouds, by cover c: a₀ + a₁c² + a₂c³²; fitted to columns seen from near. */
+/** The same of fibrous clouds, by cover c: a₀ + a₁c² + a₂c⁶⁴; fitted to columns seen from near. */
 export const fibrousFill = [0.05, 0.15, 0.35] as const

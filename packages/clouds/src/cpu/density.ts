@@ -10,6 +10,7 @@ import {
   layerForms,
   layerPeriods,
   LAST_WAVES,
+  mapShift,
   NEXT_WAVES,
   PLANET_WARP,
   REGION_CELLS,
@@ -35,6 +36,8 @@ export interface CloudState {
   readonly worldMap?: (longitude: number, latitude: number) => number
   /** a/b of the ellipsoid; only the map needs it. */
   readonly axialRatio?: number
+  /** Width of the map [texels]. */
+  readonly worldMapWidth?: number
 }
 
 /** A layer's weather at a place: see `CloudWeather` of tsl/weather.ts. */
@@ -79,11 +82,18 @@ const lost = (level: number): number =>
 const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
 
 /** Share of the sky that a layer covers around a place, as far as it is known without noise. */
-function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Vector3): number {
+function shareAt(
+  state: CloudState,
+  { coverage }: CloudLayerParameters,
+  foot: Vector3,
+  shift: Vector3
+): number {
   if (state.worldMap === undefined) return coverage
-  const across = Math.hypot(foot.x, foot.y)
-  const latitude = Math.atan2(foot.z * (state.axialRatio ?? 1), across)
-  const share = clamp(state.worldMap(Math.atan2(foot.y, foot.x), latitude), 0, 1)
+  const { x, y, z } = foot
+    .clone()
+    .addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048) * foot.length())
+  const latitude = Math.atan2(z * (state.axialRatio ?? 1), Math.hypot(x, y))
+  const share = clamp(state.worldMap(Math.atan2(y, x), latitude), 0, 1)
   const covered = share * coverage
   return covered / Math.max(covered + (1 - share) * (1 - coverage), 1e-6)
 }
@@ -115,7 +125,6 @@ export function weatherAt(
   const turn = state.turns[index]
   const foot = position.clone().setLength(state.bottomRadius)
   const footprint = distance * state.pixelAngle
-  const c = shareAt(state, layer, foot)
   const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
   const { steepness, coarseness } = layerForms(layer)
 
@@ -137,6 +146,7 @@ export function weatherAt(
     sample(shifted(placeIn(foot, turn, rotation, length), region, WEATHER_WARP), levelThere)
   const fields = lookUp(latticeRotation.fields, period * FIELD_PERIOD, fieldLevel)
   const clouds = lookUp(latticeRotation.weather, period, level)
+  const c = shareAt(state, layer, foot, new Vector3(fields[2], fields[0], fields[1]))
 
   const dot = (values: number[]): number =>
     values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
@@ -155,7 +165,7 @@ export function weatherAt(
   const { carvedBlur, leastBlur, leastVariance, excess, meanEdge } = densityShape
   const edges = Math.max(carvedBlur * layer.shapeAmount, leastBlur)
   const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
-  const surely = excess * (2 * c - 1) ** 17
+  const surely = excess * (2 * c - 1) ** 33
   const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
     SHAPE_WARP.clouds * shapePeriod
@@ -229,7 +239,7 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilFill, anvilReach, fibrousFill, profileMean, solidFill } = densityShape
+  const { anvilDensity, anvilFill, anvilReach, fibrousFill, solidFill } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -244,11 +254,13 @@ export function cloudExtinction(
     const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
     const [thin, more, most] = fibrousFill
-    const fibres = thin + more * cover ** 2 + most * cover ** 32
+    const fibres = thin + more * cover ** 2 + most * cover ** 64
     const solid = solidFill + anvil * (anvilFill - solidFill)
     const columnFill = solid + fibrous * (fibres - solid)
     const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)
     const spreadDepth = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30))
+    const e = layer.profileExponent
+    const profileMean = (4 * e) / ((e + 1) * (2 * e + 1))
     const far = ((spreadDepth / depth) * columnFill) / profileMean
     const near = clamp(left * sharpness, 0, 1)
     const through =

@@ -8,7 +8,6 @@ import {
   fibrousFill,
   leastCarving,
   lostCarving,
-  profileMean,
   shapeBlur,
   solidFill
 } from '../densityShape'
@@ -107,7 +106,7 @@ function carving(
 export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
   const [thin, more, most] = fibrousFill
   const square = squared(cover, 1)
-  const fibres = square.mul(more).add(squared(square, 4).mul(most)).add(thin)
+  const fibres = square.mul(more).add(squared(square, 5).mul(most)).add(thin)
   return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
 }
 
@@ -133,6 +132,12 @@ export function spreadDepth(
   const blocked = weather.cover.mul(columnOf(field, layer, weather).negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
   return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
+}
+
+/** Mean over a layer's heights of what they let cloud fill, with anvils as dense as they are. */
+function profileMean(layer: LayerNodes): Float {
+  const e = layer.profileExponent
+  return e.mul(4).div(e.add(1).mul(e.mul(2).add(1)))
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
@@ -250,16 +255,13 @@ function layerMatter(
     clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const depth = columnOf(field, layer, weather)
-    const inside = columnFill(layer, weather)
     const whole =
       unseen === 'mean'
         ? spreadDepth(field, layer, weather)
-            .mul(field.depthScale)
-            .div(depth)
-            .mul(inside)
-            .div(profileMean)
-        : inside
+            .mul(layer.perThickness)
+            .div(layer.density.mul(profileMean(layer)).max(1e-9))
+        : columnFill(layer, weather)
+    const depth = columnOf(field, layer, weather)
     density.assign(mixedDensity(depth, density, whole.mul(profile).toConst(), spread))
     clearance.assign(float(0))
   })
