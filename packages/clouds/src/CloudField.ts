@@ -145,8 +145,9 @@ export class CloudField {
    */
   update(view: AtmosphereView, seconds: number): void {
     const { bottomRadius } = this.atmosphere.parameters
-    const elapsed = this.#seconds === null ? 0 : seconds - this.#seconds
-    if (Number.isFinite(elapsed)) this.#seconds = seconds
+    const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
+    const elapsed = now - (this.#seconds ?? now)
+    this.#seconds = now
     this.#grown = this.noise.isReady ? Math.min(this.#grown + this.#growth, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
@@ -154,7 +155,7 @@ export class CloudField {
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
-      if (Number.isFinite(elapsed) && elapsed !== 0) this.#drift(i, view.up, elapsed)
+      if (elapsed !== 0) this.#drift(i, view.up, elapsed)
       this.#write(i)
     }
     for (let i = this.layers.length; i < CloudLayers.maxLayers; i++) {

@@ -1,6 +1,7 @@
-import { checkRange } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { CloudLayer, type CloudLayerParameters } from './CloudLayer'
+
+const clear = { coverage: 0 }
 
 /**
  * The one to four layers that make up a sky's clouds. Layers may overlap in altitude.
@@ -22,15 +23,15 @@ export class CloudLayers implements Iterable<CloudLayer> {
    * @param count - How many layers there are at least, for a later `copy`: further ones cover nothing.
    * @throws Error when there is no layer, more than four, or a parameter is out of its range.
    */
-  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}], count = 1) {
-    if (!Array.isArray(layers) || layers.length < 1 || layers.length > CloudLayers.maxLayers) {
-      const got = Array.isArray(layers) ? layers.length : layers
-      fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, got)
+  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}], count = 0) {
+    const length = Math.max(layers?.length, count)
+    if (!(length >= 1 && length <= CloudLayers.maxLayers)) {
+      fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, length)
     }
-    checkRange('CloudLayers', 'count', count, 1, CloudLayers.maxLayers)
-    const all: (CloudLayer | Partial<CloudLayerParameters>)[] = [...layers]
-    while (all.length < count) all.push({ coverage: 0 })
-    this.#layers = all.map(layer => (layer instanceof CloudLayer ? layer : new CloudLayer(layer)))
+    this.#layers = Array.from({ length }, (_, i) => {
+      const layer = layers[i] ?? clear
+      return layer instanceof CloudLayer ? layer : new CloudLayer(layer)
+    })
   }
 
   get length(): number {
@@ -43,12 +44,9 @@ export class CloudLayers implements Iterable<CloudLayer> {
    * @throws Error when there are more of them than here.
    */
   copy(other: CloudLayers): this {
-    if (other.length > this.length) {
-      fail('CloudLayers', `layers must be at most ${this.length}`, other.length)
-    }
-    this.#layers.forEach((layer, i) => {
-      layer.set(i < other.length ? other.at(i).parameters : { coverage: 0 })
-    })
+    const { length } = other
+    if (length > this.length) fail('CloudLayers', `layers must be 1 to ${this.length}`, length)
+    this.#layers.forEach((layer, i) => layer.set(other.#layers[i]?.parameters ?? clear))
     return this
   }
 

@@ -56,8 +56,7 @@ export class CloudLightTable {
   readonly texture: Data3DTexture
   readonly nodes: CloudLight
   #phase: CloudPhaseParameters
-  #isDirty = true
-  #isReady = false
+  /** What is left to do for the phase function. */
   #steps: Generator<void, void, void> | null = null
 
   /**
@@ -92,12 +91,12 @@ export class CloudLightTable {
 
   /** Whether the table is not yet that of the phase function. */
   get isDirty(): boolean {
-    return this.#isDirty
+    return this.#steps !== null
   }
 
   /** Whether there is a table, of this phase function or the one before. */
   get isReady(): boolean {
-    return this.#isReady
+    return this.texture.version > 1
   }
 
   /**
@@ -110,7 +109,7 @@ export class CloudLightTable {
     const phase = Object.freeze({ ...this.#phase, ...changes })
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
-    this.#isDirty = true
+    this.#steps = this.#solve()
     return this
   }
 
@@ -126,40 +125,28 @@ export class CloudLightTable {
     }
   }
 
-  /** Computes the table step by step. Starts over when the phase function changes on the way. */
-  *steps(): Generator<void, void, void> {
-    while (this.#isDirty) {
-      const phase = this.#phase
-      const texels = this.texture.image.data as TypedArray
-      const data = new Float32Array(texels.length)
-      for (const _ of fillCloudLight(phase, data)) {
-        if (this.#phase !== phase) break
-        yield
-      }
-      if (this.#phase !== phase) continue
-      data.forEach((value, i) => (texels[i] = DataUtils.toHalfFloat(value)))
-      this.texture.needsUpdate = true
-      this.#apply()
-      this.#isReady = true
-      this.#isDirty = false
-    }
+  *#solve(): Generator<void, void, void> {
+    const texels = this.texture.image.data as TypedArray
+    const data = new Float32Array(texels.length)
+    yield* fillCloudLight(this.#phase, data)
+    data.forEach((value, i) => (texels[i] = DataUtils.toHalfFloat(value)))
+    this.texture.needsUpdate = true
+    this.#apply()
+    this.#steps = null
   }
 
   /**
    * Goes on with the table, if the phase function has changed.
    *
-   * @param count - How many of its steps at most.
+   * @param steps - How many at most, of 29.
    */
-  update(count: number): void {
-    for (let i = 0; i < count && this.#isDirty; i++) {
-      this.#steps ??= this.steps()
-      if (this.#steps.next().done === true) this.#steps = null
-    }
+  update(steps = Infinity): void {
+    for (let i = 0; i < steps && this.#steps !== null; i++) this.#steps.next()
   }
 
   /** Computes the table at once, if the phase function has changed. */
   bake(): void {
-    this.update(Infinity)
+    this.update()
   }
 
   /** Frees the table. */

@@ -114,7 +114,7 @@ export class CloudsNode extends AtmosphereNode {
   ) {
     super(atmosphere, camera)
     checkOptions('CloudsNode', options, 'quality', 'worldMap', 'noise', 'light')
-    const { quality = 'high', worldMap = null, noise, light } = options
+    const { quality = 'high', noise, light } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
     if (!isDepth(depthNode))
       fail('CloudsNode', "depthNode must be a depth texture's", depthNode?.type)
@@ -125,7 +125,7 @@ export class CloudsNode extends AtmosphereNode {
     this.depthNode = depthNode
     this.camera = camera
     this.#quality = resolveQuality(quality)
-    this.field = new CloudField(atmosphere, layers, this.view, { worldMap, noise })
+    this.field = new CloudField(atmosphere, layers, this.view, options)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity

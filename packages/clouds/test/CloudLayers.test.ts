@@ -66,9 +66,9 @@ describe('CloudLayers', () => {
     layers.copy(cloudPreset('cumulonimbus'))
     expect(layers.at(1).parameters).toEqual(cloudPreset('cumulonimbus').at(1).parameters)
     expect(() => cloudPreset('cirrus', 2).copy(cloudPreset('mixed'))).toThrow(
-      'CloudLayers: layers must be at most 2, got 3'
+      'CloudLayers: layers must be 1 to 2, got 3'
     )
-    expect(() => cloudPreset('cirrus', 5)).toThrow('CloudLayers: count must be in [1, 4], got 5')
+    expect(() => cloudPreset('cirrus', 5)).toThrow('CloudLayers: layers must be 1 to 4, got 5')
     expect(new CloudLayers([{}, {}, {}], 2).length).toBe(3)
   })
 })
