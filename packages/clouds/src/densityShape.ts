@@ -42,7 +42,13 @@ export const carvedSharpness = 6
 export const solidFill = 0.6
 export const anvilFill = 0.12
 
-/** The same of fibrous clouds, by cover c: a₀ + a₁c² + a₂c⁶⁴; fitted to columns seen from near. */
+/** Mean over all heights of anvils, by how full and how dense they are. */
+export const anvilMean = 0.09
+
+/** Height over the weather's period, times this: how much clouds hide, looked at aslant, as a slab would. */
+export const tallness = 5
+
+/** The same as `solidFill` of fibrous clouds, by cover c: a₀ + a₁c² + a₂c⁶⁴; fitted to columns seen from near. */
 export const thinFibres = 0.05
 export const moreFibres = 0.15
 export const mostFibres = 0.35

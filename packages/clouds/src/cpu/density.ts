@@ -238,8 +238,16 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilFill, anvilReach, solidFill, thinFibres, moreFibres, mostFibres } =
-    densityShape
+  const {
+    anvilDensity,
+    anvilFill,
+    anvilMean,
+    anvilReach,
+    solidFill,
+    thinFibres,
+    moreFibres,
+    mostFibres
+  } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -259,11 +267,13 @@ export function cloudExtinction(
     const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)
     const spreadDepth = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30))
     const e = layer.profileExponent
-    const profileMean = (4 * e) / ((e + 1) * (2 * e + 1))
+    const plainMean = (4 * e) / ((e + 1) * (2 * e + 1))
+    const profileMean = plainMean + anvil * (anvilMean - plainMean)
+    const hidden = profile * (1 - anvil + anvilHere)
     const far = ((spreadDepth / depth) * columnFill) / profileMean
     const near = clamp(left * sharpness, 0, 1)
     const through =
-      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * profile * depth)
+      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * hidden * depth)
     const matter = spread === 0 ? near : -Math.log(Math.max(through, 1e-30)) / depth
     sum += density * matter * (1 + anvilHere * (anvilDensity - 1))
   })

@@ -1,7 +1,7 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../tsl-types'
-import { spreadDepth, type CloudSample } from './density'
+import { asideFactor, spreadDepth, type CloudSample } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
 
@@ -47,7 +47,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
       const there = { offset, altitude, up, distance: sample.distance }
       const foot = footOffset(field, there).toConst()
       const weather = weatherAt(field, layer, foot, there)
-      sum.addAssign(spreadDepth(field, layer, weather).mul(above).div(slope))
+      sum.addAssign(spreadDepth(field, layer, weather).mul(above).mul(asideFactor(layer, slope)))
     })
   })
   return sum
