@@ -5,12 +5,10 @@ import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { eyePosition, type CloudField } from './CloudField'
+import { CASCADE_SIZE as SIZE, ShadowDrawing } from './ShadowDrawing'
 import { shadowRay } from './tsl/shadowMap'
 import type { LevelTexture, Vec2 } from './tsl-types'
 import { number, vector3, vector4 } from './uniforms'
-
-/** Texels along an edge of a cascade. */
-const SIZE = 256
 
 /** Half widths of the cascades for a camera near the ground [m]. */
 const HALF_WIDTHS = [5000, 20_000, 80_000] as const
@@ -20,9 +18,6 @@ const WIDENING_HEIGHT = 6000
 
 /** Highest camera for which maps are drawn [m]: farther away the clouds are a thin skin. */
 const HIGHEST = 150_000
-
-/** Sine of the least angle between rays of light and the plane that the map lies in. */
-const LEAST_SLOPE = 0.2
 
 /** Cosine of the angle about the planet's centre after which the plane's origin follows the camera. */
 const ANCHOR_COSINE = Math.cos(0.005)
@@ -79,43 +74,14 @@ export interface ShadowRayUniforms {
   readonly size: number
 }
 
-/** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
-class Drawing {
-  /** Of the map's squares. */
-  readonly square: number
-  halfWidth = 0
-  readonly anchor = new Vector3()
-  readonly light = new Vector3()
-  /** The plane's normal over its cosine to the light. */
-  readonly normal = new Vector3()
-  readonly across = new Vector3()
-  /** Measures the plane's second axis along rays of light. */
-  readonly measure = new Vector3()
-  readonly along = new Vector3()
-  /** Of the middle [m]. */
-  readonly center = { u: 0, v: 0 }
-  /** How the wind had turned the layers. */
-  readonly turns: readonly Quaternion[]
-  /** What else it was drawn from. */
-  inputs: readonly unknown[] = []
-  /** Greater than those of what was drawn before. */
-  order = 0
-
-  constructor(square: number, turns: readonly Quaternion[]) {
-    this.square = square
-    this.turns = turns.map(turn => turn.clone())
-  }
-}
-
 interface Cascade {
   readonly nodes: CascadeNodes
   isDrawn: boolean
-  drawing: Drawing
+  drawing: ShadowDrawing
 }
 
 const _foot = new Vector3()
 const _offset = new Vector3()
-const _normal = new Vector3()
 const _drift = new Vector3()
 const _turn = new Quaternion()
 
@@ -136,7 +102,7 @@ export class CloudShadowMap {
   /** Whose drawing goes on, which strip is next, and where it is drawn: it is swapped in when it is done. */
   #current: Cascade | null = null
   #strip = 0
-  #spare: Drawing
+  #spare: ShadowDrawing
   readonly #ray: ShadowRayUniforms
   readonly #pass: FragmentPass
   /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
@@ -164,9 +130,9 @@ export class CloudShadowMap {
         square: number()
       },
       isDrawn: false,
-      drawing: new Drawing(i, field.turns)
+      drawing: new ShadowDrawing(i, field.turns)
     }))
-    this.#spare = new Drawing(HALF_WIDTHS.length, field.turns)
+    this.#spare = new ShadowDrawing(HALF_WIDTHS.length, field.turns)
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
@@ -256,7 +222,7 @@ export class CloudShadowMap {
   }
 
   /** Draws some rows of a cascade. */
-  #render(renderer: Renderer, drawing: Drawing, from: number, rows: number): void {
+  #render(renderer: Renderer, drawing: ShadowDrawing, from: number, rows: number): void {
     this.#setRay(drawing)
     const { viewport, scissor } = this.target
     viewport.set(drawing.square * SIZE, 0, SIZE, SIZE)
@@ -279,13 +245,13 @@ export class CloudShadowMap {
   }
 
   /** How far the wind has carried a layer, where the camera is, since a cascade was drawn [m]. */
-  #driftOf({ turns }: Drawing, target: Vector3, layer = this.#thickest): Vector3 {
+  #driftOf({ turns }: ShadowDrawing, target: Vector3, layer = this.#thickest): Vector3 {
     _turn.copy(turns[layer]).invert().multiply(this.field.turns[layer])
     return target.copy(_foot).applyQuaternion(_turn).sub(_foot).negate()
   }
 
   /** How far the camera is from a cascade's middle, along its axes [m]. */
-  #distance(drawing: Drawing): number {
+  #distance(drawing: ShadowDrawing): number {
     const { anchor, across, measure, center } = drawing
     this.#driftOf(drawing, _drift)
     _offset.copy(_foot).sub(anchor).sub(_drift)
@@ -295,7 +261,7 @@ export class CloudShadowMap {
   }
 
   /** Whether a cascade is of use until it is drawn anew. */
-  #fits(drawing: Drawing, halfWidth: number): boolean {
+  #fits(drawing: ShadowDrawing, halfWidth: number): boolean {
     return (
       drawing.halfWidth === halfWidth &&
       drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
@@ -303,9 +269,8 @@ export class CloudShadowMap {
     )
   }
 
-  #isStale(drawing: Drawing): boolean {
-    const { inputs, light, halfWidth } = drawing
-    const texel = (2 * halfWidth) / SIZE
+  #isStale(drawing: ShadowDrawing): boolean {
+    const { inputs, light, texel } = drawing
     const place = this.#distance(drawing)
     return (
       place > STALE_PLACE * texel ||
@@ -317,38 +282,13 @@ export class CloudShadowMap {
     )
   }
 
-  /** Puts a cascade's middle on the texel nearest to the camera. */
-  #place(drawing: Drawing, halfWidth: number): void {
-    const light = drawing.light.copy(this.#light)
-    const { anchor, across, along, measure, normal, center } = drawing
-    anchor.copy(this.#anchor)
-    drawing.halfWidth = halfWidth
-    drawing.order = this.#order++
+  #place(drawing: ShadowDrawing, halfWidth: number): void {
+    drawing.place(this.#light, this.#anchor, _foot, halfWidth, this.field.turns)
     drawing.inputs = this.#inputs
-    drawing.turns.forEach((turn, i) => turn.copy(this.field.turns[i]))
-    // Level, but leant towards a low light.
-    _normal.copy(anchor).normalize()
-    across.crossVectors(light, _normal)
-    if (across.lengthSq() < 1e-12) across.set(_normal.z, _normal.x, _normal.y).cross(_normal)
-    across.normalize()
-    const slope = light.dot(_normal)
-    if (Math.abs(slope) < LEAST_SLOPE) {
-      const level = along.copy(light).addScaledVector(_normal, -slope).normalize()
-      // n = up sin a + level cos a with n·s = LEAST_SLOPE, to the light's side of the plane.
-      const sign = slope < 0 ? -1 : 1
-      const lean = Math.asin(LEAST_SLOPE) - Math.asin(Math.abs(slope))
-      _normal.multiplyScalar(Math.cos(lean)).addScaledVector(level, sign * Math.sin(lean))
-    }
-    along.crossVectors(_normal, across)
-    normal.copy(_normal).divideScalar(_normal.dot(light))
-    measure.copy(along).addScaledVector(normal, -along.dot(light))
-    _offset.copy(_foot).sub(anchor)
-    const texel = (2 * halfWidth) / SIZE
-    center.u = Math.round(across.dot(_offset) / texel) * texel
-    center.v = Math.round(measure.dot(_offset) / texel) * texel
+    drawing.order = this.#order++
   }
 
-  #setRay(drawing: Drawing): void {
+  #setRay(drawing: ShadowDrawing): void {
     const { light, anchor, across, along, center, halfWidth } = drawing
     const ray = this.#ray
     ray.toLight.value.copy(light)

@@ -45,7 +45,8 @@ export class CloudSkyLight {
   }
 
   #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
-    const { field, light } = this.clouds
+    const { field, light, isDisposed } = this.clouds
+    if (isDisposed) return clear
     // Between two cameras; a metre more or less is no matter to the weather.
     const eye = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
     const offset = plane.offset.add(eye(plane.view).sub(eye(field.view))).toConst() as Vec3

@@ -23,7 +23,14 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 1.1, clouds: 0.3 } as const
+export const FIELD_WARP = 1.1
+export const CLOUD_WARP = 0.3
+
+/**
+ * How far the fields shift the look-up of a world map of so many texels around the planet: half a texel
+ * to either side, as far as fields are large enough for that [rad].
+ */
+export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
 export const NEXT_WAVES = 3.1

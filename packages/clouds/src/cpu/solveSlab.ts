@@ -5,12 +5,16 @@ import { dot, factorize, matrix, product, symmetricEigen, type Matrix } from './
 /** Streams per hemisphere: moments of the light are within 1e-4 of 24 streams for suns up to 85°. */
 const STREAMS = 8
 
-/** Normalised associated Legendre functions Λ_l^m(μ)/sin^m θ for l ≤ 2: polynomials. */
-const polynomials: ((mu: number) => number)[][] = [
-  [() => 1, mu => mu, mu => (3 * mu * mu - 1) / 2],
-  [() => Math.SQRT1_2, mu => Math.sqrt(3 / 2) * mu],
-  [() => Math.sqrt(3 / 8)]
+/** Associated Legendre functions for l ≤ 2 over sin^m θ, by l − m, scaled to 1 at the zenith. */
+const polynomials: ((mu: number) => number)[] = [
+  () => 1,
+  mu => mu,
+  // Of m = 0 alone.
+  mu => (3 * mu * mu - 1) / 2
 ]
+
+/** (2l + 1)/2 times what their squares lack of those of normalised ones, by m and l − m. */
+const weightsOf = [[1 / 2, 3 / 2, 5 / 2], [3 / 4, 15 / 4], [15 / 16]]
 
 /**
  * The source of scattered light, S(v) = s00 + s10 μ + s20 (3μ² − 1)/2 + s11 a + s21 μ a +
@@ -45,13 +49,12 @@ class AzimuthMode {
   constructor(phase: ScaledPhase, m: number, streams: number) {
     const { nodes, weights } = gaussLegendre(streams)
     this.#m = m
-    /** (2l + 1)/2 ω χ_l */
-    const factors = polynomials[m].map(
-      (_, i) => ((2 * (m + i) + 1) / 2) * phase.albedo * phase.moments[m + i]
-    )
-    // √(w/μ) Λ_l at the streams
-    const basis = polynomials[m].map(polynomial =>
-      nodes.map((mu, i) => Math.sqrt(weights[i] / mu) * polynomial(mu) * (1 - mu * mu) ** (m / 2))
+    const factors = weightsOf[m].map((weight, i) => weight * phase.albedo * phase.moments[m + i])
+    // √(w/μ) p_l sin^m θ at the streams
+    const basis = factors.map((_, l) =>
+      nodes.map(
+        (mu, i) => Math.sqrt(weights[i] / mu) * polynomials[l](mu) * (1 - mu * mu) ** (m / 2)
+      )
     )
     /** M^{−½} (1 − 2 Σ b Λ Λᵀ) M^{−½} over the l of one parity. */
     const transport = (parity: number): Matrix =>
@@ -77,7 +80,7 @@ class AzimuthMode {
     this.#light = [sum, difference]
     this.#sources = basis.map((row, l) => {
       const [moments] = product([row], parts[l % 2])
-      return moments.map(value => factors[l] * polynomials[m][l](1) * value)
+      return moments.map(value => factors[l] * value)
     })
   }
 
@@ -124,9 +127,7 @@ class AzimuthMode {
         while (resonates(rate)) rate *= 1 + 3e-7
         // The solution that goes with the beam of sunlight, of unit irradiance on a plane across it.
         const azimuth = this.#m === 0 ? 1 : 2
-        const strength = polynomials[this.#m].map(
-          polynomial => (azimuth * polynomial(cosSun)) / (Math.PI * polynomial(1))
-        )
+        const strength = polynomials.map(polynomial => (azimuth * polynomial(cosSun)) / Math.PI)
         const [even, odd] = [0, 1].map(parity =>
           rates.map((_, j) =>
             this.#sources.reduce(

@@ -99,7 +99,7 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
     const weighted = vec3(0).toVar() as Vec3
     /** Optical depths, of all and of layers that cast shadows. */
     const depths = vec2(0).toVar() as Vec2
-    forLayers(field, 'shadowLayer', index => {
+    forLayers(field, index => {
       const layer = layerAt(field, index)
       const { front, back } = stretch(field, layer, radial, height, reach)
       const length = front.sub(back).max(0).div(STEPS).toConst() as Float
