@@ -23,7 +23,8 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 1.1, clouds: 0.3 } as const
+export const FIELD_WARP = 1.1
+export const CLOUD_WARP = 0.3
 
 /**
  * How far the fields shift the look-up of a world map of so many texels around the planet: half a texel

@@ -1,4 +1,3 @@
-import { checkOptions } from '@welkin/atmosphere'
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { fail } from '@welkin/geo'
@@ -53,10 +52,9 @@ export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQ
   if (typeof quality === 'string') {
     return named('CloudsNode', 'quality', cloudQualities, quality)
   }
-  checkOptions('CloudsNode.quality', quality, ...Object.keys(ranges))
-  checkRanges('CloudsNode', quality, ranges, 'quality.')
+  checkRanges('CloudsNode.quality', quality, ranges)
   if (!Number.isInteger(quality.block)) {
-    fail('CloudsNode', 'quality.block must be 1, 2, 3 or 4', quality.block)
+    fail('CloudsNode.quality', 'block must be 1, 2, 3 or 4', quality.block)
   }
   return Object.freeze({ ...quality })
 }

@@ -36,11 +36,11 @@ describe('CloudsNode', () => {
     expect(node.quality).toBe(cloudQualities.low)
     expect(() => (node.quality = 'best' as never)).toThrow(/one of low, medium, high, ultra/)
     const wrong = { ...cloudQualities.high, steps: NaN }
-    expect(() => (node.quality = wrong)).toThrow(/quality\.steps must be in \[1, 1024\]/)
+    expect(() => (node.quality = wrong)).toThrow(/quality: steps must be in \[1, 1024\]/)
     const more = { ...cloudQualities.high, stps: 9 } as never
     expect(() => (node.quality = more)).toThrow(/options must be steps, .* got stps/)
     const between = { ...cloudQualities.high, block: 2.5 }
-    expect(() => (node.quality = between)).toThrow(/quality\.block must be 1, 2, 3 or 4, got 2\.5/)
+    expect(() => (node.quality = between)).toThrow(/quality: block must be 1, 2, 3 or 4, got 2\.5/)
     expect(node.quality).toBe(cloudQualities.low)
     node.quality = { ...cloudQualities.high, steps: 20 }
     expect(node.quality).toEqual({ ...cloudQualities.high, steps: 20 })

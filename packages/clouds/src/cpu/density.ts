@@ -15,7 +15,8 @@ import {
   PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  SHAPE_WARP,
+  CLOUD_WARP,
+  FIELD_WARP,
   WEATHER_WARP,
   weatherScales
 } from '../layerUniforms'
@@ -75,8 +76,7 @@ function placeIn(
 }
 
 /** Part of a noise's variance that its levels of detail have lost. */
-const lost = (level: number): number =>
-  smoothstep(densityShape.blur[0], densityShape.blur[1], level)
+const lost = (level: number): number => smoothstep(0, densityShape.blur, level)
 
 /** Φ(z) of the normal distribution to 0.01, as the shader has it. */
 const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
@@ -168,14 +168,14 @@ export function weatherAt(
   const surely = excess * (2 * c - 1) ** 33
   const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
-    SHAPE_WARP.clouds * shapePeriod
+    CLOUD_WARP * shapePeriod
   )
   return {
     fill: meanEdge * layer.shapeAmount + (cumulative(sharp) - (1 - c)) * steepness + surely,
     cover: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
     spread: smoothstep(0.5, 4.5, level - coarseness),
     shapeWarp: new Vector3(fields[0], fields[1], fields[2])
-      .multiplyScalar(SHAPE_WARP.fields * shapePeriod)
+      .multiplyScalar(FIELD_WARP * shapePeriod)
       .add(detailWarp),
     detailWarp
   }
@@ -202,8 +202,7 @@ function carved(
   const level = levelOf(footprint, period / NOISE_SIZE.shape)
   const [whole, finer] = noise.sample('shape', place, level)
   const { leastCarving, lostCarving, shapeBlur } = densityShape
-  const heads =
-    whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(shapeBlur[0], shapeBlur[1], level)
+  const heads = whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(0, shapeBlur, level)
   const left = filled - layer.shapeAmount * Math.max(1 - heads, leastCarving)
   const most = layer.detailAmount * densityShape.erosion
   if (!detail) return left - most / 2
@@ -239,7 +238,16 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilFill, anvilReach, fibrousFill, solidFill } = densityShape
+  const {
+    anvilDensity,
+    anvilFill,
+    anvilMean,
+    anvilReach,
+    solidFill,
+    thinFibres,
+    moreFibres,
+    mostFibres
+  } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -253,18 +261,19 @@ export function cloudExtinction(
     const profile = usual + anvilHere * (1 - smoothstep(0.9, 1, height) - usual)
     const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
-    const [thin, more, most] = fibrousFill
-    const fibres = thin + more * cover ** 2 + most * cover ** 64
+    const fibres = thinFibres + moreFibres * cover ** 2 + mostFibres * cover ** 64
     const solid = solidFill + anvil * (anvilFill - solidFill)
     const columnFill = solid + fibrous * (fibres - solid)
     const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)
     const spreadDepth = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30))
     const e = layer.profileExponent
-    const profileMean = (4 * e) / ((e + 1) * (2 * e + 1))
+    const plainMean = (4 * e) / ((e + 1) * (2 * e + 1))
+    const profileMean = plainMean + anvil * (anvilMean - plainMean)
+    const hidden = profile * (1 - anvil + anvilHere)
     const far = ((spreadDepth / depth) * columnFill) / profileMean
     const near = clamp(left * sharpness, 0, 1)
     const through =
-      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * profile * depth)
+      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * hidden * depth)
     const matter = spread === 0 ? near : -Math.log(Math.max(through, 1e-30)) / depth
     sum += density * matter * (1 + anvilHere * (anvilDensity - 1))
   })

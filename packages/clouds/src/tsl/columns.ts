@@ -1,7 +1,7 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../tsl-types'
-import { spreadDepth, type CloudSample } from './density'
+import { asideFactor, spreadDepth, type CloudSample } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
 
@@ -13,7 +13,7 @@ import { footOffset, weatherAt } from './weather'
 export function cloudColumn(field: CloudField, sample: CloudSample): Float {
   const foot = footOffset(field, sample).toConst()
   const sum = float(0).toVar()
-  forLayers(field, 'cloudColumnLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const weather = weatherAt(field, layer, foot, sample)
     sum.addAssign(spreadDepth(field, layer, weather))
@@ -35,7 +35,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
   const sum = float(0).toVar()
   const cosSun = sample.up.dot(toLight).toConst() as Float
   const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
-  forLayers(field, 'lightColumnLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
     const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float
@@ -47,7 +47,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
       const there = { offset, altitude, up, distance: sample.distance }
       const foot = footOffset(field, there).toConst()
       const weather = weatherAt(field, layer, foot, there)
-      sum.addAssign(spreadDepth(field, layer, weather).mul(above).div(slope))
+      sum.addAssign(spreadDepth(field, layer, weather).mul(above).mul(asideFactor(layer, slope)))
     })
   })
   return sum

@@ -3,13 +3,17 @@ import type { CloudField } from '../CloudField'
 import {
   anvilDensity,
   anvilFill,
+  anvilMean,
   anvilReach,
   erosion,
-  fibrousFill,
+  moreFibres,
+  mostFibres,
+  thinFibres,
   leastCarving,
   lostCarving,
   shapeBlur,
-  solidFill
+  solidFill,
+  tallness
 } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
@@ -41,9 +45,12 @@ const NOWHERE = 1e6
 const STEEPEST_WEATHER = 0.03
 const STEEPEST_SHAPE = 0.05
 
+/** Heights in a layer between which towers become anvils. */
+const ANVIL = [0.62, 0.8] as const
+
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>
-  layer.anvil.mul(smoothstep(0.62, 0.8, height)).toConst()
+  layer.anvil.mul(smoothstep(...ANVIL, height)).toConst()
 
 /** 1 − (2 ĥ^t − 1)²: how much of a layer's air cloud may fill at a height. Anvils are full up to the top. */
 function heightProfile(layer: LayerNodes, height: Float, anvil: Float): Float {
@@ -77,7 +84,7 @@ function carving(
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x
     .add(noise.y.sub(0.5).mul(0.3))
-    .add(smoothstep(shapeBlur[0], shapeBlur[1], level).mul(lostCarving))
+    .add(smoothstep(0, shapeBlur, level).mul(lostCarving))
   const carved = layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)).toConst() as Float
   const left = filled.sub(carved).toVar() as Float & { subAssign: (n: Float) => void }
   const most = layer.detailAmount.mul(erosion).toConst() as Float
@@ -104,9 +111,8 @@ function carving(
 
 /** Mean density of a cloudy column over the densest. */
 export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const [thin, more, most] = fibrousFill
   const square = squared(cover, 1)
-  const fibres = square.mul(more).add(squared(square, 5).mul(most)).add(thin)
+  const fibres = square.mul(moreFibres).add(squared(square, 5).mul(mostFibres)).add(thinFibres)
   return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
 }
 
@@ -134,10 +140,22 @@ export function spreadDepth(
   return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
 }
 
-/** Mean over a layer's heights of what they let cloud fill, with anvils as dense as they are. */
+/** Mean over a layer's heights of what clouds fill that are not seen one by one. */
 function profileMean(layer: LayerNodes): Float {
   const e = layer.profileExponent
-  return e.mul(4).div(e.add(1).mul(e.mul(2).add(1)))
+  return layer.anvil.mix(e.mul(4).div(e.add(1).mul(e.mul(2).add(1))), anvilMean)
+}
+
+/** Least cosine between a ray and the zenith by which clouds are taken to hide more. */
+const LEAST_COSINE = 0.05
+
+/**
+ * How much more of the sky a layer's clouds hide along a ray than straight up, as a factor of the optical
+ * depth that they have, spread evenly: tall ones are seen from the side as well, flat ones are not.
+ */
+export function asideFactor(layer: LayerNodes, cosine: Float): Float {
+  const tall = layer.thickness.mul(layer.perWeatherPeriod).mul(tallness).min(1)
+  return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
@@ -161,7 +179,7 @@ function eachLayer(
   body: (layer: LayerNodes, weather: CloudWeather, height: Float) => void
 ): void {
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'cloudLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
@@ -213,7 +231,7 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
 export function clearanceAt(field: CloudField, sample: CloudSample): Float {
   const clearance = float(NOWHERE).toVar()
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'clearLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     If(layer.coverage.greaterThan(0), () => {
       const weather = weatherAt(field, layer, foot, sample, 'where spread')
@@ -232,6 +250,8 @@ export function clearanceAt(field: CloudField, sample: CloudSample): Float {
  * One layer in a given weather.
  *
  * @param height - In the layer, in (0, 1).
+ * @param direction - Of the ray on which clouds are met, as far as they are not seen one by one; if it is
+ *   left out, it goes straight up.
  */
 function layerMatter(
   field: CloudField,
@@ -240,7 +260,8 @@ function layerMatter(
   sample: CloudSample,
   height: Float,
   detail: boolean,
-  unseen: Unseen = 'mean'
+  unseen: Unseen = 'mean',
+  direction?: Vec3
 ): CloudMatter {
   const anvil = anvilAt(layer, height)
   const profile = heightProfile(layer, height, anvil)
@@ -255,14 +276,18 @@ function layerMatter(
     clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
+    // Of towers with anvils, these are what is seen from afar.
+    const hidden = profile.mul(layer.anvil.mix(1, smoothstep(...ANVIL, height)))
     const whole =
       unseen === 'mean'
         ? spreadDepth(field, layer, weather)
             .mul(layer.perThickness)
             .div(layer.density.mul(profileMean(layer)).max(1e-9))
-        : columnFill(layer, weather)
+        : columnFill(layer, weather).max(layer.anvil)
     const depth = columnOf(field, layer, weather)
-    density.assign(mixedDensity(depth, density, whole.mul(profile).toConst(), spread))
+    const cosine = direction?.dot(sample.up).toConst() as Float | undefined
+    const aside = cosine === undefined ? float(1) : asideFactor(layer, cosine).mul(cosine.abs())
+    density.assign(mixedDensity(depth, density, whole.mul(hidden).mul(aside).toConst(), spread))
     clearance.assign(float(0))
   })
   return {
@@ -293,12 +318,14 @@ export interface PairMatter {
  *
  * @param middle - All three have to be within the altitudes of the same layers.
  * @param samples - Make the samples, where they are needed.
+ * @param direction - Of the ray that both are on.
  * @param range - The layers that are looked at.
  */
 export function pairMatter(
   field: CloudField,
   middle: CloudSample,
   samples: readonly (() => CloudSample)[],
+  direction: Vec3,
   range: LayerRange
 ): PairMatter {
   const sum = vec2(0).toVar() as Vec2
@@ -317,7 +344,7 @@ export function pairMatter(
         samples.forEach((sampleAt, i) => {
           const sample = sampleAt()
           const height = heightIn(layer, sample.altitude)
-          const matter = layerMatter(field, layer, weather, sample, height, true)
+          const matter = layerMatter(field, layer, weather, sample, height, true, 'mean', direction)
           found.addAssign(i === 0 ? vec2(matter.extinction, 0) : vec2(0, matter.extinction))
           if (i === 1) clear.assign(matter.clearance)
         })
@@ -332,7 +359,7 @@ export function pairMatter(
       })
     })
   }
-  forLayers(field, 'pairLayer', look, range)
+  forLayers(field, look, range)
   return { extinction: sum, clearance, weather: { values, shapeWarp } }
 }
 

@@ -147,6 +147,7 @@ export function marchClouds(
         field,
         sampleAt(position.add(length)),
         places.map(at => () => sampleAt(at)),
+        direction,
         about.range
       )
       const depth = matter.extinction.mul(light.depthScale).mul(length).toConst() as Vec2

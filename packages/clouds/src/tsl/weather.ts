@@ -12,7 +12,8 @@ import {
   PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  SHAPE_WARP,
+  CLOUD_WARP,
+  FIELD_WARP,
   WEATHER_WARP
 } from '../layerUniforms'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -91,7 +92,7 @@ export const squared = (x: Float, times: number): Float =>
   times === 0 ? x : squared(x.mul(x).toConst(), times - 1)
 
 /** Part of a noise's variance that its levels of detail have lost. */
-const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
+const lost = (level: Float): Float => smoothstep(0, blur, level)
 
 /**
  * sin x to 10⁻⁶. A GPU's own may be off by 2⁻¹¹, and by more beyond ±π: as the waves shift the regions, and
@@ -226,12 +227,12 @@ export function weatherAt(
     .add(surely)
     .toConst() as Float
   const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
-  const detailWarp = clouds.xyz.mul(shapePeriod).mul(SHAPE_WARP.clouds).toConst() as Vec3
+  const detailWarp = clouds.xyz.mul(shapePeriod).mul(CLOUD_WARP).toConst() as Vec3
   return {
     fill,
     cover,
     spread,
-    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(SHAPE_WARP.fields)).toConst(),
+    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(FIELD_WARP)).toConst(),
     detailWarp
   }
 }
