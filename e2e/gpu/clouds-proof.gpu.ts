@@ -23,7 +23,7 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { pass, vec4 } from 'three/tsl'
+import { pass, shadow, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { drawToFloat, expectLight, random } from './harness/atmosphere'
 import type { GpuContext } from './harness/context'
@@ -397,7 +397,7 @@ gpuTest('a scene is lit again when its clouds are disposed of, and shaded by the
     }
     const open = await draw()
     const shade = async (view: View): Promise<number> => {
-      Object.assign(sun.shadow, { shadowNode: cloudShadow(view.node) })
+      Object.assign(sun.shadow, { shadowNode: cloudShadow(view.node, shadow(sun)) })
       cloudSkyLight(sky, view.node)
       sun.castShadow = true
       sun.dispose()

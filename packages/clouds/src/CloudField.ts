@@ -103,8 +103,9 @@ export class CloudField {
   /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
   readonly drifts: readonly Vector3[] = this.turns.map(() => new Vector3())
   #seconds: number | null = null
-  /** Part of their coverage that layers have, and how much more in a frame. */
-  #grown = 0
+  /** Part of their coverage that layers have: 0 until there is noise. */
+  grown = 0
+  /** How much more in a frame. */
   #growth = 1
 
   /**
@@ -148,7 +149,7 @@ export class CloudField {
     const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
     const elapsed = now - (this.#seconds ?? now)
     this.#seconds = now
-    this.#grown = this.noise.isReady ? Math.min(this.#grown + this.#growth, 1) : 0
+    this.grown = this.noise.isReady ? Math.min(this.grown + this.#growth, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
     eyePosition(view, _position)
@@ -202,7 +203,7 @@ export class CloudField {
         .map(v => periodsKept * (v - Math.floor(v)))
     const { weather, region, shape, detail, fields } = latticeRotation
     const vectors = [
-      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.#grown, density],
+      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.grown, density],
       [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
       scales.clouds,
       [e[0], e[4], e[8], steepness],

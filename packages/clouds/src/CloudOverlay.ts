@@ -133,7 +133,7 @@ export class CloudOverlay implements SkyOverlay {
     return {
       things: [
         light.texture.version,
-        field.noise.isReady,
+        field.grown === 1,
         shadows.isDrawn,
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)

@@ -184,9 +184,9 @@ export class CloudShadowMap {
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
-    const { layers, noise, worldMapTexture } = this.field
+    const { layers, grown, worldMapTexture } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
-    this.#inputs = [radius, noise.isReady, worldMapTexture?.version, ...parameters]
+    this.#inputs = [radius, grown, worldMapTexture?.version, ...parameters]
     _foot.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
       this.#anchor.copy(_foot)

@@ -29,7 +29,7 @@ import { number, vector3 } from './uniforms'
  * It falls on what has `receiveShadow`. Near the camera it is read from the clouds' shadow maps, which
  * are those of the frame before and of the light that is up there, the sun's by day and the moon's by
  * night; elsewhere the weather says how much passes in the mean. Layers whose
- * `shadow` is false cast none. The clouds' node must be drawn, by any pipeline.
+ * `shadow` is false cast none. The clouds' node must be drawn, by any pipeline; after its `dispose` all light passes.
  */
 export class CloudShadowNode extends Node<'float'> {
   static get type(): string {

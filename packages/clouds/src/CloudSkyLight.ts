@@ -74,7 +74,8 @@ export class CloudSkyLight {
  *
  * It is a mean over some kilometres, from the weather alone, and goes together with `cloudShadow`, which
  * takes from the sun what is given here. Layers whose `shadow` is false have no part in it. A moon's probe
- * takes it too. Where a material was compiled before, it comes with the material's `needsUpdate`.
+ * takes it too. After the clouds' `dispose` the sky is clear again. Where materials were compiled before, it
+ * comes with `renderer.contextNode.needsUpdate = true`.
  *
  * @throws If an argument is missing, or they are of two atmospheres.
  */

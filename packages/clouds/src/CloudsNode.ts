@@ -34,7 +34,7 @@ export interface CloudsOptions {
   worldMap?: Texture | null
   /**
    * Noise to share between nodes, drawn at once if it is not yet. Left out, the node makes and owns its
-   * own, and draws it over its first frames: the sky is clear until then.
+   * own, and draws it over its first frames: the sky is clear until then, and clouds grow in the next.
    */
   noise?: CloudNoise
   /** Light table to share between nodes; left out, the node makes and owns its own. */

@@ -2,8 +2,9 @@ import { Atmosphere, moon, NIGHT_ILLUMINANCE, SkyLightProbe } from '@welkin/atmo
 import type { AtmosphereView } from '@welkin/atmosphere'
 import { Matrix3, PerspectiveCamera, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
-import { describe, expect, test } from 'vitest'
-import { cloudOverlay, CloudLayers, clouds, cloudShadow, cloudSkyLight } from '../src'
+import type { Renderer } from 'three/webgpu'
+import { describe, expect, test, vi } from 'vitest'
+import { CloudField, cloudOverlay, CloudLayers, clouds, cloudShadow, cloudSkyLight } from '../src'
 import { FrameUniforms } from '../src/FrameUniforms'
 import { NightLight, nightGain } from '../src/NightLight'
 
@@ -68,6 +69,32 @@ describe('NightLight', () => {
     expect(night.irradiance.value.length()).toBe(0)
     expect(night.rulesAt(viewAt(20, 2, world))).toBe(false)
   })
+})
+
+test('clouds grow when their noise was drawn over frames, and are there when it was drawn at once', () => {
+  const layers = new CloudLayers([{ coverage: 0.6 }])
+  const view = viewAt(50)
+  for (const [slices, shares] of [
+    [24, [1 / 48, 2 / 48, 48 / 48, 1]],
+    [Infinity, [1, 1, 1, 1]]
+  ] as const) {
+    const field = new CloudField(atmosphere, layers)
+    const isReady = vi.spyOn(field.noise, 'isReady', 'get').mockReturnValue(false)
+    vi.spyOn(field.noise, 'update').mockReturnValue(true)
+    const coverageAfter = (frames: number): number => {
+      for (let i = 0; i < frames; i++) {
+        field.bake({} as Renderer, slices)
+        field.update(view, 0)
+      }
+      return field.values[0].z
+    }
+    expect(coverageAfter(3)).toBe(0)
+    isReady.mockReturnValue(true)
+    const grown = [1, 1, 46, 5].map(coverageAfter)
+    grown.forEach((coverage, i) => expect(coverage).toBeCloseTo(0.6 * shares[i], 9))
+    expect(grown[3]).toBe(0.6)
+    field.dispose()
+  }
 })
 
 test('light is raised as deep as night is at the lightest place in sight', () => {
