@@ -311,7 +311,7 @@ gpuTest(
     await draw()
     let frames = 0
     while (environment.redraws < 2 && frames++ < 40) renderer.render(scene, eye)
-    expectTrue(frames === 25, `drawn again after ${frames} frames`)
+    expectTrue(frames === 33, `drawn again after ${frames} frames`)
     const cleared = (await look(2, 1)).at(12, 8)
     expectTrue(cleared[2] > 2 * cleared[0], `the sky is mirrored grey: ${cleared.join(' ')}`)
     for (let i = 0; i < 30; i++) renderer.render(scene, eye)
