@@ -4,6 +4,16 @@ import { create, globals } from 'webgpu'
 
 Object.assign(globalThis, globals)
 
+/** What waits for the next animation frame. */
+let waiting: (() => void)[] = []
+
+/** Lets an animation frame begin: what three draws once in each is drawn anew. */
+export function nextFrame(): void {
+  const callbacks = waiting
+  waiting = []
+  for (const callback of callbacks) callback()
+}
+
 /** A stand-in for the canvas that WebGPURenderer asks for; nothing is ever presented. */
 function offscreenCanvas(width: number, height: number): HTMLCanvasElement {
   let texture: GPUTexture | undefined
@@ -56,7 +66,7 @@ export class BenchDevice {
     })
     Object.assign(globalThis, {
       self: globalThis,
-      requestAnimationFrame: () => 0,
+      requestAnimationFrame: (callback: () => void) => waiting.push(callback),
       cancelAnimationFrame: () => undefined
     })
     const adapter = await requestAdapter(gpu)

@@ -32,8 +32,8 @@ export interface BenchScene {
 const SHAPE = Ellipsoid.WGS84
 
 /** A camera over the Pacific that looks past the horizon: about half of the picture is ground. */
-export function placeCamera(camera: PerspectiveCamera, altitude: number): void {
-  const position = SHAPE.geodeticToECEF({ longitude: 150, latitude: 20, height: altitude })
+export function placeCamera(camera: PerspectiveCamera, altitude: number, longitude = 150): void {
+  const position = SHAPE.geodeticToECEF({ longitude, latitude: 20, height: altitude })
   const up = SHAPE.surfaceNormal(position)
   const east = new Vector3(-up.y, up.x, 0).normalize()
   const dip = Math.acos(SHAPE.a / (SHAPE.a + altitude))

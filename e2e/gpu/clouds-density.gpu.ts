@@ -17,9 +17,9 @@ import {
 import { NoiseTextures } from '../../packages/clouds/src/cpu/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../packages/clouds/src/noiseSizes'
 import { cloudColumn } from '../../packages/clouds/src/tsl/columns'
-import { cloudBound, cloudExtinction } from '../../packages/clouds/src/tsl/density'
+import { clearanceAt, cloudBound, cloudExtinction } from '../../packages/clouds/src/tsl/density'
 import { random } from './harness/atmosphere'
-import { CloudColumns, highestPeak } from './harness/cloud-columns'
+import { CloudColumns, highestPeak, PlanetColumns } from './harness/cloud-columns'
 import type { GpuContext } from './harness/context'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectFinite, expectTrue } from './harness/expect'
@@ -45,12 +45,17 @@ interface Scene {
 }
 
 /** Baked clouds, seen from a place. */
-async function cloudScene(t: GpuContext, layers: CloudLayers, place: Place): Promise<Scene> {
+async function cloudScene(
+  t: GpuContext,
+  layers: CloudLayers,
+  place: Place,
+  map: DataTexture | null = null
+): Promise<Scene> {
   const renderer = await t.createRenderer()
   const atmosphere = new Atmosphere().place(place)
   const camera = new PerspectiveCamera()
   camera.updateMatrixWorld()
-  const field = new CloudField(atmosphere, layers)
+  const field = new CloudField(atmosphere, layers, undefined, { worldMap: map })
   const eye = new Vector3()
   const update = (seconds = 0): void => {
     const view = atmosphere.update(renderer, camera)
@@ -76,7 +81,9 @@ async function cloudScene(t: GpuContext, layers: CloudLayers, place: Place): Pro
       layers: [...layers].map(layer => layer.parameters),
       turns: field.turns,
       bottomRadius: atmosphere.parameters.bottomRadius,
-      pixelAngle: field.pixelAngle.value
+      pixelAngle: field.pixelAngle.value,
+      axialRatio: field.axialRatio,
+      ...(map === null ? {} : { worldMap: coverOf(map), worldMapWidth: field.worldMapWidth })
     }),
     dispose() {
       field.dispose()
@@ -105,6 +112,22 @@ function worldMap(): DataTexture {
   map.wrapS = RepeatWrapping
   map.needsUpdate = true
   return map
+}
+
+/** What the GPU reads of a map's finest level, by longitude and latitude [rad]. */
+function coverOf(map: DataTexture): (longitude: number, latitude: number) => number {
+  const { data, width, height } = map.image
+  const texel = (x: number, y: number): number => {
+    const row = Math.min(Math.max(y, 0), height - 1)
+    return Number(data?.[4 * (row * width + ((x + width) % width))]) / 255
+  }
+  return (longitude, latitude) => {
+    const x = (longitude / (2 * Math.PI) + 0.5) * width - 0.5
+    const y = (latitude / Math.PI + 0.5) * height - 0.5
+    const [i, j] = [Math.floor(x), Math.floor(y)]
+    const row = (k: number): number => texel(i, k) + (texel(i + 1, k) - texel(i, k)) * (x - i)
+    return row(j) + (row(j + 1) - row(j)) * (y - j)
+  }
 }
 
 /** Offsets from an eye to points at random altitudes, up to a horizontal distance away. */
@@ -214,6 +237,43 @@ for (const [where, place] of places) {
   })
 }
 
+/** Without shape, whose coarse levels take float64 minutes. */
+class ShapelessTwin extends NoiseTextures {
+  override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {
+    return name === 'shape' ? [0.5, 0.5] : twin.sample(name, p, level)
+  }
+}
+
+gpuTest('puts clouds where float64 does, of a world map and where they blur', async t => {
+  const layers = cloudPreset('mixed')
+  for (const layer of layers) layer.set({ coverage: 0.5, shapeAmount: 0 })
+  const map = worldMap()
+  const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
+  const shapeless = new ShapelessTwin()
+  // Their footprints are up to 1.2 km.
+  scene.field.pixelAngle.value = 0.12
+  const inputs = offsets(scene.eye, 15, 2000, 7, share => {
+    const { baseAltitude, topAltitude } = layers.at(Math.floor(3 * share)).parameters
+    return baseAltitude + (topAltitude - baseAltitude) * ((3 * share) % 1)
+  })
+  const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+    scene.extinction(input.xyz, input.w, false)
+  )
+  const state = scene.state()
+  let cloudy = 0
+  const differences = inputs.map(([x, y, z, distance], i) => {
+    const position = scene.eye.clone().add(new Vector3(x, y, z))
+    const expected = extinctionTwin(state, shapeless, position, distance, false)
+    if (expected > 0) cloudy++
+    return Math.abs(results[4 * i] - expected) / 0.05
+  })
+  t.note(`worst ${Math.max(...differences).toFixed(4)}`)
+  expectTrue(cloudy > 10, `${cloudy} cloudy points`)
+  expectTrue(Math.max(...differences) < 0.02, `worst difference ${Math.max(...differences)}`)
+  scene.dispose()
+  map.dispose()
+})
+
 gpuTest('bounds the density from above, in every preset', async t => {
   for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
     const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
@@ -239,6 +299,50 @@ gpuTest('bounds the density from above, in every preset', async t => {
       if (extinction === 0) empty++
     })
     t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
+    scene.dispose()
+  }
+})
+
+gpuTest('has clear air as far as it says', async t => {
+  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus'] as const) {
+    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+    const { field } = scene
+    const inputs = offsets(scene.eye, 2048, 30_000, 5, share => 3000 * share)
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const here = { offset, ...field.view.place(offset), distance: input.w }
+      const clearance = clearanceAt(field, here).toConst()
+      const most = float(0).toVar()
+      const count = 24
+      Loop(count, ({ i }) => {
+        // Spread over the ball.
+        const index = float(i)
+        const z = index
+          .add(0.5)
+          .mul(2 / count)
+          .oneMinus()
+          .toConst()
+        const across = z.mul(z).oneMinus().sqrt()
+        const angle = index.mul(2.399963)
+        const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
+        const radius = clearance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
+        const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
+        most.assign(most.max(scene.extinction(there, input.w, true)))
+      })
+      return vec4(clearance, most, scene.extinction(offset, input.w, true), 1)
+    })
+    let clear = 0
+    inputs.forEach((_, i) => {
+      const [clearance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
+      expectTrue(clearance >= 0, `${name}: a clearance of ${clearance}`)
+      expectTrue(
+        clearance === 0 || most === 0,
+        `${name}: ${most} within ${clearance} m of clear air`
+      )
+      if (clearance > 100 && extinction === 0) clear++
+    })
+    t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
+    expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
     scene.dispose()
   }
 })
@@ -314,20 +418,28 @@ gpuTest('keeps the clouds of an area from 2 km to the whole globe', async t => {
   const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
   const columns = new CloudColumns(scene.field, 128, 200_000, 12)
   const misses: string[] = []
-  for (const [coverage, longitude] of [
-    [0.2, 20],
-    [0.4, 20],
-    [0.7, 20],
-    [0.4, -120],
-    [0.7, -120]
+  // Optical depths as they are, and as a march counts them.
+  for (const [coverage, longitude, depthScale] of [
+    [0.03, 20, 0.6],
+    [0.05, 20, 0.6],
+    [0.1, 20, 0.6],
+    [0.2, 20, 1],
+    [0.4, 20, 0.6],
+    [0.7, 20, 1],
+    [0.08, -120, 1],
+    [0.93, 20, 1],
+    [0.4, -120, 1],
+    [0.7, -120, 0.6]
   ]) {
     layers.at(0).set({ coverage })
+    scene.field.depthScale.value = depthScale
     scene.field.atmosphere.place({ longitude, latitude: 45 })
     scene.update()
     const means: number[] = []
     for (const distance of [2e3, 1e4, 3e4, 1e5, 2e5, 4e5, 1e6, 3e6]) {
       columns.distance = distance
-      means.push(1 - mean((await columns.draw(scene.renderer)).light))
+      const { depth } = await columns.draw(scene.renderer)
+      means.push(1 - mean(depth.map(tau => Math.exp(-depthScale * tau))))
     }
     t.note(`${coverage} at ${longitude}°: opacity ${means.map(x => x.toFixed(3)).join(' ')}`)
     const worst = Math.max(...means.map(x => Math.abs(x - means[0])))
@@ -336,6 +448,67 @@ gpuTest('keeps the clouds of an area from 2 km to the whole globe', async t => {
   expectTrue(misses.length === 0, misses.join(', '))
   columns.dispose()
   scene.dispose()
+})
+
+gpuTest('covers what is asked for, from near and far', async t => {
+  const layers = new CloudLayers([{}])
+  const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+  const { field } = scene
+  const [size, steps, depthScale] = [96, 16, 0.6]
+  field.depthScale.value = depthScale
+  const columns = new PlanetColumns(field, size, steps)
+  const misses: string[] = []
+  for (const [name, index] of [
+    ['fairWeather', 0],
+    ['stratocumulus', 0],
+    ['cumulonimbus', 0]
+  ] as const) {
+    for (const coverage of [0, 0.03, 0.1, 0.2, 0.5, 0.8, 0.95, 1]) {
+      layers.at(0).set({ ...cloudPreset(name).at(index).parameters, coverage })
+      scene.update()
+      const found: number[] = []
+      for (const distance of [500, 3e5, 1e6, 2e7]) {
+        const depth = await columns.draw(scene.renderer, layers.at(0).parameters, distance)
+        found.push(1 - mean(depth.map(tau => Math.exp(-depthScale * tau))))
+      }
+      t.note(`${name} ${coverage}: ${found.map(x => x.toFixed(3)).join(' ')}`)
+      const worst = Math.max(...found.map(x => Math.abs(x - coverage)))
+      if (worst > 0.05) misses.push(`${name}: ${found.join(' ')} for ${coverage}`)
+    }
+  }
+  expectTrue(misses.length === 0, misses.join(', '))
+  columns.dispose()
+  scene.dispose()
+})
+
+gpuTest('descends to the clouds of a world map without a pop, whatever they are', async t => {
+  const map = worldMap()
+  for (const [name, limit] of [
+    ['fairWeather', 0.05],
+    ['cumulonimbus', 0.06],
+    ['cirrus', 0.1]
+  ] as const) {
+    const layers = cloudPreset(name)
+    layers.at(0).set({ coverage: 0.5 })
+    for (let i = 1; i < layers.length; i++) layers.at(i).set({ coverage: 0 })
+    const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
+    const columns = new CloudColumns(scene.field, 96, 600_000, 12)
+    for (const longitude of [100, 60]) {
+      scene.field.atmosphere.place({ longitude, latitude: -30 })
+      scene.update()
+      const means: number[] = []
+      for (const distance of [2e3, 2e5, 1e6, 2e6, 4e6, 2e7]) {
+        columns.distance = distance
+        means.push(1 - mean((await columns.draw(scene.renderer)).light))
+      }
+      t.note(`${name} at ${longitude}°: opacity ${means.map(x => x.toFixed(3)).join(' ')}`)
+      const worst = Math.max(...means.map(x => Math.abs(x - means[0])))
+      expectTrue(worst < limit, `${name} at ${longitude}°: opacity changes by ${worst}`)
+    }
+    columns.dispose()
+    scene.dispose()
+  }
+  map.dispose()
 })
 
 gpuTest('shows no lattice in an overcast sky from below', async t => {

@@ -1,7 +1,7 @@
 import { FloatType, RenderTarget } from 'three'
 import { exp, float, Fn, Loop, screenCoordinate, uniform, vec3 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type WebGPURenderer } from 'three/webgpu'
-import type { CloudField } from '@welkin/clouds'
+import type { CloudField, CloudLayerParameters } from '@welkin/clouds'
 import { cloudExtinction } from '../../../packages/clouds/src/tsl/density'
 import { readPicture } from './picture'
 
@@ -76,6 +76,85 @@ export class CloudColumns {
     const channel = (c: number): number[] =>
       Array.from({ length: this.size ** 2 }, (_, i) => data[4 * i + c])
     return { light: channel(0), depth: channel(1) }
+  }
+
+  dispose(): void {
+    this.#material.dispose()
+  }
+}
+
+/** Columns of a layer, spread evenly over the whole planet. */
+export class PlanetColumns {
+  readonly #material = new NodeMaterial()
+  readonly #quad = new QuadMesh(this.#material)
+  readonly #distance = uniform(0)
+  readonly #base = uniform(0)
+  readonly #thickness = uniform(1)
+
+  /**
+   * @param size - There are as many columns as pixels in a square of this edge.
+   * @param steps - Samples in a column.
+   */
+  constructor(
+    field: CloudField,
+    readonly size: number,
+    steps: number
+  ) {
+    this.#material.fragmentNode = Fn(() => {
+      const pixel = screenCoordinate.xy.floor()
+      const index = pixel.y.mul(size).add(pixel.x).toConst()
+      // A spiral of even density.
+      const z = index
+        .mul(2)
+        .add(1)
+        .div(size ** 2)
+        .sub(1)
+        .toConst()
+      const across = z.mul(z).oneMinus().sqrt()
+      const angle = index
+        .mul(0.618033988)
+        .fract()
+        .mul(2 * Math.PI)
+      const up = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z).toConst()
+      const eye = field.view.up.mul(field.radius.add(field.view.height)).toConst()
+      const thickness = this.#thickness as unknown as Node<'float'>
+      const distance = this.#distance as unknown as Node<'float'>
+      const depth = float(0).toVar()
+      Loop(steps, ({ i }) => {
+        const altitude = float(i as never)
+          .add(0.5)
+          .div(steps)
+          .mul(thickness)
+          .add(this.#base)
+          .toConst()
+        const offset = up.mul(field.radius.add(altitude)).sub(eye).toConst()
+        const sample = { offset, altitude, up, distance }
+        depth.addAssign(cloudExtinction(field, sample, false).mul(thickness.div(steps)))
+      })
+      return vec3(depth)
+    })() as never
+  }
+
+  /**
+   * @param layer - The field's only one.
+   * @param distance - From where the clouds are seen [m].
+   * @returns Optical depths.
+   */
+  async draw(
+    renderer: WebGPURenderer,
+    { baseAltitude, topAltitude }: CloudLayerParameters,
+    distance: number
+  ): Promise<number[]> {
+    this.#distance.value = distance
+    this.#base.value = baseAltitude
+    this.#thickness.value = topAltitude - baseAltitude
+    const target = new RenderTarget(this.size, this.size, { type: FloatType, depthBuffer: false })
+    renderer.setRenderTarget(target)
+    this.#quad.render(renderer)
+    renderer.setRenderTarget(null)
+    const { data } = await readPicture(renderer, target)
+    target.dispose()
+    return Array.from({ length: this.size ** 2 }, (_, i) => data[4 * i])
   }
 
   dispose(): void {

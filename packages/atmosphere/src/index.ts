@@ -56,7 +56,7 @@ export type { DistanceFogOptions } from './DistanceFog'
 // For shaders of one's own; `AtmosphereNode` has an example.
 export { AtmosphereNode } from './AtmosphereNode'
 export type { AtmosphereView } from './AtmosphereView'
-export { FragmentPass } from './FragmentPass'
+export { FragmentPass, tableTarget } from './FragmentPass'
 export { viewNodes } from './ViewNodes'
 export type { AtmosphereUniforms } from './AtmosphereUniforms'
 export type { ViewNodes } from './ViewNodes'
@@ -88,3 +88,7 @@ export type { DiffuseLightQuality } from './cpu/solveDiffuseLight'
 export { opticalDepth, sunTransmittance, visibleSun } from './cpu/transmittance'
 export { NIGHT_ILLUMINANCE } from './cpu/twilight'
 export { ofLuminance } from './stars/starColor'
+
+// Preconditions that Welkin's packages share; not for use elsewhere.
+export { checkOptions, checkRange, checkSource, checkSpectrum } from './check'
+export { checkAtmosphere } from './ViewNodes'

@@ -1,9 +1,10 @@
-import { Matrix3, Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
+import { Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
 import type { Texture } from 'three'
-import { viewNodes } from '@welkin/atmosphere'
+import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
-import { renderGroup, texture, texture3D, uniform } from 'three/tsl'
-import type { Renderer, UniformNode } from 'three/webgpu'
+import { texture, texture3D } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
 import { CloudLayers } from './CloudLayers'
 import { CloudNoise } from './CloudNoise'
 import { NightLight } from './NightLight'
@@ -20,14 +21,17 @@ import {
   weatherScales
 } from './layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
+import { number } from './uniforms'
 import { windTurn } from './wind'
+
+/** Part of its coverage that a layer gains in a frame after its noise was drawn over several. */
+const GROWTH = 1 / 48
 
 const _position = new Vector3()
 const _foot = new Vector3()
 const _point = new Vector3()
 const _stretch = new Vector3()
-const _matrix = new Matrix3()
-const _matrix4 = new Matrix4()
+const _matrix = new Matrix4()
 const _turn = new Quaternion()
 
 /** Options of {@link CloudField}. */
@@ -41,6 +45,10 @@ export interface CloudFieldOptions {
   /** Noise to share between fields; left out, the field makes and owns its own. */
   noise?: CloudNoise
 }
+
+/** A camera's place, from the planet's centre in the mapped space [m]. */
+export const eyePosition = ({ atmosphere, up, height }: AtmosphereView, target: Vector3): Vector3 =>
+  target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
 
 /**
  * Where the clouds are, as shaders see it: layers, weather and wind as uniforms, and noise.
@@ -65,9 +73,14 @@ export class CloudField {
   /** What lights clouds in the night. */
   readonly night = new NightLight()
   /** Radius of the sphere at altitude 0 [m]. */
-  readonly radius: UniformNode<'float', number> = uniform(0).setGroup(renderGroup)
+  readonly radius = number()
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
-  readonly pixelAngle: UniformNode<'float', number> = uniform(1e-3).setGroup(renderGroup)
+  readonly pixelAngle = number(1e-3)
+  /**
+   * What an optical depth counts in the light that clouds let through: `CloudLight.depthScale` where
+   * there is such a light. Clouds that are not seen one by one let the same through.
+   */
+  readonly depthScale = number(1)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
   readonly values: Vector4[] = Array.from(
     { length: CloudLayers.maxLayers * LAYER_STRIDE },
@@ -90,6 +103,9 @@ export class CloudField {
   /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
   readonly drifts: readonly Vector3[] = this.turns.map(() => new Vector3())
   #seconds: number | null = null
+  /** Part of their coverage that layers have, and how much more in a frame. */
+  #grown = 0
+  #growth = 1
 
   /**
    * @param view - Nodes of the camera that samples are seen from.
@@ -101,14 +117,10 @@ export class CloudField {
     view: ViewNodes = viewNodes(atmosphere),
     { worldMap = null, noise }: CloudFieldOptions = {}
   ) {
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(`CloudField: atmosphere must be an Atmosphere, got ${typeof atmosphere}`)
-    }
-    if (!(layers instanceof CloudLayers)) {
-      throw new Error(`CloudField: layers must be CloudLayers, got ${typeof layers}`)
-    }
+    checkAtmosphere('CloudField', atmosphere)
+    if (!(layers instanceof CloudLayers)) fail('CloudField', 'layers must be CloudLayers', layers)
     if (worldMap !== null && worldMap.wrapS !== RepeatWrapping) {
-      throw new Error(`CloudField: worldMap.wrapS must be RepeatWrapping, got ${worldMap.wrapS}`)
+      fail('CloudField', 'worldMap.wrapS must be RepeatWrapping', worldMap.wrapS)
     }
     this.atmosphere = atmosphere
     this.layers = layers
@@ -133,15 +145,17 @@ export class CloudField {
    */
   update(view: AtmosphereView, seconds: number): void {
     const { bottomRadius } = this.atmosphere.parameters
-    const elapsed = this.#seconds === null ? 0 : seconds - this.#seconds
-    if (Number.isFinite(elapsed)) this.#seconds = seconds
+    const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
+    const elapsed = now - (this.#seconds ?? now)
+    this.#seconds = now
+    this.#grown = this.noise.isReady ? Math.min(this.#grown + this.#growth, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
-    _position.copy(view.up).multiplyScalar(bottomRadius + view.height)
+    eyePosition(view, _position)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
-      if (Number.isFinite(elapsed) && elapsed !== 0) this.#drift(i, view.up, elapsed)
+      if (elapsed !== 0) this.#drift(i, view.up, elapsed)
       this.#write(i)
     }
     for (let i = this.layers.length; i < CloudLayers.maxLayers; i++) {
@@ -158,60 +172,59 @@ export class CloudField {
     this.drifts[index].copy(_point).sub(_point.applyQuaternion(_turn))
   }
 
-  /** Copies a layer's parameters, and its anchors for the eye and the point of the ground below it. */
+  /**
+   * Copies a layer's parameters, and its anchors for the eye and the point of the ground below it: what
+   * `layerAt` reads.
+   */
   #write(index: number): void {
     const { parameters } = this.layers.at(index)
+    const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
     const periods = layerPeriods(parameters)
-    const slots = this.values.slice(index * LAYER_STRIDE, (index + 1) * LAYER_STRIDE)
-    const { baseAltitude, topAltitude, density, shadow } = parameters
-    const coverage = this.noise.isReady ? parameters.coverage : 0
-    slots[0].set(baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density)
-    const { profileExponent, shapeAmount, detailAmount } = parameters
-    slots[1].set(profileExponent, shapeAmount, detailAmount, 1 / periods.shape)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
-    const { stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
-    slots[2].fromArray(scales.clouds)
-    slots[11].set(scales.cells, scales.regions, scales.planet, scales.cloudVariance)
+    const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
     const turn = this.turns[index]
-    const { elements } = _matrix.setFromMatrix4(_matrix4.makeRotationFromQuaternion(turn))
+    const { elements: e } = _matrix.makeRotationFromQuaternion(turn)
+    const perStretch = 1 / stretch
     const anchor = (
-      slot: number,
       place: Vector3,
-      rotation: Matrix3,
+      rotation: Quaternion,
       length: number,
-      periods = 1,
-      perStretch = 1
-    ): void => {
+      periodsKept = 1,
+      across = 1
+    ): number[] =>
       _point
         .copy(place)
         .applyQuaternion(turn)
-        .multiply(_stretch.set(perStretch, perStretch, 1))
-        .applyMatrix3(rotation)
-        .divideScalar(length * periods)
-      const [x, y, z] = _point.toArray().map(v => periods * (v - Math.floor(v)))
-      slots[slot].set(x, y, z, slots[slot].w)
-    }
-    for (let row = 0; row < 3; row++) {
-      slots[3 + row].set(elements[row], elements[row + 3], elements[row + 6], 0)
-    }
-    slots[3].w = steepness
-    slots[4].w = sharpness
-    const perStretch = 1 / stretch
-    anchor(8, _position, latticeRotation.shape, periods.shape, 1, perStretch)
-    anchor(9, _position, latticeRotation.detail, DETAIL_PERIOD, CURL_PERIOD, perStretch)
-    slots[8].w = perStretch
-    slots[9].w = coarseness
-    slots[10].w = anvil
-    // The weather is the same all the way up: it is looked up at the foot point.
-    anchor(6, _foot, latticeRotation.weather, periods.weather)
-    slots[6].w = 1 / periods.weather
-    anchor(10, _foot, latticeRotation.fields, periods.weather * FIELD_PERIOD)
-    anchor(7, _foot, latticeRotation.region, REGION_PERIOD)
-    slots[7].w = shadow ? 1 : 0
+        .multiply(_stretch.set(across, across, 1))
+        .applyQuaternion(rotation)
+        .divideScalar(length * periodsKept)
+        .toArray()
+        .map(v => periodsKept * (v - Math.floor(v)))
+    const { weather, region, shape, detail, fields } = latticeRotation
+    const vectors = [
+      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.#grown, density],
+      [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
+      scales.clouds,
+      [e[0], e[4], e[8], steepness],
+      [e[1], e[5], e[9], sharpness],
+      [e[2], e[6], e[10], fibrous],
+      // The weather is the same all the way up: it is looked up at the foot point.
+      [...anchor(_foot, weather, periods.weather), 1 / periods.weather],
+      [...anchor(_foot, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
+      [...anchor(_position, shape, periods.shape, 1, perStretch), perStretch],
+      [...anchor(_position, detail, DETAIL_PERIOD, CURL_PERIOD, perStretch), coarseness],
+      [...anchor(_foot, fields, periods.weather * FIELD_PERIOD), anvil],
+      [scales.cells, scales.regions, scales.planet, scales.cloudVariance]
+    ]
+    vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }
 
-  /** Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. */
+  /**
+   * Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. Then clouds are there
+   * at once, or grow over some frames if the noise was drawn over several.
+   */
   bake(renderer: Renderer, slices = Infinity): boolean {
+    if (!this.noise.isReady) this.#growth = slices === Infinity ? 1 : GROWTH
     return this.noise.update(renderer, slices)
   }
 

@@ -1,3 +1,7 @@
+import { checkSpectrum } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
+import { checkRanges } from './check'
+
 /** Horizontal velocity of the air at a layer [m/s], towards east and north. */
 export interface CloudWind {
   readonly east: number
@@ -44,47 +48,30 @@ const defaults: CloudLayerParameters = {
   shadow: true
 }
 
-const highestAltitude = 30_000
-
-function requireRange(name: string, value: unknown, lowest: number, highest: number): void {
-  if (typeof value === 'number' && value >= lowest && value <= highest) return
-  throw new Error(
-    `CloudLayer: ${name} must be a number in [${lowest}, ${highest}], got ${String(value)}`
-  )
-}
-
-function requireFinite(name: string, value: unknown): void {
-  if (Number.isFinite(value)) return
-  throw new Error(`CloudLayer: ${name} must be a finite number, got ${String(value)}`)
-}
+const ranges = {
+  baseAltitude: [0, 30_000],
+  topAltitude: [0, 30_000],
+  coverage: [0, 1],
+  density: [0, 1],
+  profileExponent: [Number.MIN_VALUE, 8],
+  shapeAmount: [0, 1],
+  detailAmount: [0, 1]
+} as const
 
 function requireParameters(parameters: CloudLayerParameters): void {
-  for (const name of Object.keys(parameters)) {
-    if (!Object.hasOwn(defaults, name)) throw new Error(`CloudLayer: there is no parameter ${name}`)
-  }
-  const { baseAltitude, topAltitude, profileExponent, weatherWeights, wind, shadow } = parameters
-  requireRange('baseAltitude', baseAltitude, 0, highestAltitude)
-  requireRange('topAltitude', topAltitude, 0, highestAltitude)
+  const where = 'CloudLayer'
+  checkRanges(where, parameters, ranges, 'weatherWeights', 'wind', 'shadow')
+  const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
   if (topAltitude <= baseAltitude) {
-    throw new Error(
-      `CloudLayer: topAltitude must be above baseAltitude (${baseAltitude} m), got ${topAltitude}`
-    )
+    fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)
   }
-  for (const name of ['coverage', 'density', 'shapeAmount', 'detailAmount'] as const) {
-    requireRange(name, parameters[name], 0, 1)
+  checkSpectrum(where, 'weatherWeights', weatherWeights, 1)
+  for (const name of ['east', 'north'] as const) {
+    if (!Number.isFinite(wind?.[name])) {
+      fail(where, `wind.${name} must be a finite number`, wind?.[name])
+    }
   }
-  requireRange('profileExponent', profileExponent, Number.MIN_VALUE, 8)
-  if (!Array.isArray(weatherWeights) || weatherWeights.length !== 4) {
-    throw new Error(
-      `CloudLayer: weatherWeights must be 4 numbers, got ${JSON.stringify(weatherWeights)}`
-    )
-  }
-  weatherWeights.forEach((weight, i) => requireRange(`weatherWeights[${i}]`, weight, 0, 1))
-  requireFinite('wind.east', wind?.east)
-  requireFinite('wind.north', wind?.north)
-  if (typeof shadow !== 'boolean') {
-    throw new Error(`CloudLayer: shadow must be true or false, got ${String(shadow)}`)
-  }
+  if (typeof shadow !== 'boolean') fail(where, 'shadow must be true or false', shadow)
 }
 
 /**

@@ -52,10 +52,6 @@ class NoiseTexture {
     )
   }
 
-  get levels(): number {
-    return Math.log2(this.#size) + 1
-  }
-
   *#draw(renderer: Renderer, pass: FragmentPass, target: RenderTarget3D, level: number) {
     const slices = this.#size >> level
     const targetLevel = target === this.target ? level : 0
@@ -71,7 +67,7 @@ class NoiseTexture {
     yield* this.#draw(renderer, this.#noise, this.target, 0)
     let finer = this.target
     // A level is made outside of the texture and copied in: nothing may be read while it is drawn to.
-    for (let level = 1; level < this.levels; level++) {
+    for (let level = 1; this.#size >> level > 0; level++) {
       const scratch = noiseTarget(
         'Welkin.CloudNoise.level',
         this.#size >> level,
@@ -125,6 +121,7 @@ export class CloudNoise {
     const [r, g, b, a] = weatherChannels.map((channel, i) => channelNoise(channel, 3 + i, p))
     return vec4(r, g, b, a)
   })
+  readonly #textures = [this.weather, this.shape, this.detail]
   #steps: Generator<void, void, void> | null = null
   #isReady = false
 
@@ -135,14 +132,10 @@ export class CloudNoise {
 
   /** Bytes of GPU memory that the finished textures take. */
   get bytes(): number {
-    const texels = (size: number): number => {
-      let sum = 0
-      for (let edge = size; edge >= 1; edge >>= 1) sum += edge ** 3
-      return sum
-    }
-    return (
-      2 * texels(NOISE_SIZE.shape) + 4 * (texels(NOISE_SIZE.detail) + texels(NOISE_SIZE.weather))
-    )
+    const { shape, detail, weather } = NOISE_SIZE
+    // A level has an eighth of the texels of the one before, down to one.
+    const texels = (size: number): number => (8 * size ** 3 - 1) / 7
+    return 2 * texels(shape) + 4 * (texels(detail) + texels(weather))
   }
 
   /**
@@ -152,20 +145,15 @@ export class CloudNoise {
    * @returns Whether all texels are drawn.
    */
   update(renderer: Renderer, slices = Infinity): boolean {
-    if (this.#isReady) return true
     this.#steps ??= this.#bake(renderer)
-    for (let i = 0; i < slices; i++) {
-      if (this.#steps.next().done === true) {
-        this.#isReady = true
-        this.#steps = null
-        break
-      }
+    for (let i = 0; i < slices && !this.#isReady; i++) {
+      this.#isReady = this.#steps.next().done === true
     }
     return this.#isReady
   }
 
   *#bake(renderer: Renderer): Generator<void, void, void> {
-    for (const noise of [this.weather, this.shape, this.detail]) yield* noise.bake(renderer)
+    for (const noise of this.#textures) yield* noise.bake(renderer)
   }
 
   /** Frees the textures; the next update draws them anew. */
@@ -173,6 +161,6 @@ export class CloudNoise {
     this.#steps?.return()
     this.#steps = null
     this.#isReady = false
-    for (const noise of [this.weather, this.shape, this.detail]) noise.dispose()
+    for (const noise of this.#textures) noise.dispose()
   }
 }

@@ -1,12 +1,15 @@
-import { aerialPerspectiveTo, FragmentPass, linearSRGB } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, RenderTarget } from 'three'
-import { Fn, If, texture, uv, vec4 } from 'three/tsl'
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
+import { NearestFilter, UnsignedByteType } from 'three'
+import type { RenderTarget } from 'three'
+import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
 import type { CloudLight } from './CloudLightTable'
 import type { CloudShadows } from './CloudShadowMap'
 import type { FrameUniforms } from './FrameUniforms'
 import type { QualityUniforms } from './quality'
+import { withAirBefore } from './tsl/airBefore'
+import { approachClouds, TILE } from './tsl/approach'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from './tsl/noisePattern'
 import { gatherCells } from './tsl/cells'
@@ -24,15 +27,10 @@ export interface CloudScene {
   readonly sights: SightNodes
 }
 
-function pictureTarget(name: string): RenderTarget {
-  const target = new RenderTarget(1, 1, {
-    count: 2,
-    type: HalfFloatType,
-    depthBuffer: false,
-    minFilter: LinearFilter,
-    magFilter: LinearFilter
-  })
-  for (const [i, part] of ['light', 'place'].entries()) target.textures[i].name = `${name}.${part}`
+/** @param isPacked - Whether places are bytes. */
+function pictureTarget(name: string, isPacked = false): RenderTarget {
+  const target = tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
+  if (isPacked) target.textures[1].type = UnsignedByteType
   return target
 }
 
@@ -42,12 +40,16 @@ function picturesOf({ textures }: RenderTarget): CloudPictures {
 }
 
 /** Marches one pixel of each block: light with the air in front of it, and where it is. */
-function marchPixels({ field, light, shadows, quality, sights }: CloudScene): TwoOutputs {
+function marchPixels(
+  { field, light, shadows, quality, sights }: CloudScene,
+  clear: LevelTexture<Vec2>
+): TwoOutputs {
   const { frame } = sights
-  const { view } = field
   return twoOutputs(([color, place]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
+      const tiles = frame.marchedSize.div(TILE).ceil().mul(TILE)
+      const tile = block.add(0.5).div(tiles).toConst() as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
       const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
       const sight = sightAt(sights, at)
@@ -56,16 +58,10 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
       const marched = marchClouds(field, light, shadows, quality, {
         direction,
         end,
-        jitter: interleavedNoise(block, frame.noiseShift)
+        jitter: interleavedNoise(block, frame.noiseShift),
+        start: frame.isAmong.greaterThan(0).select(clear.sample(tile).level(0).x, 0)
       })
-      const opacity = marched.transmittance.oneMinus().toConst()
-      color.assign(vec4(0, 0, 0, marched.transmittance))
-      If(opacity.greaterThan(0), () => {
-        const air = aerialPerspectiveTo(view, directionView.mul(marched.distance))
-        const spectral = linearSRGB(view.air.uniforms, marched.radiance)
-        const seen = spectral.mul(air.transmittance).add(air.inScatter.mul(opacity))
-        color.assign(vec4(seen.mul(frame.gain), marched.transmittance))
-      })
+      color.assign(withAirBefore(field.view, marched, directionView, frame.gain))
       const distance = encodeDistance(marched.distance)
       place.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
       return vec4(0)
@@ -79,10 +75,12 @@ function marchPixels({ field, light, shadows, quality, sights }: CloudScene): Tw
  */
 export class CloudRenderer {
   readonly #frame: FrameUniforms
-  readonly #marched = pictureTarget('Welkin.CloudsMarched')
-  readonly #cells = pictureTarget('Welkin.CloudsCells')
+  readonly #marched = pictureTarget('Marched')
+  readonly #cells = pictureTarget('Cells')
   /** The picture, and that of the last frame, in turns. */
-  readonly #accumulated = [0, 1].map(i => pictureTarget(`Welkin.Clouds${i}`))
+  readonly #accumulated = [0, 1].map(i => pictureTarget(`${i}`, true))
+  readonly #approached = tableTarget('Welkin.CloudsApproach', 1, 1, 1, NearestFilter)
+  readonly #approach: FragmentPass
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
@@ -95,7 +93,9 @@ export class CloudRenderer {
 
   constructor(scene: CloudScene) {
     this.#frame = scene.sights.frame
-    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
+    const clear = texture(this.#approached.texture) as unknown as LevelTexture<Vec2>
+    this.#approach = new FragmentPass('Welkin.CloudsApproach', approachClouds(scene.sights))
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, clear))
     const { marched } = this
     this.#gather = new FragmentPass(
       'Welkin.CloudsGather',
@@ -110,12 +110,17 @@ export class CloudRenderer {
   }
 
   get #targets(): RenderTarget[] {
-    return [this.#marched, this.#cells, ...this.#accumulated]
+    return [this.#approached, this.#marched, this.#cells, ...this.#accumulated]
   }
 
   /** Size on the GPU [bytes]. */
   get bytes(): number {
-    return this.#targets.reduce((sum, { width, height }) => sum + 16 * width * height, 0)
+    return this.#targets
+      .flatMap(({ textures }) => textures)
+      .reduce((sum, { type, width, height }) => {
+        const texel = type === UnsignedByteType ? 4 : 8
+        return sum + texel * width * height
+      }, 0)
   }
 
   /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */
@@ -126,6 +131,8 @@ export class CloudRenderer {
       this.#frame.reset()
     }
     this.#marched.setSize(Math.ceil(width / block), Math.ceil(height / block))
+    const { width: across, height: down } = this.#marched
+    this.#approached.setSize(Math.ceil(across / TILE), Math.ceil(down / TILE))
     this.#cells.setSize(this.#marched.width + 1, this.#marched.height + 1)
     this.#frame.size.value.set(width, height)
     this.#frame.marchedSize.value.set(this.#marched.width, this.#marched.height)
@@ -133,6 +140,7 @@ export class CloudRenderer {
 
   /** Draws a frame; `FrameUniforms.next` goes first. */
   render(renderer: Renderer): void {
+    if (this.#frame.isAmong.value > 0) this.#approach.render(renderer, this.#approached)
     this.#march.render(renderer, this.#marched)
     this.#gather.render(renderer, this.#cells)
     this.current = 1 - this.current
@@ -142,6 +150,6 @@ export class CloudRenderer {
   /** Frees the pictures. */
   dispose(): void {
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#march, this.#gather, ...this.#upscale]) pass.dispose()
+    for (const pass of [this.#approach, this.#march, this.#gather, ...this.#upscale]) pass.dispose()
   }
 }

@@ -1,12 +1,14 @@
-import { FragmentPass } from '@welkin/atmosphere'
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
-import { HalfFloatType, LinearFilter, Quaternion, RenderTarget, Vector3, Vector4 } from 'three'
-import { renderGroup, texture, uniform } from 'three/tsl'
+import { Quaternion, Vector3 } from 'three'
+import type { RenderTarget, Vector4 } from 'three'
+import { texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
-import type { CloudField } from './CloudField'
+import { eyePosition, type CloudField } from './CloudField'
 import { CASCADE_SIZE as SIZE, ShadowDrawing } from './ShadowDrawing'
 import { shadowRay } from './tsl/shadowMap'
 import type { LevelTexture, Vec2 } from './tsl-types'
+import { number, vector3, vector4 } from './uniforms'
 
 /** Half widths of the cascades for a camera near the ground [m]. */
 const HALF_WIDTHS = [5000, 20_000, 80_000] as const
@@ -21,7 +23,8 @@ const HIGHEST = 150_000
 const ANCHOR_COSINE = Math.cos(0.005)
 
 /** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
-const JUMP = { light: 0.01, place: 0.5 }
+const LIGHT_JUMP = 0.01
+const PLACE_JUMP = 0.5
 
 /** Frames over which a cascade is drawn anew. */
 const STRIPS = 4
@@ -30,11 +33,9 @@ const STRIPS = 4
  * What a cascade is drawn anew for: moves of its middle [texels], moves of layers against each other
  * [texels], and changes of the light's direction, which move the far end of its rays by a tenth of a texel.
  */
-const STALE = { place: 8, drift: 0.25, light: 6e-4 }
-
-const vector3 = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
-const vector4 = (): UniformNode<'vec4', Vector4> => uniform(new Vector4()).setGroup(renderGroup)
-const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
+const STALE_PLACE = 8
+const STALE_DRIFT = 0.25
+const STALE_LIGHT = 6e-4
 
 /** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
 export interface CascadeNodes {
@@ -119,13 +120,7 @@ export class CloudShadowMap {
     this.field = field
     this.source = field.atmosphere.sun
     const count = HALF_WIDTHS.length + 1
-    this.target = new RenderTarget(SIZE * count, SIZE, {
-      type: HalfFloatType,
-      depthBuffer: false,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter
-    })
-    this.target.texture.name = 'Welkin.CloudShadows'
+    this.target = tableTarget('Welkin.CloudShadows', SIZE * count, SIZE)
     this.#cascades = HALF_WIDTHS.map((_, i) => ({
       nodes: {
         u: vector4(),
@@ -173,7 +168,7 @@ export class CloudShadowMap {
    */
   update(renderer: Renderer, view: AtmosphereView): void {
     const radius = this.field.radius.value
-    this.camera.copy(view.up).multiplyScalar(radius + view.height)
+    eyePosition(view, this.camera)
     const { night, atmosphere } = this.field
     const isMoonlit = night.rulesAt(view)
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
@@ -269,8 +264,8 @@ export class CloudShadowMap {
   #fits(drawing: ShadowDrawing, halfWidth: number): boolean {
     return (
       drawing.halfWidth === halfWidth &&
-      drawing.light.distanceTo(this.#light) < JUMP.light &&
-      this.#distance(drawing) < JUMP.place * halfWidth
+      drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
+      this.#distance(drawing) < PLACE_JUMP * halfWidth
     )
   }
 
@@ -278,11 +273,11 @@ export class CloudShadowMap {
     const { inputs, light, texel } = drawing
     const place = this.#distance(drawing)
     return (
-      place > STALE.place * texel ||
-      light.distanceTo(this.#light) > STALE.light ||
+      place > STALE_PLACE * texel ||
+      light.distanceTo(this.#light) > STALE_LIGHT ||
       this.#inputs.some((value, i) => value !== inputs[i]) ||
       [...this.field.layers].some(
-        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE.drift * texel
+        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
       )
     )
   }

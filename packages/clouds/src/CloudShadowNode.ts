@@ -1,16 +1,15 @@
-import { Vector3 } from 'three'
-import { Fn, If, float, positionView, renderGroup, uniform } from 'three/tsl'
+import { Fn, If, float, positionView } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
-import type { NodeFrame, UniformNode } from 'three/webgpu'
-import { viewNodes } from '@welkin/atmosphere'
-import type { AtmosphereView, LightSource, ViewNodes } from '@welkin/atmosphere'
+import type { NodeFrame } from 'three/webgpu'
+import { checkSource, viewNodes } from '@welkin/atmosphere'
+import type { LightSource, ViewNodes } from '@welkin/atmosphere'
+import { checkClouds } from './check'
+import { eyePosition } from './CloudField'
 import type { CloudsNode } from './CloudsNode'
 import { columnTowards } from './tsl/columns'
 import { sampleShadows } from './tsl/shadowMap'
 import type { Float, Vec3 } from './tsl-types'
-
-const position = (view: AtmosphereView, target: Vector3): Vector3 =>
-  target.copy(view.up).multiplyScalar(view.atmosphere.parameters.bottomRadius + view.height)
+import { number, vector3 } from './uniforms'
 
 /**
  * Shadows of clouds on surfaces: the part of the sunlight, or of the moonlight, that passes, for the
@@ -46,10 +45,10 @@ export class CloudShadowNode extends Node<'float'> {
   /** Of the camera that renders. */
   readonly #view: ViewNodes
   /** From the clouds' camera, as their maps know it, to the one that renders [m]. */
-  readonly #shift: UniformNode<'vec3', Vector3> = uniform(new Vector3()).setGroup(renderGroup)
+  readonly #shift = vector3()
 
   /** 1 while the maps are of this source's light. */
-  readonly #isMapped = uniform(1).setGroup(renderGroup)
+  readonly #isMapped = number(1)
 
   /**
    * @param source - Whose light they take; left out, the sun's.
@@ -61,12 +60,8 @@ export class CloudShadowNode extends Node<'float'> {
     source: LightSource = clouds?.atmosphere?.sun
   ) {
     super('float')
-    if (clouds?.shadows === undefined) {
-      throw new Error(`CloudShadowNode: clouds must be a CloudsNode, got ${typeof clouds}`)
-    }
-    if (source?.irradianceAt === undefined) {
-      throw new Error(`CloudShadowNode: source must be a LightSource, got ${typeof source}`)
-    }
+    checkClouds('CloudShadowNode', clouds)
+    checkSource('CloudShadowNode', 'source', source)
     this.clouds = clouds
     this.shadowNode = shadowNode
     this.source = source
@@ -83,12 +78,13 @@ export class CloudShadowNode extends Node<'float'> {
     const view = this.#view.update(frame)
     const { shadows } = this.clouds
     this.#isMapped.value = shadows.source === this.source ? 1 : 0
-    if (view !== undefined) position(view, this.#shift.value).sub(shadows.camera)
+    if (view !== undefined) eyePosition(view, this.#shift.value).sub(shadows.camera)
   }
 
   override setup(): Node {
     const { clouds } = this
     const { field, shadows } = clouds
+    if (clouds.isDisposed) return this.shadowNode ?? float(1)
     return Fn(() => {
       const offset = this.#view.toMapped(positionView).add(this.#shift).toConst() as Vec3
       const { shadow, known } = sampleShadows(shadows.nodes, offset, float(0))

@@ -1,8 +1,12 @@
-import type { SkyLightProbe, SkyLitPlane } from '@welkin/atmosphere'
-import { float, mix, renderGroup, uniform } from 'three/tsl'
+import type { SkyLightProbe, SkyLitPlane, ViewNodes } from '@welkin/atmosphere'
+import { checkRange } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
+import { float, mix } from 'three/tsl'
+import { checkClouds } from './check'
 import type { CloudsNode } from './CloudsNode'
 import { overcastIrradiance } from './tsl/overcast'
 import type { Vec3, Vec4 } from './tsl-types'
+import { number } from './uniforms'
 
 /**
  * Clouds in the light of the sky on surfaces: see {@link cloudSkyLight}.
@@ -12,19 +16,17 @@ export class CloudSkyLight {
   readonly probe: SkyLightProbe
   /** Whose clouds; shared, not owned. */
   readonly clouds: CloudsNode
-  readonly #strength = uniform(1).setGroup(renderGroup)
+  readonly #strength = number(1)
   readonly #overcast: SkyLightProbe['overcast']
 
   /** @throws If an argument is missing, or they are of two atmospheres. */
   constructor(probe: SkyLightProbe, clouds: CloudsNode) {
     if (probe?.overcast === undefined) {
-      throw new Error(`CloudSkyLight: probe must be a SkyLightProbe, got ${typeof probe}`)
+      fail('CloudSkyLight', 'probe must be a SkyLightProbe', probe)
     }
-    if (clouds?.shadows === undefined) {
-      throw new Error(`CloudSkyLight: clouds must be a CloudsNode, got ${typeof clouds}`)
-    }
+    checkClouds('CloudSkyLight', clouds)
     if (probe.atmosphere !== clouds.atmosphere) {
-      throw new Error('CloudSkyLight: clouds must be in the atmosphere of the probe, got another')
+      fail('CloudSkyLight', 'clouds must be in the atmosphere of the probe', 'another')
     }
     this.probe = probe
     this.clouds = clouds
@@ -38,19 +40,16 @@ export class CloudSkyLight {
 
   /** @throws If it is out of its range. */
   set strength(strength: number) {
-    if (!(strength >= 0 && strength <= 1)) {
-      throw new Error(`CloudSkyLight: strength must be a number in [0, 1], got ${strength}`)
-    }
+    checkRange('CloudSkyLight', 'strength', strength, 0, 1)
     this.#strength.value = strength
   }
 
   #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
-    const { field, light } = this.clouds
-    const { height, up } = plane.view
+    const { field, light, isDisposed } = this.clouds
+    if (isDisposed) return clear
     // Between two cameras; a metre more or less is no matter to the weather.
-    const place = up.mul(field.radius.add(height))
-    const shift = place.sub(field.view.up.mul(field.radius.add(field.view.height)))
-    const offset = plane.offset.add(shift).toConst() as Vec3
+    const eye = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
+    const offset = plane.offset.add(eye(plane.view).sub(eye(field.view))).toConst() as Vec3
     const without = clear.toConst() as Vec4
     const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
     return mix(without, cloudy, float(this.#strength))

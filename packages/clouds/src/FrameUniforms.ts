@@ -1,17 +1,12 @@
-import { Matrix3, Matrix4, Vector2, Vector3, Vector4 } from 'three'
+import { Matrix4, Vector3, Vector4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import type { AtmosphereView } from '@welkin/atmosphere'
-import { renderGroup, uniform } from 'three/tsl'
-import type { UniformNode } from 'three/webgpu'
-import type { CloudField } from './CloudField'
+import { eyePosition, type CloudField } from './CloudField'
 import { CloudLayers } from './CloudLayers'
 import { LAYER_STRIDE } from './layerUniforms'
+import { nightGain } from './NightLight'
 import { vec4Array } from './tsl-types'
-
-const number = (value = 0): UniformNode<'float', number> => uniform(value).setGroup(renderGroup)
-const vector2 = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
-const matrix3 = (): UniformNode<'mat3', Matrix3> => uniform(new Matrix3()).setGroup(renderGroup)
-const matrix4 = (): UniformNode<'mat4', Matrix4> => uniform(new Matrix4()).setGroup(renderGroup)
+import { matrix3, matrix4, number, vector2 } from './uniforms'
 
 /** Order in which the pixels of a block are marched: neighbours in time are far apart. */
 const ORDERS: Readonly<Record<number, readonly number[]>> = {
@@ -37,10 +32,12 @@ const FORGETTING_LOOKS = 12
 const STILL_LOOKS = 256
 
 /** How far history may be from its surroundings, in standard deviations. */
-const CLIPPING = { moving: 1.25, still: 8 }
+const MOVING_CLIPPING = 1.25
+const STILL_CLIPPING = 8
 
 /** A move of the camera within a frame after which it is somewhere else: in heights, and at least [m]. */
-const CUT = { heights: 0.3, metres: 300 }
+const CUT_HEIGHTS = 0.3
+const CUT_METRES = 300
 
 /** A move of the clouds within a frame after which they are others [m]. */
 const CLOUD_CUT = 500
@@ -48,24 +45,17 @@ const CLOUD_CUT = 500
 /** Factor of the gain within a frame after which light is another. */
 const LIGHT_CUT = 4
 
-/** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
-const NIGHT = { orders: 5, sine: 0.3 }
-
-/**
- * What light is multiplied with for half floats to hold that of nights as well.
- *
- * @param radius - Of the planet [m].
- */
-export function nightGain({ up, sunDirection, height }: AtmosphereView, radius: number): number {
-  const depression = -Math.asin(Math.min(Math.max(up.dot(sunDirection), -1), 1))
-  // From high up one sees places where the sun is that much less deep.
-  const dip = Math.acos(radius / (radius + Math.max(height, 0)))
-  const sine = Math.sin(Math.max(depression - dip, 0))
-  return 10 ** (NIGHT.orders * Math.min(sine / NIGHT.sine, 1))
-}
-
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
+
+/** Below or above a layer by less, an eye is among its clouds [m]. */
+const NEARBY = 200
+
+const isAmongClouds = (height: number, { layers }: CloudField): boolean =>
+  [...layers].some(({ parameters: { baseAltitude, topAltitude, coverage } }) => {
+    const middle = 0.5 * (baseAltitude + topAltitude)
+    return coverage > 0 && Math.abs(height - middle) < topAltitude - middle + NEARBY
+  })
 
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
@@ -84,13 +74,13 @@ export class FrameUniforms {
   readonly jitter = vector2()
   /** Shifts the noise of steps, in [0, 1). */
   readonly noiseShift = number()
-  readonly projectionInverse: UniformNode<'mat4', Matrix4> = matrix4()
+  readonly projectionInverse = matrix4()
   readonly near = number()
   readonly far = number()
   /** From (x, y, 1) of a pixel in normalized device coordinates to a ray through it, in view space. */
-  readonly rays: UniformNode<'mat3', Matrix3> = matrix3()
+  readonly rays = matrix3()
   /** From such a place to where in clip space (x, y, w) of the last frame its ray led. */
-  readonly raysBefore: UniformNode<'mat3', Matrix3> = matrix3()
+  readonly raysBefore = matrix3()
   /** Where there, in that space, the eye would have been from which each layer has stayed where it is. */
   readonly origins: Vector4[] = Array.from({ length: CloudLayers.maxLayers }, () => new Vector4())
   readonly originArray = vec4Array(this.origins)
@@ -99,6 +89,8 @@ export class FrameUniforms {
   /** Most looks that a pixel remembers. */
   readonly memory = number(1)
   readonly clipping = number(1)
+  /** 1 for an eye among the clouds, which looks for clear air in tiles first; else 0. */
+  readonly isAmong = number()
   /** Stored light per light, and what light of the last frame has to be multiplied with. */
   readonly gain = number(1)
   readonly gainChange = number(1)
@@ -123,32 +115,42 @@ export class FrameUniforms {
    * Goes on to the next frame. Field and view must be up to date.
    *
    * @param usesHistory - Whether frames are accumulated.
+   * @param lightVersion - Changes with what light clouds scatter.
    */
   next(
     camera: PerspectiveCamera,
     view: AtmosphereView,
     field: CloudField,
     block: number,
-    usesHistory: boolean
+    usesHistory: boolean,
+    lightVersion = 0
   ): void {
     const order = ORDERS[block]
     const index = order[this.#count % order.length]
     this.jitter.value.set(index % block, Math.floor(index / block))
     if (this.block.value !== block) this.reset()
     this.block.value = block
-    this.noiseShift.value = usesHistory ? (this.#count * GOLDEN_RATIO) % 1 : 0
+    // Of each pixel's looks, which are whole rounds apart; and of the pixels of a block.
+    const round = Math.floor(this.#count / order.length)
+    const shift = round * GOLDEN_RATIO + index / order.length
+    this.noiseShift.value = usesHistory ? shift % 1 : 0
     this.#count++
     this.projectionInverse.value.copy(camera.projectionMatrixInverse)
+    this.isAmong.value = isAmongClouds(view.height, field) ? 1 : 0
     this.near.value = camera.near
     this.far.value = camera.far
     const gain = nightGain(view, field.radius.value)
     this.gainChange.value = gain / this.gain.value
     this.gain.value = gain
 
-    _position.copy(view.up).multiplyScalar(field.radius.value + view.height)
+    eyePosition(view, _position)
     const last = this.#camera
-    const isDusk = Math.abs(Math.log(this.gainChange.value)) > Math.log(LIGHT_CUT)
-    const isCut = last === null || !usesHistory || isDusk || this.#isCut(view, field, last)
+    const reach = Math.max(CUT_HEIGHTS * Math.abs(view.height), CUT_METRES)
+    const isCut =
+      !usesHistory ||
+      !(last !== null && last.distanceTo(_position) < reach) ||
+      Math.abs(Math.log(this.gainChange.value)) > Math.log(LIGHT_CUT) ||
+      field.drifts.some(drift => !(drift.length() < CLOUD_CUT))
     this.hasHistory.value = isCut ? 0 : 1
     let isStill = !isCut
     const { elements: e } = camera.projectionMatrixInverse
@@ -173,9 +175,12 @@ export class FrameUniforms {
       this.origins[i].set(x, y, w, z)
       isStill &&= drift.lengthSq() === 0
     })
-    const matter = field.values.flatMap((value, i) => (i % LAYER_STRIDE < 3 ? value.toArray() : []))
     const { direction, irradiance, radiance } = field.night
-    for (const { value } of [direction, irradiance, radiance]) matter.push(...value.toArray())
+    const matter = [
+      ...field.values.filter((_, i) => i % LAYER_STRIDE < 3),
+      ...[direction, irradiance, radiance].map(({ value }) => value)
+    ].flatMap(vector => vector.toArray())
+    matter.push(lightVersion)
     const isSunStill = this.#sun.distanceToSquared(view.sunDirection) < 1e-12
     if (isCut) this.#forgetting = 0
     else if (isSunStill && isSame(matter, this.#matter)) this.#forgetting--
@@ -183,7 +188,7 @@ export class FrameUniforms {
     const aim = [...view.viewToMapped.elements, ...camera.projectionMatrix.elements]
     isStill &&= this.#forgetting <= 0 && isSame(aim, this.#aim)
     this.memory.value = isStill ? STILL_LOOKS : Math.max(MOVING_FRAMES / order.length, MOVING_LOOKS)
-    this.clipping.value = isStill ? CLIPPING.still : CLIPPING.moving
+    this.clipping.value = isStill ? STILL_CLIPPING : MOVING_CLIPPING
 
     this.#matter = matter
     this.#aim = aim
@@ -191,11 +196,5 @@ export class FrameUniforms {
     this.#projection.copy(camera.projectionMatrix)
     this.#fromMapped.setFromMatrix3(view.viewToMapped).invert()
     this.#camera = (last ?? new Vector3()).copy(_position)
-  }
-
-  #isCut(view: AtmosphereView, field: CloudField, last: Vector3): boolean {
-    const reach = Math.max(CUT.heights * Math.abs(view.height), CUT.metres)
-    if (!(last.distanceTo(_position) < reach)) return true
-    return field.drifts.some(drift => !(drift.length() < CLOUD_CUT))
   }
 }

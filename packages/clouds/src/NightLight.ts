@@ -1,7 +1,7 @@
 import { NIGHT_ILLUMINANCE, ofLuminance } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
-import { MathUtils, Vector3, Vector4 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
+import { MathUtils, Vector3 } from 'three'
+import { number, vector3, vector4 } from './uniforms'
 
 /** Altitude above which there are no clouds [m]. */
 const HIGHEST = 30_000
@@ -13,6 +13,29 @@ const HIGHEST = 30_000
 const SUNK = MathUtils.degToRad(6)
 const DUSK = MathUtils.degToRad(2)
 
+/** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
+const NIGHT_ORDERS = 5
+const NIGHT_SINE = 0.3
+
+/** How far below the level the horizon is from an altitude, on a sphere [rad]. */
+const dip = (radius: number, altitude: number): number =>
+  Math.acos(radius / (radius + Math.max(altitude, 0)))
+
+/** Height of the sun over the level [rad]. */
+const sunHeight = ({ up, sunDirection }: AtmosphereView): number =>
+  Math.asin(MathUtils.clamp(up.dot(sunDirection), -1, 1))
+
+/**
+ * What light is multiplied with for half floats to hold that of nights as well.
+ *
+ * @param radius - Of the planet [m].
+ */
+export function nightGain(view: AtmosphereView, radius: number): number {
+  // From high up one sees places where the sun is that much less deep.
+  const depression = -sunHeight(view) - dip(radius, view.height)
+  return 10 ** (NIGHT_ORDERS * MathUtils.clamp(Math.sin(depression) / NIGHT_SINE, 0, 1))
+}
+
 const _position = new Vector3()
 const _direction = new Vector3()
 
@@ -22,16 +45,16 @@ const _direction = new Vector3()
  */
 export class NightLight {
   /** 1 while clouds may be seen where the sun has set, else 0. */
-  readonly isSeen = uniform(0).setGroup(renderGroup)
+  readonly isSeen = number()
   /** Sines of the sun's height below which moonlight sets in, and below which all of it counts. */
-  readonly sunk = uniform(-1).setGroup(renderGroup)
-  readonly dark = uniform(-1).setGroup(renderGroup)
+  readonly sunk = number(-1)
+  readonly dark = number(-1)
   /** To the moon, in the mapped space. */
-  readonly direction = uniform(new Vector3(0, 0, 1)).setGroup(renderGroup)
+  readonly direction = vector3(0, 0, 1)
   /** Of the moon above the air, over `solarIrradiance`; 0 without a moon. */
-  readonly irradiance = uniform(new Vector4()).setGroup(renderGroup)
+  readonly irradiance = vector4()
   /** Mean radiance of the night sky, over `solarIrradiance` [1/sr]. */
-  readonly radiance = uniform(new Vector4()).setGroup(renderGroup)
+  readonly radiance = vector4()
   /** Of level ground by the night sky [lx]. */
   illuminance = NIGHT_ILLUMINANCE
   /** The moon; null if there is none. */
@@ -39,16 +62,15 @@ export class NightLight {
 
   /** Follows the camera and the moon. */
   update(view: AtmosphereView): void {
-    const { atmosphere, camera, height, up, sunDirection } = view
+    const { atmosphere, camera, height } = view
     const { bottomRadius, sunAngularRadius } = atmosphere.parameters
-    const dip = (altitude: number): number =>
-      Math.acos(bottomRadius / (bottomRadius + Math.max(altitude, 0)))
-    const sunk = Math.max(SUNK, dip(HIGHEST) + 1.1 * sunAngularRadius)
+    const reach = dip(bottomRadius, HIGHEST)
+    const sunk = Math.max(SUNK, reach + 1.1 * sunAngularRadius)
     this.sunk.value = -Math.sin(sunk)
     this.dark.value = -Math.sin(sunk + DUSK)
     // As far as clouds can be seen, the sun is at most that much lower than at the camera.
-    const sunHeight = Math.asin(MathUtils.clamp(up.dot(sunDirection), -1, 1))
-    this.isSeen.value = sunHeight - dip(height) - dip(HIGHEST) < -sunk ? 1 : 0
+    const lowest = sunHeight(view) - dip(bottomRadius, height) - reach
+    this.isSeen.value = lowest < -sunk ? 1 : 0
     this.source = atmosphere.layers.find(layer => layer.source !== undefined)?.source ?? null
     this.irradiance.value.setScalar(0)
     if (this.isSeen.value === 0) return

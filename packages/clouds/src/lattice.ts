@@ -1,4 +1,4 @@
-import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three'
+import { Quaternion, Vector3 } from 'three'
 
 /** A rotation without a simple relation to the axes, different for each number. */
 function askew(n: number): Quaternion {
@@ -17,20 +17,17 @@ function leaning(n: number, lean: number): Quaternion {
   return new Quaternion().setFromAxisAngle(axis, lean).multiply(spin)
 }
 
-const matrix = (rotation: Quaternion): Matrix3 =>
-  new Matrix3().setFromMatrix4(new Matrix4().makeRotationFromQuaternion(rotation))
-
 /**
  * How the lattices of the noise look-ups lie in the planet: each askew to the planet's axes and to the
  * others, so that rows of one never fall on rows of another. The weather leans but a little: what it draws
  * out across its third axis, the ground cuts in streaks from west to east.
  */
 export const latticeRotation = {
-  weather: /*#__PURE__*/ matrix(leaning(0, 0.22)),
-  fields: /*#__PURE__*/ matrix(leaning(4, 0.3)),
-  region: /*#__PURE__*/ matrix(askew(1)),
-  shape: /*#__PURE__*/ matrix(askew(2)),
-  detail: /*#__PURE__*/ matrix(askew(3))
+  weather: /*#__PURE__*/ leaning(0, 0.22),
+  fields: /*#__PURE__*/ leaning(4, 0.3),
+  region: /*#__PURE__*/ askew(1),
+  shape: /*#__PURE__*/ askew(2),
+  detail: /*#__PURE__*/ askew(3)
 }
 
 /** How a layer's noise is turned against another's before any wind. */

@@ -1,4 +1,5 @@
 import type { CloudLayerParameters } from './CloudLayer'
+import { carvedSharpness, cirrusEdgeWidth, edgeWidth, smoothSharpness } from './densityShape'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 12
@@ -22,25 +23,38 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 0.95, clouds: 0.23 } as const
+export const FIELD_WARP = 1.1
+export const CLOUD_WARP = 0.3
+
+/**
+ * How far the fields shift the look-up of a world map of so many texels around the planet: half a texel
+ * to either side, as far as fields are large enough for that [rad].
+ */
+export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
-export const PLANET_WAVES = { next: 3.1, last: 1.7, warp: 0.22 } as const
+export const NEXT_WAVES = 3.1
+export const LAST_WAVES = 1.7
+export const PLANET_WARP = 0.22
 
 /**
  * Weights of the scales that the weather is the sum of, with that of single clouds 1: fields of tens of
  * kilometres, of the layer's own weather and of large cells; regions; the planet.
  */
-export const scaleWeights = { fields: 0.6, cells: 0.5, regions: 0.65, planet: 0.4 } as const
+export const FIELD_WEIGHT = 0.6
+const CELL_WEIGHT = 0.5
+const REGION_WEIGHT = 0.65
+const PLANET_WEIGHT = 0.4
 
 /** Share of finer cells in the regions. */
 export const REGION_CELLS = 0.6
 
-/** How much longer than wide the noise of cirrus is, and of any other cloud. */
-const STRETCH = { cirrus: 9, other: 1 } as const
+/** How much longer than wide the noise of cirrus is. */
+const CIRRUS_STRETCH = 9
 
 /** Layers thinner than the first have no anvils, thicker than the second large ones [m]. */
-const ANVILS = [4000, 8000] as const
+const LEAST_ANVIL = 4000
+const LARGE_ANVIL = 8000
 
 /** Period of the detail texture [m]. */
 export const DETAIL_PERIOD = 330
@@ -89,19 +103,19 @@ export interface WeatherScales {
 export function weatherScales(weights: readonly number[], hasMap: boolean): WeatherScales {
   const size = Math.hypot(...weights) || 1
   const unit = weights.map(weight => weight / size)
-  const { fields, cells, regions, planet } = scaleWeights
   // Large cells are the third channel.
-  const fieldVariance = fields ** 2 + cells ** 2 + 2 * fields * cells * (unit[2] ?? 0)
+  const fieldVariance =
+    FIELD_WEIGHT ** 2 + CELL_WEIGHT ** 2 + 2 * FIELD_WEIGHT * CELL_WEIGHT * (unit[2] ?? 0)
   const large = hasMap ? 0 : 1
-  const variance = 1 + fieldVariance + large * (regions ** 2 + planet ** 2)
+  const variance = 1 + fieldVariance + large * (REGION_WEIGHT ** 2 + PLANET_WEIGHT ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   return {
     clouds: [a, b, c, d],
-    fields,
-    cells: cells * factor,
-    regions: (large * regions * factor) / Math.hypot(1, REGION_CELLS),
-    planet: (large * planet) / Math.sqrt(variance),
+    fields: FIELD_WEIGHT,
+    cells: CELL_WEIGHT * factor,
+    regions: (large * REGION_WEIGHT * factor) / Math.hypot(1, REGION_CELLS),
+    planet: (large * PLANET_WEIGHT) / Math.sqrt(variance),
     cloudVariance: 1 / variance,
     fieldVariance: fieldVariance / variance
   }
@@ -119,6 +133,8 @@ export function layerForms({
 }: CloudLayerParameters): {
   /** How much longer than wide the noise is that carves them. */
   stretch: number
+  /** How much of its weather is that of cirrus, in [0, 1]. */
+  fibrous: number
   /** Fill per change of its weather. */
   steepness: number
   /** Density per fullness left: how sharp edges are. */
@@ -128,47 +144,17 @@ export function layerForms({
   /** How far towers spread at their tops, in [0, 1]. */
   anvil: number
 } {
-  const { edgeWidth, carvedSharpness, smoothSharpness } = densityShape
   const fibrous = shareOf(weatherWeights, 3)
   const mix = (from: number, to: number, share: number): number => from + (to - from) * share
   const carved = shapeAmount ** 2 * (1 - fibrous)
   const towers = shareOf(weatherWeights, 2)
-  const tall = (topAltitude - baseAltitude - ANVILS[0]) / (ANVILS[1] - ANVILS[0])
+  const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
-    stretch: mix(STRETCH.other, STRETCH.cirrus, fibrous),
-    steepness: 1 / mix(edgeWidth.other, edgeWidth.cirrus, fibrous),
+    fibrous,
+    stretch: mix(1, CIRRUS_STRETCH, fibrous),
+    steepness: 1 / mix(edgeWidth, cirrusEdgeWidth, fibrous),
     sharpness: mix(smoothSharpness, carvedSharpness, carved),
     coarseness: towers,
     anvil: towers * Math.min(Math.max(tall, 0), 1)
   }
 }
-
-/** Constants of the density function, found by looking at its pictures. */
-export const densityShape = {
-  /** Change of the weather over which a layer fills from edge to middle. */
-  edgeWidth: { cirrus: 1.6, other: 0.5 },
-  /** Fill where noise puts the edge on average, per shape amount: it makes coverage what it says. */
-  meanEdge: 0.535,
-  /** Added to the fill at full coverage, taken at none. */
-  excess: 0.6,
-  /** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
-  blur: [0, 5],
-  /** Deviation of the weather by which edges of the cover are soft: by the shape, per amount, and at least. */
-  carvedBlur: 0.4,
-  leastBlur: 0.05,
-  /** Fill that towers lack below their anvils, and how much thinner these are. */
-  anvilReach: 0.4,
-  anvilDensity: 0.35,
-  /** The shape carves at least this part of its amount: what is less full is empty for sure. */
-  leastCarving: 0.15,
-  /** What the shape carves less where its levels of detail have lost it, per amount, and these levels. */
-  lostCarving: 0.09,
-  shapeBlur: [0, 5],
-  /** Most that detail takes away. */
-  erosion: 0.22,
-  /** Density per fullness left, of smooth layers and of carved ones: how sharp edges are. */
-  smoothSharpness: 1.5,
-  carvedSharpness: 6,
-  /** Mean density of a cloudy column over the densest. */
-  farFill: 0.6
-} as const

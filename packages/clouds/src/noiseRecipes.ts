@@ -1,13 +1,9 @@
-/** Cells in a period: the same along all axes, or one number for each. */
-export type Cells = number | readonly [number, number, number]
-
-export const cellsOf = (cells: Cells): readonly [number, number, number] =>
-  typeof cells === 'number' ? [cells, cells, cells] : cells
+/** Cells in a period, along each axis. */
+export type Cells = readonly [number, number, number]
 
 /** One sort of noise in a channel: `perlin` or `billow` of tsl/noise.ts. */
 export interface NoiseTerm {
   readonly kind: 'perlin' | 'billow'
-  /** Cells in a period, of all axes or each. */
   readonly cells: Cells
   readonly weight: number
 }
@@ -22,7 +18,7 @@ export type NoiseEncoding =
 export interface NoiseChannel {
   readonly terms: readonly NoiseTerm[]
   readonly encoding: NoiseEncoding
-  /** How far Perlin noise of `cells` cells shifts the look-up, in periods. */
+  /** How far Perlin noise of so many cells along each axis shifts the look-up, in periods. */
   readonly warp?: { readonly cells: number; readonly amount: number }
 }
 
@@ -30,22 +26,22 @@ export interface NoiseChannel {
 export const seedOf = (channel: number, term: number): number => 101 * (channel + 1) + 17 * term
 
 /** Mean and standard deviation of the two sorts of noise, over all cell counts. */
-export const noiseStatistics = {
-  perlin: { mean: 0, deviation: 0.285 },
-  billow: { mean: 0.703, deviation: 0.18 }
-} as const
+export const noiseStatistics = { perlin: [0, 0.285], billow: [0.703, 0.18] } as const
 
+/** Noise of ever finer cells, each of half the weight; with one number, the same along all axes. */
 const octaves = (
   kind: NoiseTerm['kind'],
-  cells: Cells,
+  cells: number | Cells,
   count: number,
   weight: number
-): NoiseTerm[] =>
-  Array.from({ length: count }, (_, i) => ({
+): NoiseTerm[] => {
+  const [x, y, z] = typeof cells === 'number' ? [cells, cells, cells] : cells
+  return Array.from({ length: count }, (_, i) => ({
     kind,
-    cells: cellsOf(cells).map(n => n * 2 ** i) as [number, number, number],
+    cells: [x << i, y << i, z << i],
     weight: weight / 2 ** i
   }))
+}
 
 /**
  * What the shape noise holds, 128³ texels: Perlin–Worley (heads on a wavering whole), and finer heads.
@@ -75,15 +71,15 @@ export const CURL_SCALE = 0.2
  */
 export const weatherChannels: readonly NoiseChannel[] = [
   {
-    terms: [{ kind: 'billow', cells: 9, weight: 1 }, ...octaves('perlin', 5, 2, 0.6)],
+    terms: [...octaves('billow', 9, 1, 1), ...octaves('perlin', 5, 2, 0.6)],
     encoding: 'uniform'
   },
   {
-    terms: [{ kind: 'billow', cells: 7, weight: 1 }, ...octaves('perlin', 6, 2, 0.25)],
+    terms: [...octaves('billow', 7, 1, 1), ...octaves('perlin', 6, 2, 0.25)],
     encoding: 'uniform'
   },
   {
-    terms: [{ kind: 'billow', cells: 5, weight: 1 }, ...octaves('perlin', 3, 4, 0.7)],
+    terms: [...octaves('billow', 5, 1, 1), ...octaves('perlin', 3, 4, 0.7)],
     encoding: 'uniform'
   },
   {

@@ -1,5 +1,8 @@
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
+import { fail } from '@welkin/geo'
+import { checkRanges, named } from './check'
+import { number } from './uniforms'
 
 /** How finely clouds are marched. All may be changed at any time; nothing is recompiled. */
 export interface CloudQuality {
@@ -25,20 +28,20 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 
 /** Well-tried qualities. */
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
-  low: { steps: 64, stepGrowth: 0.06, shortestStep: 60, layerSteps: 8, sunSteps: 1, block: 4 },
-  medium: { steps: 96, stepGrowth: 0.04, shortestStep: 45, layerSteps: 12, sunSteps: 2, block: 4 },
-  high: { steps: 128, stepGrowth: 0.03, shortestStep: 40, layerSteps: 16, sunSteps: 2, block: 3 },
-  ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 12, layerSteps: 32, sunSteps: 4, block: 2 }
+  low: { steps: 64, stepGrowth: 0.06, shortestStep: 120, layerSteps: 8, sunSteps: 1, block: 4 },
+  medium: { steps: 96, stepGrowth: 0.04, shortestStep: 100, layerSteps: 12, sunSteps: 2, block: 4 },
+  high: { steps: 128, stepGrowth: 0.03, shortestStep: 80, layerSteps: 16, sunSteps: 2, block: 3 },
+  ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 25, layerSteps: 32, sunSteps: 4, block: 2 }
 }
 
-const ranges: Record<keyof CloudQuality, readonly [number, number]> = {
+const ranges = {
   steps: [1, 1024],
   stepGrowth: [1e-3, 1],
   shortestStep: [0.1, 1000],
   layerSteps: [1, 256],
   sunSteps: [1, 16],
   block: [1, 4]
-}
+} as const satisfies Record<keyof CloudQuality, readonly [number, number]>
 
 /**
  * The quality of a name, or the given one.
@@ -47,25 +50,16 @@ const ranges: Record<keyof CloudQuality, readonly [number, number]> = {
  */
 export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQuality {
   if (typeof quality === 'string') {
-    if (Object.hasOwn(cloudQualities, quality)) return cloudQualities[quality]
-    const names = Object.keys(cloudQualities).join(', ')
-    throw new Error(`CloudsNode: quality must be one of ${names}, got ${quality}`)
+    return named('CloudsNode', 'quality', cloudQualities, quality)
   }
-  for (const [name, [lowest, highest]] of Object.entries(ranges)) {
-    const value: unknown = quality?.[name as keyof CloudQuality]
-    if (typeof value === 'number' && value >= lowest && value <= highest) continue
-    throw new Error(
-      `CloudsNode: quality.${name} must be a number in [${lowest}, ${highest}], got ${String(value)}`
-    )
-  }
+  checkRanges('CloudsNode.quality', quality, ranges)
   if (!Number.isInteger(quality.block)) {
-    throw new Error(`CloudsNode: quality.block must be 1, 2, 3 or 4, got ${quality.block}`)
+    fail('CloudsNode.quality', 'block must be 1, 2, 3 or 4', quality.block)
   }
   return Object.freeze({ ...quality })
 }
 
 const whole = (): UniformNode<'int', number> => uniform(1, 'int').setGroup(renderGroup)
-const number = (): UniformNode<'float', number> => uniform(1).setGroup(renderGroup)
 
 /** A {@link CloudQuality} as shader uniforms. */
 export class QualityUniforms {

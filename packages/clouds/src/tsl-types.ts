@@ -34,6 +34,14 @@ export const loop = (
   nodes({ start, end, type: 'int', name }, inputs => body(inputs[name]))
 }
 
+/** Layout of a `Fn`: a name, what it returns, and the types of its inputs by name. */
+export const layout = (name: string, type: string, inputs: Record<string, string>): never =>
+  ({
+    name,
+    type,
+    inputs: Object.entries(inputs).map(([input, kind]) => ({ name: input, type: kind }))
+  }) as never
+
 /**
  * `uniformArray` of four-vectors, whose elements are typed. In the render group: what is an object's own
  * does not reach materials that three does not refresh.

@@ -4,8 +4,8 @@ import { Matrix3, PerspectiveCamera, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, test } from 'vitest'
 import { cloudOverlay, CloudLayers, clouds, cloudShadow, cloudSkyLight } from '../src'
-import { FrameUniforms, nightGain } from '../src/FrameUniforms'
-import { NightLight } from '../src/NightLight'
+import { FrameUniforms } from '../src/FrameUniforms'
+import { NightLight, nightGain } from '../src/NightLight'
 
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
@@ -101,7 +101,7 @@ test('a picture forgets the light of before at motion’s pace, then rests; anot
 test('nightIlluminance is that of the night’s probe, and may be set', () => {
   expect(node.nightIlluminance).toBe(NIGHT_ILLUMINANCE)
   expect(() => (node.nightIlluminance = NaN)).toThrow(
-    'CloudsNode: nightIlluminance must be finite, ≥ 0, got NaN'
+    'CloudsNode: nightIlluminance must be finite and ≥ 0, got NaN'
   )
   node.nightIlluminance = 0
   expect(node.nightIlluminance).toBe(0)
@@ -121,7 +121,7 @@ describe('cloudSkyLight', () => {
     const probe = new SkyLightProbe(atmosphere)
     const light = cloudSkyLight(probe, node)
     expect(probe.overcast).not.toBe(null)
-    expect(() => (light.strength = 2)).toThrow('CloudSkyLight: strength must be a number in [0, 1]')
+    expect(() => (light.strength = 2)).toThrow('CloudSkyLight: strength must be in [0, 1]')
     light.dispose()
     expect(probe.overcast).toBe(null)
     expect(light.strength).toBe(0)
@@ -146,7 +146,7 @@ describe('cloudOverlay', () => {
 
 test('shadows of moonlight need a source of light', () => {
   expect(() => cloudShadow(node, null, {} as never)).toThrow(
-    'CloudShadowNode: source must be a LightSource, got object'
+    'CloudShadowNode: source must be a LightSource'
   )
   const luna = moon(atmosphere)
   expect(cloudShadow(node, null, luna.source).source).toBe(luna.source)

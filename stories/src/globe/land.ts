@@ -80,6 +80,7 @@ export async function createLand<Args extends RendererArgs>(
   const up = new Vector3()
   let ready: Promise<void> = Promise.resolve()
   let disposed = false
+  let loads = 0
 
   const prepare = (): void => {
     camera.updateMatrixWorld()
@@ -97,12 +98,16 @@ export async function createLand<Args extends RendererArgs>(
   }
 
   const load = (): void => {
-    ready = loadTiles(tilesets, prepare, () => disposed).then(async () => {
-      for (let i = 0; current.frame && !disposed && i < warmUpFrames; i++) {
+    const count = ++loads
+    const isOver = (): boolean => disposed || count !== loads
+    ready = loadTiles(tilesets, prepare, isOver).then(async () => {
+      for (let i = 0; current.frame && !isOver() && i < warmUpFrames; i++) {
         // Passes draw their scene once in an animation frame: shadows of clouds are there in the last.
         if (i > 0 && i >= warmUpFrames - LAST_FRAMES) await new Promise(requestAnimationFrame)
         draw()
       }
+      // Whoever awaits a load that another has cut short awaits that one.
+      if (!disposed && isOver()) await ready
     })
     // A failure is reported to whoever awaits `ready`.
     ready.catch(() => {})

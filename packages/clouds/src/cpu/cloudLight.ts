@@ -1,6 +1,6 @@
 import { aureolePhase, cloudPhase, scalePhase, type CloudPhaseParameters } from './cloudPhase'
 import { sampleSkylitSlab, sampleSunlitSlab } from './cloudLightTable'
-import { deepestPuff, leakCoefficients as c } from './lateralLeak'
+import * as c from './lateralLeak'
 
 /** Where a sample is in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
 export interface CloudSourceSample {
@@ -35,7 +35,7 @@ export function lateralLeak(
   diffusing: number
 ): number {
   const part = clamp(depthToSun / Math.max(depthThrough, 1e-4), 0, 1)
-  const depth = Math.log(1 + diffusing * Math.min(depthAcross, deepestPuff))
+  const depth = Math.log(1 + diffusing * Math.min(depthAcross, c.deepestPuff))
   const chord = clamp(depthThrough / Math.max(depthAcross, 1e-4), 0, 1)
   const exponent =
     c.constant +

@@ -1,18 +1,22 @@
-import { Vector3, type Matrix3, type Quaternion } from 'three'
+import { Vector3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../CloudLayer'
+import * as densityShape from '../densityShape'
 import { latticeRotation } from '../lattice'
 import {
   CURL_AMOUNT,
   CURL_PERIOD,
-  densityShape,
   DETAIL_PERIOD,
   FIELD_PERIOD,
   layerForms,
   layerPeriods,
-  PLANET_WAVES,
+  LAST_WAVES,
+  mapShift,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  SHAPE_WARP,
+  CLOUD_WARP,
+  FIELD_WARP,
   WEATHER_WARP,
   weatherScales
 } from '../layerUniforms'
@@ -33,6 +37,8 @@ export interface CloudState {
   readonly worldMap?: (longitude: number, latitude: number) => number
   /** a/b of the ellipsoid; only the map needs it. */
   readonly axialRatio?: number
+  /** Width of the map [texels]. */
+  readonly worldMapWidth?: number
 }
 
 /** A layer's weather at a place: see `CloudWeather` of tsl/weather.ts. */
@@ -58,30 +64,36 @@ const levelOf = (footprint: number, texel: number): number =>
 function placeIn(
   position: Vector3,
   turn: Quaternion,
-  rotation: Matrix3,
+  rotation: Quaternion,
   period: number,
   stretch = 1,
   warp = new Vector3()
 ): Vec3Array {
   const p = position.clone().applyQuaternion(turn)
   p.set(p.x / stretch, p.y / stretch, p.z).addScaledVector(warp, 1 / stretch)
-  p.applyMatrix3(rotation).divideScalar(period)
+  p.applyQuaternion(rotation).divideScalar(period)
   return [p.x, p.y, p.z]
 }
 
 /** Part of a noise's variance that its levels of detail have lost. */
-const lost = (level: number): number =>
-  smoothstep(densityShape.blur[0], densityShape.blur[1], level)
+const lost = (level: number): number => smoothstep(0, densityShape.blur, level)
 
 /** Φ(z) of the normal distribution to 0.01, as the shader has it. */
 const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
 
 /** Share of the sky that a layer covers around a place, as far as it is known without noise. */
-function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Vector3): number {
+function shareAt(
+  state: CloudState,
+  { coverage }: CloudLayerParameters,
+  foot: Vector3,
+  shift: Vector3
+): number {
   if (state.worldMap === undefined) return coverage
-  const across = Math.hypot(foot.x, foot.y)
-  const latitude = Math.atan2(foot.z * (state.axialRatio ?? 1), across)
-  const share = clamp(state.worldMap(Math.atan2(foot.y, foot.x), latitude), 0, 1)
+  const { x, y, z } = foot
+    .clone()
+    .addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048) * foot.length())
+  const latitude = Math.atan2(z * (state.axialRatio ?? 1), Math.hypot(x, y))
+  const share = clamp(state.worldMap(Math.atan2(y, x), latitude), 0, 1)
   const covered = share * coverage
   return covered / Math.max(covered + (1 - share) * (1 - coverage), 1e-6)
 }
@@ -89,11 +101,10 @@ function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Ve
 /** Waves around the planet, in [−1, 1]. */
 function planetWaves(foot: Vector3, turn: Quaternion): Vec3Array {
   const { x, y, z } = foot.clone().normalize().applyQuaternion(turn)
-  const { next, last } = PLANET_WAVES
   return [
-    Math.sin(next * y + last * z),
-    Math.sin(next * z + last * x),
-    Math.sin(next * x + last * y)
+    Math.sin(NEXT_WAVES * y + LAST_WAVES * z),
+    Math.sin(NEXT_WAVES * z + LAST_WAVES * x),
+    Math.sin(NEXT_WAVES * x + LAST_WAVES * y)
   ]
 }
 
@@ -114,7 +125,6 @@ export function weatherAt(
   const turn = state.turns[index]
   const foot = position.clone().setLength(state.bottomRadius)
   const footprint = distance * state.pixelAngle
-  const c = shareAt(state, layer, foot)
   const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
   const { steepness, coarseness } = layerForms(layer)
 
@@ -127,15 +137,16 @@ export function weatherAt(
     noise.sample('weather', place, level).map(value => value - 0.5)
   const regionPlace = placeIn(foot, turn, latticeRotation.region, REGION_PERIOD)
   const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
-  const region = sample(shifted(regionPlace, waves, PLANET_WAVES.warp), regionLevel)
+  const region = sample(shifted(regionPlace, waves, PLANET_WARP), regionLevel)
 
   const { weather: period, shape: shapePeriod } = layerPeriods(layer)
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const fieldLevel = Math.max(level - Math.log2(FIELD_PERIOD), 0)
-  const lookUp = (rotation: Matrix3, length: number, levelThere: number): number[] =>
+  const lookUp = (rotation: Quaternion, length: number, levelThere: number): number[] =>
     sample(shifted(placeIn(foot, turn, rotation, length), region, WEATHER_WARP), levelThere)
   const fields = lookUp(latticeRotation.fields, period * FIELD_PERIOD, fieldLevel)
   const clouds = lookUp(latticeRotation.weather, period, level)
+  const c = shareAt(state, layer, foot, new Vector3(fields[2], fields[0], fields[1]))
 
   const dot = (values: number[]): number =>
     values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
@@ -151,19 +162,20 @@ export function weatherAt(
     (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lost(regionLevel - 0.8)) / 12
   const odds = clamp(c, 1e-6, 1 - 1e-6)
   const quantile = Math.log(odds / (1 - odds)) / 1.702
-  const { carvedBlur, leastBlur, excess, meanEdge } = densityShape
+  const { carvedBlur, leastBlur, leastVariance, excess, meanEdge } = densityShape
   const edges = Math.max(carvedBlur * layer.shapeAmount, leastBlur)
   const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
-  const surely = excess * (2 * c - 1) ** 5
+  const surely = excess * (2 * c - 1) ** 33
+  const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
-    SHAPE_WARP.clouds * shapePeriod
+    CLOUD_WARP * shapePeriod
   )
   return {
-    fill: meanEdge * layer.shapeAmount + (cumulative(z) - (1 - c)) * steepness + surely,
+    fill: meanEdge * layer.shapeAmount + (cumulative(sharp) - (1 - c)) * steepness + surely,
     cover: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
     spread: smoothstep(0.5, 4.5, level - coarseness),
     shapeWarp: new Vector3(fields[0], fields[1], fields[2])
-      .multiplyScalar(SHAPE_WARP.fields * shapePeriod)
+      .multiplyScalar(FIELD_WARP * shapePeriod)
       .add(detailWarp),
     detailWarp
   }
@@ -190,8 +202,7 @@ function carved(
   const level = levelOf(footprint, period / NOISE_SIZE.shape)
   const [whole, finer] = noise.sample('shape', place, level)
   const { leastCarving, lostCarving, shapeBlur } = densityShape
-  const heads =
-    whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(shapeBlur[0], shapeBlur[1], level)
+  const heads = whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(0, shapeBlur, level)
   const left = filled - layer.shapeAmount * Math.max(1 - heads, leastCarving)
   const most = layer.detailAmount * densityShape.erosion
   if (!detail) return left - most / 2
@@ -227,7 +238,16 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilReach, farFill } = densityShape
+  const {
+    anvilDensity,
+    anvilFill,
+    anvilMean,
+    anvilReach,
+    solidFill,
+    thinFibres,
+    moreFibres,
+    mostFibres
+  } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -235,17 +255,25 @@ export function cloudExtinction(
     if (height <= 0 || height >= 1 || layer.coverage === 0) return
     const weather = weatherAt(state, noise, index, position, distance)
     const { fill, cover, spread } = weather
-    const { sharpness, anvil } = layerForms(layer)
+    const { fibrous, sharpness, anvil } = layerForms(layer)
     const anvilHere = anvil * smoothstep(0.62, 0.8, height)
     const usual = 1 - (2 * Math.max(height, 1e-4) ** layer.profileExponent - 1) ** 2
     const profile = usual + anvilHere * (1 - smoothstep(0.9, 1, height) - usual)
     const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
-    const depth = Math.max(density * (topAltitude - baseAltitude) * farFill, 1e-4)
-    const far = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30)) / depth
+    const fibres = thinFibres + moreFibres * cover ** 2 + mostFibres * cover ** 64
+    const solid = solidFill + anvil * (anvilFill - solidFill)
+    const columnFill = solid + fibrous * (fibres - solid)
+    const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)
+    const spreadDepth = -Math.log(Math.max(1 - cover * (1 - Math.exp(-depth)), 1e-30))
+    const e = layer.profileExponent
+    const plainMean = (4 * e) / ((e + 1) * (2 * e + 1))
+    const profileMean = plainMean + anvil * (anvilMean - plainMean)
+    const hidden = profile * (1 - anvil + anvilHere)
+    const far = ((spreadDepth / depth) * columnFill) / profileMean
     const near = clamp(left * sharpness, 0, 1)
     const through =
-      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * profile * depth)
+      (1 - spread) * Math.exp(-near * depth) + spread * Math.exp(-far * hidden * depth)
     const matter = spread === 0 ? near : -Math.log(Math.max(through, 1e-30)) / depth
     sum += density * matter * (1 + anvilHere * (anvilDensity - 1))
   })

@@ -1,17 +1,22 @@
 /** Rows of numbers. */
 export type Matrix = number[][]
 
-/** Lower triangle L with L Lᵀ = a, for a symmetric positive definite a. */
-export function cholesky(a: Matrix): Matrix {
-  const lower = a.map(row => row.map(() => 0))
-  for (let i = 0; i < a.length; i++) {
-    for (let j = 0; j <= i; j++) {
-      let sum = a[i][j]
-      for (let k = 0; k < j; k++) sum -= lower[i][k] * lower[j][k]
-      lower[i][j] = i === j ? Math.sqrt(sum) : sum / lower[j][j]
-    }
-  }
-  return lower
+/** Σ a_i b_i. */
+export const dot = (a: readonly number[], b: readonly number[]): number =>
+  a.reduce((sum, value, i) => sum + value * b[i], 0)
+
+/** The matrix of this term of row and column, of as many rows and columns as `range` has numbers. */
+export const matrix = (
+  range: readonly unknown[],
+  term: (row: number, column: number) => number
+): Matrix => range.map((_, i) => range.map((__, j) => term(i, j)))
+
+const transposed = (a: Matrix): Matrix => a[0].map((_, j) => a.map(row => row[j]))
+
+/** a b. */
+export function product(a: Matrix, b: Matrix): Matrix {
+  const columns = transposed(b)
+  return a.map(row => columns.map(column => dot(row, column)))
 }
 
 /**
@@ -31,14 +36,12 @@ export function symmetricEigen(a: Matrix): { values: number[]; vectors: Matrix }
         const tangent = Math.sign(theta || 1) / (Math.abs(theta) + Math.hypot(theta, 1))
         const cosine = 1 / Math.hypot(tangent, 1)
         const sine = tangent * cosine
-        for (const row of [a, vectors].flat()) {
-          ;[row[p], row[q]] = [cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]]
-        }
-        for (let k = 0; k < size; k++) {
-          const [x, y] = [a[p][k], a[q][k]]
-          a[p][k] = cosine * x - sine * y
-          a[q][k] = sine * x + cosine * y
-        }
+        const turned = (x: number, y: number): [number, number] => [
+          cosine * x - sine * y,
+          sine * x + cosine * y
+        ]
+        for (const row of [...a, ...vectors]) [row[p], row[q]] = turned(row[p], row[q])
+        for (let k = 0; k < size; k++) [a[p][k], a[q][k]] = turned(a[p][k], a[q][k])
       }
     }
     if (rest < 1e-30) break

@@ -1,12 +1,5 @@
 import { Vector3 } from 'three'
-import {
-  cellsOf,
-  CURL_CELLS,
-  CURL_SCALE,
-  noiseStatistics,
-  seedOf,
-  type NoiseChannel
-} from '../noiseRecipes'
+import { CURL_CELLS, CURL_SCALE, noiseStatistics, seedOf, type NoiseChannel } from '../noiseRecipes'
 
 /** Three numbers: coordinates, or channels of a texture. */
 export type Vec3Array = readonly [number, number, number]
@@ -91,14 +84,15 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3Array)
   if (channel.warp !== undefined) {
     const { cells, amount } = channel.warp
     for (let axis = 0; axis < 3; axis++) {
-      place[axis] += amount * perlin(p, cellsOf(cells), seedOf(index, channel.terms.length + axis))
+      place[axis] +=
+        amount * perlin(p, [cells, cells, cells], seedOf(index, channel.terms.length + axis))
     }
   }
   let sum = 0
   let variance = 0
   channel.terms.forEach(({ kind, cells, weight }, i) => {
-    const { mean, deviation } = noiseStatistics[kind]
-    sum += weight * (terms[kind](place, cellsOf(cells), seedOf(index, i)) - mean)
+    const [mean, deviation] = noiseStatistics[kind]
+    sum += weight * (terms[kind](place, cells, seedOf(index, i)) - mean)
     variance += (weight * deviation) ** 2
   })
   const z = sum / Math.sqrt(variance)
@@ -107,7 +101,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3Array)
 }
 
 const potential = (p: Vec3Array, axis: number): number =>
-  perlin(p, cellsOf(CURL_CELLS), 3001 + 17 * axis)
+  perlin(p, [CURL_CELLS, CURL_CELLS, CURL_CELLS], 3001 + 17 * axis)
 
 /** Float64 twin of `curlNoise`: a field without divergence, encoded in [0, 1]. */
 export function curlNoise(p: Vec3Array): Vec3Array {

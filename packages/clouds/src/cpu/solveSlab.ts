@@ -1,6 +1,6 @@
 import { gaussLegendre } from '@welkin/atmosphere'
 import type { ScaledPhase } from './cloudPhase'
-import { cholesky, factorize, symmetricEigen, type Matrix } from './matrices'
+import { dot, factorize, matrix, product, symmetricEigen, type Matrix } from './matrices'
 
 /** Streams per hemisphere: moments of the light are within 1e-4 of 24 streams for suns up to 85°. */
 const STREAMS = 8
@@ -29,82 +29,56 @@ export interface SourceMoments {
   s22: number
 }
 
-function dot(a: readonly number[], b: readonly number[]): number {
-  let sum = 0
-  for (let i = 0; i < a.length; i++) sum += a[i] * b[i]
-  return sum
-}
+/** Hemispheres that look at the sky and at the ground, or faces that look there. */
+const SIDES = [1, -1] as const
 
 /** The light of one Fourier mode in azimuth: its modes in depth, whatever the slab's thickness. */
 class AzimuthMode {
+  readonly #m: number
   /** Inverse lengths k of the modes, which go like e^{−kτ} [1]. */
   readonly #rates: number[]
   /** Amplitudes to values at the streams: of the sum and of the difference of both hemispheres. */
-  readonly #sum: Matrix
-  readonly #difference: Matrix
-  /** Inverses (transposed) of the two above, without their normalisation. */
-  readonly #sumDual: Matrix
-  readonly #differenceDual: Matrix
-  /** √(w/μ) Λ_l at the streams, by l − m. */
-  readonly #basis: Matrix
-  /** Amplitudes to moments c_l = ∫ Λ_l L dμ, by l − m. */
-  readonly #moments: Matrix
-  /** (2l + 1)/2 ω χ_l by l − m. */
-  readonly weights: number[]
-  readonly #m: number
+  readonly #light: readonly [Matrix, Matrix]
+  /** Amplitudes to terms of the source for sin θ = 1, by l − m. */
+  readonly #sources: Matrix
 
   constructor(phase: ScaledPhase, m: number, streams: number) {
     const { nodes, weights } = gaussLegendre(streams)
     this.#m = m
-    this.weights = polynomials[m].map(
+    /** (2l + 1)/2 ω χ_l */
+    const factors = polynomials[m].map(
       (_, i) => ((2 * (m + i) + 1) / 2) * phase.albedo * phase.moments[m + i]
     )
-    // √w Λ_l at the streams
+    // √(w/μ) Λ_l at the streams
     const basis = polynomials[m].map(polynomial =>
-      nodes.map((mu, i) => Math.sqrt(weights[i]) * polynomial(mu) * (1 - mu * mu) ** (m / 2))
+      nodes.map((mu, i) => Math.sqrt(weights[i] / mu) * polynomial(mu) * (1 - mu * mu) ** (m / 2))
     )
     /** M^{−½} (1 − 2 Σ b Λ Λᵀ) M^{−½} over the l of one parity. */
     const transport = (parity: number): Matrix =>
-      nodes.map((muI, i) =>
-        nodes.map((muJ, j) => {
-          let value = i === j ? 1 : 0
-          for (let l = parity; l < basis.length; l += 2) {
-            value -= 2 * this.weights[l] * basis[l][i] * basis[l][j]
-          }
-          return value / Math.sqrt(muI * muJ)
-        })
+      matrix(nodes, (i, j) =>
+        basis.reduce(
+          (sum, row, l) => (l % 2 === parity ? sum - 2 * factors[l] * row[i] * row[j] : sum),
+          i === j ? 1 / nodes[i] : 0
+        )
       )
-    // p̂″ = X Y p̂ for p̂ the sum of both hemispheres; with X = L Lᵀ, z = L⁻¹ p̂: z″ = (Lᵀ Y L) z.
-    const lower = cholesky(transport(1))
-    const even = transport(0)
-    const range = nodes.map((_, i) => i)
-    const total = (term: (k: number) => number): number =>
-      range.reduce((sum, k) => sum + term(k), 0)
-    const evenLower = range.map(i => range.map(j => total(k => even[i][k] * lower[k][j])))
-    const { values, vectors } = symmetricEigen(
-      range.map(i => range.map(j => total(k => lower[k][i] * evenLower[k][j])))
-    )
+    // p̂″ = X Y p̂ for p̂ the sum of both hemispheres; with z = X^{−½} p̂: z″ = (X^½ Y X^½) z.
+    const { values: squares, vectors: axes } = symmetricEigen(transport(1))
+    const power = (exponent: number): Matrix =>
+      matrix(nodes, (i, j) =>
+        squares.reduce((sum, square, k) => sum + square ** exponent * axes[i][k] * axes[j][k], 0)
+      )
+    const root = power(0.5)
+    const { values, vectors } = symmetricEigen(product(product(root, transport(0)), root))
     this.#rates = values.map(value => Math.sqrt(Math.max(value, 1e-14)))
-    const sum = range.map(i => range.map(j => total(k => lower[i][k] * vectors[k][j])))
-    // L⁻ᵀ V, column by column
-    const difference = range.map(() => range.map(() => 0))
-    for (let j = 0; j < streams; j++) {
-      for (let i = streams - 1; i >= 0; i--) {
-        let value = vectors[i][j]
-        for (let k = i + 1; k < streams; k++) value -= lower[k][i] * difference[k][j]
-        difference[i][j] = value / lower[i][i]
-      }
-    }
-    this.#sumDual = difference
-    this.#differenceDual = sum
-    const scale = range.map(i => 1 / Math.sqrt(nodes[i]))
-    const roots = range.map(i => Math.sqrt(weights[i] * nodes[i]))
-    this.#sum = range.map(i => sum[i].map(value => value / roots[i]))
-    this.#difference = range.map(i => difference[i].map(value => value / roots[i]))
-    this.#moments = basis.map((row, l) =>
-      range.map(j => total(k => row[k] * scale[k] * (l % 2 === 0 ? sum : difference)[k][j]))
+    const parts = [product(root, vectors), product(power(-0.5), vectors)]
+    const [sum, difference] = parts.map(part =>
+      part.map((row, i) => row.map(value => value / Math.sqrt(weights[i] * nodes[i])))
     )
-    this.#basis = basis.map(row => row.map((value, i) => value * scale[i]))
+    this.#light = [sum, difference]
+    this.#sources = basis.map((row, l) => {
+      const [moments] = product([row], parts[l % 2])
+      return moments.map(value => factors[l] * polynomials[m][l](1) * value)
+    })
   }
 
   /**
@@ -115,90 +89,78 @@ class AzimuthMode {
    */
   slab(thickness: number, depths: readonly number[]): SlabMode {
     const rates = this.#rates
-    const range = rates.map((_, i) => i)
-    const far = rates.map(rate => Math.exp(-rate * thickness))
+    const [sums, differences] = this.#light
     // Light that comes in at the top, then at the bottom; amplitudes of modes from the top and the bottom.
     const solve = factorize(
-      [1, -1].flatMap(side =>
-        range.map(i =>
-          [1, -1].flatMap(origin =>
-            range.map(j => {
-              const light = this.#sum[i][j] + side * origin * rates[j] * this.#difference[i][j]
-              return (light / 2) * (side === origin ? 1 : far[j])
+      SIDES.flatMap(side =>
+        sums.map((row, i) =>
+          SIDES.flatMap(origin =>
+            row.map((sum, j) => {
+              const light = sum + side * origin * rates[j] * differences[i][j]
+              return side === origin ? light : light * Math.exp(-rates[j] * thickness)
             })
           )
         )
       )
     )
-    // Amplitudes to moments, by depth and l − m.
-    const moments = depths.map(depth => {
-      const down = rates.map(rate => Math.exp(-rate * depth))
-      const up = rates.map(rate => Math.exp(-rate * (thickness - depth)))
-      return this.#moments.map((row, l) => [
-        ...row.map((value, j) => value * down[j] * (l % 2 === 0 ? 1 : rates[j])),
-        ...row.map((value, j) => value * up[j] * (l % 2 === 0 ? 1 : -rates[j]))
-      ])
-    })
+    // Amplitudes to terms of the source, by depth and l − m.
+    const sources = depths.map(depth =>
+      this.#sources.map((row, l) =>
+        SIDES.flatMap(side => {
+          const way = side === 1 ? depth : thickness - depth
+          return row.map(
+            (value, j) => value * Math.exp(-rates[j] * way) * (side * rates[j]) ** (l % 2)
+          )
+        })
+      )
+    )
 
     return {
       fromSun: cosSun => {
-        const { rate, sum, difference } = this.#particular(cosSun)
-        const end = Math.exp(-thickness * rate)
-        const right = [1, -1].flatMap(side =>
-          range.map(i => {
-            const light = dot(this.#sum[i], sum) + side * dot(this.#difference[i], difference)
-            return (-light / 2) * (side === 1 ? 1 : end)
-          })
+        // Where the beam resonates with a mode the solution is finite, but not by this formula.
+        const resonates = (rate: number): boolean =>
+          rates.some(mode => Math.abs(mode / rate - 1) < 1e-7)
+        let rate = 1 / cosSun
+        while (resonates(rate)) rate *= 1 + 3e-7
+        // The solution that goes with the beam of sunlight, of unit irradiance on a plane across it.
+        const azimuth = this.#m === 0 ? 1 : 2
+        const strength = polynomials[this.#m].map(
+          polynomial => (azimuth * polynomial(cosSun)) / (Math.PI * polynomial(1))
         )
-        const amplitudes = solve(right)
-        const forced = this.#moments.map((row, l) => dot(row, l % 2 === 0 ? sum : difference))
-        return moments.map((rows, i) => {
+        const [even, odd] = [0, 1].map(parity =>
+          rates.map((_, j) =>
+            this.#sources.reduce(
+              (sum, row, l) => (l % 2 === parity ? sum + strength[l] * row[j] : sum),
+              0
+            )
+          )
+        )
+        const sum = rates.map((k, j) => (even[j] + rate * odd[j]) / (k * k - rate * rate))
+        const difference = sum.map((value, j) => rate * value + odd[j])
+        const end = Math.exp(-thickness * rate)
+        const amplitudes = solve(
+          SIDES.flatMap(side =>
+            sums.map((row, i) => {
+              const light = dot(row, sum) + side * dot(differences[i], difference)
+              return side === 1 ? -light : -light * end
+            })
+          )
+        )
+        const forced = this.#sources.map((row, l) => dot(row, l % 2 === 0 ? sum : difference))
+        return sources.map((rows, i) => {
           const beam = Math.exp(-depths[i] * rate)
           return rows.map((row, l) => dot(row, amplitudes) + beam * forced[l])
         })
       },
       fromAbove: () => {
-        const amplitudes = solve([...range.map(() => 1), ...range.map(() => 0)])
-        return moments.map(rows => rows.map(row => dot(row, amplitudes)))
+        const amplitudes = solve(SIDES.flatMap(side => rates.map(() => 1 + side)))
+        return sources.map(rows => rows.map(row => dot(row, amplitudes)))
       }
     }
   }
-
-  /** The solution that goes with the beam of sunlight, of unit irradiance on a plane across it. */
-  #particular(cosSun: number): Particular {
-    // Where the beam resonates with a mode the solution is finite, but not by this formula.
-    const resonates = (rate: number): boolean =>
-      this.#rates.some(mode => Math.abs(mode / rate - 1) < 1e-7)
-    let rate = 1 / cosSun
-    while (resonates(rate)) rate *= 1 + 3e-7
-    const azimuth = this.#m === 0 ? 1 : 2
-    const strength = polynomials[this.#m].map(
-      (polynomial, l) => (azimuth / Math.PI) * this.weights[l] * polynomial(cosSun)
-    )
-    const project = (dual: Matrix, parity: number): number[] =>
-      dual[0].map((_, j) => {
-        let value = 0
-        for (let l = parity; l < strength.length; l += 2) {
-          for (let i = 0; i < dual.length; i++)
-            value += strength[l] * this.#basis[l][i] * dual[i][j]
-        }
-        return value
-      })
-    const even = project(this.#differenceDual, 0)
-    const odd = project(this.#sumDual, 1)
-    const sum = this.#rates.map((k, j) => (even[j] + rate * odd[j]) / (k * k - rate * rate))
-    return { rate, sum, difference: sum.map((value, j) => rate * value + odd[j]) }
-  }
 }
 
-/** A solution ∝ e^{−rate·τ}: amplitudes of the sum and the difference of both hemispheres. */
-interface Particular {
-  rate: number
-  sum: number[]
-  difference: number[]
-}
-
-/** Moments c_l by depth and l − m. */
+/** Terms of the source by depth and l − m. */
 interface SlabMode {
   fromSun: (cosSun: number) => number[][]
   fromAbove: () => number[][]
@@ -241,25 +203,15 @@ export class SlabSolver {
    */
   slab(thickness: number, depths: readonly number[]): Slab {
     const modes = this.#modes.map(mode => mode.slab(thickness, depths))
-    const [w0, w1, w2] = this.#modes.map(mode => mode.weights)
     return {
       fromSun: cosSun => {
         const [zeroth, first, second] = modes.map(mode => mode.fromSun(cosSun))
-        return zeroth.map(([c00, c10, c20], i) => ({
-          s00: w0[0] * c00,
-          s10: w0[1] * c10,
-          s20: w0[2] * c20,
-          s11: w1[0] * Math.SQRT1_2 * first[i][0],
-          s21: w1[1] * Math.sqrt(3 / 2) * first[i][1],
-          s22: w2[0] * Math.sqrt(3 / 8) * second[i][0]
-        }))
+        return zeroth.map(([s00, s10, s20], i) => {
+          const [s11, s21] = first[i]
+          return { s00, s10, s20, s11, s21, s22: second[i][0] }
+        })
       },
-      fromAbove: () =>
-        modes[0].fromAbove().map(([c00, c10, c20]) => ({
-          s00: w0[0] * c00,
-          s10: w0[1] * c10,
-          s20: w0[2] * c20
-        }))
+      fromAbove: () => modes[0].fromAbove().map(([s00, s10, s20]) => ({ s00, s10, s20 }))
     }
   }
 }

@@ -1,17 +1,11 @@
-import { Fn, vec2, vec3 } from 'three/tsl'
+import { Fn, float, vec2, vec3 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import {
-  CLOUD_LIGHT_BEND,
-  CLOUD_LIGHT_LAYERS,
-  CLOUD_LIGHT_SIZE,
-  CLOUD_LIGHT_THICKEST
-} from '../cpu/cloudLightTable'
+import { CLOUD_LIGHT_BEND, CLOUD_LIGHT_THICKEST } from '../cpu/cloudLightTable'
+import { depths, layers, positions, suns } from '../cpu/cloudLightSize'
 import { PUFF_DEPTH } from '../cpu/cloudLight'
-import { deepestPuff, leakCoefficients as c } from '../cpu/lateralLeak'
+import * as c from '../cpu/lateralLeak'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
 import { singlePhase } from './cloudPhase'
-
-const { positions, depths, suns } = CLOUD_LIGHT_SIZE
 
 /** Where a sample is in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
 export interface CloudSourceNodes {
@@ -53,13 +47,22 @@ function slabPlace(depth: Float, thickness: Float): Vec2 {
   )
 }
 
-const layer = (index: Float): Float => index.add(0.5).div(CLOUD_LIGHT_LAYERS)
+/** Reads a layer of the table. */
+const read = ({ table }: CloudLight, place: Vec2, layer: Float): Vec4 =>
+  table
+    .sample(vec3(place, layer.add(0.5).div(layers)))
+    .level(0)
+    .toConst()
+
+/** x + y μ + z (3μ² − 1)/2. */
+const series = ({ x, y, z }: Vec4, cosine: Float): Float =>
+  x.add(y.mul(cosine)).add(z.mul(cosine.mul(cosine).mul(1.5).sub(0.5)))
 
 /** Share of a slab's multiply scattered light that a ball keeps. Twin: `lateralLeak` */
 function lateralLeak(light: CloudLight, sample: CloudSourceNodes): Float {
   const { depthToSun, depthThrough, depthAcross, layered } = sample
   const part = depthToSun.div(depthThrough.max(1e-4)).clamp().toConst()
-  const depth = light.diffusing.mul(depthAcross.min(deepestPuff)).add(1).log().toConst()
+  const depth = light.diffusing.mul(depthAcross.min(c.deepestPuff)).add(1).log().toConst()
   const chord = depthThrough.div(depthAcross.max(1e-4)).clamp().toConst()
   const byPart = part.mul(c.part2).add(depth.mul(c.partDepth)).add(chord.mul(c.partChord))
   const byDepth = depth.mul(c.depth2).add(chord.mul(c.depthChord)).add(c.depth)
@@ -104,19 +107,11 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     const depth = depthToSun.mul(cosSun).clamp(0, thickness).toConst()
     const place = slabPlace(depth, thickness).toConst()
     const sun = cosSun.mul(suns - 1).toConst()
-    const first = light.table
-      .sample(vec3(place, layer(sun)))
-      .level(0)
-      .toConst()
-    const second = light.table
-      .sample(vec3(place, layer(sun.add(suns))))
-      .level(0)
-      .toConst()
+    const first = read(light, place, sun)
+    const second = read(light, place, sun.add(suns))
     const along = cosViewSun.sub(cosView.mul(cosSun)).toConst()
     const sines = cosView.mul(cosView).oneMinus().mul(cosSun.mul(cosSun).oneMinus())
-    const diffuse = first.x
-      .add(first.y.mul(cosView))
-      .add(first.z.mul(cosView.mul(cosView).mul(1.5).sub(0.5)))
+    const diffuse = series(first, cosView)
       .add(first.w.add(second.x.mul(cosView)).mul(along))
       .add(second.y.mul(along.mul(along).mul(2).sub(sines)))
     const path = depthToEye === undefined ? depthToSun : depthToSun.add(depthToEye)
@@ -154,18 +149,15 @@ export function cloudAmbientShares(
   const above = depthAbove.max(0).mul(openness).toConst()
   const below = depthBelow.max(0).mul(openness).toConst()
   const place = slabPlace(above, above.add(below)).toConst()
-  const at = (uv: Vec2): Vec4 =>
-    light.table
-      .sample(vec3(uv, (2 * suns + 0.5) / CLOUD_LIGHT_LAYERS))
-      .level(0)
+  const at = (uv: Vec2, cosine: Float): Float =>
+    series(read(light, uv, float(2 * suns)), cosine)
+      .max(0)
       .toConst()
-  const fromSky = at(place)
-  // The same slab seen from below.
-  const fromGround = at(vec2(place.x.oneMinus(), place.y))
-  const second = cosView.mul(cosView).mul(1.5).sub(0.5).toConst()
-  const sky = fromSky.x.add(fromSky.y.mul(cosView)).add(fromSky.z.mul(second)).max(0)
-  const ground = fromGround.x.sub(fromGround.y.mul(cosView)).add(fromGround.z.mul(second)).max(0)
-  return { sky: sky.toConst(), ground: ground.toConst() }
+  return {
+    sky: at(place, cosView),
+    // The same slab seen from below.
+    ground: at(vec2(place.x.oneMinus(), place.y), cosView.negate().toConst())
+  }
 }
 
 /**

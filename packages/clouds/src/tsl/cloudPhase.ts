@@ -1,7 +1,7 @@
 import { Fn, If, mix } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
 import { LEAST_ASYMMETRY } from '../cpu/cloudPhase'
-import type { Float } from '../tsl-types'
+import { layout, type Float } from '../tsl-types'
 
 const FOUR_PI = 4 * Math.PI
 
@@ -22,11 +22,7 @@ export const henyeyGreenstein = /*#__PURE__*/ Fn(
       .toConst('squaredChord')
     return square.oneMinus().div(squaredChord.mul(squaredChord.sqrt()).mul(FOUR_PI))
   },
-  {
-    name: 'cloudHenyeyGreenstein',
-    type: 'float',
-    inputs: ['asymmetry', 'cosScatter'].map(name => ({ name, type: 'float' }))
-  }
+  layout('cloudHenyeyGreenstein', 'float', { asymmetry: 'float', cosScatter: 'float' })
 )
 
 /** Terms l ≤ 2 of a Henyey–Greenstein function. */

@@ -1,12 +1,9 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { densityShape } from '../layerUniforms'
 import type { Float, Vec3 } from '../tsl-types'
-import { spreadDensity, type CloudSample } from './density'
+import { asideFactor, spreadDepth, type CloudSample } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
-
-const { farFill } = densityShape
 
 /**
  * Vertical optical depth of all clouds above or below a place of the ground, from the weather alone.
@@ -16,11 +13,10 @@ const { farFill } = densityShape
 export function cloudColumn(field: CloudField, sample: CloudSample): Float {
   const foot = footOffset(field, sample).toConst()
   const sum = float(0).toVar()
-  forLayers(field, 'cloudColumnLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const weather = weatherAt(field, layer, foot, sample)
-    const depth = layer.density.mul(layer.thickness).mul(farFill)
-    sum.addAssign(depth.mul(spreadDensity(layer, weather)))
+    sum.addAssign(spreadDepth(field, layer, weather))
   })
   return sum
 }
@@ -39,7 +35,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
   const sum = float(0).toVar()
   const cosSun = sample.up.dot(toLight).toConst() as Float
   const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
-  forLayers(field, 'lightColumnLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
     const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float
@@ -51,8 +47,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
       const there = { offset, altitude, up, distance: sample.distance }
       const foot = footOffset(field, there).toConst()
       const weather = weatherAt(field, layer, foot, there)
-      const depth = layer.density.mul(layer.thickness).mul(farFill)
-      sum.addAssign(depth.mul(spreadDensity(layer, weather)).mul(above).div(slope))
+      sum.addAssign(spreadDepth(field, layer, weather).mul(above).mul(asideFactor(layer, slope)))
     })
   })
   return sum

@@ -1,12 +1,27 @@
 import { If, float, int, log2, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
+import {
+  anvilDensity,
+  anvilFill,
+  anvilMean,
+  anvilReach,
+  erosion,
+  moreFibres,
+  mostFibres,
+  thinFibres,
+  leastCarving,
+  lostCarving,
+  shapeBlur,
+  solidFill,
+  tallness
+} from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
-import { CURL_AMOUNT, CURL_PERIOD, densityShape, DETAIL_PERIOD } from '../layerUniforms'
+import { CURL_AMOUNT, CURL_PERIOD, DETAIL_PERIOD } from '../layerUniforms'
 import { CURL_SCALE } from '../noiseRecipes'
 import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
-import { footOffset, weatherAt, type CloudWeather } from './weather'
+import { footOffset, squared, weatherAt, type CloudWeather } from './weather'
 
 /** A place in the air, as seen from the field's camera. */
 export interface CloudSample {
@@ -27,14 +42,15 @@ const NOWHERE = 1e6
  * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
  * periods of the weather, and where its shape is besides, in periods of the shape.
  */
-const STEEPEST = { weather: 0.03, shape: 0.05 }
+const STEEPEST_WEATHER = 0.03
+const STEEPEST_SHAPE = 0.05
 
-const { anvilDensity, anvilReach, erosion, farFill, leastCarving, lostCarving, shapeBlur } =
-  densityShape
+/** Heights in a layer between which towers become anvils. */
+const ANVIL = [0.62, 0.8] as const
 
 /** How much of a layer's anvil is at a height, in [0, 1]. */
 const anvilAt = (layer: LayerNodes, height: Float): Float =>
-  layer.anvil.mul(smoothstep(0.62, 0.8, height)).toConst()
+  layer.anvil.mul(smoothstep(...ANVIL, height)).toConst()
 
 /** 1 − (2 ĥ^t − 1)²: how much of a layer's air cloud may fill at a height. Anvils are full up to the top. */
 function heightProfile(layer: LayerNodes, height: Float, anvil: Float): Float {
@@ -68,7 +84,7 @@ function carving(
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x
     .add(noise.y.sub(0.5).mul(0.3))
-    .add(smoothstep(shapeBlur[0], shapeBlur[1], level).mul(lostCarving))
+    .add(smoothstep(0, shapeBlur, level).mul(lostCarving))
   const carved = layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)).toConst() as Float
   const left = filled.sub(carved).toVar() as Float & { subAssign: (n: Float) => void }
   const most = layer.detailAmount.mul(erosion).toConst() as Float
@@ -93,21 +109,57 @@ function carving(
   return { left, carved }
 }
 
-/** Optical depth of a cloud from top to base. */
-const columnOf = (layer: LayerNodes): Float =>
-  layer.density.mul(layer.thickness).mul(farFill).max(1e-4).toConst()
+/** Mean density of a cloudy column over the densest. */
+export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
+  const square = squared(cover, 1)
+  const fibres = square.mul(moreFibres).add(squared(square, 5).mul(mostFibres)).add(thinFibres)
+  return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
+}
 
-/** Share of a cell's light that its clouds take, as if they were spread evenly over it. */
-export function spreadDensity(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const depth = columnOf(layer)
-  const blocked = cover.mul(depth.negate().exp().oneMinus())
+/** Optical depth of a cloud from top to base, as it counts in the light that comes through. */
+const columnOf = (
+  { depthScale }: CloudField,
+  layer: LayerNodes,
+  weather: Pick<CloudWeather, 'cover'>
+): Float =>
+  layer.density
+    .mul(layer.thickness)
+    .mul(columnFill(layer, weather))
+    .mul(depthScale)
+    .max(1e-4)
+    .toConst()
+
+/** Optical depth that takes as much light as the clouds of a cell do, were they spread evenly over it. */
+export function spreadDepth(
+  field: CloudField,
+  layer: LayerNodes,
+  weather: Pick<CloudWeather, 'cover'>
+): Float {
+  const blocked = weather.cover.mul(columnOf(field, layer, weather).negate().exp().oneMinus())
   // Of thick clouds nothing comes through, in float32.
-  return blocked.oneMinus().max(1e-30).log().negate().div(depth)
+  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
+}
+
+/** Mean over a layer's heights of what clouds fill that are not seen one by one. */
+function profileMean(layer: LayerNodes): Float {
+  const e = layer.profileExponent
+  return layer.anvil.mix(e.mul(4).div(e.add(1).mul(e.mul(2).add(1))), anvilMean)
+}
+
+/** Least cosine between a ray and the zenith by which clouds are taken to hide more. */
+const LEAST_COSINE = 0.05
+
+/**
+ * How much more of the sky a layer's clouds hide along a ray than straight up, as a factor of the optical
+ * depth that they have, spread evenly: tall ones are seen from the side as well, flat ones are not.
+ */
+export function asideFactor(layer: LayerNodes, cosine: Float): Float {
+  const tall = layer.thickness.mul(layer.perWeatherPeriod).mul(tallness).min(1)
+  return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }
 
 /** Between two densities, such that the light that columns of them let through is mixed. */
-function mixedDensity(layer: LayerNodes, a: Float, b: Float, share: Float): Float {
-  const depth = columnOf(layer)
+function mixedDensity(depth: Float, a: Float, b: Float, share: Float): Float {
   const through = share.mix(a.mul(depth).negate().exp(), b.mul(depth).negate().exp())
   return through.max(1e-30).log().negate().div(depth)
 }
@@ -127,11 +179,11 @@ function eachLayer(
   body: (layer: LayerNodes, weather: CloudWeather, height: Float) => void
 ): void {
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'cloudLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
-      body(layer, weatherAt(field, layer, foot, sample), height)
+      body(layer, weatherAt(field, layer, foot, sample, 'where spread'), height)
     })
   })
 }
@@ -169,14 +221,37 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
   layer.shapeAmount
     .mul(leastCarving)
     .sub(fill)
-    .mul(STEEPEST.weather)
+    .mul(STEEPEST_WEATHER)
     .div(layer.perWeatherPeriod)
     .max(0)
+
+/**
+ * Distance from a place in which no cloud is, whatever the noise [m].
+ */
+export function clearanceAt(field: CloudField, sample: CloudSample): Float {
+  const clearance = float(NOWHERE).toVar()
+  const foot = footOffset(field, sample).toConst()
+  forLayers(field, index => {
+    const layer = layerAt(field, index)
+    If(layer.coverage.greaterThan(0), () => {
+      const weather = weatherAt(field, layer, foot, sample, 'where spread')
+      const isSeen = weather.spread.mul(weather.cover).equal(0)
+      const { altitude } = sample
+      const { baseAltitude, thickness } = layer
+      const apart = baseAltitude.sub(altitude).max(altitude.sub(baseAltitude).sub(thickness))
+      const clear = isSeen.select(clearanceIn(layer, weather), 0).max(apart)
+      clearance.assign(clearance.min(clear))
+    })
+  })
+  return clearance
+}
 
 /**
  * One layer in a given weather.
  *
  * @param height - In the layer, in (0, 1).
+ * @param direction - Of the ray on which clouds are met, as far as they are not seen one by one; if it is
+ *   left out, it goes straight up.
  */
 function layerMatter(
   field: CloudField,
@@ -185,7 +260,8 @@ function layerMatter(
   sample: CloudSample,
   height: Float,
   detail: boolean,
-  unseen: Unseen = 'mean'
+  unseen: Unseen = 'mean',
+  direction?: Vec3
 ): CloudMatter {
   const anvil = anvilAt(layer, height)
   const profile = heightProfile(layer, height, anvil)
@@ -197,11 +273,21 @@ function layerMatter(
   If(filled.greaterThan(least), () => {
     const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
     density.assign(left.mul(layer.sharpness).clamp(0, 1))
-    clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
+    clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
-    const whole = unseen === 'mean' ? spreadDensity(layer, weather) : float(farFill)
-    density.assign(mixedDensity(layer, density, whole.mul(profile).toConst(), spread))
+    // Of towers with anvils, these are what is seen from afar.
+    const hidden = profile.mul(layer.anvil.mix(1, smoothstep(...ANVIL, height)))
+    const whole =
+      unseen === 'mean'
+        ? spreadDepth(field, layer, weather)
+            .mul(layer.perThickness)
+            .div(layer.density.mul(profileMean(layer)).max(1e-9))
+        : columnFill(layer, weather).max(layer.anvil)
+    const depth = columnOf(field, layer, weather)
+    const cosine = direction?.dot(sample.up).toConst() as Float | undefined
+    const aside = cosine === undefined ? float(1) : asideFactor(layer, cosine).mul(cosine.abs())
+    density.assign(mixedDensity(depth, density, whole.mul(hidden).mul(aside).toConst(), spread))
     clearance.assign(float(0))
   })
   return {
@@ -232,12 +318,14 @@ export interface PairMatter {
  *
  * @param middle - All three have to be within the altitudes of the same layers.
  * @param samples - Make the samples, where they are needed.
+ * @param direction - Of the ray that both are on.
  * @param range - The layers that are looked at.
  */
 export function pairMatter(
   field: CloudField,
   middle: CloudSample,
   samples: readonly (() => CloudSample)[],
+  direction: Vec3,
   range: LayerRange
 ): PairMatter {
   const sum = vec2(0).toVar() as Vec2
@@ -249,14 +337,14 @@ export function pairMatter(
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
     If(mayHold(layer, heightIn(layer, middle.altitude)), () => {
-      const weather = weatherAt(field, layer, foot, middle)
+      const weather = weatherAt(field, layer, foot, middle, 'where spread')
       const found = vec2(0).toVar() as Vec2
       const clear = clearanceIn(layer, weather).toVar() as Float
       If(mayFill(layer, weather), () => {
         samples.forEach((sampleAt, i) => {
           const sample = sampleAt()
           const height = heightIn(layer, sample.altitude)
-          const matter = layerMatter(field, layer, weather, sample, height, true)
+          const matter = layerMatter(field, layer, weather, sample, height, true, 'mean', direction)
           found.addAssign(i === 0 ? vec2(matter.extinction, 0) : vec2(0, matter.extinction))
           if (i === 1) clear.assign(matter.clearance)
         })
@@ -271,7 +359,7 @@ export function pairMatter(
       })
     })
   }
-  forLayers(field, 'pairLayer', look, range)
+  forLayers(field, look, range)
   return { extinction: sum, clearance, weather: { values, shapeWarp } }
 }
 
@@ -317,7 +405,7 @@ export function layerPair(
   add: (extinction: Float, index: number) => void
 ): void {
   const foot = footOffset(field, middle).toConst()
-  const weather = weatherAt(field, layer, foot, middle)
+  const weather = weatherAt(field, layer, foot, middle, 'where spread')
   samples.forEach((sample, i) => {
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {

@@ -1,14 +1,14 @@
 import { int, vec3 } from 'three/tsl'
-import type { Matrix3 } from 'three'
+import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { LAYER_STRIDE } from '../layerUniforms'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../tsl-types'
 
 /** A vector turned by a constant rotation. */
-export const rotate = (rotation: Matrix3, v: Vec3): Vec3 => {
-  const e = rotation.elements
+export const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
+  const { elements: e } = new Matrix4().makeRotationFromQuaternion(rotation)
   // Three builds constant matrices row by row, variable ones column by column.
-  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 3], e[row + 6]).dot(v))
+  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 4], e[row + 8]).dot(v))
   return vec3(x, y, z)
 }
 
@@ -38,6 +38,7 @@ export interface LayerNodes {
   cloudVariance: Float
   /** `layerForms`; the reciprocal of its stretch. */
   perStretch: Float
+  fibrous: Float
   steepness: Float
   sharpness: Float
   coarseness: Float
@@ -89,6 +90,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     planet: kind.z,
     cloudVariance: kind.w,
     perStretch: shape.w,
+    fibrous: read(5).w,
     steepness: read(3).w,
     sharpness: read(4).w,
     coarseness: detail.w,
@@ -107,17 +109,12 @@ export interface LayerRange {
 }
 
 /**
- * Calls back for each layer, with code for one if there is one.
+ * Calls back for each layer, with code for one if there is one. Not to be nested.
  *
  * @param range - Which ones; all if it is left out.
  */
-export function forLayers(
-  field: CloudField,
-  name: string,
-  body: (index: Int) => void,
-  range?: LayerRange
-): void {
+export function forLayers(field: CloudField, body: (index: Int) => void, range?: LayerRange): void {
   const { length } = field.layers
   if (length === 1) body(int(0))
-  else loop(name, range?.last ?? length, body, range?.first)
+  else loop('layer', range?.last ?? length, body, range?.first)
 }

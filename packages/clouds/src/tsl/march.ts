@@ -26,6 +26,8 @@ export interface CloudRay {
   end: Float
   /** How the steps of a ray are shifted, in [0, 1). */
   jitter: Float
+  /** How far there is no cloud for sure; 0 if left out [m]. */
+  start?: Float
 }
 
 /** What a ray meets on its way. */
@@ -53,7 +55,7 @@ export function marchClouds(
   light: CloudLight,
   shadows: CloudShadows,
   quality: QualityUniforms,
-  { direction, end, jitter }: CloudRay
+  { direction, end, jitter, start = float(0) }: CloudRay
 ): MarchedClouds {
   const { view } = field
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
@@ -67,7 +69,7 @@ export function marchClouds(
   const passingSeen = float(0).toVar()
   const weightedDistance = float(0).toVar()
   const steps = float(0).toVar()
-  const position = float(0).toVar()
+  const position = start.toVar()
   /** End of the stretch between two shells. */
   const shell = float(0).toVar()
   const longest = float(FAR_AWAY).toVar()
@@ -145,6 +147,7 @@ export function marchClouds(
         field,
         sampleAt(position.add(length)),
         places.map(at => () => sampleAt(at)),
+        direction,
         about.range
       )
       const depth = matter.extinction.mul(light.depthScale).mul(length).toConst() as Vec2

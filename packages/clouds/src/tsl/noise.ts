@@ -1,15 +1,8 @@
 import { Fn, bitXor, float, floor, int, shiftRight, uint, uvec3, vec3 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
-import { loop, type Float, type Int, type Vec3 } from '../tsl-types'
+import { layout, loop, type Float, type Int, type Vec3 } from '../tsl-types'
 
 type UVec3 = Node<'uvec3'>
-
-const layout = (name: string, type: string, inputs: Record<string, string>): never =>
-  ({
-    name,
-    type,
-    inputs: Object.entries(inputs).map(([input, kind]) => ({ name: input, type: kind }))
-  }) as never
 
 /**
  * Three numbers in [0, 1) for a cell of a lattice, each a multiple of 2⁻²⁴: exact in float32.

@@ -1,19 +1,12 @@
 import { float, vec3 } from 'three/tsl'
-import {
-  cellsOf,
-  CURL_CELLS,
-  CURL_SCALE,
-  noiseStatistics,
-  seedOf,
-  type NoiseChannel
-} from '../noiseRecipes'
+import { CURL_CELLS, CURL_SCALE, noiseStatistics, seedOf, type NoiseChannel } from '../noiseRecipes'
 import type { Float, Vec3 } from '../tsl-types'
 import { billow, perlin } from './noise'
 
 const terms = { perlin, billow }
 
 /** Φ(z) of the normal distribution, to 0.01. */
-const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
+export const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
 
 /**
  * One channel of a noise texture.
@@ -27,15 +20,15 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   let place = p
   if (warp !== undefined) {
     const shift = (axis: number): Float =>
-      perlin(p, vec3(...cellsOf(warp.cells)), float(seedOf(index, parts.length + axis)))
+      perlin(p, vec3(warp.cells), float(seedOf(index, parts.length + axis)))
     place = p.add(vec3(shift(0), shift(1), shift(2)).mul(warp.amount)).toConst()
   }
   let variance = 0
   let sum: Float = float(0)
   parts.forEach(({ kind, cells, weight }, i) => {
-    const { mean, deviation } = noiseStatistics[kind]
+    const [mean, deviation] = noiseStatistics[kind]
     variance += (weight * deviation) ** 2
-    const noise = terms[kind](place, vec3(...cellsOf(cells)), float(seedOf(index, i)))
+    const noise = terms[kind](place, vec3(...cells), float(seedOf(index, i)))
     sum = sum.add(noise.sub(mean).mul(weight))
   })
   const z = sum.div(Math.sqrt(variance)).toConst() as Float

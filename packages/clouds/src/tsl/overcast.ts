@@ -4,8 +4,8 @@ import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { CloudLight } from '../CloudLightTable'
 import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
-import { densityShape } from '../layerUniforms'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
+import { columnFill } from './density'
 import { forLayers, layerAt } from './layer'
 import { footOffset, weatherAt } from './weather'
 
@@ -19,17 +19,12 @@ export interface CloudSheetNodes {
   beam: Float
 }
 
-/** Clouds above and below a place. */
-export interface CloudSheets {
-  above: CloudSheetNodes
-  below: CloudSheetNodes
-  /** Altitude of the tops above and below the place; the place's own where there are none [m]. */
-  topAbove: Float
-  topBelow: Float
-}
+/** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
+export type PlacedSheet = CloudSheetNodes & { top: Float }
 
 /** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
-const REACH = { heights: 2, least: 1500 }
+const REACH_HEIGHTS = 2
+const LEAST_REACH = 1500
 
 /** Transmittances of a cloud by Eddington's approximation. Twin: cpu/overcast.ts */
 export function eddington(
@@ -62,24 +57,28 @@ export function sheetsAbout(
   altitude: Float,
   up: Vec3,
   cosSun: Float
-): CloudSheets {
+): { above: PlacedSheet; below: PlacedSheet } {
   const mu = cosSun.max(LOWEST_OVERCAST_SUN).toConst() as Float
   const distance = offset.length().toConst() as Float
   /** Sums of 1/t − 1 for diffuse light and the sun's, and of tops by the first. */
   const above = vec3(0).toVar() as Vec3
   const below = vec3(0).toVar() as Vec3
   const beam = float(1).toVar()
-  forLayers(field, 'overcastLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
       const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
-      const footprint = rise.mul(REACH.heights).max(REACH.least)
+      const footprint = rise.mul(REACH_HEIGHTS).max(LEAST_REACH)
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
       const foot = footOffset(field, sample).toConst()
-      const { cover } = weatherAt(field, layer, foot, sample)
+      const weather = weatherAt(field, layer, foot, sample)
+      const { cover } = weather
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
-      const depth = layer.density.mul(densityShape.farFill).mul(light.depthScale).toConst() as Float
+      const depth = layer.density
+        .mul(columnFill(layer, weather))
+        .mul(light.depthScale)
+        .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
       const passing = (part: Float): Float => cover.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {
@@ -93,21 +92,16 @@ export function sheetsAbout(
       add(below, layer.thickness.sub(over), top.min(altitude))
     })
   })
-  const sheet = (sum: Vec3): { diffuse: Float; direct: Float } => ({
+  const sheet = (sum: Vec3, through: Float): PlacedSheet => ({
     diffuse: sum.x.add(1).reciprocal().toConst(),
-    direct: sum.y.add(1).reciprocal().toConst()
-  })
-  const top = (sum: Vec3): Float =>
-    sum.x
+    direct: sum.y.add(1).reciprocal().toConst(),
+    beam: through,
+    top: sum.x
       .greaterThan(1e-6)
       .select(sum.z.div(sum.x.max(1e-6)), altitude)
       .toConst()
-  return {
-    above: { ...sheet(above), beam },
-    below: { ...sheet(below), beam: float(1) },
-    topAbove: top(above),
-    topBelow: top(below)
-  }
+  })
+  return { above: sheet(above, beam), below: sheet(below, float(1)) }
 }
 
 /** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
@@ -132,9 +126,10 @@ export function cloudyIrradiance(
   below: CloudSheetNodes,
   cosNormal: Float
 ): Vec4 {
+  const reflected = below.diffuse.oneMinus().toConst() as Float
   /** Of light on the ground that leaves the clouds over it. */
-  const escaping = albedo.mul(below.diffuse.oneMinus()).oneMinus().reciprocal().mul(below.diffuse)
-  const whiteness = albedo.mul(escaping).mul(below.diffuse).add(below.diffuse.oneMinus())
+  const escaping = albedo.mul(reflected).oneMinus().reciprocal().mul(below.diffuse)
+  const whiteness = albedo.mul(escaping).mul(below.diffuse).add(reflected)
   const passing = sun.above.mul(above.direct).add(sky.here.mul(above.diffuse))
   const bounced = passing.div(whiteness.mul(above.diffuse.oneMinus()).oneMinus())
   const more = bounced
@@ -144,7 +139,7 @@ export function cloudyIrradiance(
   const beam = sun.below.mul(above.beam).toConst() as Vec4
   const diffuse = sky.below.mul(above.diffuse).add(more).toConst() as Vec4
   const onGround = beam.mul(below.direct).add(diffuse.mul(below.diffuse)).mul(escaping)
-  const clouds = beam.mul(below.direct.oneMinus()).add(diffuse.mul(below.diffuse.oneMinus()))
+  const clouds = beam.mul(below.direct.oneMinus()).add(diffuse.mul(reflected))
   const part = onGround.div(sun.below.add(sky.below).max(1e-20))
   const lower = ground.mul(part.sub(above.diffuse)).add(clouds)
   return plane
@@ -169,17 +164,17 @@ export function overcastIrradiance(
   clear: Vec4
 ): Vec4 {
   const { uniforms, transmittance, diffuse } = view.air
-  const sheets = sheetsAbout(field, light, offset, altitude, up, cosSun)
+  const { above, below } = sheetsAbout(field, light, offset, altitude, up, cosSun)
   const sunAt = (height: Float): Vec4 =>
     transmittanceToSun(uniforms, transmittance, height, cosSun).mul(cosSun.max(0)).toConst()
   const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosSun)
-  const onClouds = horizontalIrradiance(uniforms, diffuse!, sheets.topBelow, cosSun)
+  const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosSun)
   const lights: ClearLightNodes = {
-    sun: { above: sunAt(sheets.topAbove), below: sunAt(sheets.topBelow) },
+    sun: { above: sunAt(above.top), below: sunAt(below.top) },
     sky: { here: here.up.toConst(), below: onClouds.up.toConst() },
     ground: here.down.toConst(),
     plane: clear,
     albedo: uniforms.groundAlbedo
   }
-  return cloudyIrradiance(lights, sheets.above, sheets.below, cosNormal)
+  return cloudyIrradiance(lights, above, below, cosNormal)
 }

@@ -1,9 +1,9 @@
-import { log2 } from 'three/tsl'
+import { log2, vec2, vec4 } from 'three/tsl'
 import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 /**
  * Pictures of clouds: light and transmittance; and log₂ of their distance, of the distance of what was
- * drawn, looks, steps.
+ * drawn, looks, steps. What is remembered has the latter as bytes: see {@link pack}.
  */
 export interface CloudPictures {
   readonly light: LevelTexture<Vec2>
@@ -31,3 +31,39 @@ export function fits(end: Float, { x: distance, y: otherEnd }: Vec4): Float {
 
 /** Brightness that differences of colour are told by. */
 export const brightness = ({ x, y, z }: Vec4): Float => x.add(y.mul(2)).add(z).mul(0.25)
+
+/** log₂ of the distances that bytes hold, from the first on, and how many octaves [m]. */
+const FIRST_OCTAVE = 4
+const OCTAVES = 24
+
+/** Parts of a look that are told apart, and where in 16 bits the sign is. */
+const LOOK_PARTS = 127
+const SIGN = 2 ** 15
+
+const toByte = (distance: Float): Float => distance.sub(FIRST_OCTAVE).div(OCTAVES).clamp()
+const fromByte = (byte: Float): Float => byte.mul(OCTAVES).add(FIRST_OCTAVE)
+
+/** log₂ of a distance, as exact as a byte has it: to 3 %. */
+export const rounded = (distance: Float): Float =>
+  fromByte(toByte(distance).mul(255).round().div(255))
+
+/**
+ * log₂ of two distances in a byte each and looks in two, in [0, 1]: on GPUs, writing a picture takes longer
+ * than computing it.
+ *
+ * @param looks - In [−256, 256]; 0 becomes a little more.
+ */
+export function pack(distance: Float, end: Float, looks: Float): Vec4 {
+  const parts = looks.abs().mul(LOOK_PARTS).round().max(1)
+  const bits = parts.add(looks.lessThan(0).select(SIGN, 0)).toConst() as Float
+  const high = bits.div(256).floor().toConst() as Float
+  return vec4(toByte(distance), toByte(end), vec2(high, bits.sub(high.mul(256))).div(255))
+}
+
+/** What {@link pack} has packed: log₂ of both distances, and looks. */
+export function unpack(bytes: Vec4): Vec4 {
+  const [high, low] = [bytes.z, bytes.w].map(byte => byte.mul(255).round())
+  const bits = high.mul(256).add(low).toConst() as Float
+  const parts = bits.lessThan(SIGN).select(bits, bits.sub(SIGN).negate())
+  return vec4(fromByte(bytes.x), fromByte(bytes.y), parts.div(LOOK_PARTS), 0).toConst()
+}

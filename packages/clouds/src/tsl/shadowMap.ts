@@ -17,7 +17,9 @@ import { forLayers, layerAt, type LayerNodes } from './layer'
 const STEPS = 32
 
 /** Steps longer than this are cut in three to find where clouds begin [m]; how often, and on a ray. */
-const SEARCH = { from: 100, cuts: 2, times: 2 }
+const SEARCH_FROM = 100
+const CUTS = 2
+const SEARCHES = 2
 
 /** Rays end this far from a cascade's plane, in its half widths: under a low sun they are long. */
 const REACH = 1.2
@@ -97,7 +99,7 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
     const weighted = vec3(0).toVar() as Vec3
     /** Optical depths, of all and of layers that cast shadows. */
     const depths = vec2(0).toVar() as Vec2
-    forLayers(field, 'shadowLayer', index => {
+    forLayers(field, index => {
       const layer = layerAt(field, index)
       const { front, back } = stretch(field, layer, radial, height, reach)
       const length = front.sub(back).max(0).div(STEPS).toConst() as Float
@@ -115,9 +117,9 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
         const clear = front.toVar() as Float
         const cloudy = front.toVar() as Float
         const cuts = int(0).toVar() as Int
-        const searches = int(length.greaterThan(SEARCH.from).select(SEARCH.times, 0)).toVar() as Int
+        const searches = int(length.greaterThan(SEARCH_FROM).select(SEARCHES, 0)).toVar() as Int
         const wasClear = bool(true).toVar() as Bool
-        loop('shadowPair', STEPS / 2 + SEARCH.times * (SEARCH.cuts + 2), () => {
+        loop('shadowPair', STEPS / 2 + SEARCHES * (CUTS + 2), () => {
           If(place.lessThanEqual(back), () => {
             Break()
           })
@@ -145,7 +147,7 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
             .ElseIf(wasClear.and(entry.lessThan(2)).and(searches.greaterThan(0)), () => {
               cloudy.assign(at)
               clear.assign(at.add(step))
-              cuts.assign(int(SEARCH.cuts))
+              cuts.assign(int(CUTS))
               searches.subAssign(int(1))
               wasClear.assign(false)
             })

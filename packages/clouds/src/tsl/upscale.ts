@@ -1,4 +1,4 @@
-import { Fn, If, exp2, int, mix, smoothstep, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, exp2, float, int, mix, smoothstep, uv, vec2, vec4 } from 'three/tsl'
 import {
   fromBits,
   toBits,
@@ -19,7 +19,10 @@ import {
   encodeDistance,
   FARTHEST,
   fits,
+  pack,
+  rounded,
   SAME,
+  unpack,
   type CloudPictures
 } from './pictures'
 import { sightAt, sightEnd, type Sight, type SightNodes } from './sight'
@@ -39,7 +42,10 @@ const LEAST_MEMORY = 0.1
  * every frame, and is kept while the picture hardly moves, with things in the same places. Not what has been seen in too few looks: it may
  * be left over from a move.
  */
-const SLACK = { standing: 1, moving: 0.01, young: 1.5, old: 4 }
+const STANDING_SLACK = 1
+const MOVING_SLACK = 0.01
+const YOUNG_LOOKS = 1.5
+const OLD_LOOKS = 4
 
 /** Error of the reprojection at which history is forgotten [pixels]. */
 const PARALLAX = 4
@@ -89,17 +95,18 @@ function remembered(
     .toConst() as Vec2
   const isInside = from.clamp(vec2(0), frame.size).equal(from).all().and(clipped.z.greaterThan(0))
   const nearest = from.floor().add(0.5).div(frame.size)
-  const about = history.place.sample(nearest).level(0).toConst() as Vec4
+  const about = unpack(history.place.sample(nearest).level(0))
+  const seen = rounded(end).toConst() as Float
   const light = history.light.sample(from.div(frame.size)).level(0).toConst() as Vec4
   // How far off clouds at that distance are from where those of this one were.
   const ratio = exp2(distance.sub(about.x)).sub(1).abs()
   const way = moved.length().toConst() as Float
   const parallax = ratio.mul(way).div(PARALLAX).oneMinus().clamp()
-  const valid = isInside.select(fits(end, about), 0).mul(parallax)
+  const valid = isInside.select(fits(seen, about), 0).mul(parallax)
   const { gainChange } = frame
   return {
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    sameness: end.sub(about.y).abs().lessThan(SAME).select(way.oneMinus().max(0), 0),
+    sameness: seen.sub(about.y).abs().lessThan(SAME).select(way.oneMinus().max(0), 0),
     weight: about.z
       .abs()
       .min(frame.memory.mul(way.div(FAST).oneMinus()).max(LEAST_MEMORY))
@@ -146,12 +153,12 @@ export function upscale(
       const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
       const before = vec4(0).toVar() as Vec4
       If(isClear(cellLight).and(frame.hasHistory.greaterThan(0)), () => {
-        before.assign(history.place.sample(middle).level(0))
+        before.assign(unpack(history.place.sample(middle).level(0)))
       })
       // Clear around and clear before: one more look at nothing.
       const looks = before.z.sub(frame.block.mul(frame.block).reciprocal())
       light.assign(vec4(0, 0, 0, 1))
-      place.assign(vec4(FARTHEST, before.y, looks.max(frame.memory.negate()), 0))
+      place.assign(pack(float(FARTHEST), before.y, looks.max(frame.memory.negate())))
       If(before.z.greaterThanEqual(0), () => {
         const cell: Cell = {
           light: cellLight,
@@ -167,9 +174,9 @@ export function upscale(
           const origin = frame.originArray.element(cell.place.w.toInt()).xyz
           const last = remembered(sights, history, pixel, sight, end, now.distance, origin)
           If(last.weight.greaterThan(0), () => {
-            const slack = smoothstep(SLACK.young, SLACK.old, last.weight)
-              .mul(last.sameness.mul(SLACK.standing))
-              .max(SLACK.moving)
+            const slack = smoothstep(YOUNG_LOOKS, OLD_LOOKS, last.weight)
+              .mul(last.sameness.mul(STANDING_SLACK))
+              .max(MOVING_SLACK)
             const clipped = clip(last.light, now, frame.clipping, slack)
             // What is known well does not learn from marched pixels that are not its own.
             const isOwn = now.look.greaterThan(OWN_LOOK).or(last.weight.lessThan(1))
@@ -181,7 +188,7 @@ export function upscale(
         })
         const looked = result.w.greaterThan(CLEAR).select(weight.negate(), weight)
         light.assign(toHalf(result.max(0), interleavedNoise(pixel, frame.noiseShift)))
-        place.assign(vec4(now.distance, end, looked, 0))
+        place.assign(pack(now.distance, end, looked))
       })
       return vec4(0)
     })()

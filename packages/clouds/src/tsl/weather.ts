@@ -1,20 +1,25 @@
-import { atan, log2, smoothstep, vec2 } from 'three/tsl'
+import { If, atan, float, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
+import { blur, carvedBlur, excess, leastBlur, leastVariance, meanEdge } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
-  densityShape,
   FIELD_PERIOD,
-  PLANET_WAVES,
+  FIELD_WEIGHT,
+  LAST_WAVES,
+  mapShift,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  scaleWeights,
-  SHAPE_WARP,
+  CLOUD_WARP,
+  FIELD_WARP,
   WEATHER_WARP
 } from '../layerUniforms'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { CloudSample } from './density'
 import { rotate, type LayerNodes } from './layer'
+import { cumulative } from './noiseChannels'
 
 /** What the weather says of a place in a layer. */
 export interface CloudWeather {
@@ -32,8 +37,6 @@ export interface CloudWeather {
   detailWarp: Vec3
 }
 
-const { blur, carvedBlur, excess, leastBlur, meanEdge } = densityShape
-
 /**
  * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
  * (d − (h − h_c) u_c) R/r, which does not cancel.
@@ -45,11 +48,11 @@ export function footOffset(field: CloudField, { offset, altitude }: CloudSample)
   return offset.sub(up.mul(rise)).mul(scale)
 }
 
-/** Share of the sky that the world map has covered around a place. */
+/** Share of the sky that the world map has covered around a place, in the direction of `up`. */
 function mappedShare(
   field: CloudField,
   worldMap: LevelTexture<Vec2>,
-  { up }: CloudSample,
+  up: Vec3,
   footprint: Float
 ): Float {
   const across = up.xy.length().max(1e-6).toConst() as Float
@@ -62,26 +65,34 @@ function mappedShare(
   return worldMap.sample(uv).level(log2(footprint.div(texel).max(1))).x
 }
 
-/** Share of the sky that a layer covers around a place, as far as it is known without noise. */
+/**
+ * Share of the sky that a layer covers around a place, as far as it is known without noise.
+ *
+ * @param shift - Of the look-up of the map, from the fields of the weather: it hides the shapes of the
+ *   map's texels from near, and is gone where fields are too small to be seen.
+ */
 function shareAt(
   field: CloudField,
   layer: LayerNodes,
-  sample: CloudSample,
-  footprint: Float
+  { up }: CloudSample,
+  footprint: Float,
+  shift: Vec3
 ): Float {
   if (field.worldMap === null) return layer.coverage
-  const share = mappedShare(field, field.worldMap, sample, footprint).clamp(0, 1).toConst() as Float
+  const there = up.add(shift.mul(mapShift(field.worldMapWidth))).toConst() as Vec3
+  const share = mappedShare(field, field.worldMap, there, footprint).clamp(0, 1).toConst() as Float
   // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
   const covered = share.mul(layer.coverage).toConst() as Float
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
   return covered.div(covered.add(clear).max(1e-6)).toConst()
 }
 
-/** Part of a noise's variance that its levels of detail have lost. */
-const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
+/** x squared, that squared, and so on. */
+export const squared = (x: Float, times: number): Float =>
+  times === 0 ? x : squared(x.mul(x).toConst(), times - 1)
 
-/** Φ(z) of the normal distribution, to 0.01. */
-const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).reciprocal()
+/** Part of a noise's variance that its levels of detail have lost. */
+const lost = (level: Float): Float => smoothstep(0, blur, level)
 
 /**
  * sin x to 10⁻⁶. A GPU's own may be off by 2⁻¹¹, and by more beyond ±π: as the waves shift the regions, and
@@ -112,29 +123,30 @@ function sine(x: Vec3): Vec3 {
  * the share c of the sky. Of noise that a sample's footprint blurs, the variance is known: the cover is
  * the chance that the sum exceeds the same threshold, which keeps the mean at any distance.
  *
- * @param foot - `footOffset` of the sample. Twin: cpu/density.ts
+ * @param foot - `footOffset` of the sample.
+ * @param where - Where its cover is wanted, which takes a third of the time: elsewhere it is 0.
+ *   Twin: cpu/density.ts
  */
 export function weatherAt(
   field: CloudField,
   layer: LayerNodes,
   foot: Vec3,
-  sample: CloudSample
+  sample: CloudSample,
+  where: 'everywhere' | 'where spread' = 'everywhere'
 ): CloudWeather {
   const { weather } = field.textures
   const turned = layer.turn(foot).toConst() as Vec3
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
-  const share = shareAt(field, layer, sample, footprint)
 
   const zenith = layer.turn(sample.up).toConst() as Vec3
-  const { next, last, warp: shift } = PLANET_WAVES
-  const waves = sine(zenith.yzx.mul(next).add(zenith.zxy.mul(last)))
+  const waves = sine(zenith.yzx.mul(NEXT_WAVES).add(zenith.zxy.mul(LAST_WAVES)))
   const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
   const region = weather
     .sample(
       rotate(latticeRotation.region, turned)
         .div(REGION_PERIOD)
         .add(layer.regionAnchor)
-        .add(waves.mul(shift))
+        .add(waves.mul(PLANET_WARP))
     )
     .level(regionLevel)
     .xyz.sub(0.5)
@@ -154,6 +166,7 @@ export function weatherAt(
     .level(fieldLevel)
     .sub(0.5)
     .toConst() as Vec4
+  const share = shareAt(field, layer, sample, footprint, fields.zxy)
   const clouds = weather
     .sample(rotate(latticeRotation.weather, turned).mul(scale).add(layer.weatherAnchor).add(warp))
     .level(level)
@@ -161,7 +174,7 @@ export function weatherAt(
     .toConst() as Vec4
 
   const z = clouds
-    .add(fields.mul(scaleWeights.fields))
+    .add(fields.mul(FIELD_WEIGHT))
     .dot(layer.weights)
     .add(fields.z.mul(layer.cells))
     .add(region.z.add(region.x.mul(REGION_CELLS)).mul(layer.regions))
@@ -174,41 +187,52 @@ export function weatherAt(
     )
     .toConst() as Float
   const cloudLevel = level.sub(layer.coarseness).toConst() as Float
-  const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
-  const fieldVariance = layer.cloudVariance
-    .add(layer.planet.mul(layer.planet))
-    .add(regionVariance)
-    .oneMinus()
-  const variance = layer.cloudVariance
-    .mul(lost(cloudLevel))
-    .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
-    .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
-  const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
-  const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
-  const quantile = odds.div(odds.oneMinus()).log().div(1.702)
-  const cover = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
+  const spread = smoothstep(0.5, 4.5, cloudLevel).toConst() as Float
+  /** Of the weather that levels of detail have lost: none near by. */
+  const variance = float(0).toVar()
+  /** Blurred clouds are as many as sharp ones. */
+  const sharp = z.toVar() as Float
+  If(level.greaterThan(0), () => {
+    const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
+    const fieldVariance = layer.cloudVariance
+      .add(layer.planet.mul(layer.planet))
+      .add(regionVariance)
+      .oneMinus()
+    variance.assign(
+      layer.cloudVariance
+        .mul(lost(cloudLevel))
+        .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
+        .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+    )
+    sharp.mulAssign(variance.oneMinus().max(leastVariance).inverseSqrt())
+  })
+  const cover = float(0).toVar()
+  const findCover = (): void => {
+    const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
+    const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
+    const quantile = odds.div(odds.oneMinus()).log().div(1.702)
+    const chance = cumulative(z.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
+    // Neither more nor less than all: the distribution has tails.
+    const all = chance.sub(0.5).mul(1.002).add(0.5).clamp(0, 1)
+    cover.assign(share.greaterThan(0).select(all, 0))
+  }
+  if (where === 'everywhere') findCover()
+  else If(spread.greaterThan(0), findCover)
 
   const tilt = share.mul(2).sub(1).toConst() as Float
-  const surely = tilt.mul(tilt).mul(tilt.mul(tilt)).mul(tilt).mul(excess)
+  const surely = squared(tilt, 5).mul(tilt).mul(excess)
   const fill = layer.shapeAmount
     .mul(meanEdge)
-    .add(cumulative(z).sub(1).add(share).mul(layer.steepness))
+    .add(cumulative(sharp).sub(1).add(share).mul(layer.steepness))
     .add(surely)
     .toConst() as Float
   const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
-  const detailWarp = clouds.xyz.mul(shapePeriod).mul(SHAPE_WARP.clouds).toConst() as Vec3
+  const detailWarp = clouds.xyz.mul(shapePeriod).mul(CLOUD_WARP).toConst() as Vec3
   return {
     fill,
-    // Neither more nor less than all: the distribution has tails.
-    cover: cover
-      .sub(0.5)
-      .mul(1.002)
-      .add(0.5)
-      .clamp(0, 1)
-      .mul(share.greaterThan(0).select(1, 0))
-      .toConst(),
-    spread: smoothstep(0.5, 4.5, cloudLevel).toConst(),
-    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(SHAPE_WARP.fields)).toConst(),
+    cover,
+    spread,
+    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(FIELD_WARP)).toConst(),
     detailWarp
   }
 }
