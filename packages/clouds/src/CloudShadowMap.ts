@@ -184,9 +184,9 @@ export class CloudShadowMap {
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
-    const { layers, grown, worldMapTexture } = this.field
+    const { layers, noise, grown, worldMapTexture } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
-    this.#inputs = [radius, grown, worldMapTexture?.version, ...parameters]
+    this.#inputs = [noise.isReady, radius, grown, worldMapTexture?.version, ...parameters]
     _foot.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
       this.#anchor.copy(_foot)
@@ -264,6 +264,8 @@ export class CloudShadowMap {
   #fits(drawing: ShadowDrawing, halfWidth: number): boolean {
     return (
       drawing.halfWidth === halfWidth &&
+      // Until the noise is there, so is no cloud.
+      drawing.inputs[0] === this.#inputs[0] &&
       drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
       this.#distance(drawing) < PLACE_JUMP * halfWidth
     )
