@@ -14,7 +14,7 @@ import {
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
-import { gpuMilliseconds, gpuPasses, nextFrame, type BenchDevice } from './device'
+import { gpuMilliseconds, gpuPasses, nextFrame, release, type BenchDevice } from './device'
 import { placeCamera, setSun } from './scene'
 import { median } from './statistics'
 
@@ -41,9 +41,13 @@ export interface CloudCost {
   psnr: number
 }
 
-/** Frames before any are timed, and frames in which a picture that stands still settles. */
+/** Frames before any are timed, and frames in which a picture that stands still settles: two seconds. */
 const WARM_UP = 40
-const SETTLING = 64
+const SETTLING = 120
+
+/** Slices of noise that a node draws in a frame, and frames that this takes. */
+const NOISE_SLICES = 24
+const NOISE_FRAMES = 28
 
 function brokenCumulus(): CloudLayers {
   const layers = cloudPreset('fairWeather')
@@ -204,4 +208,22 @@ export async function timeClouds(
   bench.dispose()
   void renderer.dispose()
   return costs
+}
+
+/** GPU time of the noise, drawn in slices as a node does: in all, and the most in a frame [ms]. */
+export async function timeNoise(device: BenchDevice): Promise<{ total: number; most: number }> {
+  const renderer = await device.renderer(64, 36)
+  const runs: { total: number; most: number }[] = []
+  for (let run = 0; run < 3; run++) {
+    const noise = new CloudNoise()
+    const times: number[] = []
+    for (let isReady = false; !isReady && times.length < 10 * NOISE_FRAMES;) {
+      isReady = noise.update(renderer, NOISE_SLICES)
+      times.push(await gpuMilliseconds(renderer))
+    }
+    runs.push({ total: times.reduce((sum, ms) => sum + ms, 0), most: Math.max(...times) })
+    noise.dispose()
+  }
+  release(renderer)
+  return { total: median(runs.map(run => run.total)), most: median(runs.map(run => run.most)) }
 }

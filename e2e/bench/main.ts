@@ -1,6 +1,6 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
-import { timeClouds } from './clouds'
+import { timeClouds, timeNoise } from './clouds'
 import { BenchDevice, finished, gpuMilliseconds } from './device'
 import { timeEnvironment } from './environment'
 import { timeFrame } from './frame'
@@ -116,6 +116,7 @@ async function timeFirstFrame(): Promise<number> {
 
 const bake = await timeBake()
 const environment = await timeEnvironment(device, size, 10)
+const noise = await timeNoise(device)
 const cloudCosts = await timeClouds(device, size, Math.min(frames, 10))
 for (const { view, quality, ms, passes, psnr } of cloudCosts) {
   const each = passes.map(pass => pass.toFixed(2)).join(' ')
@@ -134,10 +135,12 @@ const result = {
   firstFrameMs,
   environment,
   clouds: cloudCosts,
+  cloudNoise: noise,
   cpuMsPerFrame: median(cpuCosts)
 }
 log(`
 bake           ${bake.total.toFixed(2)} ms in all, ${bake.most.toFixed(2)} ms at most in a frame
+clouds' noise  ${noise.total.toFixed(2)} ms in all, ${noise.most.toFixed(2)} ms at most in a frame
 GPU memory     ${(bake.bytes / 1e6).toFixed(2)} MB
 first frame    ${firstFrameMs.toFixed(0)} ms at 320×180
 environment    ${environment.totalMs.toFixed(3)} ms in all, ${environment.mostMs.toFixed(3)} ms at most in a frame; CPU ${environment.submitMs.toFixed(2)} ms

@@ -21,7 +21,7 @@ const pages: Record<string, string | undefined> = {
 const given = `import type { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
 import type { CloudLayers, CloudsNode } from '@welkin/clouds'
 import type { PerspectiveCamera, Scene } from 'three'
-import type { WebGPURenderer } from 'three/webgpu'
+import type { Node, PassNode, RenderPipeline, WebGPURenderer } from 'three/webgpu'
 
 declare global {
   const renderer: WebGPURenderer
@@ -32,6 +32,10 @@ declare global {
   const sky: SkyLightProbe
   const layers: CloudLayers
   const cloudsNode: CloudsNode
+  const scenePass: PassNode
+  const depth: Node
+  const air: Node
+  const pipeline: RenderPipeline
 }
 `
 

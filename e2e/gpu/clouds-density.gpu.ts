@@ -45,12 +45,17 @@ interface Scene {
 }
 
 /** Baked clouds, seen from a place. */
-async function cloudScene(t: GpuContext, layers: CloudLayers, place: Place): Promise<Scene> {
+async function cloudScene(
+  t: GpuContext,
+  layers: CloudLayers,
+  place: Place,
+  map: DataTexture | null = null
+): Promise<Scene> {
   const renderer = await t.createRenderer()
   const atmosphere = new Atmosphere().place(place)
   const camera = new PerspectiveCamera()
   camera.updateMatrixWorld()
-  const field = new CloudField(atmosphere, layers)
+  const field = new CloudField(atmosphere, layers, undefined, { worldMap: map })
   const eye = new Vector3()
   const update = (seconds = 0): void => {
     const view = atmosphere.update(renderer, camera)
@@ -76,7 +81,9 @@ async function cloudScene(t: GpuContext, layers: CloudLayers, place: Place): Pro
       layers: [...layers].map(layer => layer.parameters),
       turns: field.turns,
       bottomRadius: atmosphere.parameters.bottomRadius,
-      pixelAngle: field.pixelAngle.value
+      pixelAngle: field.pixelAngle.value,
+      axialRatio: field.axialRatio,
+      ...(map === null ? {} : { worldMap: coverOf(map), worldMapWidth: field.worldMapWidth })
     }),
     dispose() {
       field.dispose()
@@ -105,6 +112,22 @@ function worldMap(): DataTexture {
   map.wrapS = RepeatWrapping
   map.needsUpdate = true
   return map
+}
+
+/** What the GPU reads of a map's finest level, by longitude and latitude [rad]. */
+function coverOf(map: DataTexture): (longitude: number, latitude: number) => number {
+  const { data, width, height } = map.image
+  const texel = (x: number, y: number): number => {
+    const row = Math.min(Math.max(y, 0), height - 1)
+    return Number(data?.[4 * (row * width + ((x + width) % width))]) / 255
+  }
+  return (longitude, latitude) => {
+    const x = (longitude / (2 * Math.PI) + 0.5) * width - 0.5
+    const y = (latitude / Math.PI + 0.5) * height - 0.5
+    const [i, j] = [Math.floor(x), Math.floor(y)]
+    const row = (k: number): number => texel(i, k) + (texel(i + 1, k) - texel(i, k)) * (x - i)
+    return row(j) + (row(j + 1) - row(j)) * (y - j)
+  }
 }
 
 /** Offsets from an eye to points at random altitudes, up to a horizontal distance away. */
@@ -213,6 +236,43 @@ for (const [where, place] of places) {
     scene.dispose()
   })
 }
+
+/** Without shape, whose coarse levels take float64 minutes. */
+class ShapelessTwin extends NoiseTextures {
+  override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {
+    return name === 'shape' ? [0.5, 0.5] : twin.sample(name, p, level)
+  }
+}
+
+gpuTest('puts clouds where float64 does, of a world map and where they blur', async t => {
+  const layers = cloudPreset('mixed')
+  for (const layer of layers) layer.set({ coverage: 0.5, shapeAmount: 0 })
+  const map = worldMap()
+  const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
+  const shapeless = new ShapelessTwin()
+  // Their footprints are up to 1.2 km.
+  scene.field.pixelAngle.value = 0.12
+  const inputs = offsets(scene.eye, 15, 2000, 7, share => {
+    const { baseAltitude, topAltitude } = layers.at(Math.floor(3 * share)).parameters
+    return baseAltitude + (topAltitude - baseAltitude) * ((3 * share) % 1)
+  })
+  const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+    scene.extinction(input.xyz, input.w, false)
+  )
+  const state = scene.state()
+  let cloudy = 0
+  const differences = inputs.map(([x, y, z, distance], i) => {
+    const position = scene.eye.clone().add(new Vector3(x, y, z))
+    const expected = extinctionTwin(state, shapeless, position, distance, false)
+    if (expected > 0) cloudy++
+    return Math.abs(results[4 * i] - expected) / 0.05
+  })
+  t.note(`worst ${Math.max(...differences).toFixed(4)}`)
+  expectTrue(cloudy > 10, `${cloudy} cloudy points`)
+  expectTrue(Math.max(...differences) < 0.02, `worst difference ${Math.max(...differences)}`)
+  scene.dispose()
+  map.dispose()
+})
 
 gpuTest('bounds the density from above, in every preset', async t => {
   for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
@@ -366,6 +426,8 @@ gpuTest('keeps the clouds of an area from 2 km to the whole globe', async t => {
     [0.2, 20, 1],
     [0.4, 20, 0.6],
     [0.7, 20, 1],
+    [0.08, -120, 1],
+    [0.93, 20, 1],
     [0.4, -120, 1],
     [0.7, -120, 0.6]
   ]) {
@@ -417,6 +479,36 @@ gpuTest('covers what is asked for, from near and far', async t => {
   expectTrue(misses.length === 0, misses.join(', '))
   columns.dispose()
   scene.dispose()
+})
+
+gpuTest('descends to the clouds of a world map without a pop, whatever they are', async t => {
+  const map = worldMap()
+  for (const [name, limit] of [
+    ['fairWeather', 0.05],
+    ['cumulonimbus', 0.06],
+    ['cirrus', 0.1]
+  ] as const) {
+    const layers = cloudPreset(name)
+    layers.at(0).set({ coverage: 0.5 })
+    for (let i = 1; i < layers.length; i++) layers.at(i).set({ coverage: 0 })
+    const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
+    const columns = new CloudColumns(scene.field, 96, 600_000, 12)
+    for (const longitude of [100, 60]) {
+      scene.field.atmosphere.place({ longitude, latitude: -30 })
+      scene.update()
+      const means: number[] = []
+      for (const distance of [2e3, 2e5, 1e6, 2e6, 4e6, 2e7]) {
+        columns.distance = distance
+        means.push(1 - mean((await columns.draw(scene.renderer)).light))
+      }
+      t.note(`${name} at ${longitude}°: opacity ${means.map(x => x.toFixed(3)).join(' ')}`)
+      const worst = Math.max(...means.map(x => Math.abs(x - means[0])))
+      expectTrue(worst < limit, `${name} at ${longitude}°: opacity changes by ${worst}`)
+    }
+    columns.dispose()
+    scene.dispose()
+  }
+  map.dispose()
 })
 
 gpuTest('shows no lattice in an overcast sky from below', async t => {

@@ -1,13 +1,33 @@
-import { Atmosphere, aerialPerspective } from '@welkin/atmosphere'
-import { CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
+import {
+  Atmosphere,
+  SkyLightProbe,
+  SunDirectionalLight,
+  aerialPerspective
+} from '@welkin/atmosphere'
+import {
+  CloudLayers,
+  CloudLightTable,
+  CloudNoise,
+  clouds,
+  cloudShadow,
+  cloudSkyLight
+} from '@welkin/clouds'
 import type { CloudLayerParameters, CloudQuality, CloudsDebug, CloudsNode } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
-import { BoxGeometry, Mesh, MeshBasicMaterial, PerspectiveCamera, Scene, Vector3 } from 'three'
-import { pass } from 'three/tsl'
+import {
+  BoxGeometry,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Scene,
+  Vector3
+} from 'three'
+import { pass, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { drawToFloat, expectLight, random } from './harness/atmosphere'
 import type { GpuContext } from './harness/context'
-import { expectTrue } from './harness/expect'
+import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
 import { countObjects, finishWork, nextFrame } from './harness/graphics'
 import type { Picture } from './harness/picture'
@@ -303,6 +323,99 @@ gpuTest('transparent things are where their depth is, or else that of what is be
     )
     expectTrue(written < 0.2, `glass that writes depth shows ${written} of the fog's light`)
     expectTrue(Math.abs(unwritten - 1) < 0.05, `glass that writes none shows ${unwritten}`)
+  })
+)
+
+gpuTest('transparent things are over the clouds in a pass of their own', t =>
+  inFog(t, async view => {
+    const { renderer, scene, camera, atmosphere } = view
+    const open = middle(await view.draw(2))
+    const opaque = pass(scene, camera, { samples: 0 })
+    opaque.transparent = false
+    const depth = opaque.getTextureNode('depth')
+    const air = aerialPerspective(opaque.getTextureNode(), depth, camera, atmosphere)
+    const { field, light } = view.node
+    const { noise } = field
+    const quality = { ...coarse, block: 1 }
+    const node = clouds(air, depth, camera, atmosphere, field.layers, { quality, noise, light })
+    const depthTexture = opaque.renderTarget.depthTexture!
+    const panes = pass(scene, camera, { samples: 0, depthTexture, autoClearDepth: false })
+    panes.opaque = false
+    const over = panes.getTextureNode()
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    pipeline.outputNode = vec4(node.rgb.mul(over.a.oneMinus()).add(over.rgb), 1)
+    const draw = async (): Promise<number> => {
+      let value = 0
+      for (let i = 0; i < 2; i++) {
+        await nextFrame()
+        value = middle(await drawToFloat(renderer, () => pipeline.render())) / open
+      }
+      return value
+    }
+    const seen: number[] = []
+    for (const depthWrite of [true, false]) {
+      const glass = wall(20, { transparent: true, opacity: 0.75, depthWrite })
+      scene.add(glass)
+      seen.push(await draw())
+      const before = wall(10)
+      glass.material.color.setScalar(100)
+      scene.add(before)
+      seen.push(await draw())
+      for (const mesh of [glass, before]) {
+        scene.remove(mesh)
+        mesh.geometry.dispose()
+        mesh.material.dispose()
+      }
+    }
+    t.note(`light before glass and a wall: ${seen.map(value => value.toFixed(3)).join(', ')}`)
+    for (const i of [0, 2]) {
+      expectTrue(Math.abs(seen[i] - 0.25) < 0.02, `glass shows ${seen[i]} of the clouds`)
+      expectTrue(seen[i + 1] < 0.1, `before bright glass a black wall has ${seen[i + 1]}`)
+    }
+    pipeline.dispose()
+    panes.dispose()
+    node.dispose()
+    opaque.dispose()
+  })
+)
+
+gpuTest('a scene is lit again when its clouds are disposed of, and shaded by the next ones', t =>
+  inFog(t, async (first, shared) => {
+    const { renderer, scene, camera, atmosphere } = first
+    renderer.shadowMap.enabled = true
+    const sun = new SunDirectionalLight(atmosphere)
+    const sky = new SkyLightProbe(atmosphere)
+    const board = new Mesh(new BoxGeometry(400, 1, 400), new MeshLambertMaterial())
+    board.position.set(0, 1480, -200)
+    board.receiveShadow = true
+    scene.add(board, sun, sky)
+    const draw = async (): Promise<number> => {
+      await nextFrame()
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      return Math.max(picture.at(12, 2)[1], picture.at(12, 11)[1])
+    }
+    const open = await draw()
+    const shade = async (view: View): Promise<number> => {
+      Object.assign(sun.shadow, { shadowNode: cloudShadow(view.node) })
+      cloudSkyLight(sky, view.node)
+      sun.castShadow = true
+      sun.dispose()
+      await view.draw(2)
+      return draw()
+    }
+    const shaded = await shade(first)
+    // What a node makes for itself goes with it.
+    first.dispose()
+    shared.noise.dispose()
+    const light = [await draw(), await draw()]
+    const second = viewInFog(renderer, atmosphere, shared)
+    const again = await shade(second)
+    t.note([open, shaded, ...light, again].map(value => value.toFixed(4)).join(', '))
+    expectTrue(shaded < 0.9 * open, `in shadow the ground has ${shaded}, else ${open}`)
+    for (const value of light) expectClose([value], [open], { relative: 1e-3 }, 'without clouds')
+    expectClose([again], [shaded], { relative: 0.02 }, 'with others')
+    second.dispose()
   })
 )
 

@@ -4,8 +4,11 @@ import { Mesh, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene } fr
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { cloudExtinction } from '../../packages/clouds/src/tsl/density'
+import { CloudField } from '../../packages/clouds/src/CloudField'
+import { CloudShadowMap } from '../../packages/clouds/src/CloudShadowMap'
+import { sampleShadows } from '../../packages/clouds/src/tsl/shadowMap'
 import { loop, type Vec3 } from '../../packages/clouds/src/tsl-types'
-import { drawToFloat } from './harness/atmosphere'
+import { drawToFloat, random } from './harness/atmosphere'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
@@ -89,7 +92,8 @@ gpuTest('clouds cast their shadows on the ground', async t => {
   expectTrue(apart < 0.06, `shadows are off by ${apart} in the mean`)
 
   layers.at(0).set({ shadow: false })
-  for (let i = 0; i < 4; i++) {
+  // Three cascades, in four strips each.
+  for (let i = 0; i < 12; i++) {
     await nextFrame()
     await drawToFloat(renderer, () => pipeline.render())
   }
@@ -100,5 +104,57 @@ gpuTest('clouds cast their shadows on the ground', async t => {
   node.dispose()
   noise.dispose()
   light.dispose()
+  atmosphere.dispose()
+})
+
+gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
+  const renderer = await t.createRenderer(size)
+  const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 }).setSunAngles(28, 130)
+  const camera = new PerspectiveCamera(60, 1, 1, 1e5)
+  camera.position.set(0, 450, 0)
+  camera.updateMatrixWorld()
+  const field = new CloudField(atmosphere, cloudPreset('cumulonimbus'))
+  field.layers.at(0).set({ coverage: 0.6 })
+  field.bake(renderer)
+  const shadows = new CloudShadowMap(field)
+  const view = atmosphere.update(renderer, camera)
+  field.view.update({ camera })
+  field.update(view, 0)
+  shadows.update(renderer, view)
+  const next = random(5)
+  const places = Array.from({ length: 1500 }, () => {
+    const [x, y, z] = [next() - 0.5, next(), next() - 0.5]
+    return [30_000 * x, 500 + 9000 * y, 30_000 * z, 0]
+  })
+  const depths = await evaluateOnGpu(renderer, places, input => {
+    const start = field.view.toMapped(input.xyz).toConst() as Vec3
+    const marched = float(0).toVar()
+    loop('step', 200, index => {
+      // Steps grow on the way.
+      const [from, to] = [float(index), float(index).add(1)].map(at => at.mul(at).mul(0.5))
+      const way = from.add(to).mul(0.5)
+      const offset = start.add(field.view.sunDirection.mul(way)).toConst() as Vec3
+      const sample = { offset, ...field.view.place(offset), distance: float(15_000).toConst() }
+      marched.addAssign(cloudExtinction(field, sample, false).mul(to.sub(from)))
+    })
+    const { toSun, through, known } = sampleShadows(shadows.nodes, start, float(0))
+    return vec4(toSun, marched, through, known)
+  })
+  let [apart, lit, wronglyDark, dark, wronglyLit] = [0, 0, 0, 0, 0]
+  places.forEach((_, i) => {
+    const [got, expected] = [depths[4 * i], depths[4 * i + 1]]
+    apart += Math.abs(Math.log((1 + got) / (1 + expected))) / places.length
+    if (expected < 1) lit++
+    if (expected < 1 && got > 10) wronglyDark++
+    if (expected > 30) dark++
+    if (expected > 30 && got < 3) wronglyLit++
+  })
+  t.note(`apart ${apart.toFixed(3)}, ${wronglyDark} of ${lit} dark, ${wronglyLit} of ${dark} lit`)
+  expectTrue(lit > 200 && dark > 200, `${lit} lit places, ${dark} dark ones`)
+  expectTrue(apart < 0.53, `logarithms of depth are off by ${apart} in the mean`)
+  expectTrue(wronglyDark < 0.045 * lit, `${wronglyDark} of ${lit} lit places are dark`)
+  expectTrue(wronglyLit < 0.07 * dark, `${wronglyLit} of ${dark} dark places are lit`)
+  shadows.dispose()
+  field.dispose()
   atmosphere.dispose()
 })

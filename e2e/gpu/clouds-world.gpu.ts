@@ -59,6 +59,17 @@ const mean = ({ data }: Picture, channel: number): number => {
   return (4 * sum) / data.length
 }
 
+/** Pearson's coefficient. */
+function correlation(a: readonly number[], b: readonly number[]): number {
+  const centered = [a, b].map(values => {
+    const average = values.reduce((sum, value) => sum + value, 0) / values.length
+    return values.map(value => value - average)
+  })
+  const product = (i: number, j: number): number =>
+    centered[i].reduce((sum, value, k) => sum + value * centered[j][k], 0)
+  return product(0, 1) / Math.sqrt(product(0, 0) * product(1, 1))
+}
+
 gpuTest('an overcast gives surfaces light as its float64 twin does', async t => {
   const renderer = await t.createRenderer()
   const next = random(3)
@@ -307,15 +318,56 @@ gpuTest(
     expectClose(grey, marched, { relative: 0.3 }, 'light from marched clouds')
     expectTrue(mirrored[2] < 1.2 * mirrored[0], `clouds are mirrored blue: ${mirrored.join(' ')}`)
 
-    layers.at(0).set({ coverage: 0 })
-    await draw()
-    let frames = 0
-    while (environment.redraws < 2 && frames++ < 40) renderer.render(scene, eye)
-    expectTrue(frames === 25, `drawn again after ${frames} frames`)
+    const redraw = async (coverage: number): Promise<void> => {
+      const { redraws } = environment
+      layers.at(0).set({ coverage })
+      await draw()
+      let frames = 0
+      while (environment.redraws === redraws && frames++ < 40) renderer.render(scene, eye)
+      expectTrue(frames === overlay.steps + 15, `drawn again after ${frames} frames`)
+    }
+
+    // Broken clouds are where the camera sees them.
+    await redraw(0.5)
+    const picture = await draw()
+    const sight = new Vector3()
+    const sights = Array.from({ length: size.width * size.height }, (_, i) => {
+      const [x, y] = [i % size.width, Math.floor(i / size.width)]
+      sight.set((2 * x + 1) / size.width - 1, 1 - (2 * y + 1) / size.height, 0.5)
+      sight.unproject(camera).sub(camera.position).normalize()
+      return atmosphere.space.direction(sight, new Vector3()).toArray()
+    })
+    const overlaid = await evaluateOnGpu(renderer, sights, ({ xyz }) =>
+      vec4(overlay.over(viewNodes(atmosphere, camera), xyz, vec4(0).xyz), 1)
+    )
+    const likeness = correlation(
+      sights.map((_, i) => overlaid[4 * i + 1]),
+      sights.map((_, i) => picture.data[4 * i + 1])
+    )
+    t.note(`alike by ${likeness.toFixed(2)}`)
+    expectTrue(likeness > 0.5, `overlay and picture are alike by ${likeness}`)
+
+    await redraw(0)
     const cleared = (await look(2, 1)).at(12, 8)
     expectTrue(cleared[2] > 2 * cleared[0], `the sky is mirrored grey: ${cleared.join(' ')}`)
     for (let i = 0; i < 30; i++) renderer.render(scene, eye)
-    expectTrue(environment.redraws === 2, 'nothing changes, and it is drawn again')
+    expectTrue(environment.redraws === 3, 'nothing changes, and it is drawn again')
+
+    // The moon counts by night only.
+    const { version } = overlay
+    luna.direction = towards(50, 60)
+    await draw()
+    expectTrue(overlay.version === version, 'by day the moon counts')
+    atmosphere.setSunAngles(-40, 250)
+    luna.phase = 0.5
+    await draw()
+    for (let i = 0; i < 30; i++) renderer.render(scene, eye)
+    const drawn = overlay.version
+    await draw()
+    expectTrue(overlay.version === drawn, 'a moon that stands still counts')
+    luna.direction = towards(50, 62)
+    await draw()
+    expectTrue(overlay.version > drawn, 'a moon that moves by night does not count')
 
     cloudy.dispose()
     expectTrue(probe.overcast === null, 'the probe keeps its clouds')

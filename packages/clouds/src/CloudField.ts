@@ -24,6 +24,9 @@ import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from './tsl-types'
 import { number } from './uniforms'
 import { windTurn } from './wind'
 
+/** Part of its coverage that a layer gains in a frame after its noise was drawn over several. */
+const GROWTH = 1 / 48
+
 const _position = new Vector3()
 const _foot = new Vector3()
 const _point = new Vector3()
@@ -100,6 +103,9 @@ export class CloudField {
   /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
   readonly drifts: readonly Vector3[] = this.turns.map(() => new Vector3())
   #seconds: number | null = null
+  /** Part of their coverage that layers have, and how much more in a frame. */
+  #grown = 0
+  #growth = 1
 
   /**
    * @param view - Nodes of the camera that samples are seen from.
@@ -139,15 +145,17 @@ export class CloudField {
    */
   update(view: AtmosphereView, seconds: number): void {
     const { bottomRadius } = this.atmosphere.parameters
-    const elapsed = this.#seconds === null ? 0 : seconds - this.#seconds
-    if (Number.isFinite(elapsed)) this.#seconds = seconds
+    const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
+    const elapsed = now - (this.#seconds ?? now)
+    this.#seconds = now
+    this.#grown = this.noise.isReady ? Math.min(this.#grown + this.#growth, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
     eyePosition(view, _position)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
-      if (Number.isFinite(elapsed) && elapsed !== 0) this.#drift(i, view.up, elapsed)
+      if (elapsed !== 0) this.#drift(i, view.up, elapsed)
       this.#write(i)
     }
     for (let i = this.layers.length; i < CloudLayers.maxLayers; i++) {
@@ -171,7 +179,6 @@ export class CloudField {
   #write(index: number): void {
     const { parameters } = this.layers.at(index)
     const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
-    const coverage = this.noise.isReady ? parameters.coverage : 0
     const periods = layerPeriods(parameters)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
     const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
@@ -195,7 +202,7 @@ export class CloudField {
         .map(v => periodsKept * (v - Math.floor(v)))
     const { weather, region, shape, detail, fields } = latticeRotation
     const vectors = [
-      [baseAltitude, 1 / (topAltitude - baseAltitude), coverage, density],
+      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.#grown, density],
       [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
       scales.clouds,
       [e[0], e[4], e[8], steepness],
@@ -212,8 +219,12 @@ export class CloudField {
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }
 
-  /** Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. */
+  /**
+   * Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. Then clouds are there
+   * at once, or grow over some frames if the noise was drawn over several.
+   */
   bake(renderer: Renderer, slices = Infinity): boolean {
+    if (!this.noise.isReady) this.#growth = slices === Infinity ? 1 : GROWTH
     return this.noise.update(renderer, slices)
   }
 

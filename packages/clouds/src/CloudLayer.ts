@@ -1,4 +1,4 @@
-import { checkOptions, checkSpectrum } from '@welkin/atmosphere'
+import { checkSpectrum } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { checkRanges } from './check'
 
@@ -60,8 +60,7 @@ const ranges = {
 
 function requireParameters(parameters: CloudLayerParameters): void {
   const where = 'CloudLayer'
-  checkOptions(where, parameters, ...Object.keys(defaults))
-  checkRanges(where, parameters, ranges)
+  checkRanges(where, parameters, ranges, 'weatherWeights', 'wind', 'shadow')
   const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
   if (topAltitude <= baseAltitude) {
     fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)

@@ -1,6 +1,8 @@
 import { fail } from '@welkin/geo'
 import { CloudLayer, type CloudLayerParameters } from './CloudLayer'
 
+const clear = { coverage: 0 }
+
 /**
  * The one to four layers that make up a sky's clouds. Layers may overlap in altitude.
  *
@@ -18,20 +20,34 @@ export class CloudLayers implements Iterable<CloudLayer> {
   /**
    * @param layers - Layers, shared with the caller, or parameters of new ones. Left out: one
    *   layer of scattered fair-weather cumulus.
+   * @param count - How many layers there are at least, for a later `copy`: further ones cover nothing.
    * @throws Error when there is no layer, more than four, or a parameter is out of its range.
    */
-  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}]) {
-    if (!Array.isArray(layers) || layers.length < 1 || layers.length > CloudLayers.maxLayers) {
-      const got = Array.isArray(layers) ? layers.length : layers
-      fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, got)
+  constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}], count = 0) {
+    const length = Math.max(layers?.length, count)
+    if (!(length >= 1 && length <= CloudLayers.maxLayers)) {
+      fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, length)
     }
-    this.#layers = layers.map((layer: CloudLayer | Partial<CloudLayerParameters>) =>
-      layer instanceof CloudLayer ? layer : new CloudLayer(layer)
-    )
+    this.#layers = Array.from({ length }, (_, i) => {
+      const layer = layers[i] ?? clear
+      return layer instanceof CloudLayer ? layer : new CloudLayer(layer)
+    })
   }
 
   get length(): number {
     return this.#layers.length
+  }
+
+  /**
+   * Takes the parameters of other layers; what is left over covers nothing then.
+   *
+   * @throws Error when there are more of them than here.
+   */
+  copy(other: CloudLayers): this {
+    const { length } = other
+    if (length > this.length) fail('CloudLayers', `layers must be 1 to ${this.length}`, length)
+    this.#layers.forEach((layer, i) => layer.set(other.#layers[i]?.parameters ?? clear))
+    return this
   }
 
   /** @throws Error when there is no layer of this index. */

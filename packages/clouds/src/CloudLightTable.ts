@@ -1,10 +1,10 @@
 import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray } from 'three'
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { checkOptions } from '@welkin/atmosphere'
 import { checkRanges } from './check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
-import { CLOUD_LIGHT_LAYERS, CLOUD_LIGHT_SIZE, fillCloudLight } from './cpu/cloudLightTable'
+import { depths, layers, positions } from './cpu/cloudLightSize'
+import { fillCloudLight } from './cpu/cloudLightTable'
 import type { LevelTexture, Vec3 } from './tsl-types'
 import { number } from './uniforms'
 
@@ -42,13 +42,13 @@ export interface CloudLight {
  * Light scattered many times in clouds: the first three Legendre moments of its source in plane-parallel
  * slabs, by depth, thickness and sun angle, and the same for light from the sky, for one phase function.
  *
- * Solved on the CPU in 28 steps of 2 to 6 ms (0.05 to 0.17 s in all, measured on a busy machine of two
+ * Solved on the CPU in 28 steps of 2 to 5 ms (0.07 to 0.12 s in all, measured on a busy machine of two
  * cores); the same numbers on both backends; 0.24 MB on the GPU. Until the last step is
  * done the old table stands; before the first it is black.
  *
  * ```ts
  * const light = new CloudLightTable()
- * light.bake()                                   // or a step a frame: light.steps()
+ * light.bake()                                   // or a step a frame: light.update(1)
  * const source = cloudSource(light.nodes, sample)
  * ```
  */
@@ -56,16 +56,16 @@ export class CloudLightTable {
   readonly texture: Data3DTexture
   readonly nodes: CloudLight
   #phase: CloudPhaseParameters
-  #isDirty = true
+  /** What is left to do for the phase function. */
+  #steps: Generator<void, void, void> | null = null
 
   /**
    * @param phase - What differs from droplets of fair-weather clouds.
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   constructor(phase: Partial<CloudPhaseParameters> = {}) {
-    const { positions, depths } = CLOUD_LIGHT_SIZE
-    const texels = new Uint16Array(4 * positions * depths * CLOUD_LIGHT_LAYERS)
-    this.texture = new Data3DTexture(texels, positions, depths, CLOUD_LIGHT_LAYERS)
+    const texels = new Uint16Array(4 * positions * depths * layers)
+    this.texture = new Data3DTexture(texels, positions, depths, layers)
     this.texture.name = 'Welkin.CloudLight'
     this.texture.type = HalfFloatType
     this.texture.minFilter = this.texture.magFilter = LinearFilter
@@ -81,6 +81,7 @@ export class CloudLightTable {
     }
     this.#phase = defaults
     this.set(phase)
+    this.#apply()
   }
 
   /** The phase function: a frozen object, replaced by each `set`. */
@@ -90,21 +91,31 @@ export class CloudLightTable {
 
   /** Whether the table is not yet that of the phase function. */
   get isDirty(): boolean {
-    return this.#isDirty
+    return this.#steps !== null
+  }
+
+  /** Whether there is a table, of this phase function or the one before. */
+  get isReady(): boolean {
+    return this.texture.version > 1
   }
 
   /**
-   * Changes the phase function; nothing changes when the result would not be valid. The table follows
-   * at the next bake.
+   * Changes the phase function; nothing changes when the result would not be valid. Light follows when
+   * the table is solved.
    *
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   set(changes: Partial<CloudPhaseParameters>): this {
     const phase = Object.freeze({ ...this.#phase, ...changes })
-    checkOptions('CloudLightTable', phase, ...Object.keys(ranges))
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
-    this.#isDirty = true
+    this.#steps = this.#solve()
+    return this
+  }
+
+  /** Has shaders know the phase function. */
+  #apply(): void {
+    const phase = this.#phase
     const { depthScale, moments } = scalePhase(phase)
     this.nodes.depthScale.value = depthScale
     this.nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
@@ -112,29 +123,30 @@ export class CloudLightTable {
     for (const name of ['forwardAsymmetry', 'backwardAsymmetry', 'forwardShare'] as const) {
       this.nodes[name].value = phase[name]
     }
-    return this
   }
 
-  /** Computes the table step by step. Starts over when the phase function changes on the way. */
-  *steps(): Generator<void, void, void> {
-    while (this.#isDirty) {
-      const phase = this.#phase
-      const texels = this.texture.image.data as TypedArray
-      const data = new Float32Array(texels.length)
-      for (const _ of fillCloudLight(phase, data)) {
-        if (this.#phase !== phase) break
-        yield
-      }
-      if (this.#phase !== phase) continue
-      data.forEach((value, i) => (texels[i] = DataUtils.toHalfFloat(value)))
-      this.texture.needsUpdate = true
-      this.#isDirty = false
-    }
+  *#solve(): Generator<void, void, void> {
+    const texels = this.texture.image.data as TypedArray
+    const data = new Float32Array(texels.length)
+    yield* fillCloudLight(this.#phase, data)
+    data.forEach((value, i) => (texels[i] = DataUtils.toHalfFloat(value)))
+    this.texture.needsUpdate = true
+    this.#apply()
+    this.#steps = null
+  }
+
+  /**
+   * Goes on with the table, if the phase function has changed.
+   *
+   * @param steps - How many at most, of 29.
+   */
+  update(steps = Infinity): void {
+    for (let i = 0; i < steps && this.#steps !== null; i++) this.#steps.next()
   }
 
   /** Computes the table at once, if the phase function has changed. */
   bake(): void {
-    for (const _ of this.steps()) continue
+    this.update()
   }
 
   /** Frees the table. */

@@ -1,4 +1,5 @@
 import {
+  checkOptions,
   FragmentPass,
   octahedralDirection,
   octahedralPoint,
@@ -39,7 +40,7 @@ export interface CloudOverlayOptions {
 }
 
 /** Frames after which the clouds' shadow maps are those of the clouds as they are. */
-const WAIT = 4
+const WAIT = 12
 
 /** Strips of the picture. */
 const STRIPS = 6
@@ -100,11 +101,10 @@ export class CloudOverlay implements SkyOverlay {
   #version = 0
 
   /** @throws If the clouds are missing, or an option is out of its range. */
-  constructor(
-    clouds: CloudsNode,
-    { size = 256, quality = 'low', drift = 200 }: CloudOverlayOptions = {}
-  ) {
+  constructor(clouds: CloudsNode, options: CloudOverlayOptions = {}) {
     checkClouds('CloudOverlay', clouds)
+    checkOptions('CloudOverlay', options, 'size', 'quality', 'drift')
+    const { size = 256, quality = 'low', drift = 200 } = options
     if (!(Number.isInteger(size) && size >= 16 && size <= 2048)) {
       fail('CloudOverlay', 'size must be an integer in [16, 2048]', size)
     }
@@ -132,7 +132,8 @@ export class CloudOverlay implements SkyOverlay {
     const { direction, illuminance, irradiance } = field.night
     return {
       things: [
-        light.phase,
+        light.texture.version,
+        field.noise.isReady,
         shadows.isDrawn,
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)
@@ -156,9 +157,7 @@ export class CloudOverlay implements SkyOverlay {
 
   /** See `SkyOverlay.draw`. */
   draw(renderer: Renderer, view: AtmosphereView, step: number): void {
-    const { atmosphere, field: source, light, shadows } = this.clouds
-    source.bake(renderer)
-    light.bake()
+    const { atmosphere, shadows } = this.clouds
     const field = view.camera === this.#field?.view.camera ? this.#field : this.#build(view)
     if (field.view.update(view) === undefined) return
     const strip = step - WAIT

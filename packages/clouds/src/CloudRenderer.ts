@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import { NearestFilter, UnsignedByteType } from 'three'
-import type { RenderTarget, Texture } from 'three'
+import type { RenderTarget } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from './CloudField'
@@ -115,12 +115,12 @@ export class CloudRenderer {
 
   /** Size on the GPU [bytes]. */
   get bytes(): number {
-    const bytes = ({ type }: Texture): number => (type === UnsignedByteType ? 4 : 8)
-    return this.#targets.reduce(
-      (sum, { width, height, textures }) =>
-        sum + width * height * textures.reduce((all, one) => all + bytes(one), 0),
-      0
-    )
+    return this.#targets
+      .flatMap(({ textures }) => textures)
+      .reduce((sum, { type, width, height }) => {
+        const texel = type === UnsignedByteType ? 4 : 8
+        return sum + texel * width * height
+      }, 0)
   }
 
   /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */

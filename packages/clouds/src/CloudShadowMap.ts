@@ -1,16 +1,14 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
-import { Vector3 } from 'three'
+import { Quaternion, Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { eyePosition, type CloudField } from './CloudField'
+import { CASCADE_SIZE as SIZE, ShadowDrawing } from './ShadowDrawing'
 import { shadowRay } from './tsl/shadowMap'
 import type { LevelTexture, Vec2 } from './tsl-types'
 import { number, vector3, vector4 } from './uniforms'
-
-/** Texels along an edge of a cascade. */
-const SIZE = 256
 
 /** Half widths of the cascades for a camera near the ground [m]. */
 const HALF_WIDTHS = [5000, 20_000, 80_000] as const
@@ -21,30 +19,40 @@ const WIDENING_HEIGHT = 6000
 /** Highest camera for which maps are drawn [m]: farther away the clouds are a thin skin. */
 const HIGHEST = 150_000
 
-/** Sine of the least angle between rays of light and the plane that the map lies in. */
-const LEAST_SLOPE = 0.2
-
 /** Cosine of the angle about the planet's centre after which the plane's origin follows the camera. */
 const ANCHOR_COSINE = Math.cos(0.005)
 
 /** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
-const JUMP = { light: 0.01, place: 0.5 }
+const LIGHT_JUMP = 0.01
+const PLACE_JUMP = 0.5
 
-/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane. */
+/** Frames over which a cascade is drawn anew. */
+const STRIPS = 4
+
+/**
+ * What a cascade is drawn anew for: moves of its middle [texels], moves of layers against each other
+ * [texels], and changes of the light's direction, which move the far end of its rays by a tenth of a texel.
+ */
+const STALE_PLACE = 8
+const STALE_DRIFT = 0.25
+const STALE_LIGHT = 6e-4
+
+/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
 export interface CascadeNodes {
   readonly u: UniformNode<'vec4', Vector4>
   readonly v: UniformNode<'vec4', Vector4>
   readonly w: UniformNode<'vec4', Vector4>
   /** 1 once it is drawn. */
   readonly isDrawn: UniformNode<'float', number>
-  /** [m]. */
-  readonly halfWidth: UniformNode<'float', number>
+  /** Which of the map's squares it is in. */
+  readonly square: UniformNode<'float', number>
 }
 
 /** A shadow map as shaders see it. */
 export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
+  /** Of squares, one more than cascades. */
   readonly count: number
   /** 1 if it is of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
@@ -66,37 +74,16 @@ export interface ShadowRayUniforms {
   readonly size: number
 }
 
-/** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
-class Cascade {
-  readonly nodes: CascadeNodes = {
-    u: vector4(),
-    v: vector4(),
-    w: vector4(),
-    isDrawn: number(),
-    halfWidth: number()
-  }
-  readonly target: RenderTarget
-  isDrawn = false
-  halfWidth = 0
-  readonly anchor = new Vector3()
-  readonly light = new Vector3()
-  /** The plane's normal over its cosine to the light. */
-  readonly normal = new Vector3()
-  readonly across = new Vector3()
-  /** Measures the plane's second axis along rays of light. */
-  readonly measure = new Vector3()
-  readonly along = new Vector3()
-  /** Of the middle [m]. */
-  readonly center = { u: 0, v: 0 }
-
-  constructor(target: RenderTarget) {
-    this.target = target
-  }
+interface Cascade {
+  readonly nodes: CascadeNodes
+  isDrawn: boolean
+  drawing: ShadowDrawing
 }
 
 const _foot = new Vector3()
 const _offset = new Vector3()
-const _normal = new Vector3()
+const _drift = new Vector3()
+const _turn = new Quaternion()
 
 /**
  * Beer shadow maps of clouds: optical depth towards the sun, or towards the moon in the night, in three
@@ -104,28 +91,48 @@ const _normal = new Vector3()
  *
  * A texel is a sun ray. It is named by where it crosses a plane among the clouds, level unless the sun
  * is low, so that texels are spread over the ground whatever the sun's height. Each cascade's middle
- * moves by whole texels; after the first frame one cascade is drawn a frame, the nearest every other.
+ * moves by whole texels. A cascade drifts with the clouds, and is drawn anew, a strip a frame, when it no
+ * longer fits them: a sky that stands still costs nothing.
  */
 export class CloudShadowMap {
   readonly field: CloudField
   readonly target: RenderTarget
   readonly nodes: CloudShadows
   readonly #cascades: readonly Cascade[]
+  /** Whose drawing goes on, which strip is next, and where it is drawn: it is swapped in when it is done. */
+  #current: Cascade | null = null
+  #strip = 0
+  #spare: ShadowDrawing
   readonly #ray: ShadowRayUniforms
   readonly #pass: FragmentPass
   /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
   readonly camera = new Vector3()
   readonly #anchor = new Vector3()
+  readonly #light = new Vector3()
   /** Whose light the maps are of. */
   source: LightSource
-  #turn = 0
+  #inputs: readonly unknown[] = []
+  #order = 0
+  /** Index of the thickest layer, with which maps drift. */
+  #thickest = 0
 
   constructor(field: CloudField) {
     this.field = field
     this.source = field.atmosphere.sun
-    const count = HALF_WIDTHS.length
+    const count = HALF_WIDTHS.length + 1
     this.target = tableTarget('Welkin.CloudShadows', SIZE * count, SIZE)
-    this.#cascades = HALF_WIDTHS.map(() => new Cascade(this.target))
+    this.#cascades = HALF_WIDTHS.map((_, i) => ({
+      nodes: {
+        u: vector4(),
+        v: vector4(),
+        w: vector4(),
+        isDrawn: number(),
+        square: number()
+      },
+      isDrawn: false,
+      drawing: new ShadowDrawing(i, field.turns)
+    }))
+    this.#spare = new ShadowDrawing(HALF_WIDTHS.length, field.turns)
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
@@ -154,7 +161,8 @@ export class CloudShadowMap {
   }
 
   /**
-   * Draws a cascade, or all where none fits any longer. The field must be up to date.
+   * Draws what no longer fits: a strip, or all cascades at once after a jump. The field must be up to
+   * date.
    *
    * @param view - Of the field's camera, up to date.
    */
@@ -165,9 +173,10 @@ export class CloudShadowMap {
     const isMoonlit = night.rulesAt(view)
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
     this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
-    this.#ray.toLight.value.copy(isMoonlit ? night.direction.value : view.sunDirection)
+    this.#light.copy(isMoonlit ? night.direction.value : view.sunDirection)
     if (view.height > HIGHEST) {
       for (const cascade of this.#cascades) cascade.isDrawn = false
+      this.#current = null
     } else {
       this.#draw(renderer, view, radius)
     }
@@ -175,82 +184,117 @@ export class CloudShadowMap {
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
+    const { layers, noise, worldMapTexture } = this.field
+    const parameters = [...layers].map(layer => layer.parameters)
+    this.#inputs = [radius, noise.isReady, worldMapTexture?.version, ...parameters]
     _foot.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
       this.#anchor.copy(_foot)
     }
     const scale = 2 ** Math.max(Math.ceil(Math.log2(view.height / WIDENING_HEIGHT)), 0)
-    this.#turn = (this.#turn + 1) % 4
-    // The nearest cascade changes most.
-    const next = [0, 1, 0, 2][this.#turn]
+    let oldest = this.#current
     for (const [index, cascade] of this.#cascades.entries()) {
       const halfWidth = HALF_WIDTHS[index] * scale
-      if (index !== next && this.#fits(cascade, halfWidth)) continue
-      this.#place(cascade, halfWidth)
-      this.#setRay(cascade)
-      const { viewport, scissor } = this.target
-      viewport.set(index * SIZE, 0, SIZE, SIZE)
-      scissor.copy(viewport)
-      this.target.scissorTest = true
-      this.#pass.render(renderer, this.target)
-      cascade.isDrawn = true
+      const { drawing } = cascade
+      if (!cascade.isDrawn || !this.#fits(drawing, halfWidth)) {
+        if (cascade === this.#current) this.#current = null
+        if (cascade === oldest) oldest = null
+        this.#place(drawing, halfWidth)
+        this.#render(renderer, drawing, 0, SIZE)
+        cascade.isDrawn = true
+      } else if (this.#current === null && this.#isStale(drawing)) {
+        if (oldest === null || drawing.order < oldest.drawing.order) oldest = cascade
+      }
     }
+    if (oldest === null) return
+    if (this.#current === null) {
+      this.#current = oldest
+      this.#strip = 0
+      this.#place(this.#spare, oldest.drawing.halfWidth)
+    }
+    const rows = SIZE / STRIPS
+    this.#render(renderer, this.#spare, this.#strip * rows, rows)
+    if (++this.#strip < STRIPS) return
+    const { drawing } = oldest
+    oldest.drawing = this.#spare
+    this.#spare = drawing
+    this.#current = null
+  }
+
+  /** Draws some rows of a cascade. */
+  #render(renderer: Renderer, drawing: ShadowDrawing, from: number, rows: number): void {
+    this.#setRay(drawing)
+    const { viewport, scissor } = this.target
+    viewport.set(drawing.square * SIZE, 0, SIZE, SIZE)
+    scissor.set(drawing.square * SIZE, from, SIZE, rows)
+    this.target.scissorTest = true
+    this.#pass.render(renderer, this.target)
   }
 
   /** An altitude in the middle of the thickest clouds [m]. */
   #middle(): number {
     let [middle, most] = [0, 0]
-    for (const { parameters } of this.field.layers) {
+    for (const [index, { parameters }] of [...this.field.layers].entries()) {
       const { baseAltitude, topAltitude, coverage, density } = parameters
       const depth = coverage === 0 ? 0 : density * (topAltitude - baseAltitude)
-      if (depth > most) [most, middle] = [depth, 0.6 * baseAltitude + 0.4 * topAltitude]
+      if (depth <= most) continue
+      ;[middle, most] = [0.6 * baseAltitude + 0.4 * topAltitude, depth]
+      this.#thickest = index
     }
     return middle
   }
 
-  #fits(cascade: Cascade, halfWidth: number): boolean {
-    if (!cascade.isDrawn || cascade.halfWidth !== halfWidth) return false
-    const { value: light } = this.#ray.toLight
-    if (cascade.light.distanceToSquared(light) > JUMP.light ** 2) return false
-    _offset.copy(_foot).sub(cascade.anchor)
-    const u = cascade.across.dot(_offset) - cascade.center.u
-    const v = cascade.measure.dot(_offset) - cascade.center.v
-    return Math.max(Math.abs(u), Math.abs(v)) < JUMP.place * halfWidth
+  /** How far the wind has carried a layer, where the camera is, since a cascade was drawn [m]. */
+  #driftOf({ turns }: ShadowDrawing, target: Vector3, layer = this.#thickest): Vector3 {
+    _turn.copy(turns[layer]).invert().multiply(this.field.turns[layer])
+    return target.copy(_foot).applyQuaternion(_turn).sub(_foot).negate()
   }
 
-  /** Puts a cascade's middle on the texel nearest to the camera. */
-  #place(cascade: Cascade, halfWidth: number): void {
-    const { value: light } = this.#ray.toLight
-    const { anchor, across, along, measure, normal, center } = cascade
-    anchor.copy(this.#anchor)
-    cascade.light.copy(light)
-    cascade.halfWidth = halfWidth
-    // Level, but leant towards a low light.
-    _normal.copy(anchor).normalize()
-    across.crossVectors(light, _normal)
-    if (across.lengthSq() < 1e-12) across.set(_normal.z, _normal.x, _normal.y).cross(_normal)
-    across.normalize()
-    const slope = light.dot(_normal)
-    if (Math.abs(slope) < LEAST_SLOPE) {
-      const level = along.copy(light).addScaledVector(_normal, -slope).normalize()
-      // n = up sin a + level cos a with n·s = LEAST_SLOPE, to the light's side of the plane.
-      const sign = slope < 0 ? -1 : 1
-      const lean = Math.asin(LEAST_SLOPE) - Math.asin(Math.abs(slope))
-      _normal.multiplyScalar(Math.cos(lean)).addScaledVector(level, sign * Math.sin(lean))
-    }
-    along.crossVectors(_normal, across)
-    normal.copy(_normal).divideScalar(_normal.dot(light))
-    measure.copy(along).addScaledVector(normal, -along.dot(light))
-    _offset.copy(_foot).sub(anchor)
-    const texel = (2 * halfWidth) / SIZE
-    center.u = Math.round(across.dot(_offset) / texel) * texel
-    center.v = Math.round(measure.dot(_offset) / texel) * texel
+  /** How far the camera is from a cascade's middle, along its axes [m]. */
+  #distance(drawing: ShadowDrawing): number {
+    const { anchor, across, measure, center } = drawing
+    this.#driftOf(drawing, _drift)
+    _offset.copy(_foot).sub(anchor).sub(_drift)
+    const u = across.dot(_offset) - center.u
+    const v = measure.dot(_offset) - center.v
+    return Math.max(Math.abs(u), Math.abs(v))
   }
 
-  #setRay({ anchor, across, along, center, halfWidth }: Cascade): void {
+  /** Whether a cascade is of use until it is drawn anew. */
+  #fits(drawing: ShadowDrawing, halfWidth: number): boolean {
+    return (
+      drawing.halfWidth === halfWidth &&
+      drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
+      this.#distance(drawing) < PLACE_JUMP * halfWidth
+    )
+  }
+
+  #isStale(drawing: ShadowDrawing): boolean {
+    const { inputs, light, texel } = drawing
+    const place = this.#distance(drawing)
+    return (
+      place > STALE_PLACE * texel ||
+      light.distanceTo(this.#light) > STALE_LIGHT ||
+      this.#inputs.some((value, i) => value !== inputs[i]) ||
+      [...this.field.layers].some(
+        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
+      )
+    )
+  }
+
+  #place(drawing: ShadowDrawing, halfWidth: number): void {
+    drawing.place(this.#light, this.#anchor, _foot, halfWidth, this.field.turns)
+    drawing.inputs = this.#inputs
+    drawing.order = this.#order++
+  }
+
+  #setRay(drawing: ShadowDrawing): void {
+    const { light, anchor, across, along, center, halfWidth } = drawing
     const ray = this.#ray
+    ray.toLight.value.copy(light)
     ray.origin.value
       .copy(anchor)
+      .add(this.#driftOf(drawing, _drift))
       .sub(this.camera)
       .addScaledVector(across, center.u)
       .addScaledVector(along, center.v)
@@ -259,20 +303,20 @@ export class CloudShadowMap {
     ray.halfWidth.value = halfWidth
   }
 
-  /** Sets what look-ups need, for the camera where it is now. */
+  /** Sets what look-ups need, for the camera and the clouds where they are now. */
   #follow(): void {
-    for (const cascade of this.#cascades) {
-      const { nodes, halfWidth, anchor, across, measure, normal, center } = cascade
-      nodes.isDrawn.value = cascade.isDrawn ? 1 : 0
-      if (!cascade.isDrawn) continue
-      nodes.halfWidth.value = halfWidth
-      _offset.copy(this.camera).sub(anchor)
+    for (const { nodes, isDrawn, drawing } of this.#cascades) {
+      nodes.isDrawn.value = isDrawn ? 1 : 0
+      if (!isDrawn) continue
+      const { square, halfWidth, anchor, across, measure, normal, center } = drawing
+      nodes.square.value = square
+      _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(drawing, _drift))
       const row = (target: Vector4, axis: Vector3, shift: number, width: number): void => {
         target.set(axis.x, axis.y, axis.z, axis.dot(_offset) + shift).divideScalar(width)
       }
       row(nodes.u.value, across, halfWidth - center.u, 2 * halfWidth)
       row(nodes.v.value, measure, halfWidth - center.v, 2 * halfWidth)
-      row(nodes.w.value, normal, 0, 1)
+      row(nodes.w.value, normal, 0, halfWidth)
     }
   }
 

@@ -84,6 +84,7 @@ export class CloudShadowNode extends Node<'float'> {
   override setup(): Node {
     const { clouds } = this
     const { field, shadows } = clouds
+    if (clouds.isDisposed) return this.shadowNode ?? float(1)
     return Fn(() => {
       const offset = this.#view.toMapped(positionView).add(this.#shift).toConst() as Vec3
       const { shadow, known } = sampleShadows(shadows.nodes, offset, float(0))

@@ -1,4 +1,4 @@
-import type { SkyLightProbe, SkyLitPlane } from '@welkin/atmosphere'
+import type { SkyLightProbe, SkyLitPlane, ViewNodes } from '@welkin/atmosphere'
 import { checkRange } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { float, mix } from 'three/tsl'
@@ -45,12 +45,11 @@ export class CloudSkyLight {
   }
 
   #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
-    const { field, light } = this.clouds
-    const { height, up } = plane.view
+    const { field, light, isDisposed } = this.clouds
+    if (isDisposed) return clear
     // Between two cameras; a metre more or less is no matter to the weather.
-    const place = up.mul(field.radius.add(height))
-    const shift = place.sub(field.view.up.mul(field.radius.add(field.view.height)))
-    const offset = plane.offset.add(shift).toConst() as Vec3
+    const eye = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
+    const offset = plane.offset.add(eye(plane.view).sub(eye(field.view))).toConst() as Vec3
     const without = clear.toConst() as Vec4
     const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
     return mix(without, cloudy, float(this.#strength))

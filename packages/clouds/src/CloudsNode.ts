@@ -1,10 +1,10 @@
-import { AtmosphereNode } from '@welkin/atmosphere'
+import { AtmosphereNode, checkOptions } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
 import { checkNonNegative, fail } from '@welkin/geo'
 import { Vector2 } from 'three'
-import type { Camera, PerspectiveCamera, Texture } from 'three'
+import type { Camera, DepthTexture, PerspectiveCamera, Texture } from 'three'
 import { Fn, If, exp2, uniform, uv, vec3, vec4 } from 'three/tsl'
-import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeBuilder, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { CloudField } from './CloudField'
 import type { CloudLayers } from './CloudLayers'
 import { CloudLightTable } from './CloudLightTable'
@@ -87,14 +87,16 @@ export class CloudsNode extends AtmosphereNode {
   readonly light: CloudLightTable
   /** Optical depths towards the sun about the camera. */
   readonly shadows: CloudShadowMap
-  /** Time, by which clouds drift [s]; null for the renderer's clock. */
-  time: number | null = null
   /** Whether pixels remember what was marched before; without, pictures are coarse. */
   accumulates = true
+  /** After `dispose`: it casts no shadows any more. */
+  isDisposed = false
+  #time: number | null = null
   readonly #ownsLight: boolean
   readonly #noiseSlices: number
   readonly #uniforms = new QualityUniforms()
   readonly #frame = new FrameUniforms()
+  #drawnBy: Renderer | null = null
   #renderer: CloudRenderer | undefined
   readonly #current = uniform(0)
   readonly #exposure = uniform(1)
@@ -108,24 +110,44 @@ export class CloudsNode extends AtmosphereNode {
     camera: Camera,
     atmosphere: Atmosphere,
     layers: CloudLayers,
-    { quality = 'high', worldMap = null, noise, light }: CloudsOptions = {}
+    options: CloudsOptions = {}
   ) {
     super(atmosphere, camera)
-    for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
-      if (value === undefined || value === null) fail('CloudsNode', `${name} is missing`, value)
-    }
+    checkOptions('CloudsNode', options, 'quality', 'worldMap', 'noise', 'light')
+    const { quality = 'high', noise, light } = options
+    if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
+    if (!isDepth(depthNode))
+      fail('CloudsNode', "depthNode must be a depth texture's", depthNode?.type)
     if (!isPerspective(camera)) {
-      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera.type)
+      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera?.type)
     }
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera
     this.#quality = resolveQuality(quality)
-    this.field = new CloudField(atmosphere, layers, this.view, { worldMap, noise })
+    this.field = new CloudField(atmosphere, layers, this.view, options)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
+  }
+
+  /** Time, by which clouds drift [s]; null, the default, for the renderer's clock. */
+  get time(): number | null {
+    return this.#time
+  }
+
+  /** @throws If it is not finite. */
+  set time(seconds: number | null) {
+    if (seconds !== null && !Number.isFinite(seconds)) {
+      fail('CloudsNode', 'time must be a finite number or null', seconds)
+    }
+    this.#time = seconds
+  }
+
+  /** Whether there is noise to make clouds of. Before, the sky is clear; `field.bake` makes all at once. */
+  get isReady(): boolean {
+    return this.field.noise.isReady
   }
 
   /** How finely clouds are marched. */
@@ -174,25 +196,28 @@ export class CloudsNode extends AtmosphereNode {
 
   override updateBefore(frame: NodeFrame): undefined {
     super.updateBefore(frame)
-    const { camera, field } = this
+    const { camera, field, light } = this
     const { renderer } = frame
     if (renderer === null) return
-    const wasReady = field.noise.isReady
+    this.#drawnBy = renderer
+    const wasReady = this.isReady
     // Of clouds that appear there is no history.
     if (field.bake(renderer, this.#noiseSlices) && !wasReady) this.#frame.reset()
-    this.light.bake()
+    // Light is there when the clouds are; later it may follow its changes slowly.
+    light.update(this.isReady && !light.isReady ? Infinity : 1)
     // What is drawn here and now reads the view too.
     const view = this.view.update(frame)
     if (view === undefined) return
     const { width, height } = sizeOf(renderer)
     this.#uniforms.set(this.#quality)
     field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
-    field.depthScale.value = this.light.nodes.depthScale.value
-    field.update(view, this.time ?? frame.time)
+    field.depthScale.value = light.nodes.depthScale.value
+    field.update(view, this.#time ?? frame.time)
     this.shadows.update(renderer, view)
     this.#renderer ??= this.#createRenderer(renderer)
     this.#renderer.setSize(width, height, this.#quality.block)
-    this.#frame.next(camera, view, field, this.#quality.block, this.accumulates)
+    const { version } = light.texture
+    this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.#renderer.render(renderer)
     this.#current.value = this.#renderer.current
     this.#exposure.value = 1 / this.#frame.gain.value
@@ -261,12 +286,21 @@ export class CloudsNode extends AtmosphereNode {
 
   /** Frees its pictures and maps, and the noise and the light table if they are the node's own. */
   override dispose(): void {
+    this.isDisposed = true
+    // three compiles all materials again: those that had the clouds' shadows read freed textures.
+    if (this.#drawnBy !== null) this.#drawnBy.contextNode.needsUpdate = true
     this.#renderer?.dispose()
     this.shadows.dispose()
     this.field.dispose()
     if (this.#ownsLight) this.light.dispose()
     super.dispose()
   }
+}
+
+/** Of a texture; or one for all pixels. */
+function isDepth(node: Node): boolean {
+  const value = (node as TextureNode | null)?.value as DepthTexture | number | undefined
+  return typeof value === 'number' || value?.isDepthTexture === true
 }
 
 function isPerspective(camera: Camera): camera is PerspectiveCamera {

@@ -115,13 +115,15 @@ export class FrameUniforms {
    * Goes on to the next frame. Field and view must be up to date.
    *
    * @param usesHistory - Whether frames are accumulated.
+   * @param lightVersion - Changes with what light clouds scatter.
    */
   next(
     camera: PerspectiveCamera,
     view: AtmosphereView,
     field: CloudField,
     block: number,
-    usesHistory: boolean
+    usesHistory: boolean,
+    lightVersion = 0
   ): void {
     const order = ORDERS[block]
     const index = order[this.#count % order.length]
@@ -178,6 +180,7 @@ export class FrameUniforms {
       ...field.values.filter((_, i) => i % LAYER_STRIDE < 3),
       ...[direction, irradiance, radiance].map(({ value }) => value)
     ].flatMap(vector => vector.toArray())
+    matter.push(lightVersion)
     const isSunStill = this.#sun.distanceToSquared(view.sunDirection) < 1e-12
     if (isCut) this.#forgetting = 0
     else if (isSunStill && isSame(matter, this.#matter)) this.#forgetting--

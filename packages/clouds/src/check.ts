@@ -1,18 +1,19 @@
-import { checkRange } from '@welkin/atmosphere'
+import { checkOptions, checkRange } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 
 /**
- * @param prefix - Of the names, as they are known to whoever gave the values.
- * @throws If a value is not a number from the least to the greatest of its name.
+ * @param others - Names of values that have no range.
+ * @throws If there is a value of another name, or one is not a number from the least to the greatest of its.
  */
 export function checkRanges<K extends string>(
   where: string,
   values: Readonly<Record<NoInfer<K>, number>>,
   ranges: Readonly<Record<K, readonly [number, number]>>,
-  prefix = ''
+  ...others: string[]
 ): void {
+  checkOptions(where, values, ...Object.keys(ranges), ...others)
   for (const name in ranges) {
-    checkRange(where, prefix + name, values?.[name], ...(ranges[name] as [number, number]))
+    checkRange(where, name, values[name], ...(ranges[name] as [number, number]))
   }
 }
 

@@ -10,8 +10,8 @@ export const meanEdge = 0.535
 /** Added to the fill at full coverage, taken at none. */
 export const excess = 0.6
 
-/** Levels of detail over which single clouds are lost in the mean, and those for which they are gone. */
-export const blur = [0, 5] as const
+/** Levels of detail over which single clouds are lost in the mean. */
+export const blur = 5
 
 /** Least variance of blurred weather that is made up for. */
 export const leastVariance = 0.05
@@ -27,9 +27,9 @@ export const anvilDensity = 0.35
 /** The shape carves at least this part of its amount: what is less full is empty for sure. */
 export const leastCarving = 0.15
 
-/** What the shape carves less where its levels of detail have lost it, per amount, and these levels. */
+/** What the shape carves less where its levels of detail have lost it, per amount, and over how many levels. */
 export const lostCarving = 0.09
-export const shapeBlur = [0, 5] as const
+export const shapeBlur = 5
 
 /** Most that detail takes away. */
 export const erosion = 0.22
@@ -49,4 +49,6 @@ export const anvilMean = 0.09
 export const tallness = 5
 
 /** The same as `solidFill` of fibrous clouds, by cover c: a₀ + a₁c² + a₂c⁶⁴; fitted to columns seen from near. */
-export const fibrousFill = [0.05, 0.15, 0.35] as const
+export const thinFibres = 0.05
+export const moreFibres = 0.15
+export const mostFibres = 0.35

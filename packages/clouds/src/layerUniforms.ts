@@ -23,16 +23,28 @@ export const WEATHER_WARP = 0.5
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
-export const SHAPE_WARP = { fields: 0.95, clouds: 0.23 } as const
+export const FIELD_WARP = 1.1
+export const CLOUD_WARP = 0.3
+
+/**
+ * How far the fields shift the look-up of a world map of so many texels around the planet: half a texel
+ * to either side, as far as fields are large enough for that [rad].
+ */
+export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
 
 /** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
-export const PLANET_WAVES = { next: 3.1, last: 1.7, warp: 0.22 } as const
+export const NEXT_WAVES = 3.1
+export const LAST_WAVES = 1.7
+export const PLANET_WARP = 0.22
 
 /**
  * Weights of the scales that the weather is the sum of, with that of single clouds 1: fields of tens of
  * kilometres, of the layer's own weather and of large cells; regions; the planet.
  */
-export const scaleWeights = { fields: 0.6, cells: 0.5, regions: 0.65, planet: 0.4 } as const
+export const FIELD_WEIGHT = 0.6
+const CELL_WEIGHT = 0.5
+const REGION_WEIGHT = 0.65
+const PLANET_WEIGHT = 0.4
 
 /** Share of finer cells in the regions. */
 export const REGION_CELLS = 0.6
@@ -91,19 +103,19 @@ export interface WeatherScales {
 export function weatherScales(weights: readonly number[], hasMap: boolean): WeatherScales {
   const size = Math.hypot(...weights) || 1
   const unit = weights.map(weight => weight / size)
-  const { fields, cells, regions, planet } = scaleWeights
   // Large cells are the third channel.
-  const fieldVariance = fields ** 2 + cells ** 2 + 2 * fields * cells * (unit[2] ?? 0)
+  const fieldVariance =
+    FIELD_WEIGHT ** 2 + CELL_WEIGHT ** 2 + 2 * FIELD_WEIGHT * CELL_WEIGHT * (unit[2] ?? 0)
   const large = hasMap ? 0 : 1
-  const variance = 1 + fieldVariance + large * (regions ** 2 + planet ** 2)
+  const variance = 1 + fieldVariance + large * (REGION_WEIGHT ** 2 + PLANET_WEIGHT ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   return {
     clouds: [a, b, c, d],
-    fields,
-    cells: cells * factor,
-    regions: (large * regions * factor) / Math.hypot(1, REGION_CELLS),
-    planet: (large * planet) / Math.sqrt(variance),
+    fields: FIELD_WEIGHT,
+    cells: CELL_WEIGHT * factor,
+    regions: (large * REGION_WEIGHT * factor) / Math.hypot(1, REGION_CELLS),
+    planet: (large * PLANET_WEIGHT) / Math.sqrt(variance),
     cloudVariance: 1 / variance,
     fieldVariance: fieldVariance / variance
   }

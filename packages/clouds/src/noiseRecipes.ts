@@ -26,10 +26,7 @@ export interface NoiseChannel {
 export const seedOf = (channel: number, term: number): number => 101 * (channel + 1) + 17 * term
 
 /** Mean and standard deviation of the two sorts of noise, over all cell counts. */
-export const noiseStatistics = {
-  perlin: { mean: 0, deviation: 0.285 },
-  billow: { mean: 0.703, deviation: 0.18 }
-} as const
+export const noiseStatistics = { perlin: [0, 0.285], billow: [0.703, 0.18] } as const
 
 /** Noise of ever finer cells, each of half the weight; with one number, the same along all axes. */
 const octaves = (

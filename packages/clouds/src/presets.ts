@@ -5,14 +5,10 @@ import { CloudLayers } from './CloudLayers'
 type Layers = readonly Partial<CloudLayerParameters>[]
 
 const cumulus: Partial<CloudLayerParameters> = {
-  baseAltitude: 1000,
   topAltitude: 2000,
   coverage: 0.3,
-  density: 0.05,
   profileExponent: 0.4,
-  shapeAmount: 1,
   detailAmount: 0.7,
-  weatherWeights: [1, 0, 0, 0],
   wind: { east: 7, north: 2 }
 }
 
@@ -46,7 +42,6 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       topAltitude: 1400,
       coverage: 0.8,
       density: 0.04,
-      profileExponent: 0.6,
       shapeAmount: 0.8,
       detailAmount: 0.5,
       weatherWeights: [0, 1, 0, 0],
@@ -89,8 +84,6 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       coverage: 0.3,
       density: 0.01,
       profileExponent: 0.8,
-      shapeAmount: 1,
-      detailAmount: 0.6,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 16, north: -3 }
     },
@@ -108,8 +101,9 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
  *
+ * @param count - How many layers there are at least, to take other presets by `copy` later.
  * @throws If there is no preset of this name.
  */
-export function cloudPreset(name: CloudPresetName): CloudLayers {
-  return new CloudLayers(named('cloudPreset', 'name', presets, name))
+export function cloudPreset(name: CloudPresetName, count = 1): CloudLayers {
+  return new CloudLayers(named('cloudPreset', 'name', presets, name), count)
 }

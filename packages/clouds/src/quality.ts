@@ -52,9 +52,9 @@ export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQ
   if (typeof quality === 'string') {
     return named('CloudsNode', 'quality', cloudQualities, quality)
   }
-  checkRanges('CloudsNode', quality, ranges, 'quality.')
+  checkRanges('CloudsNode.quality', quality, ranges)
   if (!Number.isInteger(quality.block)) {
-    fail('CloudsNode', 'quality.block must be 1, 2, 3 or 4', quality.block)
+    fail('CloudsNode.quality', 'block must be 1, 2, 3 or 4', quality.block)
   }
   return Object.freeze({ ...quality })
 }

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest'
-import { CloudLayer, CloudLayers, type CloudLayerParameters } from '../src/index'
+import { CloudLayer, CloudLayers, cloudPreset, type CloudLayerParameters } from '../src/index'
 
 const invalid: [Partial<CloudLayerParameters>, RegExp][] = [
   [{ baseAltitude: -1 }, /baseAltitude must be .* got -1/],
@@ -52,5 +52,23 @@ describe('CloudLayers', () => {
     const layer = new CloudLayer()
     expect(new CloudLayers([layer]).at(0)).toBe(layer)
     expect(() => new CloudLayers([layer]).at(1)).toThrow(/got 1/)
+  })
+
+  it('takes the parameters of others, and clears what is left over', () => {
+    const layers = cloudPreset('mixed', 4)
+    expect(layers.length).toBe(4)
+    expect(layers.at(3).parameters.coverage).toBe(0)
+    const first = layers.at(0)
+    layers.copy(cloudPreset('overcast'))
+    expect(layers.at(0)).toBe(first)
+    expect(first.parameters).toEqual(cloudPreset('overcast').at(0).parameters)
+    expect([...layers].map(({ parameters }) => parameters.coverage)).toEqual([1, 0, 0, 0])
+    layers.copy(cloudPreset('cumulonimbus'))
+    expect(layers.at(1).parameters).toEqual(cloudPreset('cumulonimbus').at(1).parameters)
+    expect(() => cloudPreset('cirrus', 2).copy(cloudPreset('mixed'))).toThrow(
+      'CloudLayers: layers must be 1 to 2, got 3'
+    )
+    expect(() => cloudPreset('cirrus', 5)).toThrow('CloudLayers: layers must be 1 to 4, got 5')
+    expect(new CloudLayers([{}, {}, {}], 2).length).toBe(3)
   })
 })

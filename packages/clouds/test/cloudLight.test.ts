@@ -49,15 +49,26 @@ describe('cloud-light table', () => {
 
   it('bakes in steps; a change on the way starts over', () => {
     const light = new CloudLightTable()
-    const steps = light.steps()
-    for (let i = 0; i < 3; i++) steps.next()
+    light.update(3)
+    expect(light.isReady).toBe(false)
     light.set({ forwardShare: 0.5 })
-    for (const _ of steps) continue
+    light.update(28)
+    expect(light.isDirty).toBe(true)
+    light.update(1)
     const changed = new CloudLightTable({ forwardShare: 0.5 })
     changed.bake()
     expect(light.isDirty).toBe(false)
+    expect(light.isReady).toBe(true)
     expect(light.texture.image.data).toEqual(changed.texture.image.data)
     expect(light.nodes.depthScale.value).toBe(changed.nodes.depthScale.value)
+    // Until a table is solved, the old one stands with its phase function.
+    light.set({ forwardShare: 0.9 })
+    for (let frames = 1; light.isDirty; frames++) {
+      expect(light.nodes.forwardShare.value).toBe(0.5)
+      expect(frames).toBeLessThan(30)
+      light.update(1)
+    }
+    expect(light.nodes.forwardShare.value).toBe(0.9)
   })
 
   it.for([

@@ -1,12 +1,7 @@
 import type { CloudPhaseParameters } from './cloudPhase'
+import { depths, layers, positions, suns } from './cloudLightSize'
 import { scalePhase } from './cloudPhase'
 import { SlabSolver, type SourceMoments } from './solveSlab'
-
-/** Positions in a slab, thicknesses of slabs, and sun angles that the cloud-light table holds. */
-export const CLOUD_LIGHT_SIZE = { positions: 32, depths: 28, suns: 16 } as const
-
-/** Layers of the table's 3-D texture: four moments per sun angle, two more per sun angle, the sky's. */
-export const CLOUD_LIGHT_LAYERS = 2 * CLOUD_LIGHT_SIZE.suns + 1
 
 /** Depths well below this are spaced evenly, those well above it by their logarithm. */
 export const CLOUD_LIGHT_BEND = 0.4
@@ -55,7 +50,6 @@ export function* fillCloudLight(
   phase: CloudPhaseParameters,
   data: Float32Array
 ): Generator<void, void, void> {
-  const { positions, depths, suns } = CLOUD_LIGHT_SIZE
   const solver = new SlabSolver(scalePhase(phase))
   const put = (layer: number, row: number, column: number, values: number[]): void =>
     data.set(values, 4 * ((layer * depths + row) * positions + column))
@@ -81,8 +75,7 @@ export function* fillCloudLight(
 
 /** The finished table, in float32. */
 export function solveCloudLight(phase: CloudPhaseParameters): Float32Array {
-  const { positions, depths } = CLOUD_LIGHT_SIZE
-  const data = new Float32Array(4 * positions * depths * CLOUD_LIGHT_LAYERS)
+  const data = new Float32Array(4 * positions * depths * layers)
   for (const _ of fillCloudLight(phase, data)) continue
   return data
 }
@@ -99,7 +92,6 @@ function sample(
   [column, row, sun]: [number, number, number],
   first: number
 ): number[] {
-  const { positions, depths, suns } = CLOUD_LIGHT_SIZE
   const axes = [split(column, positions), split(row, depths), split(sun, suns)]
   const result = [0, 0, 0, 0]
   for (let corner = 0; corner < 8; corner++) {
@@ -126,7 +118,6 @@ export function sampleSunlitSlab(
   thickness: number,
   cosSun: number
 ): SourceMoments {
-  const { suns } = CLOUD_LIGHT_SIZE
   const place: [number, number, number] = [slabColumn(depth, thickness), slabRow(thickness), cosSun]
   const [s00, s10, s20, s11] = sample(data, place, 0)
   const [s21, s22] = sample(data, place, suns)
@@ -146,6 +137,6 @@ export function sampleSkylitSlab(
   thickness: number
 ): [number, number, number] {
   const place: [number, number, number] = [slabColumn(depth, thickness), slabRow(thickness), 0]
-  const [s00, s10, s20] = sample(data, place, 2 * CLOUD_LIGHT_SIZE.suns)
+  const [s00, s10, s20] = sample(data, place, 2 * suns)
   return [s00, s10, s20]
 }

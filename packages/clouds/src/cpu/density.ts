@@ -9,10 +9,14 @@ import {
   FIELD_PERIOD,
   layerForms,
   layerPeriods,
-  PLANET_WAVES,
+  LAST_WAVES,
+  mapShift,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  SHAPE_WARP,
+  CLOUD_WARP,
+  FIELD_WARP,
   WEATHER_WARP,
   weatherScales
 } from '../layerUniforms'
@@ -33,6 +37,8 @@ export interface CloudState {
   readonly worldMap?: (longitude: number, latitude: number) => number
   /** a/b of the ellipsoid; only the map needs it. */
   readonly axialRatio?: number
+  /** Width of the map [texels]. */
+  readonly worldMapWidth?: number
 }
 
 /** A layer's weather at a place: see `CloudWeather` of tsl/weather.ts. */
@@ -70,18 +76,24 @@ function placeIn(
 }
 
 /** Part of a noise's variance that its levels of detail have lost. */
-const lost = (level: number): number =>
-  smoothstep(densityShape.blur[0], densityShape.blur[1], level)
+const lost = (level: number): number => smoothstep(0, densityShape.blur, level)
 
 /** Φ(z) of the normal distribution to 0.01, as the shader has it. */
 const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
 
 /** Share of the sky that a layer covers around a place, as far as it is known without noise. */
-function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Vector3): number {
+function shareAt(
+  state: CloudState,
+  { coverage }: CloudLayerParameters,
+  foot: Vector3,
+  shift: Vector3
+): number {
   if (state.worldMap === undefined) return coverage
-  const across = Math.hypot(foot.x, foot.y)
-  const latitude = Math.atan2(foot.z * (state.axialRatio ?? 1), across)
-  const share = clamp(state.worldMap(Math.atan2(foot.y, foot.x), latitude), 0, 1)
+  const { x, y, z } = foot
+    .clone()
+    .addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048) * foot.length())
+  const latitude = Math.atan2(z * (state.axialRatio ?? 1), Math.hypot(x, y))
+  const share = clamp(state.worldMap(Math.atan2(y, x), latitude), 0, 1)
   const covered = share * coverage
   return covered / Math.max(covered + (1 - share) * (1 - coverage), 1e-6)
 }
@@ -89,11 +101,10 @@ function shareAt(state: CloudState, { coverage }: CloudLayerParameters, foot: Ve
 /** Waves around the planet, in [−1, 1]. */
 function planetWaves(foot: Vector3, turn: Quaternion): Vec3Array {
   const { x, y, z } = foot.clone().normalize().applyQuaternion(turn)
-  const { next, last } = PLANET_WAVES
   return [
-    Math.sin(next * y + last * z),
-    Math.sin(next * z + last * x),
-    Math.sin(next * x + last * y)
+    Math.sin(NEXT_WAVES * y + LAST_WAVES * z),
+    Math.sin(NEXT_WAVES * z + LAST_WAVES * x),
+    Math.sin(NEXT_WAVES * x + LAST_WAVES * y)
   ]
 }
 
@@ -114,7 +125,6 @@ export function weatherAt(
   const turn = state.turns[index]
   const foot = position.clone().setLength(state.bottomRadius)
   const footprint = distance * state.pixelAngle
-  const c = shareAt(state, layer, foot)
   const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
   const { steepness, coarseness } = layerForms(layer)
 
@@ -127,7 +137,7 @@ export function weatherAt(
     noise.sample('weather', place, level).map(value => value - 0.5)
   const regionPlace = placeIn(foot, state.turns[0], latticeRotation.region, REGION_PERIOD)
   const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
-  const region = sample(shifted(regionPlace, waves, PLANET_WAVES.warp), regionLevel)
+  const region = sample(shifted(regionPlace, waves, PLANET_WARP), regionLevel)
 
   const { weather: period, shape: shapePeriod } = layerPeriods(layer)
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
@@ -136,6 +146,7 @@ export function weatherAt(
     sample(shifted(placeIn(foot, turn, rotation, length), region, WEATHER_WARP), levelThere)
   const fields = lookUp(latticeRotation.fields, period * FIELD_PERIOD, fieldLevel)
   const clouds = lookUp(latticeRotation.weather, period, level)
+  const c = shareAt(state, layer, foot, new Vector3(fields[2], fields[0], fields[1]))
 
   const dot = (values: number[]): number =>
     values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
@@ -157,14 +168,14 @@ export function weatherAt(
   const surely = excess * (2 * c - 1) ** 33
   const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
   const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
-    SHAPE_WARP.clouds * shapePeriod
+    CLOUD_WARP * shapePeriod
   )
   return {
     fill: meanEdge * layer.shapeAmount + (cumulative(sharp) - (1 - c)) * steepness + surely,
     cover: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
     spread: smoothstep(0.5, 4.5, level - coarseness),
     shapeWarp: new Vector3(fields[0], fields[1], fields[2])
-      .multiplyScalar(SHAPE_WARP.fields * shapePeriod)
+      .multiplyScalar(FIELD_WARP * shapePeriod)
       .add(detailWarp),
     detailWarp
   }
@@ -191,8 +202,7 @@ function carved(
   const level = levelOf(footprint, period / NOISE_SIZE.shape)
   const [whole, finer] = noise.sample('shape', place, level)
   const { leastCarving, lostCarving, shapeBlur } = densityShape
-  const heads =
-    whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(shapeBlur[0], shapeBlur[1], level)
+  const heads = whole + 0.3 * (finer - 0.5) + lostCarving * smoothstep(0, shapeBlur, level)
   const left = filled - layer.shapeAmount * Math.max(1 - heads, leastCarving)
   const most = layer.detailAmount * densityShape.erosion
   if (!detail) return left - most / 2
@@ -228,7 +238,16 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const { anvilDensity, anvilFill, anvilMean, anvilReach, fibrousFill, solidFill } = densityShape
+  const {
+    anvilDensity,
+    anvilFill,
+    anvilMean,
+    anvilReach,
+    solidFill,
+    thinFibres,
+    moreFibres,
+    mostFibres
+  } = densityShape
   let sum = 0
   state.layers.forEach((layer, index) => {
     const { baseAltitude, topAltitude, density } = layer
@@ -242,8 +261,7 @@ export function cloudExtinction(
     const profile = usual + anvilHere * (1 - smoothstep(0.9, 1, height) - usual)
     const filled = clamp(fill - anvilReach * (anvil - anvilHere), 0, 1.3) * profile
     const left = carved(state, noise, index, weather, position, distance, height, filled, detail)
-    const [thin, more, most] = fibrousFill
-    const fibres = thin + more * cover ** 2 + most * cover ** 64
+    const fibres = thinFibres + moreFibres * cover ** 2 + mostFibres * cover ** 64
     const solid = solidFill + anvil * (anvilFill - solidFill)
     const columnFill = solid + fibrous * (fibres - solid)
     const depth = Math.max(density * (topAltitude - baseAltitude) * columnFill, 1e-4)

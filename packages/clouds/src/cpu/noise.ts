@@ -91,7 +91,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3Array)
   let sum = 0
   let variance = 0
   channel.terms.forEach(({ kind, cells, weight }, i) => {
-    const { mean, deviation } = noiseStatistics[kind]
+    const [mean, deviation] = noiseStatistics[kind]
     sum += weight * (terms[kind](place, cells, seedOf(index, i)) - mean)
     variance += (weight * deviation) ** 2
   })

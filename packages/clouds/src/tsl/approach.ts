@@ -8,7 +8,8 @@ export const TILE = 8
 
 /** Most steps of a tile, and its shortest: per distance, at least [m]. */
 const STEPS = 48
-const SHORTEST = { growth: 0.004, least: 10 }
+const GROWTH = 0.004
+const LEAST = 10
 
 /** Farthest that tiles look, within the range of half floats, and what their precision leaves of it [m]. */
 const REACH = 60_000
@@ -36,8 +37,7 @@ export function approachClouds(sights: SightNodes): Vec4 {
       const offset = direction.mul(position).toConst() as Vec3
       const clear = clearanceAt(field, { offset, ...field.view.place(offset), distance: position })
       const step = clear.sub(position.mul(spread)).div(spread.add(1)).toConst() as Float
-      const { growth, least } = SHORTEST
-      If(step.lessThan(position.mul(growth).add(least)).or(position.greaterThan(REACH)), () => {
+      If(step.lessThan(position.mul(GROWTH).add(LEAST)).or(position.greaterThan(REACH)), () => {
         Break()
       })
       position.addAssign(step)

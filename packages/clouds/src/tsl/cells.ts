@@ -56,7 +56,7 @@ function layerNear(field: CloudField, altitude: Float): Float {
   const nearest = float(0).toVar()
   if (field.layers.length === 1) return nearest
   const least = float(1e9).toVar()
-  forLayers(field, 'nearLayer', (index: Int) => {
+  forLayers(field, (index: Int) => {
     const { baseAltitude, perThickness } = layerAt(field, index)
     const apart = altitude.sub(baseAltitude).mul(perThickness).sub(0.5).abs().toConst() as Float
     If(apart.lessThan(least), () => {

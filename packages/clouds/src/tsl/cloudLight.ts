@@ -1,17 +1,11 @@
 import { Fn, float, vec2, vec3 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import {
-  CLOUD_LIGHT_BEND,
-  CLOUD_LIGHT_LAYERS,
-  CLOUD_LIGHT_SIZE,
-  CLOUD_LIGHT_THICKEST
-} from '../cpu/cloudLightTable'
+import { CLOUD_LIGHT_BEND, CLOUD_LIGHT_THICKEST } from '../cpu/cloudLightTable'
+import { depths, layers, positions, suns } from '../cpu/cloudLightSize'
 import { PUFF_DEPTH } from '../cpu/cloudLight'
 import * as c from '../cpu/lateralLeak'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
 import { singlePhase } from './cloudPhase'
-
-const { positions, depths, suns } = CLOUD_LIGHT_SIZE
 
 /** Where a sample is in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
 export interface CloudSourceNodes {
@@ -56,7 +50,7 @@ function slabPlace(depth: Float, thickness: Float): Vec2 {
 /** Reads a layer of the table. */
 const read = ({ table }: CloudLight, place: Vec2, layer: Float): Vec4 =>
   table
-    .sample(vec3(place, layer.add(0.5).div(CLOUD_LIGHT_LAYERS)))
+    .sample(vec3(place, layer.add(0.5).div(layers)))
     .level(0)
     .toConst()
 

@@ -13,7 +13,7 @@ import { footOffset, weatherAt } from './weather'
 export function cloudColumn(field: CloudField, sample: CloudSample): Float {
   const foot = footOffset(field, sample).toConst()
   const sum = float(0).toVar()
-  forLayers(field, 'cloudColumnLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const weather = weatherAt(field, layer, foot, sample)
     sum.addAssign(spreadDepth(field, layer, weather))
@@ -35,7 +35,7 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
   const sum = float(0).toVar()
   const cosSun = sample.up.dot(toLight).toConst() as Float
   const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
-  forLayers(field, 'lightColumnLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
     const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float

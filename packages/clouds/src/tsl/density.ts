@@ -6,7 +6,9 @@ import {
   anvilMean,
   anvilReach,
   erosion,
-  fibrousFill,
+  moreFibres,
+  mostFibres,
+  thinFibres,
   leastCarving,
   lostCarving,
   shapeBlur,
@@ -40,7 +42,8 @@ const NOWHERE = 1e6
  * Distances over which the fill of a layer changes by 1 at least: where its weather is steepest, in
  * periods of the weather, and where its shape is besides, in periods of the shape.
  */
-const STEEPEST = { weather: 0.03, shape: 0.05 }
+const STEEPEST_WEATHER = 0.03
+const STEEPEST_SHAPE = 0.05
 
 /** Heights in a layer between which towers become anvils. */
 const ANVIL = [0.62, 0.8] as const
@@ -81,7 +84,7 @@ function carving(
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const heads = noise.x
     .add(noise.y.sub(0.5).mul(0.3))
-    .add(smoothstep(shapeBlur[0], shapeBlur[1], level).mul(lostCarving))
+    .add(smoothstep(0, shapeBlur, level).mul(lostCarving))
   const carved = layer.shapeAmount.mul(heads.oneMinus().max(leastCarving)).toConst() as Float
   const left = filled.sub(carved).toVar() as Float & { subAssign: (n: Float) => void }
   const most = layer.detailAmount.mul(erosion).toConst() as Float
@@ -108,9 +111,8 @@ function carving(
 
 /** Mean density of a cloudy column over the densest. */
 export function columnFill(layer: LayerNodes, { cover }: Pick<CloudWeather, 'cover'>): Float {
-  const [thin, more, most] = fibrousFill
   const square = squared(cover, 1)
-  const fibres = square.mul(more).add(squared(square, 5).mul(most)).add(thin)
+  const fibres = square.mul(moreFibres).add(squared(square, 5).mul(mostFibres)).add(thinFibres)
   return layer.fibrous.mix(layer.anvil.mix(solidFill, anvilFill), fibres).toConst()
 }
 
@@ -177,7 +179,7 @@ function eachLayer(
   body: (layer: LayerNodes, weather: CloudWeather, height: Float) => void
 ): void {
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'cloudLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, sample.altitude)
     If(mayHold(layer, height), () => {
@@ -219,7 +221,7 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
   layer.shapeAmount
     .mul(leastCarving)
     .sub(fill)
-    .mul(STEEPEST.weather)
+    .mul(STEEPEST_WEATHER)
     .div(layer.perWeatherPeriod)
     .max(0)
 
@@ -229,7 +231,7 @@ const clearanceIn = (layer: LayerNodes, { fill }: LocalWeather): Float =>
 export function clearanceAt(field: CloudField, sample: CloudSample): Float {
   const clearance = float(NOWHERE).toVar()
   const foot = footOffset(field, sample).toConst()
-  forLayers(field, 'clearLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     If(layer.coverage.greaterThan(0), () => {
       const weather = weatherAt(field, layer, foot, sample, 'where spread')
@@ -271,7 +273,7 @@ function layerMatter(
   If(filled.greaterThan(least), () => {
     const { left, carved } = carving(field, layer, weather, sample, height, filled, detail)
     density.assign(left.mul(layer.sharpness).clamp(0, 1))
-    clearance.assign(carved.sub(fill).mul(STEEPEST.shape).div(layer.perShapePeriod))
+    clearance.assign(carved.sub(fill).mul(STEEPEST_SHAPE).div(layer.perShapePeriod))
   })
   If(spread.mul(cover).greaterThan(0), () => {
     // Of towers with anvils, these are what is seen from afar.
@@ -357,7 +359,7 @@ export function pairMatter(
       })
     })
   }
-  forLayers(field, 'pairLayer', look, range)
+  forLayers(field, look, range)
   return { extinction: sum, clearance, weather: { values, shapeWarp } }
 }
 

@@ -109,17 +109,12 @@ export interface LayerRange {
 }
 
 /**
- * Calls back for each layer, with code for one if there is one.
+ * Calls back for each layer, with code for one if there is one. Not to be nested.
  *
  * @param range - Which ones; all if it is left out.
  */
-export function forLayers(
-  field: CloudField,
-  name: string,
-  body: (index: Int) => void,
-  range?: LayerRange
-): void {
+export function forLayers(field: CloudField, body: (index: Int) => void, range?: LayerRange): void {
   const { length } = field.layers
   if (length === 1) body(int(0))
-  else loop(name, range?.last ?? length, body, range?.first)
+  else loop('layer', range?.last ?? length, body, range?.first)
 }

@@ -15,10 +15,15 @@ import { surroundings, type Surroundings } from './shells'
 const LOWEST_COSINE = 0.12
 
 /** How far towards the sun clouds are looked at themselves: per distance, at least and at most [m]. */
-const NEAR_REACH = { growth: 0.02, least: 60, most: 600 }
+const REACH_GROWTH = 0.02
+const LEAST_REACH = 60
+const MOST_REACH = 600
 
 /** Under a low sun, rays stay among clouds for longer: cosines that count, reach [m], and more samples. */
-const LOW_SUN = { from: 0.35, to: 0.12, reach: 700, samples: 2 }
+const LOW_SUN = 0.35
+const LOWEST_SUN = 0.12
+const LOW_SUN_REACH = 700
+const LOW_SUN_SAMPLES = 2
 
 /** Part of the way to the top at which the cloud above is looked at. */
 const UPWARDS = 0.35
@@ -57,17 +62,16 @@ function depthsAbout(
   const fall = sample.altitude.sub(base).max(1).toConst()
   const slant = cosSun.abs().max(LOWEST_COSINE).reciprocal().toConst()
   const toTop = cosSun.greaterThan(0).select(rise, fall).mul(slant).toConst() as Float
-  const { growth, least, most } = NEAR_REACH
-  const lowness = smoothstep(-LOW_SUN.from, -LOW_SUN.to, cosSun.abs().negate()).toConst() as Float
+  const lowness = smoothstep(-LOW_SUN, -LOWEST_SUN, cosSun.abs().negate()).toConst() as Float
   const reach = sample.distance
-    .mul(growth)
-    .clamp(least, most)
-    .max(lowness.mul(LOW_SUN.reach))
+    .mul(REACH_GROWTH)
+    .clamp(LEAST_REACH, MOST_REACH)
+    .max(lowness.mul(LOW_SUN_REACH))
     .min(toTop)
     .toConst() as Float
   /** Nearest, sum towards the sun, upwards. */
   const found = vec4(0).toVar() as Vec4
-  const more = lowness.mul(LOW_SUN.samples).ceil().toInt()
+  const more = lowness.mul(LOW_SUN_SAMPLES).ceil().toInt()
   const count = quality.sunSteps.add(more).toConst() as Int
   // One instance of the density for both directions: shaders stay short.
   loop('probe', count.add(int(1)), index => {

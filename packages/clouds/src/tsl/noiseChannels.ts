@@ -26,7 +26,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   let variance = 0
   let sum: Float = float(0)
   parts.forEach(({ kind, cells, weight }, i) => {
-    const { mean, deviation } = noiseStatistics[kind]
+    const [mean, deviation] = noiseStatistics[kind]
     variance += (weight * deviation) ** 2
     const noise = terms[kind](place, vec3(...cells), float(seedOf(index, i)))
     sum = sum.add(noise.sub(mean).mul(weight))

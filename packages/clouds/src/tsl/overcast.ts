@@ -64,7 +64,7 @@ export function sheetsAbout(
   const above = vec3(0).toVar() as Vec3
   const below = vec3(0).toVar() as Vec3
   const beam = float(1).toVar()
-  forLayers(field, 'overcastLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
       const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()

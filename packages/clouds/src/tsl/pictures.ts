@@ -33,14 +33,15 @@ export function fits(end: Float, { x: distance, y: otherEnd }: Vec4): Float {
 export const brightness = ({ x, y, z }: Vec4): Float => x.add(y.mul(2)).add(z).mul(0.25)
 
 /** log₂ of the distances that bytes hold, from the first on, and how many octaves [m]. */
-const BYTES = { from: 4, octaves: 24 }
+const FIRST_OCTAVE = 4
+const OCTAVES = 24
 
 /** Parts of a look that are told apart, and where in 16 bits the sign is. */
 const LOOK_PARTS = 127
 const SIGN = 2 ** 15
 
-const toByte = (distance: Float): Float => distance.sub(BYTES.from).div(BYTES.octaves).clamp()
-const fromByte = (byte: Float): Float => byte.mul(BYTES.octaves).add(BYTES.from)
+const toByte = (distance: Float): Float => distance.sub(FIRST_OCTAVE).div(OCTAVES).clamp()
+const fromByte = (byte: Float): Float => byte.mul(OCTAVES).add(FIRST_OCTAVE)
 
 /** log₂ of a distance, as exact as a byte has it: to 3 %. */
 export const rounded = (distance: Float): Float =>

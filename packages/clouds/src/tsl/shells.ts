@@ -44,7 +44,7 @@ export function nextShell(field: CloudField, cosView: Float, distance: Float): F
   const consider = (at: Float): void => {
     next.assign(at.greaterThan(distance).select(next.min(at), next))
   }
-  forLayers(field, 'shellLayer', index => {
+  forLayers(field, index => {
     const { baseAltitude, thickness } = layerAt(field, index)
     for (const altitude of [baseAltitude, baseAltitude.add(thickness)]) {
       const { near, far } = crossings(field, cosView, altitude)
@@ -80,7 +80,7 @@ export function surroundings(field: CloudField, altitude: Float): Surroundings {
   const depth = float(0).toVar()
   const first = int(field.layers.length).toVar() as Int
   const last = int(0).toVar() as Int
-  forLayers(field, 'surroundingLayer', index => {
+  forLayers(field, index => {
     const layer = layerAt(field, index)
     const layerTop = layer.baseAltitude.add(layer.thickness).toConst()
     const isInside = altitude

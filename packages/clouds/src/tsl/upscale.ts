@@ -42,7 +42,10 @@ const LEAST_MEMORY = 0.1
  * every frame, and is kept while the picture hardly moves, with things in the same places. Not what has been seen in too few looks: it may
  * be left over from a move.
  */
-const SLACK = { standing: 1, moving: 0.01, young: 1.5, old: 4 }
+const STANDING_SLACK = 1
+const MOVING_SLACK = 0.01
+const YOUNG_LOOKS = 1.5
+const OLD_LOOKS = 4
 
 /** Error of the reprojection at which history is forgotten [pixels]. */
 const PARALLAX = 4
@@ -171,9 +174,9 @@ export function upscale(
           const origin = frame.originArray.element(cell.place.w.toInt()).xyz
           const last = remembered(sights, history, pixel, sight, end, now.distance, origin)
           If(last.weight.greaterThan(0), () => {
-            const slack = smoothstep(SLACK.young, SLACK.old, last.weight)
-              .mul(last.sameness.mul(SLACK.standing))
-              .max(SLACK.moving)
+            const slack = smoothstep(YOUNG_LOOKS, OLD_LOOKS, last.weight)
+              .mul(last.sameness.mul(STANDING_SLACK))
+              .max(MOVING_SLACK)
             const clipped = clip(last.light, now, frame.clipping, slack)
             // What is known well does not learn from marched pixels that are not its own.
             const isOwn = now.look.greaterThan(OWN_LOOK).or(last.weight.lessThan(1))

@@ -5,11 +5,15 @@ import { NOISE_SIZE } from '../noiseSizes'
 import { latticeRotation } from '../lattice'
 import {
   FIELD_PERIOD,
-  PLANET_WAVES,
+  FIELD_WEIGHT,
+  LAST_WAVES,
+  mapShift,
+  NEXT_WAVES,
+  PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  scaleWeights,
-  SHAPE_WARP,
+  CLOUD_WARP,
+  FIELD_WARP,
   WEATHER_WARP
 } from '../layerUniforms'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -44,11 +48,11 @@ export function footOffset(field: CloudField, { offset, altitude }: CloudSample)
   return offset.sub(up.mul(rise)).mul(scale)
 }
 
-/** Share of the sky that the world map has covered around a place. */
+/** Share of the sky that the world map has covered around a place, in the direction of `up`. */
 function mappedShare(
   field: CloudField,
   worldMap: LevelTexture<Vec2>,
-  { up }: CloudSample,
+  up: Vec3,
   footprint: Float
 ): Float {
   const across = up.xy.length().max(1e-6).toConst() as Float
@@ -61,15 +65,22 @@ function mappedShare(
   return worldMap.sample(uv).level(log2(footprint.div(texel).max(1))).x
 }
 
-/** Share of the sky that a layer covers around a place, as far as it is known without noise. */
+/**
+ * Share of the sky that a layer covers around a place, as far as it is known without noise.
+ *
+ * @param shift - Of the look-up of the map, from the fields of the weather: it hides the shapes of the
+ *   map's texels from near, and is gone where fields are too small to be seen.
+ */
 function shareAt(
   field: CloudField,
   layer: LayerNodes,
-  sample: CloudSample,
-  footprint: Float
+  { up }: CloudSample,
+  footprint: Float,
+  shift: Vec3
 ): Float {
   if (field.worldMap === null) return layer.coverage
-  const share = mappedShare(field, field.worldMap, sample, footprint).clamp(0, 1).toConst() as Float
+  const there = up.add(shift.mul(mapShift(field.worldMapWidth))).toConst() as Vec3
+  const share = mappedShare(field, field.worldMap, there, footprint).clamp(0, 1).toConst() as Float
   // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
   const covered = share.mul(layer.coverage).toConst() as Float
   const clear = share.oneMinus().mul(layer.coverage.oneMinus())
@@ -81,7 +92,7 @@ export const squared = (x: Float, times: number): Float =>
   times === 0 ? x : squared(x.mul(x).toConst(), times - 1)
 
 /** Part of a noise's variance that its levels of detail have lost. */
-const lost = (level: Float): Float => smoothstep(blur[0], blur[1], level)
+const lost = (level: Float): Float => smoothstep(0, blur, level)
 
 /**
  * sin x to 10⁻⁶. A GPU's own may be off by 2⁻¹¹, and by more beyond ±π: as the waves shift the regions, and
@@ -126,22 +137,20 @@ export function weatherAt(
   const { weather } = field.textures
   const turned = layer.turn(foot).toConst() as Vec3
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
-  const share = shareAt(field, layer, sample, footprint)
 
   // Layers share their weather systems: where one is clear, others are.
   const isAlone = field.layers.length === 1
   const systems = isAlone ? layer : layerAt(field, int(0))
   const around = isAlone ? turned : (systems.turn(foot).toConst() as Vec3)
   const zenith = systems.turn(sample.up).toConst() as Vec3
-  const { next, last, warp: shift } = PLANET_WAVES
-  const waves = sine(zenith.yzx.mul(next).add(zenith.zxy.mul(last)))
+  const waves = sine(zenith.yzx.mul(NEXT_WAVES).add(zenith.zxy.mul(LAST_WAVES)))
   const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
   const region = weather
     .sample(
       rotate(latticeRotation.region, around)
         .div(REGION_PERIOD)
         .add(systems.regionAnchor)
-        .add(waves.mul(shift))
+        .add(waves.mul(PLANET_WARP))
     )
     .level(regionLevel)
     .xyz.sub(0.5)
@@ -161,6 +170,7 @@ export function weatherAt(
     .level(fieldLevel)
     .sub(0.5)
     .toConst() as Vec4
+  const share = shareAt(field, layer, sample, footprint, fields.zxy)
   const clouds = weather
     .sample(rotate(latticeRotation.weather, turned).mul(scale).add(layer.weatherAnchor).add(warp))
     .level(level)
@@ -168,7 +178,7 @@ export function weatherAt(
     .toConst() as Vec4
 
   const z = clouds
-    .add(fields.mul(scaleWeights.fields))
+    .add(fields.mul(FIELD_WEIGHT))
     .dot(layer.weights)
     .add(fields.z.mul(layer.cells))
     .add(region.z.add(region.x.mul(REGION_CELLS)).mul(layer.regions))
@@ -182,21 +192,26 @@ export function weatherAt(
     .toConst() as Float
   const cloudLevel = level.sub(layer.coarseness).toConst() as Float
   const spread = smoothstep(0.5, 4.5, cloudLevel).toConst() as Float
-  const cover = float(0).toVar()
+  /** Of the weather that levels of detail have lost: none near by. */
+  const variance = float(0).toVar()
   /** Blurred clouds are as many as sharp ones. */
   const sharp = z.toVar() as Float
-  const findCover = (): void => {
+  If(level.greaterThan(0), () => {
     const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
     const fieldVariance = layer.cloudVariance
       .add(layer.planet.mul(layer.planet))
       .add(regionVariance)
       .oneMinus()
-    const variance = layer.cloudVariance
-      .mul(lost(cloudLevel))
-      .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
-      .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
-      .toConst() as Float
+    variance.assign(
+      layer.cloudVariance
+        .mul(lost(cloudLevel))
+        .add(fieldVariance.mul(lost(fieldLevel.sub(0.5))))
+        .add(regionVariance.mul(lost(regionLevel.sub(0.8))))
+    )
     sharp.mulAssign(variance.oneMinus().max(leastVariance).inverseSqrt())
+  })
+  const cover = float(0).toVar()
+  const findCover = (): void => {
     const edges = layer.shapeAmount.mul(carvedBlur).max(leastBlur)
     const odds = share.clamp(1e-6, 1 - 1e-6).toConst() as Float
     const quantile = odds.div(odds.oneMinus()).log().div(1.702)
@@ -216,12 +231,12 @@ export function weatherAt(
     .add(surely)
     .toConst() as Float
   const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
-  const detailWarp = clouds.xyz.mul(shapePeriod).mul(SHAPE_WARP.clouds).toConst() as Vec3
+  const detailWarp = clouds.xyz.mul(shapePeriod).mul(CLOUD_WARP).toConst() as Vec3
   return {
     fill,
     cover,
     spread,
-    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(SHAPE_WARP.fields)).toConst(),
+    shapeWarp: detailWarp.add(fields.xyz.mul(shapePeriod).mul(FIELD_WARP)).toConst(),
     detailWarp
   }
 }

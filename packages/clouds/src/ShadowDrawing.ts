@@ -1,0 +1,87 @@
+import type { Quaternion } from 'three'
+import { Vector3 } from 'three'
+
+/** Texels along an edge of a cascade. */
+export const CASCADE_SIZE = 256
+
+/** Sine of the least angle between rays of light and the plane that the map lies in. */
+const LEAST_SLOPE = 0.2
+
+const _normal = new Vector3()
+const _offset = new Vector3()
+
+/** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
+export class ShadowDrawing {
+  /** Of the map's squares. */
+  readonly square: number
+  halfWidth = 0
+  readonly anchor = new Vector3()
+  readonly light = new Vector3()
+  /** The plane's normal over its cosine to the light. */
+  readonly normal = new Vector3()
+  readonly across = new Vector3()
+  /** Measures the plane's second axis along rays of light. */
+  readonly measure = new Vector3()
+  readonly along = new Vector3()
+  /** Of the middle [m]. */
+  readonly center = { u: 0, v: 0 }
+  /** How the wind had turned the layers. */
+  readonly turns: readonly Quaternion[]
+  /** What else it was drawn from. */
+  inputs: readonly unknown[] = []
+  /** Greater than those of what was drawn before. */
+  order = 0
+
+  constructor(square: number, turns: readonly Quaternion[]) {
+    this.square = square
+    this.turns = turns.map(turn => turn.clone())
+  }
+
+  /** [m]. */
+  get texel(): number {
+    return (2 * this.halfWidth) / CASCADE_SIZE
+  }
+
+  /**
+   * Puts the middle on the texel nearest to a place. All in the mapped space, from the planet's centre.
+   *
+   * @param light - Direction to the light.
+   * @param anchor - The plane's origin [m].
+   * @param foot - Where the middle is wanted [m].
+   * @param halfWidth - [m].
+   * @param turns - How the wind has turned the layers.
+   */
+  place(
+    light: Vector3,
+    anchor: Vector3,
+    foot: Vector3,
+    halfWidth: number,
+    turns: readonly Quaternion[]
+  ): void {
+    const { across, along, measure, normal, center } = this
+    this.light.copy(light)
+    this.anchor.copy(anchor)
+    this.halfWidth = halfWidth
+    this.turns.forEach((turn, i) => turn.copy(turns[i]))
+    // Level, but leant towards a low light.
+    _normal.copy(anchor).normalize()
+    across.crossVectors(light, _normal)
+    if (across.lengthSq() < 1e-12) across.set(_normal.z, _normal.x, _normal.y).cross(_normal)
+    across.normalize()
+    const slope = light.dot(_normal)
+    if (Math.abs(slope) < LEAST_SLOPE) {
+      const level = along.copy(light).addScaledVector(_normal, -slope).normalize()
+      // n = up sin a + level cos a with n·s = LEAST_SLOPE, to the light's side of the plane.
+      const sign = slope < 0 ? -1 : 1
+      const lean = Math.asin(LEAST_SLOPE) - Math.asin(Math.abs(slope))
+      _normal.multiplyScalar(Math.cos(lean)).addScaledVector(level, sign * Math.sin(lean))
+    }
+    along.crossVectors(_normal, across)
+    normal.copy(_normal).divideScalar(_normal.dot(light))
+    measure.copy(along).addScaledVector(normal, -along.dot(light))
+    _offset.copy(foot).sub(anchor)
+    const { texel } = this
+    center.u = Math.round(across.dot(_offset) / texel) * texel
+    center.v = Math.round(measure.dot(_offset) / texel) * texel
+  }
+}
