@@ -128,14 +128,14 @@ export function weatherAt(
   const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
   const { steepness, coarseness } = layerForms(layer)
 
-  const waves = planetWaves(foot, turn)
+  const waves = planetWaves(foot, state.turns[0])
   const shifted = (place: Vec3Array, by: readonly number[], factor: number): Vec3Array => {
     const [x, y, z] = place.map((p, axis) => p + by[axis] * factor)
     return [x, y, z]
   }
   const sample = (place: Vec3Array, level: number): number[] =>
     noise.sample('weather', place, level).map(value => value - 0.5)
-  const regionPlace = placeIn(foot, turn, latticeRotation.region, REGION_PERIOD)
+  const regionPlace = placeIn(foot, state.turns[0], latticeRotation.region, REGION_PERIOD)
   const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
   const region = sample(shifted(regionPlace, waves, PLANET_WARP), regionLevel)
 

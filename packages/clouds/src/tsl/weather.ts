@@ -1,4 +1,4 @@
-import { If, atan, float, log2, smoothstep, vec2 } from 'three/tsl'
+import { If, atan, float, int, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { blur, carvedBlur, excess, leastBlur, leastVariance, meanEdge } from '../densityShape'
 import { NOISE_SIZE } from '../noiseSizes'
@@ -18,7 +18,7 @@ import {
 } from '../layerUniforms'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { CloudSample } from './density'
-import { rotate, type LayerNodes } from './layer'
+import { layerAt, rotate, type LayerNodes } from './layer'
 import { cumulative } from './noiseChannels'
 
 /** What the weather says of a place in a layer. */
@@ -138,14 +138,18 @@ export function weatherAt(
   const turned = layer.turn(foot).toConst() as Vec3
   const footprint = sample.distance.mul(field.pixelAngle).toConst() as Float
 
-  const zenith = layer.turn(sample.up).toConst() as Vec3
+  // Layers share their weather systems: where one is clear, others are.
+  const isAlone = field.layers.length === 1
+  const systems = isAlone ? layer : layerAt(field, int(0))
+  const around = isAlone ? turned : (systems.turn(foot).toConst() as Vec3)
+  const zenith = systems.turn(sample.up).toConst() as Vec3
   const waves = sine(zenith.yzx.mul(NEXT_WAVES).add(zenith.zxy.mul(LAST_WAVES)))
   const regionLevel = log2(footprint.mul(NOISE_SIZE.weather / REGION_PERIOD).max(1)).toConst()
   const region = weather
     .sample(
-      rotate(latticeRotation.region, turned)
+      rotate(latticeRotation.region, around)
         .div(REGION_PERIOD)
-        .add(layer.regionAnchor)
+        .add(systems.regionAnchor)
         .add(waves.mul(PLANET_WARP))
     )
     .level(regionLevel)

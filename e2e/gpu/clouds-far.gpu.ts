@@ -1,0 +1,107 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { CloudField, CloudLayers, CloudLightTable, cloudPreset } from '@welkin/clouds'
+import { DataTexture, FloatType, PerspectiveCamera, RenderTarget } from 'three'
+import { float, Fn, screenCoordinate, texture, uniform, vec4 } from 'three/tsl'
+import { NodeMaterial, QuadMesh, type Node, type NodeFrame } from 'three/webgpu'
+import type { CloudShadows } from '../../packages/clouds/src/CloudShadowMap'
+import { QualityUniforms, resolveQuality } from '../../packages/clouds/src/quality'
+import { marchClouds } from '../../packages/clouds/src/tsl/march'
+import { number } from '../../packages/clouds/src/uniforms'
+import { expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+import { readPicture } from './harness/picture'
+
+/** Half the width of the view, as a slope. */
+const SPREAD = 0.125
+
+gpuTest('clouds are as bright, resolved one by one or not', async t => {
+  const renderer = await t.createRenderer()
+  const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45, height: 4e5 })
+  const camera = new PerspectiveCamera()
+  camera.updateMatrixWorld()
+  const layers = new CloudLayers([{}])
+  const field = new CloudField(atmosphere, layers)
+  const light = new CloudLightTable()
+  light.bake()
+  field.depthScale.value = light.nodes.depthScale.value
+  const quality = new QualityUniforms()
+  quality.set(resolveQuality('high'))
+  const update = (): void => {
+    const view = atmosphere.update(renderer, camera)
+    field.view.update({ renderer, camera } as unknown as NodeFrame)
+    field.update(view, 0)
+  }
+  field.bake(renderer)
+
+  const size = 48
+  /** Of the view against straight down, away from the sun [rad]. */
+  const tilt = uniform(0)
+  const map = texture(new DataTexture(new Uint8Array(4), 1, 1))
+  const shadows = { map, cascades: [], count: 1, isMoonlit: number() } as unknown as CloudShadows
+  const material = new NodeMaterial()
+  material.fragmentNode = Fn(() => {
+    const { up, sunDirection } = field.view
+    const across = up.cross(sunDirection).normalize().toConst()
+    const ahead = up.cross(across).toConst()
+    const middle = ahead.mul(tilt.sin()).sub(up.mul(tilt.cos())).toConst()
+    const at = screenCoordinate.xy
+      .div(size / 2)
+      .sub(1)
+      .mul(SPREAD)
+      .toConst()
+    const aside = across.mul(at.x).add(middle.cross(across).mul(at.y))
+    const direction = middle.add(aside).normalize().toConst() as unknown as Node<'vec3'>
+    const pixel = screenCoordinate.xy.floor()
+    const jitter = pixel.x.mul(0.754877666).add(pixel.y.mul(0.569840296)).fract()
+    const ray = { direction, end: float(3e6), jitter }
+    const marched = marchClouds(field, light.nodes, shadows, quality, ray)
+    return vec4(marched.radiance.y, marched.transmittance, 0, 0)
+  })() as never
+  const quad = new QuadMesh(material)
+  const target = new RenderTarget(size, size, { type: FloatType, depthBuffer: false })
+  const meanLight = async (pixelAngle: number): Promise<[number, number]> => {
+    field.pixelAngle.value = pixelAngle
+    renderer.setRenderTarget(target)
+    quad.render(renderer)
+    renderer.setRenderTarget(null)
+    const { data } = await readPicture(renderer, target)
+    const mean = (channel: number): number =>
+      data.reduce((sum, value, i) => (i % 4 === channel ? sum + value : sum), 0) / size ** 2
+    return [mean(0), 1 - mean(1)]
+  }
+
+  const misses: string[] = []
+  for (const [name, coverage] of [
+    ['fairWeather', 0.3],
+    ['stratocumulus', 0.8],
+    ['cumulonimbus', 0.3]
+  ] as const) {
+    layers.at(0).set({ ...cloudPreset(name).at(0).parameters, coverage })
+    for (const [elevation, tiltDegrees] of [
+      [60, 0],
+      [60, 50],
+      [10, 0],
+      [10, 50]
+    ]) {
+      atmosphere.setSunAngles(elevation, 150)
+      tilt.value = (tiltDegrees * Math.PI) / 180
+      update()
+      const [near, nearOpacity] = await meanLight(3e-4)
+      const found: string[] = []
+      // From 400 km: 120 m, then 4 and 16 km.
+      for (const pixelAngle of [1e-2, 4e-2]) {
+        const [far, opacity] = await meanLight(pixelAngle)
+        found.push(`${(far / near).toFixed(2)} (opacity ${opacity.toFixed(2)})`)
+        if (Math.abs(far / near - 1) > 0.2) misses.push(`${name}: ${far / near} of the light`)
+      }
+      const label = `${name}, sun at ${elevation}°, view ${tiltDegrees}° aslant`
+      t.note(`${label}: opacity ${nearOpacity.toFixed(2)}, light × ${found.join(', ')}`)
+    }
+  }
+  expectTrue(misses.length === 0, misses.join(', '))
+  target.dispose()
+  material.dispose()
+  field.dispose()
+  light.dispose()
+  atmosphere.dispose()
+})
