@@ -29,8 +29,8 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 /** Well-tried qualities. */
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
   low: { steps: 64, stepGrowth: 0.06, shortestStep: 120, layerSteps: 8, sunSteps: 1, block: 4 },
-  medium: { steps: 96, stepGrowth: 0.04, shortestStep: 100, layerSteps: 12, sunSteps: 2, block: 4 },
-  high: { steps: 128, stepGrowth: 0.03, shortestStep: 80, layerSteps: 16, sunSteps: 2, block: 3 },
+  medium: { steps: 96, stepGrowth: 0.04, shortestStep: 100, layerSteps: 11, sunSteps: 2, block: 4 },
+  high: { steps: 128, stepGrowth: 0.03, shortestStep: 85, layerSteps: 16, sunSteps: 2, block: 3 },
   ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 25, layerSteps: 32, sunSteps: 4, block: 2 }
 }
 
