@@ -139,11 +139,11 @@ export const Cockpit: Story = {
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    altitude: 450,
-    heading: 295,
-    pitch: 12,
+    altitude: 6000,
+    heading: 262,
+    pitch: 2,
     hour: 22.4,
-    exposure: 0.25
+    exposure: 0.2
   },
   tags: ['screenshot', 'webgpu-only']
 }
