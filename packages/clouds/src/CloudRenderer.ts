@@ -116,10 +116,9 @@ export class CloudRenderer {
   /** Size on the GPU [bytes]. */
   get bytes(): number {
     return this.#targets
-      .flatMap(({ textures }) => textures)
+      .flatMap(target => target.textures)
       .reduce((sum, { type, width, height }) => {
-        const texel = type === UnsignedByteType ? 4 : 8
-        return sum + texel * width * height
+        return sum + width * height * (type === UnsignedByteType ? 4 : 8)
       }, 0)
   }
 

@@ -26,7 +26,7 @@ export class CloudSkyLight {
     }
     checkClouds('CloudSkyLight', clouds)
     if (probe.atmosphere !== clouds.atmosphere) {
-      fail('CloudSkyLight', 'clouds must be in the atmosphere of the probe', 'another')
+      fail('CloudSkyLight', "clouds must be in the probe's atmosphere", 'another')
     }
     this.probe = probe
     this.clouds = clouds

@@ -182,10 +182,7 @@ export class CloudsNode extends AtmosphereNode {
   /** @throws If there is no such view. */
   set debugView(view: CloudsDebug | null) {
     const index = debugViews.indexOf(view)
-    if (index < 0) {
-      const names = debugViews.slice(1).join(', ')
-      fail('CloudsNode', `debugView must be null or one of ${names}`, view)
-    }
+    if (index < 0) fail('CloudsNode', `debugView must be one of ${debugViews.map(String)}`, view)
     this.#debug.value = index
   }
 

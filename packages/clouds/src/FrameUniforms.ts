@@ -52,10 +52,10 @@ const isSame = (values: readonly number[], before: readonly number[]): boolean =
 const NEARBY = 200
 
 const isAmongClouds = (height: number, { layers }: CloudField): boolean =>
-  [...layers].some(({ parameters: { baseAltitude, topAltitude, coverage } }) => {
-    const middle = 0.5 * (baseAltitude + topAltitude)
-    return coverage > 0 && Math.abs(height - middle) < topAltitude - middle + NEARBY
-  })
+  [...layers].some(
+    ({ parameters: { baseAltitude, topAltitude } }) =>
+      height > baseAltitude - NEARBY && height < topAltitude + NEARBY
+  )
 
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()

@@ -64,7 +64,7 @@ describe('CloudsNode', () => {
     node.debugView = 'history'
     expect(node.debugView).toBe('history')
     expect(() => (node.debugView = 'opacity' as never)).toThrow(
-      'CloudsNode: debugView must be null or one of density, steps, depth, history, got opacity'
+      'CloudsNode: debugView must be one of null,density,steps,depth,history, got opacity'
     )
     expect(node.debugView).toBe('history')
     node.dispose()

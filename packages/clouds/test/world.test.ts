@@ -140,7 +140,7 @@ describe('cloudSkyLight', () => {
     expect(() => cloudSkyLight(null as never, node)).toThrow('CloudSkyLight: probe must be')
     expect(() => cloudSkyLight(probe, {} as never)).toThrow('CloudSkyLight: clouds must be')
     expect(() => cloudSkyLight(new SkyLightProbe(new Atmosphere()), node)).toThrow(
-      'CloudSkyLight: clouds must be in the atmosphere of the probe, got another'
+      "CloudSkyLight: clouds must be in the probe's atmosphere, got another"
     )
   })
 

@@ -28,10 +28,8 @@ export function approachClouds(sights: SightNodes): Vec4 {
     const tile = uv().mul(frame.marchedSize.div(TILE).ceil()).floor().toConst() as unknown as Vec2
     const toward = (part: number): Vec3 => sightAt(sights, tile.add(part).mul(edge)).direction
     const direction = toward(0.5)
-    const spread = [0, 1]
-      .map(part => toward(part).sub(direction).length())
-      .reduce((a, b) => a.max(b))
-      .toConst() as Float
+    // To its corners, of which some are farther off than this one.
+    const spread = toward(0).sub(direction).length().mul(1.1).toConst() as Float
     const position = float(0).toVar()
     loop('approach', STEPS, () => {
       const offset = direction.mul(position).toConst() as Vec3

@@ -1,7 +1,7 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { fitsCell, type Cell } from './cells'
-import { brightness, fits, type CloudPictures } from './pictures'
+import { brightness, fits, LOOK_PARTS, type CloudPictures } from './pictures'
 import type { SightNodes } from './sight'
 
 /** Sharpness of the kernel that spreads marched pixels, per marched pixels squared. */
@@ -11,7 +11,7 @@ const SPREADING = 7
 const LOOKING = 5
 
 /** What pixels that no marched one is near to count nevertheless. */
-const LEAST_LOOK = 0.003
+const LEAST_LOOK = 1 / LOOK_PARTS
 
 /** What this frame's marched pixels say about a pixel. */
 export interface Estimate {

@@ -36,34 +36,26 @@ export const brightness = ({ x, y, z }: Vec4): Float => x.add(y.mul(2)).add(z).m
 const FIRST_OCTAVE = 4
 const OCTAVES = 24
 
-/** Parts of a look that are told apart, and where in 16 bits the sign is. */
-const LOOK_PARTS = 127
-const SIGN = 2 ** 15
-
-const toByte = (distance: Float): Float => distance.sub(FIRST_OCTAVE).div(OCTAVES).clamp()
-const fromByte = (byte: Float): Float => byte.mul(OCTAVES).add(FIRST_OCTAVE)
-
-/** log₂ of a distance, as exact as a byte has it: to 3 %. */
-export const rounded = (distance: Float): Float =>
-  fromByte(toByte(distance).mul(255).round().div(255))
+/** Parts of a look that are told apart, and what no looks are in 16 bits. */
+export const LOOK_PARTS = 127
+const NO_LOOKS = 2 ** 15
 
 /**
- * log₂ of two distances in a byte each and looks in two, in [0, 1]: on GPUs, writing a picture takes longer
- * than computing it.
+ * log₂ of two distances in a byte each, good to half of `SAME`, and looks in two, in [0, 1]: half of what
+ * half floats take.
  *
- * @param looks - In [−256, 256]; 0 becomes a little more.
+ * @param looks - In [−256, 256].
  */
 export function pack(distance: Float, end: Float, looks: Float): Vec4 {
-  const parts = looks.abs().mul(LOOK_PARTS).round().max(1)
-  const bits = parts.add(looks.lessThan(0).select(SIGN, 0)).toConst() as Float
+  const bits = looks.mul(LOOK_PARTS).round().add(NO_LOOKS).toConst() as Float
   const high = bits.div(256).floor().toConst() as Float
-  return vec4(toByte(distance), toByte(end), vec2(high, bits.sub(high.mul(256))).div(255))
+  const [first, second] = [distance, end].map(at => at.sub(FIRST_OCTAVE).div(OCTAVES).clamp())
+  return vec4(first, second, vec2(high, bits.sub(high.mul(256))).div(255))
 }
 
 /** What {@link pack} has packed: log₂ of both distances, and looks. */
 export function unpack(bytes: Vec4): Vec4 {
-  const [high, low] = [bytes.z, bytes.w].map(byte => byte.mul(255).round())
-  const bits = high.mul(256).add(low).toConst() as Float
-  const parts = bits.lessThan(SIGN).select(bits, bits.sub(SIGN).negate())
-  return vec4(fromByte(bytes.x), fromByte(bytes.y), parts.div(LOOK_PARTS), 0).toConst()
+  const distances = bytes.xy.mul(OCTAVES).add(FIRST_OCTAVE)
+  const looks = bytes.zw.mul(255).round().dot(vec2(256, 1)).sub(NO_LOOKS).div(LOOK_PARTS)
+  return vec4(distances, looks, 0).toConst()
 }

@@ -36,14 +36,12 @@ function crossings(
   radial: Float,
   height: Float,
   altitude: Float
-): { back: Float; front: Float; meets: Float } {
+): { back: Float; front: Float } {
   const c = height.sub(altitude).mul(field.radius.mul(2).add(height).add(altitude))
-  const discriminant = radial.mul(radial).sub(c).toConst()
-  const root = discriminant.max(0).sqrt().toConst()
+  const root = radial.mul(radial).sub(c).max(0).sqrt().toConst()
   return {
     back: radial.negate().sub(root).toConst(),
-    front: root.sub(radial).toConst(),
-    meets: discriminant.greaterThan(0).select(1, 0).toConst()
+    front: root.sub(radial).toConst()
   }
 }
 
@@ -57,13 +55,11 @@ function stretch(
 ): { front: Float; back: Float } {
   const top = crossings(field, radial, height, baseAltitude.add(thickness))
   const base = crossings(field, radial, height, baseAltitude)
-  const meetsBase = base.meets.greaterThan(0).toConst()
+  const meetsBase = base.front.greaterThan(base.back).toConst()
   // Through the shell down to its base, or by it; and beyond the base a second time.
   const firstBack = meetsBase.select(base.front, top.back).toConst() as Float
-  const away = (front: Float, back: Float): Float => front.add(back).abs()
-  const isSecond = meetsBase
-    .and(away(base.back, top.back).lessThan(away(top.front, firstBack)))
-    .toConst()
+  const second = base.back.add(top.back).abs()
+  const isSecond = meetsBase.and(second.lessThan(top.front.add(firstBack).abs())).toConst()
   return {
     front: isSecond.select(base.back, top.front).clamp(reach.negate(), reach).toConst(),
     back: isSecond.select(top.back, firstBack).clamp(reach.negate(), reach).toConst()

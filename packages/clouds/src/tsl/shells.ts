@@ -19,7 +19,8 @@ function crossings(
   // The roots of t² + 2bt + c as q and c/q, q = −(b ± √D): nothing cancels.
   const root = discriminant.max(0).sqrt()
   const q = radial.add(radial.lessThan(0).select(root.negate(), root)).negate().toConst() as Float
-  const other = q.equal(0).select(0, product.div(q.equal(0).select(1, q)))
+  // Where q is 0, so is c.
+  const other = product.div(q.equal(0).select(1, q))
   const meets = discriminant.greaterThan(0)
   return {
     near: meets.select(q.min(other), FAR_AWAY).toConst(),
