@@ -36,6 +36,10 @@ export const brightness = ({ x, y, z }: Vec4): Float => x.add(y.mul(2)).add(z).m
 const FIRST_OCTAVE = 4
 const OCTAVES = 24
 
+/** log₂ of a distance as far as bytes know it. */
+export const known = (distance: Float): Float =>
+  distance.clamp(FIRST_OCTAVE, FIRST_OCTAVE + OCTAVES)
+
 /** Parts of a look that are told apart, and what no looks are in 16 bits. */
 export const LOOK_PARTS = 127
 const NO_LOOKS = 2 ** 15
@@ -49,7 +53,7 @@ const NO_LOOKS = 2 ** 15
 export function pack(distance: Float, end: Float, looks: Float): Vec4 {
   const bits = looks.mul(LOOK_PARTS).round().add(NO_LOOKS).toConst() as Float
   const high = bits.div(256).floor().toConst() as Float
-  const [first, second] = [distance, end].map(at => at.sub(FIRST_OCTAVE).div(OCTAVES).clamp())
+  const [first, second] = [distance, end].map(at => at.sub(FIRST_OCTAVE).div(OCTAVES))
   return vec4(first, second, vec2(high, bits.sub(high.mul(256))).div(255))
 }
 

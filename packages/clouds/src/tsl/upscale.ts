@@ -19,6 +19,7 @@ import {
   encodeDistance,
   FARTHEST,
   fits,
+  known,
   pack,
   SAME,
   unpack,
@@ -95,16 +96,17 @@ function remembered(
   const isInside = from.clamp(vec2(0), frame.size).equal(from).all().and(clipped.z.greaterThan(0))
   const nearest = from.floor().add(0.5).div(frame.size)
   const about = unpack(history.place.sample(nearest).level(0))
+  const seen = known(end).toConst() as Float
   const light = history.light.sample(from.div(frame.size)).level(0).toConst() as Vec4
   // How far off clouds at that distance are from where those of this one were.
   const ratio = exp2(distance.sub(about.x)).sub(1).abs()
   const way = moved.length().toConst() as Float
   const parallax = ratio.mul(way).div(PARALLAX).oneMinus().clamp()
-  const valid = isInside.select(fits(end, about), 0).mul(parallax)
+  const valid = isInside.select(fits(seen, about), 0).mul(parallax)
   const { gainChange } = frame
   return {
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    sameness: end.sub(about.y).abs().lessThan(SAME).select(way.oneMinus().max(0), 0),
+    sameness: seen.sub(about.y).abs().lessThan(SAME).select(way.oneMinus().max(0), 0),
     weight: about.z
       .abs()
       .min(frame.memory.mul(way.div(FAST).oneMinus()).max(LEAST_MEMORY))
