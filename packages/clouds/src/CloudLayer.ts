@@ -63,7 +63,7 @@ function requireParameters(parameters: CloudLayerParameters): void {
   checkRanges(where, parameters, ranges, 'weatherWeights', 'wind', 'shadow')
   const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
   if (topAltitude <= baseAltitude) {
-    fail(where, 'topAltitude must be above baseAltitude', topAltitude)
+    fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)
   }
   checkSpectrum(where, 'weatherWeights', weatherWeights, 1)
   for (const name of ['east', 'north'] as const) {
