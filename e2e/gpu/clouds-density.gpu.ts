@@ -193,6 +193,15 @@ gpuTest('bakes the noise that float64 computes, levels of detail and all', async
   field.dispose()
 })
 
+/** Altitudes in one of the layers each, by a number in [0, 1). */
+const altitudeIn =
+  (layers: CloudLayers) =>
+  (share: number): number => {
+    const place = layers.length * share
+    const { baseAltitude, topAltitude } = layers.at(Math.floor(place)).parameters
+    return baseAltitude + (topAltitude - baseAltitude) * (place % 1)
+  }
+
 const places: [string, Place][] = [
   ['in Europe', { longitude: 20, latitude: 45 }],
   ['at the date line', { longitude: 180, latitude: -17 }],
@@ -207,11 +216,7 @@ for (const [where, place] of places) {
     scene.update(7200)
     let cloudy = 0
     for (const detail of [false, true]) {
-      // In one of the layers each.
-      const inputs = offsets(scene.eye, 60, 20_000, 7, share => {
-        const { baseAltitude, topAltitude } = layers.at(Math.floor(3 * share)).parameters
-        return baseAltitude + (topAltitude - baseAltitude) * ((3 * share) % 1)
-      })
+      const inputs = offsets(scene.eye, 60, 20_000, 7, altitudeIn(layers))
       const results = await evaluateOnGpu(scene.renderer, inputs, input =>
         scene.extinction(input.xyz, input.w, detail)
       )
@@ -252,10 +257,7 @@ gpuTest('puts clouds where float64 does, of a world map and where they blur', as
   const shapeless = new ShapelessTwin()
   // Their footprints are up to 1.2 km.
   scene.field.pixelAngle.value = 0.12
-  const inputs = offsets(scene.eye, 15, 2000, 7, share => {
-    const { baseAltitude, topAltitude } = layers.at(Math.floor(3 * share)).parameters
-    return baseAltitude + (topAltitude - baseAltitude) * ((3 * share) % 1)
-  })
+  const inputs = offsets(scene.eye, 15, 2000, 7, altitudeIn(layers))
   const results = await evaluateOnGpu(scene.renderer, inputs, input =>
     scene.extinction(input.xyz, input.w, false)
   )

@@ -5,6 +5,21 @@ import type { CloudField, CloudLayerParameters } from '@welkin/clouds'
 import { cloudExtinction } from '../../../packages/clouds/src/tsl/density'
 import { readPicture } from './picture'
 
+/** Draws a square picture of floats; pixels, channel by channel. */
+async function drawChannels(
+  renderer: WebGPURenderer,
+  quad: QuadMesh,
+  size: number
+): Promise<number[][]> {
+  const target = new RenderTarget(size, size, { type: FloatType, depthBuffer: false })
+  renderer.setRenderTarget(target)
+  quad.render(renderer)
+  renderer.setRenderTarget(null)
+  const { data } = await readPicture(renderer, target)
+  target.dispose()
+  return [0, 1, 2, 3].map(c => Array.from({ length: size ** 2 }, (_, i) => data[4 * i + c]))
+}
+
 /** A square picture of the sky straight up, as light that comes through: no perspective. */
 export class CloudColumns {
   readonly #material = new NodeMaterial()
@@ -67,15 +82,8 @@ export class CloudColumns {
 
   /** Pixels of `[transmittance, optical depth]`, channel by channel. */
   async draw(renderer: WebGPURenderer): Promise<{ light: number[]; depth: number[] }> {
-    const target = new RenderTarget(this.size, this.size, { type: FloatType, depthBuffer: false })
-    renderer.setRenderTarget(target)
-    this.#quad.render(renderer)
-    renderer.setRenderTarget(null)
-    const { data } = await readPicture(renderer, target)
-    target.dispose()
-    const channel = (c: number): number[] =>
-      Array.from({ length: this.size ** 2 }, (_, i) => data[4 * i + c])
-    return { light: channel(0), depth: channel(1) }
+    const [light, depth] = await drawChannels(renderer, this.#quad, this.size)
+    return { light, depth }
   }
 
   dispose(): void {
@@ -148,13 +156,8 @@ export class PlanetColumns {
     this.#distance.value = distance
     this.#base.value = baseAltitude
     this.#thickness.value = topAltitude - baseAltitude
-    const target = new RenderTarget(this.size, this.size, { type: FloatType, depthBuffer: false })
-    renderer.setRenderTarget(target)
-    this.#quad.render(renderer)
-    renderer.setRenderTarget(null)
-    const { data } = await readPicture(renderer, target)
-    target.dispose()
-    return Array.from({ length: this.size ** 2 }, (_, i) => data[4 * i])
+    const [depth] = await drawChannels(renderer, this.#quad, this.size)
+    return depth
   }
 
   dispose(): void {
