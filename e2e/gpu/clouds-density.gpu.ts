@@ -13,11 +13,15 @@ import type { Node, NodeFrame, WebGPURenderer } from 'three/webgpu'
 import {
   cloudExtinction as extinctionTwin,
   type CloudState
-} from '../../packages/clouds/src/cpu/density'
-import { NoiseTextures } from '../../packages/clouds/src/cpu/noiseTextures'
-import { NOISE_SIZE, type NoiseName } from '../../packages/clouds/src/noiseSizes'
-import { cloudColumn } from '../../packages/clouds/src/tsl/columns'
-import { clearanceAt, cloudBound, cloudExtinction } from '../../packages/clouds/src/tsl/density'
+} from '../../packages/clouds/test/twins/density'
+import { NoiseTextures } from '../../packages/clouds/test/twins/noiseTextures'
+import { NOISE_SIZE, type NoiseName } from '../../packages/clouds/src/noise/noiseSizes'
+import { cloudColumn } from '../../packages/clouds/src/density/tsl/columns'
+import {
+  clearanceAt,
+  cloudBound,
+  cloudExtinction
+} from '../../packages/clouds/src/density/tsl/density'
 import { random } from './harness/atmosphere'
 import { CloudColumns, highestPeak, PlanetColumns } from './harness/cloud-columns'
 import type { GpuContext } from './harness/context'

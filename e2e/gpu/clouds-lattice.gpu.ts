@@ -3,7 +3,7 @@ import { CloudLayers, CloudNoise, cloudPreset, cloudQualities, clouds } from '@w
 import { PerspectiveCamera, Vector3, type Quaternion } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { latticeRotation } from '../../packages/clouds/src/lattice'
+import { latticeRotation } from '../../packages/clouds/src/density/lattice'
 import { drawToFloat } from './harness/atmosphere'
 import { expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'

@@ -1,14 +1,14 @@
 import { CloudLightTable } from '@welkin/clouds'
 import { float, vec4 } from 'three/tsl'
-import * as twin from '../../packages/clouds/src/cpu/cloudLight'
-import { solveCloudLight } from '../../packages/clouds/src/cpu/cloudLightTable'
+import * as twin from '../../packages/clouds/src/light/cpu/cloudLight'
+import { solveCloudLight } from '../../packages/clouds/src/light/cpu/cloudLightTable'
 import {
   aureolePhase,
   cloudPhase,
   type CloudPhaseParameters
-} from '../../packages/clouds/src/cpu/cloudPhase'
-import { cloudAmbient, cloudSource } from '../../packages/clouds/src/tsl/cloudLight'
-import { singlePhase } from '../../packages/clouds/src/tsl/cloudPhase'
+} from '../../packages/clouds/src/light/cpu/cloudPhase'
+import { cloudAmbient, cloudSource } from '../../packages/clouds/src/light/tsl/cloudLight'
+import { singlePhase } from '../../packages/clouds/src/light/tsl/cloudPhase'
 import { evaluateOnGpu } from './harness/evaluate'
 import { expectClose, expectTrue } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'

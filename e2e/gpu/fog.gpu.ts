@@ -9,13 +9,13 @@ import {
   Scene
 } from 'three'
 import { float } from 'three/tsl'
-import * as twin from '../../packages/atmosphere/src/cpu/heightFog'
+import * as twin from '../../packages/atmosphere/src/fog/cpu/heightFog'
 import {
   airMass,
   erfcx,
   fogDepth,
   multipleScattering
-} from '../../packages/atmosphere/src/tsl/heightFog'
+} from '../../packages/atmosphere/src/fog/tsl/heightFog'
 import {
   drawForward,
   expectLight,

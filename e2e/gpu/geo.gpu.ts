@@ -9,8 +9,8 @@ import {
 } from '@welkin/geo'
 import { Vector3 } from 'three'
 import { float, vec3 } from 'three/tsl'
-import { offsetHeight as offsetHeightTwin } from '../../packages/geo/src/cpu/offsetHeight'
-import { raySphere as raySphereTwin } from '../../packages/geo/src/cpu/rayEllipsoid'
+import { offsetHeight as offsetHeightTwin } from '../../packages/geo/test/twins/offsetHeight'
+import { raySphere as raySphereTwin } from '../../packages/geo/test/twins/rayEllipsoid'
 import { expectClose } from './harness/expect'
 import { gpuTest } from './harness/gpu-test'
 

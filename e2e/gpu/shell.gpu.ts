@@ -23,27 +23,27 @@ import {
 import { fitGlobeCamera } from '@welkin/geo'
 import { vec4 } from 'three/tsl'
 import type { Node, WebGPURenderer } from 'three/webgpu'
-import { AtmosphereUniforms } from '../../packages/atmosphere/src/AtmosphereUniforms'
+import { AtmosphereUniforms } from '../../packages/atmosphere/src/air/AtmosphereUniforms'
 import {
   distanceToGround as distanceToGround64,
   distanceToTop as distanceToTop64,
   hitsGround
-} from '../../packages/atmosphere/src/cpu/boundary'
-import { inScatter } from '../../packages/atmosphere/src/cpu/scattering'
-import { opticalDepth } from '../../packages/atmosphere/src/cpu/transmittance'
+} from '../../packages/atmosphere/src/air/cpu/boundary'
+import { inScatter } from '../../packages/atmosphere/src/scattering/cpu/scattering'
+import { opticalDepth } from '../../packages/atmosphere/src/transmittance/cpu/transmittance'
 import {
   ProfileUniforms,
   columnsToSpace,
   profileAt
-} from '../../packages/atmosphere/src/tsl/chapman'
+} from '../../packages/atmosphere/src/shell/tsl/chapman'
 import {
   distanceToGround,
   distanceToTop,
   groundDiscriminant
-} from '../../packages/atmosphere/src/tsl/boundary'
-import type { Air } from '../../packages/atmosphere/src/tsl/scattering'
-import type { ShellRay } from '../../packages/atmosphere/src/tsl/shellMarch'
-import { singleScatteringShell } from '../../packages/atmosphere/src/tsl/singleScattering'
+} from '../../packages/atmosphere/src/air/tsl/boundary'
+import type { Air } from '../../packages/atmosphere/src/scattering/tsl/scattering'
+import type { ShellRay } from '../../packages/atmosphere/src/shell/tsl/shellMarch'
+import { singleScatteringShell } from '../../packages/atmosphere/src/shell/tsl/singleScattering'
 import {
   drawForward,
   drawToFloat,

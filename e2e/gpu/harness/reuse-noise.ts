@@ -10,8 +10,8 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, Renderer } from 'three/webgpu'
-import { FragmentPass } from '../../../packages/atmosphere/src/FragmentPass'
-import { CloudNoise } from '../../../packages/clouds/src/CloudNoise'
+import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
+import { CloudNoise } from '../../../packages/clouds/src/noise/CloudNoise'
 import { isReusingTables, readTexels, waitFor } from './reuse-tables'
 
 /** Slices of a volume lie side by side in as many columns. */

@@ -1,8 +1,8 @@
 import { DataTexture, HalfFloatType, NearestFilter, RGBAFormat, type RenderTarget } from 'three'
 import { int, ivec2, screenCoordinate, textureLoad } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { AtmosphereTables } from '../../../packages/atmosphere/src/AtmosphereTables'
-import { FragmentPass } from '../../../packages/atmosphere/src/FragmentPass'
+import { AtmosphereTables } from '../../../packages/atmosphere/src/tables/AtmosphereTables'
+import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
 
 /** Of a bake, in frames of one step: the library's count. */
 const BAKE_STEPS = 20

@@ -11,7 +11,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { WebGPURenderer } from 'three/webgpu'
-import { FragmentPass } from '../../../packages/atmosphere/src/FragmentPass'
+import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { readPicture } from '../../gpu/harness/picture'
 import type { RayRequest } from '../request'

@@ -2,19 +2,19 @@ import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { vec4 } from 'three/tsl'
 import type { Node, WebGPURenderer } from 'three/webgpu'
-import { eyeScalars } from '../../../packages/atmosphere/src/cpu/eye'
-import { groundIrradiance } from '../../../packages/atmosphere/src/tsl/diffuseLight'
-import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/tsl/marchedAir'
+import { eyeScalars } from '../../../packages/atmosphere/src/view/cpu/eye'
+import { groundIrradiance } from '../../../packages/atmosphere/src/diffuseLight/tsl/diffuseLight'
+import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/scattering/tsl/marchedAir'
 import {
   rayLimits,
   rayTargets,
   aimAt,
   sampleSky,
   sampleVolume
-} from '../../../packages/atmosphere/src/tsl/skyVolume'
-import { sunTransmittance } from '../../../packages/atmosphere/src/tsl/transmittance'
+} from '../../../packages/atmosphere/src/skyVolume/tsl/skyVolume'
+import { sunTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
-import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/ViewNodes'
+import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { createContext } from '../../gpu/harness/context'
 import { evaluateOnGpu } from '../../gpu/harness/evaluate'
 import type { EvaluationRequest, EvaluationResult, EyePlace, Path, RayRequest } from '../request'

@@ -4,12 +4,16 @@
 import { ciede2000, xyzToLab } from '../../../e2e/validate/color-difference'
 import { rayFromAngles } from '../../../e2e/validate/request'
 import { quantile } from '../../../e2e/validate/score'
-import { AtmosphereParameters, spectrumOf, type Spectrum } from '../src/AtmosphereParameters'
-import type { Triple } from '../src/cpu/color'
-import { skyRadiance } from '../src/cpu/scattering'
-import { solveDiffuseLight } from '../src/cpu/solveDiffuseLight'
-import { marsAtmosphere, titanAtmosphere, venusAtmosphere } from '../src/planets'
-import { standardAtmosphere } from '../src/standardAtmosphere'
+import {
+  AtmosphereParameters,
+  spectrumOf,
+  type Spectrum
+} from '../src/parameters/AtmosphereParameters'
+import type { Triple } from '../src/air/cpu/color'
+import { skyRadiance } from '../src/scattering/cpu/scattering'
+import { solveDiffuseLight } from '../src/diffuseLight/cpu/solveDiffuseLight'
+import { marsAtmosphere, titanAtmosphere, venusAtmosphere } from '../src/parameters/planets'
+import { standardAtmosphere } from '../src/parameters/standardAtmosphere'
 import { spectrumToXYZ, standardAt, sunlight, wavelengths } from './spectra'
 
 /** A value at any wavelength from those at four: straight lines, carried on beyond the ends. */

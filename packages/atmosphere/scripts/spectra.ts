@@ -1,11 +1,11 @@
 import { readFileSync } from 'node:fs'
-import { AtmosphereParameters, type Spectrum } from '../src/AtmosphereParameters'
-import type { Triple } from '../src/cpu/color'
+import { AtmosphereParameters, type Spectrum } from '../src/parameters/AtmosphereParameters'
+import type { Triple } from '../src/air/cpu/color'
 import {
   ANGSTROM_EXPONENT,
   rayleighCrossSection,
   standardAtmosphere
-} from '../src/standardAtmosphere'
+} from '../src/parameters/standardAtmosphere'
 
 const spectra = JSON.parse(
   readFileSync(new URL('../../../e2e/reference/spectra.json', import.meta.url), 'utf8')

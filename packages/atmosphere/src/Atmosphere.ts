@@ -10,15 +10,15 @@ import {
   sunDirectionECEF
 } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
-import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
-import { AtmosphereTables } from './AtmosphereTables'
-import { AtmosphereView } from './AtmosphereView'
+import { AtmosphereParameters, type Spectrum } from './parameters/AtmosphereParameters'
+import { AtmosphereTables } from './tables/AtmosphereTables'
+import { AtmosphereView } from './view/AtmosphereView'
 import { checkOptions, checkRange } from './check'
-import { LightSource } from './LightSource'
-import type { SkyLayer } from './SkyLayer'
-import { AtmosphereQuery } from './cpu/AtmosphereQuery'
-import { SphericalSpace } from './cpu/spherical'
-import type { Triple } from './cpu/color'
+import { LightSource } from './view/LightSource'
+import type { SkyLayer } from './view/SkyLayer'
+import { AtmosphereQuery } from './AtmosphereQuery'
+import { SphericalSpace } from './view/cpu/spherical'
+import type { Triple } from './air/cpu/color'
 
 /** Options of {@link Atmosphere}. */
 export interface AtmosphereOptions {

@@ -1,6 +1,6 @@
 import { Matrix4 } from 'three'
 import { fail } from '@welkin/geo'
-import { LightSource } from './LightSource'
+import { LightSource } from './view/LightSource'
 
 /**
  * @param names - Of all options that there are; without any, others are let pass.

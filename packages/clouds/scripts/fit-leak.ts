@@ -1,7 +1,7 @@
-// Derives the coefficients of src/cpu/lateralLeak.ts from Monte-Carlo solutions of balls of cloud.
+// Derives the coefficients of src/light/cpu/lateralLeak.ts from Monte-Carlo solutions of balls of cloud.
 // Run it with: npm run fit-leak
-import { factorize } from '../src/cpu/matrices'
-import { SlabSolver } from '../src/cpu/solveSlab'
+import { factorize } from '../src/light/cpu/matrices'
+import { SlabSolver } from '../src/light/cpu/solveSlab'
 import { collisionsInBall, RINGS, STEPS } from './ball'
 
 /** χ′₁ and χ′₂ of phase functions from isotropic to Henyey–Greenstein's of 0.85. */

@@ -11,8 +11,8 @@ import {
   sphereEye,
   sphereScale
 } from '@welkin/geo'
-import { offsetHeight as offsetHeightTwin } from '../src/cpu/offsetHeight'
-import { raySphere as raySphereTwin } from '../src/cpu/rayEllipsoid'
+import { offsetHeight as offsetHeightTwin } from './twins/offsetHeight'
+import { raySphere as raySphereTwin } from './twins/rayEllipsoid'
 import { direction, latitude, longitude, magnitude, number, runs } from './arbitraries'
 
 const earth = Ellipsoid.WGS84

@@ -1,4 +1,4 @@
-import { Stars, type StarsOptions } from '../Stars'
+import { Stars, type StarsOptions } from './Stars'
 import { brightStars } from './brightStars'
 
 /** The 5,044 stars that the naked eye sees: see {@link Stars}. Its catalogue is 36 kB, gzipped. */

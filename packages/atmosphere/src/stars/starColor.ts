@@ -1,4 +1,4 @@
-import type { AtmosphereParameters } from '../AtmosphereParameters'
+import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 
 /** Illuminance by a star of magnitude 0 above the air [lx]. Allen, Astrophysical Quantities. */
 export const MAGNITUDE_ZERO_ILLUMINANCE = 2.54e-6

@@ -10,7 +10,7 @@ import type { Node } from 'three/webgpu'
  * @param eyeHeight - Of the eye above the sphere, h_c [m].
  * @param radius - Of the sphere, R [m].
  * @returns [m].
- * @see Twin: cpu/offsetHeight.ts
+ * @see Twin: test/twins/offsetHeight.ts
  */
 export const offsetHeight = /*#__PURE__*/ Fn(
   ([offset, up, eyeHeight, radius]: [Node<'vec3'>, Node<'vec3'>, Node<'float'>, Node<'float'>]) => {

@@ -12,7 +12,7 @@ import { ellipsoidToSphere } from './ellipsoidToSphere'
  * @param radius - Of the sphere [m].
  * @param cosView - Cosine between the ray and the sphere's up at its origin, in [−1, 1].
  * @returns [m], or −1 if the ray misses.
- * @see Twin: cpu/rayEllipsoid.ts
+ * @see Twin: test/twins/rayEllipsoid.ts
  */
 export const raySphere = /*#__PURE__*/ Fn(
   ([height, radius, cosView]: [Node<'float'>, Node<'float'>, Node<'float'>]) => {

@@ -1,0 +1,35 @@
+import { If, vec4 } from 'three/tsl'
+import type { AtmosphereUniforms } from '../AtmosphereUniforms'
+import type { Float, Vec4 } from '../../tsl-types'
+
+/**
+ * Phase function of molecules [1/sr].
+ *
+ * @param cosViewSun - ν, cosine of the scattering angle, in [−1, 1].
+ */
+export function rayleighPhase(cosViewSun: Float): Float {
+  return cosViewSun
+    .mul(cosViewSun)
+    .add(1)
+    .mul(3 / (16 * Math.PI))
+}
+
+/**
+ * Phase function of aerosols, per wavelength [1/sr].
+ *
+ * @param cosViewSun - ν, cosine of the scattering angle, in [−1, 1].
+ * @see Cornette & Shanks 1992. Twin: cpu/phase.ts
+ */
+export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 {
+  const { mieAsymmetry, mieIsGrey, miePhaseFactor } = uniforms
+  const lobes = (asymmetry: Float | Vec4): Vec4 => {
+    const chord = (asymmetry as Float).mul((asymmetry as Float).sub(cosViewSun.mul(2))).add(1)
+    const root = chord.max(1e-4).inverseSqrt().toConst()
+    return vec4(root.mul(root).mul(root).mul(cosViewSun.mul(cosViewSun).add(1)))
+  }
+  const phase = lobes(mieAsymmetry.x).toVar()
+  If(mieIsGrey.equal(0), () => {
+    phase.assign(lobes(mieAsymmetry))
+  })
+  return miePhaseFactor.mul(phase)
+}

@@ -1,0 +1,150 @@
+import { NearestFilter, Vector4 } from 'three'
+import type { RenderTarget } from 'three'
+import { texture, uniform } from 'three/tsl'
+import type { Renderer, UniformNode } from 'three/webgpu'
+import type { AtmosphereUniforms } from '../air/AtmosphereUniforms'
+import { gaussLegendre } from '../math/cpu/quadrature'
+import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { DIFFUSE_SIZE, DIFFUSE_TILES } from '../tables/tableSizes'
+import { BAKE_ROWS, bakeRays, reduceRays, sumOrders } from './tsl/diffuseLightBake'
+import type { Air } from '../scattering/tsl/scattering'
+import { vec4Array } from '../tsl-types'
+
+const [COLUMNS, ROWS] = DIFFUSE_SIZE
+
+/**
+ * Directions and steps of a round, and where its nodes start in the rule: sunlight has a sharp peak,
+ * light scattered before has none.
+ */
+const SUN_ROUND = { elevations: 12, azimuths: 12, steps: 8, offset: 0 }
+const DIFFUSE_ROUND = { elevations: 8, azimuths: 6, steps: 4, offset: SUN_ROUND.elevations }
+const MOST_RAYS = 2 * SUN_ROUND.elevations * SUN_ROUND.azimuths
+
+/** Orders of scattering that are computed; those beyond are summed as a geometric series. */
+const ORDERS = 5
+
+const integer = (): UniformNode<'int', number> => uniform(0, 'int')
+
+/** What baking needs and the finished table does not. */
+class Workshop {
+  readonly rays = tableTarget('DiffuseLight.rays', MOST_RAYS, BAKE_ROWS * COLUMNS, 1, NearestFilter)
+  readonly orders = Array.from({ length: ORDERS }, (_, order) =>
+    tableTarget(`DiffuseLight.order${order}`, COLUMNS * DIFFUSE_TILES, ROWS)
+  )
+  readonly #elevations = integer()
+  readonly #azimuths = integer()
+  readonly #offset = integer()
+  readonly #firstRow = integer()
+  readonly #previous = texture(this.orders[0].texture)
+  readonly #sunRays: FragmentPass
+  readonly #diffuseRays: FragmentPass
+  readonly #reduce: FragmentPass
+  readonly #sum: FragmentPass
+
+  constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget) {
+    const rounds = [SUN_ROUND, DIFFUSE_ROUND].flatMap(({ elevations }) => {
+      const { nodes, weights } = gaussLegendre(elevations)
+      return nodes.map((node, i) => new Vector4(node, weights[i], 0, 0))
+    })
+    const directions = {
+      elevations: this.#elevations,
+      azimuths: this.#azimuths,
+      rule: vec4Array(rounds),
+      offset: this.#offset
+    }
+    const sunOnly: Air = { uniforms, transmittance: texture(transmittance.texture), diffuse: null }
+    const diffuseOnly: Air = { ...sunOnly, diffuse: this.#previous }
+    const row = this.#firstRow
+    this.#sunRays = new FragmentPass(
+      'Welkin.DiffuseLight.sunRays',
+      bakeRays(sunOnly, directions, row, MOST_RAYS, SUN_ROUND.steps)
+    )
+    this.#diffuseRays = new FragmentPass(
+      'Welkin.DiffuseLight.diffuseRays',
+      bakeRays(diffuseOnly, directions, row, MOST_RAYS, DIFFUSE_ROUND.steps)
+    )
+    this.#reduce = new FragmentPass(
+      'Welkin.DiffuseLight.reduce',
+      reduceRays(sunOnly, texture(this.rays.texture), directions, row, MOST_RAYS)
+    )
+    this.#sum = new FragmentPass(
+      'Welkin.DiffuseLight.sum',
+      sumOrders(this.orders.map(order => texture(order.texture)))
+    )
+  }
+
+  /** Gathers one order of scattering for some rows of the table. */
+  gather(renderer: Renderer, order: number, firstRow: number): void {
+    const round = order === 0 ? SUN_ROUND : DIFFUSE_ROUND
+    this.#elevations.value = round.elevations
+    this.#azimuths.value = round.azimuths
+    this.#offset.value = round.offset
+    this.#firstRow.value = firstRow
+    if (order > 0) this.#previous.value = this.orders[order - 1].texture
+    const rays = order === 0 ? this.#sunRays : this.#diffuseRays
+    rays.render(renderer, this.rays)
+    this.#reduce.render(renderer, this.orders[order])
+  }
+
+  /** Sums all orders into the table. */
+  finish(renderer: Renderer, target: RenderTarget): void {
+    this.#sum.render(renderer, target)
+  }
+
+  /** Frees the textures, but not the shaders: the next bake compiles nothing. */
+  release(): void {
+    for (const target of [this.rays, ...this.orders]) target.dispose()
+  }
+
+  dispose(): void {
+    this.release()
+    for (const owned of [this.#sunRays, this.#diffuseRays, this.#reduce, this.#sum]) owned.dispose()
+  }
+}
+
+/**
+ * Moments (l ≤ 2) of the diffuse light in the air, by altitude and sun angle, all orders of scattering
+ * and the ground's reflection included, for unit irradiance of the sun.
+ *
+ * Solved by successive orders: sunlight scattered once, then light scattered n times from light
+ * scattered n − 1 times. Each order gathers rays in every direction from every cell.
+ */
+export class DiffuseLightTable {
+  /** Where the table is kept: tiles side by side, see `DIFFUSE_TILES`; values × `RADIANCE_SCALE`. */
+  readonly target: RenderTarget = tableTarget('DiffuseLight', COLUMNS * DIFFUSE_TILES, ROWS)
+  readonly #uniforms: AtmosphereUniforms
+  readonly #transmittance: RenderTarget
+  #workshop: Workshop | null = null
+
+  /** @param transmittance - Target of the transmittance table, baked before this one. */
+  constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget) {
+    this.#uniforms = uniforms
+    this.#transmittance = transmittance
+  }
+
+  /**
+   * Computes the table from the uniforms, step by step. Until the last step is done the old table
+   * stands.
+   */
+  *bake(renderer: Renderer): Generator<void, void, void> {
+    const workshop = (this.#workshop ??= new Workshop(this.#uniforms, this.#transmittance))
+    try {
+      for (let order = 0; order < ORDERS; order++) {
+        for (let row = 0; row < ROWS; row += BAKE_ROWS) {
+          workshop.gather(renderer, order, row)
+          yield
+        }
+      }
+      workshop.finish(renderer, this.target)
+    } finally {
+      workshop.release()
+    }
+  }
+
+  /** Frees the table. */
+  dispose(): void {
+    this.target.dispose()
+    this.#workshop?.dispose()
+    this.#workshop = null
+  }
+}

@@ -1,0 +1,69 @@
+import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
+
+/**
+ * How the columns of the diffuse-light table spread over the sun's cosine μ_s: evenly in
+ * asinh((μ_s − centre)/width), from `min` (22° below the horizon) to 1.
+ */
+export const diffuseSunCosine = { centre: -0.035, width: 0.12, min: -0.375 } as const
+
+const position = (cosSun: number): number =>
+  Math.asinh((cosSun - diffuseSunCosine.centre) / diffuseSunCosine.width)
+
+/** asinh at the first column. */
+export const diffuseSunOrigin = /*#__PURE__*/ position(diffuseSunCosine.min)
+
+/** 1/(asinh at the last column − at the first). */
+export const diffuseSunSlope = /*#__PURE__*/ (() => 1 / (position(1) - diffuseSunOrigin))()
+
+/** Position of μ_s among the columns, in [0, 1]. */
+export function diffuseColumn(cosSun: number): number {
+  return Math.min(Math.max((position(cosSun) - diffuseSunOrigin) * diffuseSunSlope, 0), 1)
+}
+
+/** μ_s of a column. */
+export function diffuseColumnCosine(column: number): number {
+  const x = column / (DIFFUSE_SIZE[0] - 1) / diffuseSunSlope + diffuseSunOrigin
+  return diffuseSunCosine.centre + diffuseSunCosine.width * Math.sinh(x)
+}
+
+/** The diffuse-light table, read back. */
+export interface DiffuseLightData {
+  /** Texels of four values, row by row; rows are altitudes, or from the highest down if flipped. */
+  values: Float32Array
+  isFlipped: boolean
+}
+
+/**
+ * Reads all tiles of the table, bilinearly.
+ *
+ * @param altitudePart - Altitude over the air's thickness, in [0, 1].
+ * @param cosSun - μ_s.
+ * @returns A four-value spectrum per tile, for unit irradiance of the sun.
+ */
+export function sampleDiffuseLight(
+  { values, isFlipped }: DiffuseLightData,
+  altitudePart: number,
+  cosSun: number
+): number[][] {
+  const [columns, rows] = DIFFUSE_SIZE
+  const x = diffuseColumn(cosSun) * (columns - 1)
+  const y = Math.sqrt(Math.min(Math.max(altitudePart, 0), 1)) * (rows - 1)
+  const column = Math.min(Math.floor(x), columns - 2)
+  const row = Math.min(Math.floor(y), rows - 2)
+  const [u, v] = [x - column, y - row]
+  const corners = [
+    [column, row, (1 - u) * (1 - v)],
+    [column + 1, row, u * (1 - v)],
+    [column, row + 1, (1 - u) * v],
+    [column + 1, row + 1, u * v]
+  ] as const
+  return Array.from({ length: DIFFUSE_TILES }, (_, tile) =>
+    [0, 1, 2, 3].map(channel =>
+      corners.reduce((sum, [i, j, weight]) => {
+        const storedRow = isFlipped ? rows - 1 - j : j
+        const texel = storedRow * columns * DIFFUSE_TILES + tile * columns + i
+        return sum + (weight * values[4 * texel + channel]) / RADIANCE_SCALE
+      }, 0)
+    )
+  )
+}

@@ -1,0 +1,81 @@
+import { float, vec2 } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
+import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
+import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
+import { sampleLevel0, type Float, type Vec4 } from '../../tsl-types'
+import { diffuseSunCosine, diffuseSunSlope, diffuseSunOrigin } from '../cpu/diffuseLight'
+import type { Moments } from './moments'
+import { asinh, sinh } from '../../math/tsl/trigonometry'
+
+const [COLUMNS, ROWS] = DIFFUSE_SIZE
+
+type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
+
+/** asinh of the sun's cosine, as the table spaces its columns: they crowd about the horizon. */
+export function spreadSun(cosSun: Float): Float {
+  return asinh(cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst())
+}
+
+/** The sun's cosine from {@link spreadSun} of it. */
+export function spreadCosine(x: Float): Float {
+  return sinh(x).mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
+}
+
+/** Position of the sun's cosine among the columns, in [0, 1]. */
+function sunColumn(cosSun: Float): Float {
+  return spreadSun(cosSun).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp()
+}
+
+/** Position of an altitude among the rows, in [0, 1]. Rows crowd at the ground. */
+function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float {
+  return altitude.div(thickness).clamp().sqrt()
+}
+
+/** A function that reads a tile of the diffuse-light table at an altitude and sun angle. */
+export function diffuseLightReader(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosSun: Float
+): (tile: number) => Vec4 {
+  const uv = vec2(sunColumn(cosSun), altitudeRow(uniforms, altitude))
+    .mul(vec2(COLUMNS - 1, ROWS - 1))
+    .add(0.5)
+    .div(vec2(COLUMNS * DIFFUSE_TILES, ROWS))
+    .toConst()
+  return tile => sampleLevel0(table, tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0)))
+}
+
+/**
+ * Moments of the diffuse light at a point, for unit irradiance of the sun, times `RADIANCE_SCALE`.
+ *
+ * @param table - Diffuse-light table.
+ * @param altitude - Above the ground, in [0, thickness] [m].
+ * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ */
+export function diffuseMoments(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosSun: Float
+): Moments<Vec4> {
+  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  const [m00, m10, m11, m20, m21, m22] = [0, 1, 2, 3, 4, 5].map(tile =>
+    read(tile).toConst()
+  ) as unknown as SixTiles
+  return { m00, m10, m11, m20, m21, m22 }
+}
+
+/**
+ * Diffuse irradiance on horizontal ground, for unit irradiance of the sun.
+ *
+ * @param table - Diffuse-light table.
+ * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ */
+export function groundIrradiance(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  cosSun: Float
+): Vec4 {
+  return diffuseLightReader(uniforms, table, float(0), cosSun)(6).div(RADIANCE_SCALE)
+}

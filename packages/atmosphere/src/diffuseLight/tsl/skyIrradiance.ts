@@ -1,0 +1,66 @@
+import { float } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
+import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
+import { RADIANCE_SCALE } from '../../tables/tableSizes'
+import type { Float, Vec4 } from '../../tsl-types'
+import { diffuseLightReader, diffuseMoments } from './diffuseLight'
+import { applyMoments, momentBasis } from './moments'
+
+/** A₁/A₀ and A₂/A₀ of the clamped cosine. */
+const COSINE_1 = 2 / 3
+const COSINE_2 = 1 / 4
+
+/**
+ * Diffuse irradiance on a plane, for unit irradiance of the sun.
+ *
+ * The moments give it to degree 2; on horizontal planes, where the horizon's edge counts most, what
+ * is missing is known exactly and blended in with the square of the normal's height.
+ *
+ * @param table - Diffuse-light table.
+ * @param altitude - In [0, thickness] [m].
+ * @param cosNormal - Plane's normal against the zenith.
+ * @param cosSun - μ_s.
+ * @param cosNormalSun - Plane's normal against the sun.
+ * @see Sloan 2008, "Stupid spherical harmonics tricks". Twin: cpu/skyIrradiance.ts
+ */
+export function skyIrradiance(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosNormal: Float,
+  cosSun: Float,
+  cosNormalSun: Float
+): Vec4 {
+  const moments = diffuseMoments(uniforms, table, altitude, cosSun)
+  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  const facesUp = cosNormal.greaterThanEqual(0).toConst()
+  const up = read(6).toConst()
+  const down = read(7).toConst()
+  const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
+  const lobe = (cosine: Float, cosineSun: Float): Vec4 =>
+    applyMoments(moments, momentBasis(cosine, cosSun, cosineSun), COSINE_1, COSINE_2).mul(Math.PI)
+  const approximate = lobe(horizontal, horizontal.mul(cosSun))
+  const missing = facesUp.select(up, down).sub(approximate)
+  return lobe(cosNormal, cosNormalSun)
+    .add(missing.mul(cosNormal.mul(cosNormal)))
+    .max(0)
+    .div(RADIANCE_SCALE)
+}
+
+/**
+ * Diffuse irradiance on horizontal planes, for unit irradiance of the sun.
+ *
+ * @param table - Diffuse-light table.
+ * @param altitude - In [0, thickness] [m].
+ * @param cosSun - μ_s.
+ * @returns On a plane that faces up, and on one that faces down.
+ */
+export function horizontalIrradiance(
+  uniforms: AtmosphereUniforms,
+  table: TextureNode,
+  altitude: Float,
+  cosSun: Float
+): { up: Vec4; down: Vec4 } {
+  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  return { up: read(6).div(RADIANCE_SCALE), down: read(7).div(RADIANCE_SCALE) }
+}

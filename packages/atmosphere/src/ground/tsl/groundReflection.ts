@@ -1,0 +1,94 @@
+import type { Float } from '../../tsl-types'
+
+/** Cosines between a patch of ground, the sun and the eye. */
+export interface GroundAngles {
+  /** Sun against the normal. */
+  cosSun: Float
+  /** Eye against the normal, in (0, 1]. */
+  cosEye: Float
+  /** Sun against eye. */
+  cosSunEye: Float
+}
+
+/**
+ * Reflectance of rough ground over that of smooth, Lambertian ground.
+ *
+ * @param roughness - σ, standard deviation of the facets' slope angles [rad].
+ * @see Oren & Nayar 1994, qualitative model; in the form of Fujii, "A tiny improvement of Oren–Nayar
+ * reflectance model", which keeps it free of tangents.
+ */
+export function orenNayar(angles: GroundAngles, roughness: Float): Float {
+  const variance = roughness.mul(roughness).toConst()
+  const even = variance.mul(0.5).div(variance.add(0.33)).oneMinus()
+  const uneven = variance.mul(0.45).div(variance.add(0.09))
+  const cosSun = angles.cosSun.max(0).toConst()
+  const along = angles.cosSunEye.sub(cosSun.mul(angles.cosEye)).toConst()
+  const longest = along.greaterThan(0).select(cosSun.max(angles.cosEye), 1).max(1e-3)
+  return along.div(longest).mul(uneven).add(even).max(0)
+}
+
+/** Reflectance of water at normal incidence, refractive index 1.34. */
+const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
+
+/** Part of the light that water reflects. @see Schlick 1994 */
+export function waterFresnel(cosine: Float): Float {
+  const rest = cosine.oneMinus().clamp().toConst()
+  const square = rest.mul(rest)
+  return square
+    .mul(square)
+    .mul(rest)
+    .mul(1 - WATER_FRESNEL)
+    .add(WATER_FRESNEL)
+}
+
+/** Λ of Smith's shadowing for a Gaussian of slopes. @see Walter et al. 2007, equation 15 */
+function shadowing(cosine: Float, slope: Float): Float {
+  const sine = cosine.mul(cosine).oneMinus().max(1e-6).sqrt()
+  const a = cosine.max(0).div(sine.mul(slope)).min(1.6).toConst()
+  const square = a.mul(a)
+  return square
+    .mul(0.396)
+    .sub(a.mul(1.259))
+    .add(1)
+    .div(a.mul(3.535).add(square.mul(2.181)).max(1e-5))
+}
+
+/**
+ * Mean square slope of the sea's surface in a wind.
+ *
+ * @param windSpeed - 12.5 m above the water [m/s].
+ * @see Cox & Munk 1954, "Measurement of the roughness of the sea surface from photographs of the sun's
+ * glitter": 0.003 + 5.12e-3 W
+ */
+export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 * windSpeed
+
+/**
+ * Radiance of the sun's glint on the sea, for unit irradiance of the sun at the water [1/sr]:
+ * F P(slope)/(4 cos θ_eye cos⁴β), with P Gaussian, and slopes in each other's shadow left out.
+ *
+ * @param variance - {@link seaSlopeVariance}.
+ * @see Cox & Munk 1954; shadowing Walter et al. 2007
+ */
+export function sunGlint(angles: GroundAngles, variance: Float): Float {
+  const { cosSun, cosEye, cosSunEye } = angles
+  // Half vector h of unit length: |l + v|² = 2 (1 + l·v).
+  const length = cosSunEye.add(1).mul(2).max(1e-6).sqrt().toConst()
+  const cosTilt = cosSun.add(cosEye).div(length).clamp(1e-3, 1).toConst()
+  const square = cosTilt.mul(cosTilt).toConst()
+  const slopes = square.reciprocal().sub(1).div(variance).negate().exp()
+  const distribution = slopes.div(variance.mul(Math.PI).mul(square).mul(square))
+  const slope = variance.sqrt().toConst()
+  // Shadowing keeps this from 0 where the eye's cosine is.
+  const visible = shadowing(cosSun, slope).add(shadowing(cosEye, slope)).add(1).mul(cosEye)
+  const glint = waterFresnel(length.mul(0.5)).mul(distribution).div(visible.mul(4))
+  return cosSun.greaterThan(0).select(glint, 0)
+}
+
+/**
+ * Part of diffuse light from the sky that the sea reflects to the eye: Fresnel's at a mean slope.
+ *
+ * @param variance - {@link seaSlopeVariance}.
+ */
+export function skyGlint(cosEye: Float, variance: Float): Float {
+  return waterFresnel(cosEye.mul(cosEye).add(variance).sqrt().min(1))
+}

@@ -1,0 +1,112 @@
+import { DirectionalLight, Vector3 } from 'three'
+import { Fn } from 'three/tsl'
+import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
+import type { NodeFrame } from 'three/webgpu'
+import { checkPositive } from '@welkin/geo'
+import type { Atmosphere } from '../Atmosphere'
+import { checkSource } from '../check'
+import type { LightSource } from '../view/LightSource'
+import { linearSRGB } from '../air/tsl/color'
+import { coveredPosition } from '../view/tsl/coveredPosition'
+import { sunTransmittance } from '../transmittance/tsl/transmittance'
+import type { Vec3 } from '../tsl-types'
+import type { ViewNodes } from '../view/ViewNodes'
+import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+
+const _direction = new Vector3()
+
+/**
+ * Sunlight: a directional light that comes from the atmosphere's sun, reddened by the air above each
+ * fragment and blocked by the planet, so that one light is right on the whole globe.
+ *
+ * `color` and `intensity` multiply the physical illuminance. Shadows, cascades included, are three's:
+ * set `castShadow`, the shadow camera and `target`, around which the light is placed at
+ * {@link distance}.
+ */
+export class SunDirectionalLight extends DirectionalLight {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  #distance = 1
+
+  /** Whose light it is: the sun's. */
+  readonly source: LightSource
+
+  /**
+   * @param distance - From the target to the light [world units].
+   * @param source - Whose light it is; by default the sun's.
+   */
+  constructor(atmosphere: Atmosphere, distance = 1, source: LightSource = atmosphere?.sun) {
+    super()
+    checkAtmosphere('SunDirectionalLight', atmosphere)
+    checkSource('SunDirectionalLight', 'source', source)
+    this.atmosphere = atmosphere
+    this.source = source
+    this.distance = distance
+    this.follow()
+  }
+
+  /** From the target to the light, along the sun's direction, > 0 [world units]. */
+  get distance(): number {
+    return this.#distance
+  }
+
+  set distance(value: number) {
+    checkPositive('SunDirectionalLight', 'distance', value)
+    this.#distance = value
+  }
+
+  override clone(): this {
+    return new SunDirectionalLight(this.atmosphere, this.distance, this.source).copy(this) as this
+  }
+
+  /** Moves to where the sun is; rendering does this by itself. */
+  follow(): void {
+    this.target.updateWorldMatrix(true, false)
+    this.position.setFromMatrixPosition(this.target.matrixWorld)
+    this.source.direction(this.atmosphere, _direction, this.position)
+    this.position.addScaledVector(_direction, this.distance)
+    this.parent?.worldToLocal(this.position)
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    this.follow()
+    super.updateMatrixWorld(force)
+  }
+}
+
+/** Per-fragment colour of a {@link SunDirectionalLight}. */
+export class SunDirectionalLightNode extends DirectionalLightNode {
+  static get type(): string {
+    return 'SunDirectionalLightNode'
+  }
+
+  readonly #view: ViewNodes
+
+  constructor(light: SunDirectionalLight) {
+    super(light)
+    this.#view = viewNodes(light.atmosphere, null, light.source)
+    this.updateBeforeType = NodeUpdateType.RENDER
+    this.updateType = NodeUpdateType.RENDER
+    const node = this as unknown as { colorNode: Vec3 }
+    const tint = node.colorNode
+    node.colorNode = Fn(() => {
+      const { uniforms, transmittance } = this.#view.air
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
+      const { altitude, cosSun } = this.#view.place(offset)
+      const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
+      return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
+    })()
+  }
+
+  override updateBefore(frame: NodeFrame): undefined {
+    this.#view.prepare(frame)
+  }
+
+  override update(frame: NodeFrame): undefined {
+    super.update(frame)
+    this.#view.update(frame)
+  }
+}
+
+// In the same file: `sideEffects: false` would drop a separate one.
+SunDirectionalLight.registerNode(SunDirectionalLightNode as never)

@@ -1,0 +1,34 @@
+import { fail } from '@welkin/geo'
+import type { Atmosphere } from '../Atmosphere'
+import type { Moon } from './Moon'
+import { SunDirectionalLight } from '../lights/SunDirectionalLight'
+
+/**
+ * Moonlight: a directional light that comes from the moon, by its phase and distance, reddened by the air
+ * above each fragment and blocked by the planet. The full moon gives about a quarter of a lux.
+ *
+ * Everything else is as with {@link SunDirectionalLight}, shadows included.
+ */
+export class MoonDirectionalLight extends SunDirectionalLight {
+  /** Shared, not owned. */
+  readonly moon: Moon
+
+  /**
+   * @param distance - From the target to the light [world units].
+   * @throws If the moon is none, or made for another atmosphere.
+   */
+  constructor(atmosphere: Atmosphere, moon: Moon, distance = 1) {
+    if (moon?.source === undefined) {
+      throw new Error(`MoonDirectionalLight: moon must be a Moon, got ${typeof moon}`)
+    }
+    super(atmosphere, distance, moon.source)
+    if (moon.atmosphere !== atmosphere) {
+      fail('MoonDirectionalLight', 'moon must be made for the same atmosphere', moon)
+    }
+    this.moon = moon
+  }
+
+  override clone(): this {
+    return new MoonDirectionalLight(this.atmosphere, this.moon, this.distance).copy(this) as this
+  }
+}

@@ -1,0 +1,41 @@
+import { LinearFilter, LinearMipmapLinearFilter, RenderTarget, UnsignedByteType } from 'three'
+import { Fn, uv } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
+import { FragmentPass } from '../tables/FragmentPass'
+import { moonGround, moonMapPlace } from './tsl/moonSurface'
+
+/** A map of the moon's near side, drawn on the GPU once, with mipmaps. */
+export class MoonSurface {
+  readonly target: RenderTarget
+  readonly #pass = new FragmentPass(
+    'Welkin.MoonSurface',
+    Fn(() => moonGround(moonMapPlace(uv()).toConst() as never))()
+  )
+  #renderer: Renderer | null = null
+
+  /** @param size - Width and height [texels]. */
+  constructor(size: number) {
+    this.target = new RenderTarget(size, size, {
+      type: UnsignedByteType,
+      depthBuffer: false,
+      generateMipmaps: true,
+      minFilter: LinearMipmapLinearFilter,
+      magFilter: LinearFilter
+    })
+    this.target.texture.name = 'MoonSurface'
+  }
+
+  /** Draws the map, unless this renderer has it. */
+  prepare(renderer: Renderer): void {
+    if (renderer === this.#renderer) return
+    this.#renderer = renderer
+    this.#pass.render(renderer, this.target)
+  }
+
+  /** Frees GPU memory. The next {@link prepare} draws anew. */
+  dispose(): void {
+    this.#renderer = null
+    this.#pass.dispose()
+    this.target.dispose()
+  }
+}

@@ -1,0 +1,47 @@
+import { Matrix3, Matrix4 } from 'three'
+import { renderGroup, uniform } from 'three/tsl'
+import { eciToECEF } from '@welkin/geo'
+import type { AtmosphereView } from '../view/AtmosphereView'
+import type { Mat3, Vec3 } from '../tsl-types'
+
+const _matrix = new Matrix4()
+const _scale = new Matrix4()
+
+/** Turns lines of sight into the frame of the stars: mean equator and equinox of J2000. */
+export class CelestialFrame {
+  /**
+   * Rotation from the frame of the stars to ECEF; null to follow the atmosphere's date. With no date
+   * either, the two frames are one.
+   */
+  orientation: Matrix4 | null = null
+  readonly #mappedToAxes = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly #rotation = new Matrix4()
+  #time = NaN
+
+  /** @param axes - Rotation from the frame of the stars to the axes that are wanted, if not the same. */
+  constructor(readonly axes: Matrix3 | null = null) {}
+
+  /** Follows the date. */
+  update({ atmosphere }: AtmosphereView): void {
+    const { date, ellipsoid } = atmosphere
+    if (this.orientation !== null) {
+      _matrix.copy(this.orientation)
+    } else if (date !== null) {
+      if (date.getTime() !== this.#time) eciToECEF(date, this.#rotation)
+      this.#time = date.getTime()
+      _matrix.copy(this.#rotation)
+    } else {
+      _matrix.identity()
+    }
+    // The mapped space is ECEF times 1/radii; the inverse of a rotation is its transpose.
+    const { x, y, z } = ellipsoid.radii
+    _matrix.transpose().multiply(_scale.makeScale(1, y / x, z / x))
+    this.#mappedToAxes.value.setFromMatrix4(_matrix)
+    if (this.axes !== null) this.#mappedToAxes.value.premultiply(this.axes)
+  }
+
+  /** A direction of the mapped space among the stars, about as long. */
+  turn(direction: Vec3): Vec3 {
+    return (this.#mappedToAxes as unknown as Mat3).mul(direction)
+  }
+}

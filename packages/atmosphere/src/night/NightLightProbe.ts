@@ -1,0 +1,97 @@
+import { LightProbe, Vector4 } from 'three'
+import { Fn, normalView, renderGroup, uniform, vec4 } from 'three/tsl'
+import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
+import type { NodeBuilder, NodeFrame } from 'three/webgpu'
+import { checkNonNegative } from '@welkin/geo'
+import type { Atmosphere } from '../Atmosphere'
+import { NIGHT_ILLUMINANCE } from './cpu/twilight'
+import { ofLuminance } from '../stars/starColor'
+import { linearSRGB } from '../air/tsl/color'
+import type { Vec3 } from '../tsl-types'
+import type { ViewNodes } from '../view/ViewNodes'
+import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+
+/**
+ * Light of the night sky on surfaces: what is left when sun and moon are down, so that nights are dark
+ * but not black.
+ *
+ * A dome of even light from above, and what the ground reflects of it from below. It is there by day
+ * too, a hundred million times weaker than daylight. `color` and `intensity` multiply the physical
+ * illuminance; the probe's `sh` is not used.
+ */
+export class NightLightProbe extends LightProbe {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  /** Of level ground [lx]. */
+  readonly illuminance: number
+
+  /**
+   * @param illuminance - Of level ground, finite, ≥ 0 [lx].
+   * @throws If an argument is of the wrong kind or out of range.
+   */
+  constructor(atmosphere: Atmosphere, illuminance = NIGHT_ILLUMINANCE) {
+    super()
+    checkAtmosphere('NightLightProbe', atmosphere)
+    checkNonNegative('NightLightProbe', 'illuminance', illuminance)
+    this.atmosphere = atmosphere
+    this.illuminance = illuminance
+  }
+
+  override clone(): this {
+    return new NightLightProbe(this.atmosphere, this.illuminance).copy(this) as this
+  }
+}
+
+/** Per-fragment irradiance of a {@link NightLightProbe}. */
+export class NightLightProbeNode extends AnalyticLightNode<NightLightProbe> {
+  static get type(): string {
+    return 'NightLightProbeNode'
+  }
+
+  readonly #view: ViewNodes
+  readonly #light: NightLightProbe
+  readonly #irradiance = uniform(new Vector4()).setGroup(renderGroup)
+
+  constructor(light: NightLightProbe) {
+    super(light)
+    this.#light = light
+    this.#view = viewNodes(light.atmosphere)
+    this.updateBeforeType = NodeUpdateType.RENDER
+    this.updateType = NodeUpdateType.RENDER
+  }
+
+  override updateBefore(frame: NodeFrame): undefined {
+    this.#view.prepare(frame)
+  }
+
+  override update(frame: NodeFrame): undefined {
+    super.update(frame)
+    this.#view.update(frame)
+    const { atmosphere, illuminance } = this.#light
+    const { parameters } = atmosphere
+    // As much at each wavelength as the eye's daylight white has over sunlight's: a neutral light.
+    const values = ofLuminance(parameters, [1, 1, 1, 1], illuminance)
+    this.#irradiance.value.fromArray(values)
+  }
+
+  override setup(builder: NodeBuilder): undefined {
+    const irradiance = Fn(() => {
+      const { air, up } = this.#view
+      const normal = this.#view.toMapped(normalView).normalize().toConst()
+      const cosNormal = normal.dot(up).clamp(-1, 1).toConst()
+      const above = cosNormal.add(1).mul(0.5)
+      const below = air.uniforms.groundAlbedo.mul(cosNormal.oneMinus().mul(0.5))
+      const received = vec4(this.#irradiance.mul(below.add(above)))
+      return linearSRGB(air.uniforms, received).mul(
+        (this as unknown as { colorNode: Vec3 }).colorNode
+      )
+    })()
+    const { irradiance: sum } = builder.context as {
+      irradiance: { addAssign(node: unknown): void }
+    }
+    sum.addAssign(irradiance)
+  }
+}
+
+// In the same file: `sideEffects: false` would drop a separate one.
+NightLightProbe.registerNode(NightLightProbeNode)

@@ -1,0 +1,279 @@
+import { fail } from '@welkin/geo'
+import { checkOptions } from '../check'
+
+/** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
+export type Spectrum = readonly [number, number, number, number]
+
+/** Three rows (X, Y, Z) of four columns, one per wavelength. */
+export type SpectralMatrix = readonly [Spectrum, Spectrum, Spectrum]
+
+/** Layers of air, from the ground up: altitude where one begins, and its scale height [m]. */
+export type ScaleHeightLayers = readonly (readonly [baseAltitude: number, scaleHeight: number])[]
+
+/**
+ * What an atmosphere is made of, as plain numbers in SI units; spectra have four values.
+ *
+ * Molecules and aerosols thin out exponentially (molecules layer by layer, if there are
+ * {@link AtmosphereParametersInit.rayleighLayers}), an absorber (on Earth ozone) has the profile of a
+ * tent, the ground is Lambertian.
+ */
+export interface AtmosphereParametersInit {
+  /** The four wavelengths [nm]. */
+  wavelengths?: Spectrum
+  /** Spectral irradiance of the sun above the air [W/m²/nm]. */
+  solarIrradiance?: Spectrum
+  /** Angular radius of the sun's disc, in (0, 0.2] [rad]. */
+  sunAngularRadius?: number
+  /** Darkening u of the sun's limb, I(ρ) ∝ 1 − u (1 − √(1 − ρ²)), in [0, 1]. */
+  limbDarkening?: Spectrum
+  /** Planet's centre to the ground: radius of the sphere that the ellipsoid is mapped to [m]. */
+  bottomRadius?: number
+  /** Planet's centre to the top of the air [m]. */
+  topRadius?: number
+  /** Scattering by molecules at the ground [1/m]. */
+  rayleighScattering?: Spectrum
+  /** Height over which molecules thin out by a factor e; in the lowest layer, if there are more [m]. */
+  rayleighScaleHeight?: number
+  /**
+   * Layers above the lowest, in which molecules thin out by a factor e over other heights: at most
+   * three, from the ground up; base altitudes and scale heights in [1, 1e6] [m]. By default none.
+   *
+   * `standardAtmosphere()` has those of the U.S. Standard Atmosphere 1976.
+   */
+  rayleighLayers?: ScaleHeightLayers
+  /** Scattering by aerosols at the ground, at most `mieExtinction` [1/m]. */
+  mieScattering?: Spectrum
+  /** Extinction (scattering and absorption) by aerosols at the ground [1/m]. */
+  mieExtinction?: Spectrum
+  /** Height over which aerosols thin out by a factor e [m]. */
+  mieScaleHeight?: number
+  /** Asymmetry g of the aerosols' Cornette–Shanks phase function, in (−1, 1); one, or per wavelength. */
+  mieAsymmetry?: number | Spectrum
+  /** Absorption by the tent-shaped layer where it is densest [1/m]. */
+  absorptionExtinction?: Spectrum
+  /** Altitude at which that layer is densest [m]. */
+  absorptionAltitude?: number
+  /** Distance above and below over which it thins out linearly to nothing [m]. */
+  absorptionHalfWidth?: number
+  /** Part of the light that the ground reflects, in [0, 1]. */
+  groundAlbedo?: Spectrum
+  /**
+   * Turns spectral radiance at the four wavelengths into CIE 1931 XYZ
+   * [683⁻¹ cd/m² per W/m²/sr/nm].
+   *
+   * Fitted by `packages/atmosphere/scripts/fit-color.ts` to a solution at 35 wavelengths. Skies that
+   * the fit has not seen: ΔE2000 mean 0.07, 95th percentile 0.19; `spectral_sky.json`: 0.09, 0.27.
+   * Sunlight at zenith angles from 0° to 88°: chromaticity ΔE2000 ≤ 0.14, illuminance within 0.3 %;
+   * above the air 132 klx.
+   */
+  spectralToXYZ?: SpectralMatrix
+}
+
+type Fields = Required<AtmosphereParametersInit>
+
+/** Air at sea level scatters this over λ⁴, λ in µm [µm⁴/m]. Bruneton 2017, after Penndorf 1957. */
+const RAYLEIGH_COEFFICIENT = 1.24062e-6
+
+/** Molecules in a column of one Dobson unit [1/m²]. */
+const DOBSON_UNIT = 2.687e20
+
+/** Cross-section of ozone at 440, 520, 560, 630 nm; 233 K, averaged over 10 nm [m²]. IUP Bremen. */
+const OZONE_CROSS_SECTION: Spectrum = [1.582e-26, 2.139e-25, 4.266e-25, 3.215e-25]
+
+/** Extinction by the clear air's aerosols at the ground [1/m]: optical depth 5.328e-3 to the zenith. */
+const CLEAR_AEROSOL_EXTINCTION = 5.328e-3 / 1200
+
+const all = (value: number): Spectrum => [value, value, value, value]
+
+/** Four numbers from one that stands for all, or from four. */
+export const spectrumOf = (value: number | Spectrum): Spectrum =>
+  typeof value === 'number' ? all(value) : value
+
+const map = (values: Spectrum, f: (value: number) => number): Spectrum => [
+  f(values[0]),
+  f(values[1]),
+  f(values[2]),
+  f(values[3])
+]
+
+const EARTH_WAVELENGTHS: Spectrum = [440, 520, 560, 630]
+const OZONE_HALF_WIDTH = 15_000
+
+const earthOzone = (dobsonUnits: number): Spectrum =>
+  map(OZONE_CROSS_SECTION, area => (area * dobsonUnits * DOBSON_UNIT) / OZONE_HALF_WIDTH)
+
+/** The Earth's value of every field, and the least and most that its numbers may be. */
+const FIELDS: {
+  readonly [Name in keyof Fields]: readonly [earth: Fields[Name], least: number, most: number]
+} = {
+  wavelengths: [EARTH_WAVELENGTHS, 100, 3000],
+  solarIrradiance: [[1.91198, 1.8685, 1.8341, 1.64654], 0, 1e4],
+  sunAngularRadius: [0.004675, 1e-6, 0.2],
+  limbDarkening: [[0.75, 0.65, 0.6, 0.52], 0, 1],
+  bottomRadius: [6_378_137, 1e3, 1e9],
+  topRadius: [6_378_137 + 60_000, 1e3, 2e9],
+  rayleighScattering: [
+    /*#__PURE__*/ map(EARTH_WAVELENGTHS, nm => RAYLEIGH_COEFFICIENT / (nm * 1e-3) ** 4),
+    0,
+    1
+  ],
+  rayleighScaleHeight: [8000, 1, 1e6],
+  rayleighLayers: [[], 1, 1e6],
+  mieScattering: [/*#__PURE__*/ all(0.9 * CLEAR_AEROSOL_EXTINCTION), 0, 1],
+  mieExtinction: [/*#__PURE__*/ all(CLEAR_AEROSOL_EXTINCTION), 0, 1],
+  mieScaleHeight: [1200, 1, 1e6],
+  mieAsymmetry: [0.8, -0.99, 0.99],
+  absorptionExtinction: [/*#__PURE__*/ earthOzone(300), 0, 1],
+  absorptionAltitude: [25_000, -1e6, 1e6],
+  absorptionHalfWidth: [OZONE_HALF_WIDTH, 1, 1e6],
+  groundAlbedo: [/*#__PURE__*/ all(0.1), 0, 1],
+  spectralToXYZ: [
+    [
+      [15.663, -1.271, 49.385, 42.533],
+      [2.555, 30.708, 53.273, 20.437],
+      [80.267, 44.313, -19.464, 1.186]
+    ],
+    -1e4,
+    1e4
+  ]
+}
+
+const CLASS = 'AtmosphereParameters'
+
+function check(name: string, value: unknown, min: number, max: number): void {
+  if (!(typeof value === 'number' && value >= min && value <= max)) {
+    fail(CLASS, `${name} must be a number in [${min}, ${max}]`, value)
+  }
+}
+
+/** A checked copy of a field's value, which must have the shape of the Earth's. */
+function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: number): T {
+  if (!Array.isArray(earth)) {
+    check(name, value, least, most)
+    return value
+  }
+  if (!Array.isArray(value) || value.length !== earth.length) {
+    fail(CLASS, `${name} must be an array of ${earth.length} values`, value)
+  }
+  return earth.map((part, i) => checkedCopy(`${name}[${i}]`, value[i], part, least, most)) as T
+}
+
+/**
+ * What an atmosphere is made of. Immutable fields; {@link set} replaces some and counts `version` up,
+ * so that tables made from them know that they are stale.
+ *
+ * ```ts
+ * const parameters = AtmosphereParameters.earth({ turbidity: 4, ozone: 280 })
+ * parameters.set({ groundAlbedo: [0.3, 0.3, 0.3, 0.3] })
+ * ```
+ */
+export class AtmosphereParameters {
+  #version = 0
+
+  declare readonly wavelengths: Spectrum
+  declare readonly solarIrradiance: Spectrum
+  declare readonly sunAngularRadius: number
+  declare readonly limbDarkening: Spectrum
+  declare readonly bottomRadius: number
+  declare readonly topRadius: number
+  declare readonly rayleighScattering: Spectrum
+  declare readonly rayleighScaleHeight: number
+  declare readonly rayleighLayers: ScaleHeightLayers
+  declare readonly mieScattering: Spectrum
+  declare readonly mieExtinction: Spectrum
+  declare readonly mieScaleHeight: number
+  declare readonly mieAsymmetry: number | Spectrum
+  declare readonly absorptionExtinction: Spectrum
+  declare readonly absorptionAltitude: number
+  declare readonly absorptionHalfWidth: number
+  declare readonly groundAlbedo: Spectrum
+  declare readonly spectralToXYZ: SpectralMatrix
+
+  /**
+   * @param init - Fields that differ from the Earth's.
+   * @throws If a field is unknown, of the wrong kind or out of its range.
+   */
+  constructor(init: AtmosphereParametersInit = {}) {
+    const earth = Object.entries(FIELDS).map(([name, [value]]) => [name, value])
+    this.set(Object.fromEntries(earth)).set(init)
+    this.#version = 0
+  }
+
+  /** Counts the calls of {@link set}. */
+  get version(): number {
+    return this.#version
+  }
+
+  /**
+   * The Earth's atmosphere from two everyday numbers. `standardAtmosphere()` is as bright as the real one.
+   *
+   * @param options - `turbidity` in [1, 20]: haziness as aerosol optical depth, 1 none, 2 the clear
+   *   air of the default, growing in proportion; `ozone` in [0, 1000] [Dobson units], default 300.
+   * @throws If a number is out of its range.
+   */
+  static earth(options: { turbidity?: number; ozone?: number } = {}): AtmosphereParameters {
+    return new AtmosphereParameters().setEarth(options)
+  }
+
+  /**
+   * Sets turbidity and ozone as {@link earth} does, keeping everything else.
+   *
+   * @throws If a number is out of its range; then nothing has changed.
+   */
+  setEarth(options: { turbidity?: number; ozone?: number }): this {
+    const { turbidity, ozone } = checkOptions(CLASS, options, 'turbidity', 'ozone')
+    const init: AtmosphereParametersInit = {}
+    if (turbidity !== undefined) {
+      check('turbidity', turbidity, 1, 20)
+      const extinction = CLEAR_AEROSOL_EXTINCTION * (turbidity - 1)
+      init.mieScattering = all(0.9 * extinction)
+      init.mieExtinction = all(extinction)
+    }
+    if (ozone !== undefined) {
+      check('ozone', ozone, 0, 1000)
+      init.absorptionExtinction = earthOzone(ozone)
+    }
+    return this.set(init)
+  }
+
+  /**
+   * Replaces fields. Whoever holds tables made from these parameters re-bakes them.
+   *
+   * @param init - The fields to replace; arrays are copied, undefined changes nothing.
+   * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
+   */
+  set(init: AtmosphereParametersInit): this {
+    const next: AtmosphereParametersInit = {}
+    for (const [name, value] of Object.entries(checkOptions(CLASS, init))) {
+      if (value === undefined) continue
+      if (!Object.hasOwn(FIELDS, name)) fail(CLASS, 'fields must be parameters', name)
+      const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
+      const [earth, least, most] = field
+      // The fields of more than one shape.
+      let shape = name === 'mieAsymmetry' && Array.isArray(value) ? all(0) : earth
+      if (name === 'rayleighLayers') {
+        if (!Array.isArray(value) || value.length > 3) {
+          fail(CLASS, `${name} must be an array of at most 3 layers`, value)
+        }
+        shape = value.map(() => [0, 0])
+      }
+      Object.assign(next, { [name]: checkedCopy<unknown>(name, value, shape, least, most) })
+    }
+    const { bottomRadius = this.bottomRadius, topRadius = this.topRadius } = next
+    const { mieScattering = this.mieScattering, mieExtinction = this.mieExtinction } = next
+    mieScattering.forEach((value, i) => check('mieScattering', value, 0, mieExtinction[i]))
+    next.rayleighLayers?.reduce((below, [base], i) => {
+      check(`rayleighLayers[${i}][0]`, base, below, 1e6)
+      return base
+    }, 1)
+    check('topRadius', topRadius, bottomRadius * (1 + 1e-5), bottomRadius * 1.5)
+    Object.assign(this, next)
+    this.#version++
+    return this
+  }
+
+  /** A copy that shares nothing with this one. */
+  clone(): AtmosphereParameters {
+    return new AtmosphereParameters(this)
+  }
+}

@@ -1,0 +1,142 @@
+import { spectrumOf, type AtmosphereParameters } from '../../parameters/AtmosphereParameters'
+import { distanceToGround, distanceToTop, hitsGround } from '../../air/cpu/boundary'
+import { sampleDiffuseLight, type DiffuseLightData } from '../../diffuseLight/cpu/diffuseLight'
+import { densities, extinction } from '../../air/cpu/medium'
+import { applyMoments } from '../../diffuseLight/cpu/moments'
+import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from '../../air/cpu/phase'
+import { gaussLegendre } from '../../math/cpu/quadrature'
+import { opticalDepth, sunTransmittance } from '../../transmittance/cpu/transmittance'
+
+const RULE = /*#__PURE__*/ gaussLegendre(6)
+const PIECES = 10
+
+/** A ray in the mapped, spherical space. */
+export interface RayNumbers {
+  /** Planet's centre to the origin [m]. */
+  radius: number
+  /** μ, ray against zenith. */
+  cosView: number
+  /** μ_s, sun against zenith. */
+  cosSun: number
+  /** ν, ray against sun. */
+  cosViewSun: number
+}
+
+/** The same ray where it enters the air; null if it misses. */
+export function enterAir(p: AtmosphereParameters, ray: RayNumbers): RayNumbers | null {
+  if (ray.radius <= p.topRadius) return ray
+  const { radius, cosView, cosSun, cosViewSun } = ray
+  const discriminant = p.topRadius ** 2 - radius ** 2 * (1 - cosView ** 2)
+  if (cosView >= 0 || discriminant <= 0) return null
+  const entry = -radius * cosView - Math.sqrt(discriminant)
+  return {
+    radius: p.topRadius,
+    cosView: (radius * cosView + entry) / p.topRadius,
+    cosSun: (radius * cosSun + entry * cosViewSun) / p.topRadius,
+    cosViewSun
+  }
+}
+
+/**
+ * Radiance scattered to a ray's origin along a way in the air, for unit irradiance of the sun.
+ *
+ * @param data - Diffuse-light table; null for single scattering.
+ * @param distance - Length of the way, which does not cross the ground [m].
+ * @returns One value per wavelength [1/sr].
+ */
+export function inScatter(
+  p: AtmosphereParameters,
+  data: DiffuseLightData | null,
+  ray: RayNumbers,
+  distance: number
+): number[] {
+  const { radius, cosView, cosSun, cosViewSun } = ray
+  const asymmetries = spectrumOf(p.mieAsymmetry)
+  const molecularPhase = rayleighPhase(cosViewSun)
+  const aerosolPhases = asymmetries.map(g => cornetteShanksPhase(g, cosViewSun))
+  const mie = asymmetries.map(asymmetryMoments)
+  const sum = [0, 0, 0, 0]
+  const thickness = p.topRadius - p.bottomRadius
+  const depthBefore = [0, 0, 0, 0]
+  let last = 0
+  const visit = (t: number, weight: number): void => {
+    const r = Math.sqrt(radius ** 2 + 2 * radius * cosView * t + t ** 2)
+    const altitude = Math.max(r - p.bottomRadius, 0)
+    const [mu, muSun] = [(radius * cosView + t) / r, (radius * cosSun + t * cosViewSun) / r]
+    const middle = (last + t) / 2
+    const rMiddle = Math.sqrt(radius ** 2 + 2 * radius * cosView * middle + middle ** 2)
+    const rLast = Math.sqrt(radius ** 2 + 2 * radius * cosView * last + last ** 2)
+    // Simpson's rule from one node to the next.
+    const ends = [rLast, rMiddle, r].map(x =>
+      extinction(p, densities(p, Math.max(x - p.bottomRadius, 0)))
+    )
+    const [molecules, aerosols] = densities(p, altitude)
+    const sun = sunTransmittance(p, r, muSun)
+    const tiles = data && sampleDiffuseLight(data, altitude / thickness, muSun)
+    for (let i = 0; i < 4; i++) {
+      depthBefore[i] += ((t - last) / 6) * (ends[0][i] + 4 * ends[1][i] + ends[2][i])
+      const byMolecules = p.rayleighScattering[i] * molecules
+      const byAerosols = p.mieScattering[i] * aerosols
+      let source = (byMolecules * molecularPhase + byAerosols * aerosolPhases[i]) * sun[i]
+      if (tiles) {
+        const moments = tiles.map(tile => tile[i])
+        source += byMolecules * applyMoments(moments, [1, 0, 0.1], mu, muSun, cosViewSun)
+        source += byAerosols * applyMoments(moments, mie[i], mu, muSun, cosViewSun)
+      }
+      sum[i] += weight * source * Math.exp(-depthBefore[i])
+    }
+    last = t
+  }
+  const lowest = Math.min(Math.max(-radius * cosView, 0), distance)
+  for (const [from, to] of [
+    [0, lowest],
+    [lowest, distance]
+  ] as const) {
+    if (to <= from) continue
+    // Pieces shorten towards the lowest point, where the air is densest.
+    const falls = from < lowest
+    const at = (x: number): number =>
+      falls ? to - (to - from) * (1 - x) ** 2 : from + (to - from) * x ** 2
+    for (let piece = 0; piece < PIECES; piece++) {
+      const [a, b] = [at(piece / PIECES), at((piece + 1) / PIECES)]
+      RULE.nodes.forEach((node, i) => visit(a + (b - a) * node, (b - a) * RULE.weights[i]))
+    }
+  }
+  return sum
+}
+
+/**
+ * Radiance of sky or ground in a direction, for unit irradiance of the sun; without the sun's disc.
+ *
+ * @returns One value per wavelength [1/sr].
+ */
+export function skyRadiance(
+  p: AtmosphereParameters,
+  data: DiffuseLightData,
+  ray: RayNumbers
+): number[] {
+  const inside = enterAir(p, ray)
+  if (inside === null) return [0, 0, 0, 0]
+  const { radius, cosView, cosSun, cosViewSun } = inside
+  if (!hitsGround(radius, cosView, p.bottomRadius)) {
+    return inScatter(p, data, inside, distanceToTop(radius, cosView, p.topRadius))
+  }
+  const distance = distanceToGround(radius, cosView, p.bottomRadius)
+  const air = inScatter(p, data, inside, distance)
+  const depth = opticalDepth(p, radius, cosView, distance)
+  const ground = groundRadiance(p, data, (radius * cosSun + distance * cosViewSun) / p.bottomRadius)
+  return air.map((value, i) => value + ground[i] * Math.exp(-depth[i]))
+}
+
+/** Radiance of the Lambertian ground where the sun's zenith cosine is `cosSun` [1/sr]. */
+export function groundRadiance(
+  p: AtmosphereParameters,
+  data: DiffuseLightData,
+  cosSun: number
+): number[] {
+  const direct = sunTransmittance(p, p.bottomRadius, cosSun)
+  const diffuse = sampleDiffuseLight(data, 0, cosSun)[6]
+  return direct.map(
+    (value, i) => (p.groundAlbedo[i] / Math.PI) * (value * Math.max(cosSun, 0) + diffuse[i])
+  )
+}

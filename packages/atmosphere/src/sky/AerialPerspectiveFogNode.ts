@@ -1,0 +1,31 @@
+import { Fn, output, vec4 } from 'three/tsl'
+import type { Node, NodeBuilder } from 'three/webgpu'
+import type { Atmosphere } from '../Atmosphere'
+import { AtmosphereNode } from '../view/AtmosphereNode'
+import { aerialPerspectiveTo } from './tsl/aerialPerspective'
+import { coveredPosition } from '../view/tsl/coveredPosition'
+
+/**
+ * Aerial perspective as a scene's fog: every material with `fog`, opaque or transparent, dims and
+ * gains the light scattered between it and the camera.
+ *
+ * ```ts
+ * scene.fogNode = aerialPerspectiveFog(atmosphere)
+ * ```
+ */
+export class AerialPerspectiveFogNode extends AtmosphereNode {
+  static get type(): string {
+    return 'AerialPerspectiveFogNode'
+  }
+
+  override setup(_builder: NodeBuilder): Node {
+    return Fn(() => {
+      const { transmittance, inScatter } = aerialPerspectiveTo(this.view, coveredPosition())
+      return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
+    })()
+  }
+}
+
+/** Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}. */
+export const aerialPerspectiveFog = (atmosphere: Atmosphere): AerialPerspectiveFogNode =>
+  new AerialPerspectiveFogNode(atmosphere)

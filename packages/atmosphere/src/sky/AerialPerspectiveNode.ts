@@ -1,0 +1,127 @@
+import type { Camera, OrthographicCamera } from 'three'
+import {
+  Fn,
+  If,
+  float,
+  isBackgroundDepth,
+  logarithmicDepthToViewZ,
+  getViewPosition,
+  uniform,
+  uv,
+  vec3,
+  vec4
+} from 'three/tsl'
+import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import type { Atmosphere } from '../Atmosphere'
+import { AtmosphereNode } from '../view/AtmosphereNode'
+import { pixelAngle, skyColor } from './tsl/sky'
+import { aerialPerspectiveTo } from './tsl/aerialPerspective'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
+
+/**
+ * Aerial perspective and sky as a post effect: dims what was drawn, adds the light scattered in front
+ * of it, and draws the sky where nothing was.
+ *
+ * ```ts
+ * const scenePass = pass(scene, camera, { samples: 0 })
+ * pipeline.outputNode = aerialPerspective(
+ *   scenePass.getTextureNode(), scenePass.getTextureNode('depth'), camera, atmosphere
+ * )
+ * ```
+ *
+ * Leave `scene.background` and `scene.fogNode` empty, and draw without multisampling: a pixel has one
+ * depth, which is wrong for most of its samples at silhouettes and, from space, everywhere (smooth
+ * edges afterwards, or use the fog node). What is transparent and writes no depth gets the
+ * air of what is behind it; the fog node has no such limit. Knows standard, reversed and logarithmic
+ * depth, perspective and orthographic cameras.
+ */
+export class AerialPerspectiveNode extends AtmosphereNode {
+  static get type(): string {
+    return 'AerialPerspectiveNode'
+  }
+
+  /** What was drawn: linear colour. */
+  colorNode: Node
+  /** Its depth, as the renderer writes it. */
+  depthNode: Node
+  /** The camera that drew it. */
+  readonly camera: Camera
+  /** Whether sky is drawn where nothing was. Set it before the first render. */
+  showSky = true
+  /** Whether the sun's disc is drawn. Set it before the first render. */
+  showSun = true
+  readonly #projectionInverse
+  readonly #near = uniform(0.1)
+  readonly #far = uniform(1000)
+
+  /** @throws If an argument is missing. */
+  constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
+    super(atmosphere, camera)
+    for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
+      if (value === undefined || value === null) {
+        throw new Error(`AerialPerspectiveNode: ${name} is missing, got ${value}`)
+      }
+    }
+    this.colorNode = colorNode
+    this.depthNode = depthNode
+    this.camera = camera
+    this.#projectionInverse = uniform(camera.projectionMatrixInverse)
+  }
+
+  override customCacheKey(): number {
+    return 4 * super.customCacheKey() + (this.showSky ? 1 : 0) + (this.showSun ? 2 : 0)
+  }
+
+  override update(frame: NodeFrame): undefined {
+    super.update(frame)
+    const { near, far } = this.camera as OrthographicCamera
+    this.#near.value = near
+    this.#far.value = far
+  }
+
+  override setup(builder: NodeBuilder): Node {
+    const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
+    const { logarithmicDepthBuffer } = builder.renderer as Renderer & {
+      logarithmicDepthBuffer: boolean
+    }
+    const isLogarithmic = logarithmicDepthBuffer && !isOrthographic
+    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this.#projectionInverse)
+
+    return Fn(() => {
+      const color = vec4(this.colorNode as Vec4).toConst()
+      const depth = float((this.depthNode as Vec4).r).toConst() as Float
+      // Any depth that is neither near nor far gives the direction.
+      const middle = position(float(0.5)).toConst() as Vec3
+      const result = color.rgb.toVar()
+      const isSky = isBackgroundDepth(depth).toConst()
+      const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
+      // Derivatives belong outside of branches; GLSL does not take that of a constant.
+      const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
+      If(isSky.not(), () => {
+        const at = isLogarithmic
+          ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
+          : position(depth)
+        const air = aerialPerspectiveTo(this.view, at)
+        const gained = this.showSky ? air.inScatter.mul(color.a) : air.inScatter
+        result.assign(color.rgb.mul(air.transmittance).add(gained))
+      })
+      if (this.showSky) {
+        // Silhouettes (with multisampling) and transparent things leave their coverage in alpha.
+        If(isSky.or(color.a.lessThan(1)), () => {
+          const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
+          const sky = skyColor(this.view, direction, this.showSun ? pixel : null)
+          result.addAssign(sky.mul(color.a.oneMinus()))
+        })
+      }
+      return vec4(result, this.showSky ? float(1) : color.a)
+    })()
+  }
+}
+
+/** Aerial perspective and sky as a post effect: see {@link AerialPerspectiveNode}. */
+export const aerialPerspective = (
+  color: Node,
+  depth: Node,
+  camera: Camera,
+  atmosphere: Atmosphere
+): AerialPerspectiveNode => new AerialPerspectiveNode(color, depth, camera, atmosphere)

@@ -1,0 +1,40 @@
+import { Fn, vec4 } from 'three/tsl'
+import type { Node, NodeBuilder } from 'three/webgpu'
+import type { Atmosphere } from '../Atmosphere'
+import { AtmosphereNode } from '../view/AtmosphereNode'
+import { screenRay } from '../view/tsl/screenRay'
+import { pixelAngle, skyColor } from './tsl/sky'
+import type { Vec3 } from '../tsl-types'
+
+/**
+ * The sky as a scene's background: sky, sun and, below the horizon, the model's Lambertian ground.
+ *
+ * ```ts
+ * scene.backgroundNode = skyBackground(atmosphere)
+ * ```
+ *
+ * Works for every camera, perspective or orthographic, and for cube cameras.
+ */
+export class SkyBackgroundNode extends AtmosphereNode {
+  static get type(): string {
+    return 'SkyBackgroundNode'
+  }
+
+  /** Whether the sun's disc is drawn. Set it before the first render. */
+  showSun = true
+
+  override customCacheKey(): number {
+    return 2 * super.customCacheKey() + (this.showSun ? 1 : 0)
+  }
+
+  override setup(_builder: NodeBuilder): Node {
+    return Fn(() => {
+      const direction = this.view.toMapped(screenRay().direction).normalize().toConst() as Vec3
+      return vec4(skyColor(this.view, direction, this.showSun ? pixelAngle(direction) : null), 1)
+    })()
+  }
+}
+
+/** The sky as a scene's background: see {@link SkyBackgroundNode}. */
+export const skyBackground = (atmosphere: Atmosphere): SkyBackgroundNode =>
+  new SkyBackgroundNode(atmosphere)

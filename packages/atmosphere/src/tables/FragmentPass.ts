@@ -1,0 +1,83 @@
+import { HalfFloatType, LinearFilter, NoBlending, RenderTarget } from 'three'
+import type { TextureFilter, NearestFilter } from 'three'
+import { NodeMaterial, QuadMesh, RendererUtils } from 'three/webgpu'
+import type { Node, Renderer } from 'three/webgpu'
+import type { Vec4 } from '../tsl-types'
+
+/** A half-float render target for a table: no depth buffer, no mipmaps. */
+export function tableTarget(
+  name: string,
+  width: number,
+  height: number,
+  count = 1,
+  filter: TextureFilter = LinearFilter
+): RenderTarget {
+  const target = new RenderTarget(width, height, {
+    count,
+    type: HalfFloatType,
+    depthBuffer: false,
+    minFilter: filter as typeof NearestFilter,
+    magFilter: filter as typeof NearestFilter
+  })
+  target.textures.forEach((texture, i) => {
+    texture.name = `${name}.${i}`
+    texture.generateMipmaps = false
+  })
+  return target
+}
+
+/** A shader with two outputs: `color` assigns the properties that `output` is a struct of. */
+export interface TwoOutputs {
+  color: Vec4
+  output: Node
+}
+
+/** A fragment shader that fills a render target. */
+export class FragmentPass {
+  readonly material: NodeMaterial
+  readonly #quad: QuadMesh
+
+  /**
+   * @param name - Name of the pass in a graphics debugger.
+   * @param output - What every texel becomes.
+   */
+  constructor(name: string, output: Vec4 | TwoOutputs) {
+    this.material = Object.assign(new NodeMaterial(), {
+      name,
+      blending: NoBlending,
+      depthTest: false,
+      depthWrite: false,
+      toneMapped: false,
+      fog: false,
+      lights: false
+    })
+    if ('color' in output) {
+      this.material.colorNode = output.color
+      this.material.outputNode = output.output as never
+    } else {
+      this.material.fragmentNode = output
+    }
+    this.#quad = new QuadMesh(this.material)
+    this.#quad.name = name
+  }
+
+  /**
+   * Draws into the target; the renderer is left as it was. Texels that the shader discards keep.
+   *
+   * @param slice - Of a 3-D target.
+   * @param level - Of the target's levels of detail.
+   */
+  render(renderer: Renderer, target: RenderTarget, slice = 0, level = 0): void {
+    const state = RendererUtils.resetRendererState(renderer, {} as never)
+    renderer.autoClear = false
+    renderer.setMRT(null)
+    renderer.setRenderTarget(target, slice, level)
+    this.#quad.render(renderer)
+    RendererUtils.restoreRendererState(renderer, state)
+  }
+
+  /** Frees the material's pipeline. */
+  dispose(): void {
+    this.material.dispose()
+  }
+}

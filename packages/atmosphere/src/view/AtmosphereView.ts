@@ -1,0 +1,67 @@
+import { Matrix3, Vector3 } from 'three'
+import type { Camera } from 'three'
+import type { Renderer } from 'three/webgpu'
+import type { Atmosphere } from '../Atmosphere'
+import type { Spectrum } from '../parameters/AtmosphereParameters'
+import { eyeScalars } from './cpu/eye'
+import type { LightSource } from './LightSource'
+import type { EyeScalars } from './tsl/eye'
+
+/** Cosine of the source's zenith angle, 25° below the horizon. */
+const DEEP_NIGHT = -0.42
+
+const _position = new Vector3()
+const _direction = new Vector3()
+
+/** A camera in the space where the planet is a sphere, computed in float64. */
+export class AtmosphereView {
+  /** Height above the ground, which may be negative [m]. */
+  height = 0
+  /** Zenith, unit length. */
+  readonly up = new Vector3()
+  /** Direction to the source of light, unit length. */
+  readonly sunDirection = new Vector3()
+  /** Displacements in view space [world units] to the mapped space [m]. */
+  readonly viewToMapped = new Matrix3()
+  /** Of the source, over the bare sun's. */
+  irradiance: Spectrum = [1, 1, 1, 1]
+  /** Whether the source can light any air that is seen. */
+  isLit = true
+  eye: EyeScalars<number> | null = null
+  /** Number of its volume in the atlas. */
+  slot = 0
+  readonly atmosphere: Atmosphere
+  readonly camera: Camera
+  readonly source: LightSource
+
+  constructor(atmosphere: Atmosphere, camera: Camera, source: LightSource) {
+    this.atmosphere = atmosphere
+    this.camera = camera
+    this.source = source
+  }
+
+  /** Follows the camera, and sees that there is a sky volume for it. */
+  update(renderer: Renderer): void {
+    const { space, parameters, tables } = this.atmosphere
+    const { matrixWorld } = this.camera
+    space.position(_position.setFromMatrixPosition(matrixWorld), this.up)
+    const radius = this.up.length()
+    this.height = radius - parameters.bottomRadius
+    // At the very centre any direction is up.
+    if (radius > 0) this.up.divideScalar(radius)
+    else this.up.set(0, 0, 1)
+    _position.setFromMatrixPosition(matrixWorld)
+    this.irradiance = this.source.irradianceAt(_position)
+    this.source.direction(this.atmosphere, _direction, _position)
+    space.direction(_direction, this.sunDirection)
+    space.displacement(matrixWorld, this.viewToMapped)
+    const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
+    // From inside the air a line of sight gets 16° nearer to the sun at most, where dusk ends at −9°.
+    this.isLit = cosSun > DEEP_NIGHT || radius > parameters.topRadius
+    // Then only the depth of the air counts, which one volume holds for all the night.
+    this.eye = eyeScalars(parameters, this.height, this.isLit ? cosSun : DEEP_NIGHT)
+    // Before the first bake is done there is no light to compute a volume from.
+    if (tables.version === 0) return
+    this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot
+  }
+}

@@ -1,0 +1,31 @@
+import type { Vector3 } from 'three'
+import { Vector4 } from 'three'
+import { renderGroup, uniform } from 'three/tsl'
+import type { Atmosphere } from '../Atmosphere'
+import type { Spectrum } from '../parameters/AtmosphereParameters'
+import type { SkyVolumes } from '../skyVolume/SkyVolumes'
+
+/**
+ * What lights the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both;
+ * sky volumes depend on the direction, so each source has its own.
+ */
+export class LightSource {
+  /**
+   * Irradiance above the air over `solarIrradiance`, where the camera is, a uniform of four values. 1
+   * for the bare sun.
+   */
+  readonly irradiance = uniform(new Vector4(1, 1, 1, 1)).setGroup(renderGroup)
+
+  /**
+   * @param direction - Writes the direction to the source in world space, unit length, into its target;
+   *   `from` is who looks, in world space.
+   * @param volumes - Where its sky volumes are kept.
+   */
+  constructor(
+    readonly direction: (atmosphere: Atmosphere, target: Vector3, from?: Vector3) => Vector3,
+    readonly volumes: SkyVolumes
+  ) {}
+
+  /** {@link irradiance} at a position in world space. */
+  irradianceAt: (position: Vector3) => Spectrum = () => [1, 1, 1, 1]
+}

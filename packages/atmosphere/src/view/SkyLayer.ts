@@ -1,0 +1,99 @@
+import type { Vector3 } from 'three'
+import type { Renderer } from 'three/webgpu'
+import type { Atmosphere } from '../Atmosphere'
+import type { Spectrum } from '../parameters/AtmosphereParameters'
+import type { AtmosphereView } from './AtmosphereView'
+import type { LightSource } from './LightSource'
+import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
+import type { Aim, VolumePlace } from '../skyVolume/tsl/skyVolume'
+import type { ViewNodes } from './ViewNodes'
+
+/** Air this many times as bright as something faint in the sky hides it: less than half a grey level. */
+export const DROWNS = 10_000
+
+/** A line of sight into the sky, as shader nodes. */
+export interface SkyRay extends Readonly<Aim> {
+  readonly view: ViewNodes
+  /** Unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** Against the sun. */
+  readonly cosViewSun: Float
+  /** Whether there is air in this direction. */
+  readonly meetsAir: Bool
+  /** Angle that a pixel covers [rad]. */
+  readonly pixel: Float
+  /** Light of the air and of layers in it so far: what is far fainter need not be drawn. */
+  readonly airlight: Vec4
+}
+
+/** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */
+export interface Sightline extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewSun'> {
+  /** To a point [m]; absent for the sky. */
+  readonly distance?: Float
+  /** For the sky: whether the planet is in the way. */
+  readonly hitsGround?: Bool
+}
+
+/** A {@link Sightline} to a point, and where that is in the sky volumes of the eye. */
+export interface HazeLine extends Sightline {
+  readonly distance: Float
+  readonly place: VolumePlace
+}
+
+/** What all that is in the air does to light on a {@link Sightline}. */
+export interface Veil {
+  /** Optical depth; for the sky that of layers alone. */
+  readonly depth: Vec4
+  /** Light added; for the sky its own. */
+  readonly light: Vec4
+}
+
+/**
+ * Something in the sky besides air and sun: moon, stars, airglow. `atmosphere.add(layer)` shows it in
+ * every node that draws this atmosphere's sky and haze.
+ *
+ * All light is radiance over `solarIrradiance` at the four wavelengths [1/sr], as sunlight that a white
+ * plane reflects is.
+ */
+export interface SkyLayer {
+  /** Whether {@link beyond} only adds light and hides nothing. */
+  readonly isAdditive?: boolean
+  /** The only atmosphere that it can be added to; absent if any will do. */
+  readonly atmosphere?: Atmosphere
+  /** The light that it sends to the planet, if it lights more than its own picture. */
+  readonly source?: LightSource
+  /** Part of the sun's light that it leaves at a position in world space. */
+  eclipse?(position: Vector3): Spectrum
+  /**
+   * Counts changes by hand to light other than {@link beyond}, such as an option's; what is drawn once and
+   * kept is drawn again. Not what follows camera, sun and date by itself.
+   */
+  readonly version?: number
+  /** Bakes what the layer needs. Called before a render. */
+  prepare?(renderer: Renderer, view: AtmosphereView): void
+  /** Sets uniforms for the camera that renders. */
+  update?(view: AtmosphereView): void
+  /**
+   * Light from beyond the air, given what is farther; the air dims what is returned.
+   * Called inside a branch in which the ray does not hit the ground: no derivatives.
+   */
+  beyond?(ray: SkyRay, farther: Vec4): Vec4
+  /**
+   * Sunlight from the whole way to the ground and the ground itself, given the model's of even albedo;
+   * for rays that do not hit the ground what is given. Before `glow`; no derivatives.
+   */
+  ground?(ray: SkyRay, model: Vec4): Vec4
+  /** Light of the air from this direction, all of the way, given that without this layer. */
+  glow?(ray: SkyRay, without: Vec4): Vec4
+  /**
+   * Light that comes by way of the air below the layer and its ground, where it is seen: light is asked
+   * for in branches in which it or something beyond the air is, given the air's transmittance.
+   */
+  below?(ray: SkyRay): { isSeen: Bool; light: (transmittance: Vec4) => Vec4 }
+  /** Light that the air adds between the eye and a point, given that without this layer. */
+  haze?(line: HazeLine, without: Vec4): Vec4
+  /** Dims and lights a way, in front of the sky too, given what the air and the layers before do. */
+  veil?(line: Sightline, air: Veil): Veil
+  /** Frees GPU memory. */
+  dispose?(): void
+}

@@ -1,0 +1,41 @@
+import type { Float } from '../../tsl-types'
+
+/**
+ * What the sky volume needs to know of the place that it is seen from: scalars of the mapped,
+ * spherical space. Values come from cpu/eye.ts.
+ */
+export interface EyeScalars<T> {
+  /** h of the eye, at least 1 m; may be above the air [m]. */
+  altitude: T
+  /** From the planet's centre [m]. */
+  radius: T
+  /** Square of the distance to the horizon, h (2 r_ground + h) [m²]. */
+  toHorizon: T
+  /** Square of that to the top of the air along the level; negative above the air [m²]. */
+  toTop: T
+  /** μ_s, sun against zenith. */
+  cosSun: T
+  /** √(1 − μ_s²). */
+  sinSun: T
+  /** Cosine of the zenith angle of the horizon, ≤ 0. */
+  cosHorizon: T
+  /** Its sine. */
+  sinHorizon: T
+  /** 1/tan(α/2) of the largest angle α below the horizon, the nadir's. */
+  belowScale: T
+  /** The same above the horizon: to the zenith, or from outside the air to its top limb. */
+  aboveScale: T
+  /** 1/κ of the distances along rays to the ground: t(x) = t_max (e^{κx} − 1)/(e^κ − 1). */
+  groundStretch: T
+  /** e^κ − 1 of the same. */
+  groundGrowth: T
+  /** 1/κ of the distances along rays to the top of the air. */
+  skyStretch: T
+  /** e^κ − 1 of the same. */
+  skyGrowth: T
+}
+
+/** {@link EyeScalars} as shader nodes, and the number of its volume in the atlas. */
+export interface Eye extends EyeScalars<Float> {
+  slot: Float
+}

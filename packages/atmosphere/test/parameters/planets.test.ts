@@ -1,0 +1,156 @@
+import {
+  Atmosphere,
+  AtmosphereParameters,
+  airlessBody,
+  isAirless,
+  marsAtmosphere,
+  planetGround,
+  titanAtmosphere,
+  venusAtmosphere
+} from '@welkin/atmosphere'
+import { Vector3 } from 'three'
+import { describe, expect, it } from 'vitest'
+import { reflectanceColumns } from '../../src/ground/cpu/reflectance'
+import { spectralToLinearSRGB, whiteBalancedColumns } from '../../src/air/cpu/color'
+import { groundRadiance, skyRadiance } from '../../src/scattering/cpu/scattering'
+import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
+import { sunTransmittance } from '../../src/transmittance/cpu/transmittance'
+
+const QUICK = {
+  sun: { elevations: 8, azimuths: 8, steps: 6 },
+  diffuse: { elevations: 5, azimuths: 4, steps: 4 }
+}
+
+/** Part of the light of a sun at the zenith that arrives at the ground. */
+const transmittanceTo = (parameters: AtmosphereParameters): number[] =>
+  sunTransmittance(parameters, parameters.bottomRadius + 1, 1)
+
+/** Linear sRGB of the sky 2 m above the ground, by angles in degrees. */
+function skyColors(parameters: AtmosphereParameters) {
+  const light = solveDiffuseLight(parameters, QUICK)
+  const cos = (degrees: number): number => Math.cos((degrees * Math.PI) / 180)
+  const sin = (degrees: number): number => Math.sin((degrees * Math.PI) / 180)
+  return (elevation: number, azimuth: number, sunElevation: number): number[] => {
+    const cosViewSun =
+      sin(elevation) * sin(sunElevation) + cos(elevation) * cos(sunElevation) * cos(azimuth)
+    const ray = {
+      radius: parameters.bottomRadius + 2,
+      cosView: sin(elevation),
+      cosSun: sin(sunElevation),
+      cosViewSun
+    }
+    const values = skyRadiance(parameters, light, ray)
+    return spectralToLinearSRGB(
+      parameters,
+      values.map((value, i) => value * parameters.solarIrradiance[i]) as never
+    )
+  }
+}
+
+describe('planets', () => {
+  it('has a butterscotch sky on Mars by day, and a blue glow at the setting sun', () => {
+    const color = skyColors(marsAtmosphere())
+    for (const azimuth of [30, 90, 180]) {
+      const [red, green, blue] = color(30, azimuth, 50)
+      expect(red).toBeGreaterThan(1.15 * green)
+      expect(green).toBeGreaterThan(1.25 * blue)
+    }
+    const blueness = ([red, , blue]: number[]): number => blue / red
+    const glow = blueness(color(6, 0, 3))
+    expect(glow).toBeGreaterThan(1)
+    expect(glow).toBeGreaterThan(1.5 * blueness(color(6, 90, 3)))
+  })
+
+  it("gives Mars the sun's light of its distance", () => {
+    const mars = marsAtmosphere()
+    const earth = new AtmosphereParameters()
+    expect(mars.solarIrradiance[1] / earth.solarIrradiance[1]).toBeCloseTo(0.4307, 3)
+    // 21 arc-minutes across.
+    expect((2 * mars.sunAngularRadius * 180 * 60) / Math.PI).toBeCloseTo(21.1, 1)
+  })
+
+  it('lets as much light through as its optical depths say', () => {
+    // Dust of depth 0.5 at 630 nm; gas of 610 Pa adds little.
+    expect(-Math.log(transmittanceTo(marsAtmosphere({ dust: 0.5 }))[3])).toBeCloseTo(0.5, 1)
+    expect(-Math.log(transmittanceTo(marsAtmosphere({ dust: 2 }))[3])).toBeCloseTo(2, 1)
+    expect(-Math.log(transmittanceTo(titanAtmosphere())[1])).toBeCloseTo(8.96 + 1.23, 0)
+    expect(-Math.log(transmittanceTo(venusAtmosphere())[1])).toBeCloseTo(3, 1)
+  })
+
+  it('has an orange sky on Titan', () => {
+    const [red, green, blue] = skyColors(titanAtmosphere())(40, 90, 50)
+    expect(red).toBeGreaterThan(1.5 * green)
+    expect(green).toBeGreaterThan(1.5 * blue)
+  })
+
+  it('shows a black sky and sunlit ground without air', () => {
+    const moon = airlessBody()
+    expect(isAirless(moon)).toBe(true)
+    expect(isAirless(marsAtmosphere({ dust: 0 }))).toBe(false)
+    const light = solveDiffuseLight(moon, QUICK)
+    const ray = { radius: moon.bottomRadius + 2, cosView: 0.3, cosSun: 0.5, cosViewSun: 0.6 }
+    expect(skyRadiance(moon, light, ray)).toEqual([0, 0, 0, 0])
+    groundRadiance(moon, light, 0.5).forEach((value, i) => {
+      expect(value).toBeCloseTo((0.5 * moon.groundAlbedo[i]) / Math.PI, 10)
+    })
+  })
+
+  it.each([
+    [() => marsAtmosphere({ dust: -1 }), /dust must be in \[0, 10\], got -1/],
+    [() => airlessBody({ distance: 0 }), /distance must be in .*got 0/],
+    [() => airlessBody({ radius: NaN }), /bottomRadius .*NaN/],
+    [() => planetGround({ windSpeed: 99 }), /PlanetGround: windSpeed must be in \[0, 40\], got 99/],
+    [() => planetGround({ roughness: NaN }), /PlanetGround: roughness .*NaN/]
+  ])('refuses numbers that make no sense: %s', (make, message) => {
+    expect(make).toThrow(message)
+  })
+})
+
+describe('reflectanceColumns', () => {
+  it('looks, in sunlight, like the colour that it was made from', () => {
+    const earth = new AtmosphereParameters()
+    const columns = reflectanceColumns(earth)
+    const seen = whiteBalancedColumns(earth)
+    for (const color of [
+      [1, 1, 1],
+      [0.3, 0.2, 0.1],
+      [0.02, 0.05, 0.2]
+    ]) {
+      const spectrum = [0, 1, 2, 3].map(i =>
+        columns.reduce((sum, column, channel) => sum + column[i] * color[channel], 0)
+      )
+      const again = [0, 1, 2].map(row =>
+        seen.reduce((sum, column, i) => sum + column[row] * spectrum[i], 0)
+      )
+      color.forEach((value, i) => expect(again[i]).toBeCloseTo(value, 10))
+      if (color[0] === 1) spectrum.forEach(value => expect(value).toBeCloseTo(1, 10))
+    }
+  })
+})
+
+describe('a flat world', () => {
+  it('has the same light wherever one goes, and that of an atmosphere at its origin', () => {
+    const flat = new Atmosphere({ flat: true }).place({ longitude: 10, latitude: 40 })
+    const round = new Atmosphere().place({ longitude: 10, latitude: 40 })
+    for (const atmosphere of [flat, round]) atmosphere.setSunAngles(4, 130)
+    const here = round.sunIlluminanceAt(new Vector3(0, 500, 0))
+    for (const [x, z] of [
+      [0, 0],
+      [1e5, -3e5],
+      [-4e6, 1e7]
+    ]) {
+      const there = flat.sunIlluminanceAt(new Vector3(x, 500, z))
+      there.forEach((value, i) => expect(value).toBeCloseTo(here[i], 6))
+    }
+    const far = round.sunIlluminanceAt(new Vector3(1e5, 500, -3e5))
+    expect(Math.abs(far[0] / here[0] - 1)).toBeGreaterThan(0.1)
+  })
+  it('has no ECEF frame', () => {
+    const atmosphere = new Atmosphere({ flat: true })
+    expect(() => (atmosphere.frame = 'ecef')).toThrow("Atmosphere: frame must be 'local'")
+    atmosphere.flat = false
+    atmosphere.frame = 'ecef'
+    expect(() => (atmosphere.flat = true)).toThrow('Atmosphere: flat must be false')
+    expect(() => new Atmosphere({ flat: 1 as never })).toThrow('Atmosphere: flat must be true')
+  })
+})

@@ -1,0 +1,236 @@
+import { Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
+import type { Texture } from 'three'
+import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
+import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
+import { texture, texture3D } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
+import { CloudLayers } from '../layers/CloudLayers'
+import { CloudNoise } from '../noise/CloudNoise'
+import { NightLight } from '../light/NightLight'
+import type { NoiseName } from '../noise/noiseSizes'
+import { latticeRotation, layerTurn } from './lattice'
+import {
+  CURL_PERIOD,
+  DETAIL_PERIOD,
+  LAYER_STRIDE,
+  REGION_PERIOD,
+  FIELD_PERIOD,
+  layerForms,
+  layerPeriods,
+  weatherScales
+} from '../layers/layerUniforms'
+import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types'
+import { number } from '../uniforms'
+import { windTurn } from '../layers/wind'
+
+/** Part of its coverage that a layer gains in a frame after its noise was drawn over several. */
+const GROWTH = 1 / 48
+
+const _position = new Vector3()
+const _foot = new Vector3()
+const _point = new Vector3()
+const _stretch = new Vector3()
+const _matrix = new Matrix4()
+const _turn = new Quaternion()
+
+/** Options of {@link CloudField}. */
+export interface CloudFieldOptions {
+  /**
+   * Cloud cover of the whole planet: equirectangular, north up, longitude −180° at the left edge; its
+   * red channel is the share of the sky that is covered. It repeats in S. Shared, not owned. It should
+   * have mipmaps.
+   */
+  worldMap?: Texture | null
+  /** Noise to share between fields; left out, the field makes and owns its own. */
+  noise?: CloudNoise
+}
+
+/** A camera's place, from the planet's centre in the mapped space [m]. */
+export const eyePosition = ({ atmosphere, up, height }: AtmosphereView, target: Vector3): Vector3 =>
+  target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
+
+/**
+ * Where the clouds are, as shaders see it: layers, weather and wind as uniforms, and noise.
+ *
+ * ```ts
+ * const field = new CloudField(atmosphere, new CloudLayers())
+ * field.noise.update(renderer)
+ * field.update(atmosphere.update(renderer, camera), seconds)
+ * ```
+ *
+ * Layers may be changed at any time: `update` copies them into uniforms, and nothing is recompiled.
+ * The wind turns each layer as a rigid shell about the planet's centre, at the given velocity where the
+ * camera is that `update` first saw at a time.
+ */
+export class CloudField {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  readonly layers: CloudLayers
+  readonly noise: CloudNoise
+  /** Place, height and up-vector of the camera: shared with the atmosphere's nodes. */
+  readonly view: ViewNodes
+  /** What lights clouds in the night. */
+  readonly night = new NightLight()
+  /** Radius of the sphere at altitude 0 [m]. */
+  readonly radius = number()
+  /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
+  readonly pixelAngle = number(1e-3)
+  /**
+   * What an optical depth counts in the light that clouds let through: `CloudLight.depthScale` where
+   * there is such a light. Clouds that are not seen one by one let the same through.
+   */
+  readonly depthScale = number(1)
+  /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
+  readonly values: Vector4[] = Array.from(
+    { length: CloudLayers.maxLayers * LAYER_STRIDE },
+    () => new Vector4()
+  )
+  readonly array = vec4Array(this.values)
+  readonly textures: Readonly<Record<NoiseName, LevelTexture<Vec3>>>
+  readonly worldMap: LevelTexture<Vec2> | null
+  /** What it samples; shared, not owned. */
+  readonly worldMapTexture: Texture | null
+  /** Width of the world map [texels]. */
+  readonly worldMapWidth: number
+  /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
+  readonly axialRatio: number
+  readonly #ownsNoise: boolean
+  /** How each layer's noise is turned about the planet's centre: the wind's work. */
+  readonly turns: readonly Quaternion[] = Array.from({ length: CloudLayers.maxLayers }, (_, i) =>
+    layerTurn(i)
+  )
+  /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
+  readonly drifts: readonly Vector3[] = this.turns.map(() => new Vector3())
+  #seconds: number | null = null
+  /** Part of their coverage that layers have: 0 until there is noise. */
+  grown = 0
+  /** How much more in a frame. */
+  #growth = 1
+
+  /**
+   * @param view - Nodes of the camera that samples are seen from.
+   * @throws If the atmosphere or the layers are missing, or the map does not repeat.
+   */
+  constructor(
+    atmosphere: Atmosphere,
+    layers: CloudLayers,
+    view: ViewNodes = viewNodes(atmosphere),
+    { worldMap = null, noise }: CloudFieldOptions = {}
+  ) {
+    checkAtmosphere('CloudField', atmosphere)
+    if (!(layers instanceof CloudLayers)) fail('CloudField', 'layers must be CloudLayers', layers)
+    if (worldMap !== null && worldMap.wrapS !== RepeatWrapping) {
+      fail('CloudField', 'worldMap.wrapS must be RepeatWrapping', worldMap.wrapS)
+    }
+    this.atmosphere = atmosphere
+    this.layers = layers
+    this.view = view
+    this.#ownsNoise = noise === undefined
+    this.noise = noise ?? new CloudNoise()
+    const node = (name: NoiseName): LevelTexture<Vec3> =>
+      texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
+    this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
+    this.worldMapTexture = worldMap
+    this.worldMap = worldMap === null ? null : (texture(worldMap) as unknown as LevelTexture<Vec2>)
+    this.worldMapWidth = (worldMap?.image as { width?: number } | null)?.width ?? 2048
+    const { x, z } = atmosphere.ellipsoid.radii
+    this.axialRatio = x / z
+  }
+
+  /**
+   * Follows layers, wind and camera: call it before each render of a camera.
+   *
+   * @param view - The camera's view, up to date.
+   * @param seconds - Time, on any clock; the clouds drift by its differences [s].
+   */
+  update(view: AtmosphereView, seconds: number): void {
+    const { bottomRadius } = this.atmosphere.parameters
+    const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
+    const elapsed = now - (this.#seconds ?? now)
+    this.#seconds = now
+    this.grown = this.noise.isReady ? Math.min(this.grown + this.#growth, 1) : 0
+    this.radius.value = bottomRadius
+    this.night.update(view)
+    eyePosition(view, _position)
+    _foot.copy(view.up).multiplyScalar(bottomRadius)
+    for (let i = 0; i < this.layers.length; i++) {
+      this.drifts[i].set(0, 0, 0)
+      if (elapsed !== 0) this.#drift(i, view.up, elapsed)
+      this.#write(i)
+    }
+    for (let i = this.layers.length; i < CloudLayers.maxLayers; i++) {
+      this.values[i * LAYER_STRIDE].set(0, 0, 0, 0)
+    }
+  }
+
+  /** Turns a layer against its wind: the noise is looked up where the air came from. */
+  #drift(index: number, up: Vector3, elapsed: number): void {
+    const { wind, baseAltitude } = this.layers.at(index).parameters
+    const radius = this.atmosphere.parameters.bottomRadius + baseAltitude
+    this.turns[index].multiply(windTurn(wind, up, elapsed, radius, _turn)).normalize()
+    _point.copy(up).multiplyScalar(radius)
+    this.drifts[index].copy(_point).sub(_point.applyQuaternion(_turn))
+  }
+
+  /**
+   * Copies a layer's parameters, and its anchors for the eye and the point of the ground below it: what
+   * `layerAt` reads.
+   */
+  #write(index: number): void {
+    const { parameters } = this.layers.at(index)
+    const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
+    const periods = layerPeriods(parameters)
+    const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
+    const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
+    const turn = this.turns[index]
+    const { elements: e } = _matrix.makeRotationFromQuaternion(turn)
+    const perStretch = 1 / stretch
+    const anchor = (
+      place: Vector3,
+      rotation: Quaternion,
+      length: number,
+      periodsKept = 1,
+      across = 1
+    ): number[] =>
+      _point
+        .copy(place)
+        .applyQuaternion(turn)
+        .multiply(_stretch.set(across, across, 1))
+        .applyQuaternion(rotation)
+        .divideScalar(length * periodsKept)
+        .toArray()
+        .map(v => periodsKept * (v - Math.floor(v)))
+    const { weather, region, shape, detail, fields } = latticeRotation
+    const vectors = [
+      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.grown, density],
+      [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
+      scales.clouds,
+      [e[0], e[4], e[8], steepness],
+      [e[1], e[5], e[9], sharpness],
+      [e[2], e[6], e[10], fibrous],
+      // The weather is the same all the way up: it is looked up at the foot point.
+      [...anchor(_foot, weather, periods.weather), 1 / periods.weather],
+      [...anchor(_foot, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
+      [...anchor(_position, shape, periods.shape, 1, perStretch), perStretch],
+      [...anchor(_position, detail, DETAIL_PERIOD, CURL_PERIOD, perStretch), coarseness],
+      [...anchor(_foot, fields, periods.weather * FIELD_PERIOD), anvil],
+      [scales.cells, scales.regions, scales.planet, scales.cloudVariance]
+    ]
+    vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
+  }
+
+  /**
+   * Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. Then clouds are there
+   * at once, or grow over some frames if the noise was drawn over several.
+   */
+  bake(renderer: Renderer, slices = Infinity): boolean {
+    if (!this.noise.isReady) this.#growth = slices === Infinity ? 1 : GROWTH
+    return this.noise.update(renderer, slices)
+  }
+
+  /** Frees the noise if it is the field's own. */
+  dispose(): void {
+    if (this.#ownsNoise) this.noise.dispose()
+  }
+}

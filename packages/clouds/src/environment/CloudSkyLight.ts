@@ -1,0 +1,83 @@
+import type { SkyLightProbe, SkyLitPlane, ViewNodes } from '@welkin/atmosphere'
+import { checkRange } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
+import { float, mix } from 'three/tsl'
+import { checkClouds } from '../check'
+import type { CloudsNode } from '../march/CloudsNode'
+import { overcastIrradiance } from './tsl/overcast'
+import type { Vec3, Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
+
+/**
+ * Clouds in the light of the sky on surfaces: see {@link cloudSkyLight}.
+ */
+export class CloudSkyLight {
+  /** Shared, not owned. */
+  readonly probe: SkyLightProbe
+  /** Whose clouds; shared, not owned. */
+  readonly clouds: CloudsNode
+  readonly #strength = number(1)
+  readonly #overcast: SkyLightProbe['overcast']
+
+  /** @throws If an argument is missing, or they are of two atmospheres. */
+  constructor(probe: SkyLightProbe, clouds: CloudsNode) {
+    if (probe?.overcast === undefined) {
+      fail('CloudSkyLight', 'probe must be a SkyLightProbe', probe)
+    }
+    checkClouds('CloudSkyLight', clouds)
+    if (probe.atmosphere !== clouds.atmosphere) {
+      fail('CloudSkyLight', "clouds must be in the probe's atmosphere", 'another')
+    }
+    this.probe = probe
+    this.clouds = clouds
+    this.#overcast = probe.overcast = (plane, clear) => this.#light(plane, clear)
+  }
+
+  /** How far clouds change the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */
+  get strength(): number {
+    return this.#strength.value
+  }
+
+  /** @throws If it is out of its range. */
+  set strength(strength: number) {
+    checkRange('CloudSkyLight', 'strength', strength, 0, 1)
+    this.#strength.value = strength
+  }
+
+  #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
+    const { field, light, isDisposed } = this.clouds
+    if (isDisposed) return clear
+    // Between two cameras; a metre more or less is no matter to the weather.
+    const eye = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
+    const offset = plane.offset.add(eye(plane.view).sub(eye(field.view))).toConst() as Vec3
+    const without = clear.toConst() as Vec4
+    const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
+    return mix(without, cloudy, float(this.#strength))
+  }
+
+  /** Leaves the probe as it was. */
+  dispose(): void {
+    this.strength = 0
+    if (this.probe.overcast === this.#overcast) this.probe.overcast = null
+  }
+}
+
+/**
+ * Has a `SkyLightProbe` give the light that comes through clouds and from them: under an overcast less
+ * than all of a clear day's light, but more than its blue sky's; above the clouds that of the white below.
+ *
+ * ```ts
+ * const sky = new SkyLightProbe(atmosphere)
+ * scene.add(sky)
+ * cloudSkyLight(sky, cloudsNode) // before the first render; `dispose()` ends it
+ * ```
+ *
+ * It is a mean over some kilometres, from the weather alone, and goes together with `cloudShadow`, which
+ * takes from the sun what is given here. Layers whose `shadow` is false have no part in it. A moon's probe
+ * takes it too. After the clouds' `dispose` the sky is clear again. Where materials were compiled before, it
+ * comes with `renderer.contextNode.needsUpdate = true`.
+ *
+ * @throws If an argument is missing, or they are of two atmospheres.
+ */
+export const cloudSkyLight = (probe: SkyLightProbe, clouds: CloudsNode): CloudSkyLight =>
+  new CloudSkyLight(probe, clouds)

@@ -1,0 +1,180 @@
+import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
+import type { SkyLitPlane } from '@welkin/atmosphere'
+import { If, float, vec3 } from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import type { CloudLight } from '../../light/CloudLightTable'
+import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import { columnFill } from '../../density/tsl/density'
+import { forLayers, layerAt } from '../../density/tsl/layer'
+import { footOffset, weatherAt } from '../../density/tsl/weather'
+
+/** What light does to clouds one above the other: parts of unit flux. Twin: cpu/overcast.ts */
+export interface CloudSheetNodes {
+  /** Of diffuse light that passes. */
+  diffuse: Float
+  /** Of the sun's rays that passes, diffusely or not. */
+  direct: Float
+  /** Of the sun's rays that passes without scattering. */
+  beam: Float
+}
+
+/** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
+export type PlacedSheet = CloudSheetNodes & { top: Float }
+
+/** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
+const REACH_HEIGHTS = 2
+const LEAST_REACH = 1500
+
+/** Transmittances of a cloud by Eddington's approximation. Twin: cpu/overcast.ts */
+export function eddington(
+  thickness: Float,
+  cosSun: Float,
+  diffusing: Float
+): { diffuse: Float; direct: Float; beam: Float } {
+  const beam = thickness.div(cosSun).negate().exp().toConst() as Float
+  const diffuse = diffusing.mul(thickness).mul(0.75).add(1).reciprocal().toConst() as Float
+  const direct = cosSun
+    .mul(0.75)
+    .add(0.5)
+    .add(cosSun.mul(-0.75).add(0.5).mul(beam))
+    .mul(diffuse)
+    .toConst() as Float
+  return { diffuse, direct, beam }
+}
+
+/**
+ * Clouds above and below a place in the mean, from the weather about it.
+ *
+ * To be called inside of a shader function.
+ *
+ * @param offset - From the field's camera, in the mapped space [m].
+ */
+export function sheetsAbout(
+  field: CloudField,
+  light: CloudLight,
+  offset: Vec3,
+  altitude: Float,
+  up: Vec3,
+  cosSun: Float
+): { above: PlacedSheet; below: PlacedSheet } {
+  const mu = cosSun.max(LOWEST_OVERCAST_SUN).toConst() as Float
+  const distance = offset.length().toConst() as Float
+  /** Sums of 1/t − 1 for diffuse light and the sun's, and of tops by the first. */
+  const above = vec3(0).toVar() as Vec3
+  const below = vec3(0).toVar() as Vec3
+  const beam = float(1).toVar()
+  forLayers(field, index => {
+    const layer = layerAt(field, index)
+    If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
+      const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
+      const footprint = rise.mul(REACH_HEIGHTS).max(LEAST_REACH)
+      const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
+      const sample = { offset, altitude, up, distance: seen }
+      const foot = footOffset(field, sample).toConst()
+      const weather = weatherAt(field, layer, foot, sample)
+      const { cover } = weather
+      const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
+      const depth = layer.density
+        .mul(columnFill(layer, weather))
+        .mul(light.depthScale)
+        .toConst() as Float
+      const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
+      const passing = (part: Float): Float => cover.mul(part.sub(1)).add(1)
+      const add = (sum: Vec3, length: Float, place: Float): Float => {
+        const through = eddington(depth.mul(length), mu, light.diffusing)
+        const series = passing(through.diffuse).reciprocal().sub(1).toConst() as Float
+        const direct = passing(through.direct).reciprocal().sub(1)
+        sum.addAssign(vec3(series, direct, series.mul(place)))
+        return passing(through.beam)
+      }
+      beam.mulAssign(add(above, over, top))
+      add(below, layer.thickness.sub(over), top.min(altitude))
+    })
+  })
+  const sheet = (sum: Vec3, through: Float): PlacedSheet => ({
+    diffuse: sum.x.add(1).reciprocal().toConst(),
+    direct: sum.y.add(1).reciprocal().toConst(),
+    beam: through,
+    top: sum.x
+      .greaterThan(1e-6)
+      .select(sum.z.div(sum.x.max(1e-6)), altitude)
+      .toConst()
+  })
+  return { above: sheet(above, beam), below: sheet(below, float(1)) }
+}
+
+/** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
+export interface ClearLightNodes {
+  sun: { above: Vec4; below: Vec4 }
+  sky: { here: Vec4; below: Vec4 }
+  ground: Vec4
+  plane: Vec4
+  albedo: Vec4
+}
+
+/**
+ * Irradiance of a plane among clouds: of sky and ground, with the sun's light that clouds have scattered
+ * but without what comes straight from the sun. Light to and fro between clouds and ground is summed as
+ * geometric series. Twin: cpu/overcast.ts
+ *
+ * @param cosNormal - The plane's normal against the zenith.
+ */
+export function cloudyIrradiance(
+  { sun, sky, ground, plane, albedo }: ClearLightNodes,
+  above: CloudSheetNodes,
+  below: CloudSheetNodes,
+  cosNormal: Float
+): Vec4 {
+  const reflected = below.diffuse.oneMinus().toConst() as Float
+  /** Of light on the ground that leaves the clouds over it. */
+  const escaping = albedo.mul(reflected).oneMinus().reciprocal().mul(below.diffuse)
+  const whiteness = albedo.mul(escaping).mul(below.diffuse).add(reflected)
+  const passing = sun.above.mul(above.direct).add(sky.here.mul(above.diffuse))
+  const bounced = passing.div(whiteness.mul(above.diffuse.oneMinus()).oneMinus())
+  const more = bounced
+    .sub(sun.above.mul(above.beam))
+    .sub(sky.here.mul(above.diffuse))
+    .toConst() as Vec4
+  const beam = sun.below.mul(above.beam).toConst() as Vec4
+  const diffuse = sky.below.mul(above.diffuse).add(more).toConst() as Vec4
+  const onGround = beam.mul(below.direct).add(diffuse.mul(below.diffuse)).mul(escaping)
+  const clouds = beam.mul(below.direct.oneMinus()).add(diffuse.mul(reflected))
+  const part = onGround.div(sun.below.add(sky.below).max(1e-20))
+  const lower = ground.mul(part.sub(above.diffuse)).add(clouds)
+  return plane
+    .mul(above.diffuse)
+    .add(more.mul(cosNormal.mul(0.5).add(0.5)))
+    .add(lower.mul(cosNormal.mul(-0.5).add(0.5)))
+    .max(0)
+}
+
+/**
+ * What clouds make of the light of sky and ground on a plane, for unit irradiance of the sun, or of
+ * whichever source the plane is lit by.
+ *
+ * @param offset - From the field's camera, in the mapped space [m].
+ * @param clear - What it is without clouds.
+ */
+export function overcastIrradiance(
+  field: CloudField,
+  light: CloudLight,
+  { view, altitude, up, cosSun, cosNormal }: SkyLitPlane,
+  offset: Vec3,
+  clear: Vec4
+): Vec4 {
+  const { uniforms, transmittance, diffuse } = view.air
+  const { above, below } = sheetsAbout(field, light, offset, altitude, up, cosSun)
+  const sunAt = (height: Float): Vec4 =>
+    transmittanceToSun(uniforms, transmittance, height, cosSun).mul(cosSun.max(0)).toConst()
+  const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosSun)
+  const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosSun)
+  const lights: ClearLightNodes = {
+    sun: { above: sunAt(above.top), below: sunAt(below.top) },
+    sky: { here: here.up.toConst(), below: onClouds.up.toConst() },
+    ground: here.down.toConst(),
+    plane: clear,
+    albedo: uniforms.groundAlbedo
+  }
+  return cloudyIrradiance(lights, above, below, cosNormal)
+}

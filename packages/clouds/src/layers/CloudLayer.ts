@@ -1,0 +1,125 @@
+import { checkSpectrum } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
+import { checkRanges } from '../check'
+
+/** Horizontal velocity of the air at a layer [m/s], towards east and north. */
+export interface CloudWind {
+  readonly east: number
+  readonly north: number
+}
+
+/** Everything that describes one layer of clouds. */
+export interface CloudLayerParameters {
+  /** Altitude of the layer's base above the ellipsoid [m], at least 0 and below `topAltitude`. */
+  readonly baseAltitude: number
+  /** Altitude of the layer's top above the ellipsoid [m], at most 30,000. */
+  readonly topAltitude: number
+  /** Share of the sky that the layer covers, in [0, 1]: of the planet's; regions have more or less. */
+  readonly coverage: number
+  /** Extinction coefficient of the densest cloud [1/m], in [0, 1]; cumulus has about 0.05. */
+  readonly density: number
+  /**
+   * Exponent t of the height profile 1 − (2 ĥ^t − 1)², in (0, 8], with ĥ the height in the layer
+   * from 0 to 1: 1 is symmetric, below 1 the layer is densest low down, above 1 high up.
+   */
+  readonly profileExponent: number
+  /** How far the shape noise carves the layer into clouds, in [0, 1]; 0 leaves a slab. */
+  readonly shapeAmount: number
+  /** How far the detail noise frays the clouds' edges, in [0, 1]. */
+  readonly detailAmount: number
+  /** Weights of the weather map's four channels in this layer's local coverage, each in [0, 1]. */
+  readonly weatherWeights: readonly [number, number, number, number]
+  readonly wind: CloudWind
+  /** Whether the layer casts shadows. */
+  readonly shadow: boolean
+}
+
+/** Scattered fair-weather cumulus. */
+const defaults: CloudLayerParameters = {
+  baseAltitude: 1000,
+  topAltitude: 2200,
+  coverage: 0.35,
+  density: 0.05,
+  profileExponent: 0.6,
+  shapeAmount: 1,
+  detailAmount: 0.6,
+  weatherWeights: [1, 0, 0, 0],
+  wind: { east: 8, north: 0 },
+  shadow: true
+}
+
+const ranges = {
+  baseAltitude: [0, 30_000],
+  topAltitude: [0, 30_000],
+  coverage: [0, 1],
+  density: [0, 1],
+  profileExponent: [Number.MIN_VALUE, 8],
+  shapeAmount: [0, 1],
+  detailAmount: [0, 1]
+} as const
+
+function requireParameters(parameters: CloudLayerParameters): void {
+  const where = 'CloudLayer'
+  checkRanges(where, parameters, ranges, 'weatherWeights', 'wind', 'shadow')
+  const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
+  if (topAltitude <= baseAltitude) {
+    fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)
+  }
+  checkSpectrum(where, 'weatherWeights', weatherWeights, 1)
+  for (const name of ['east', 'north'] as const) {
+    if (!Number.isFinite(wind?.[name])) {
+      fail(where, `wind.${name} must be a finite number`, wind?.[name])
+    }
+  }
+  if (typeof shadow !== 'boolean') fail(where, 'shadow must be true or false', shadow)
+}
+
+/**
+ * One layer of clouds between two altitudes.
+ *
+ * ```ts
+ * const cirrus = new CloudLayer({ baseAltitude: 8500, topAltitude: 9500, density: 0.002 })
+ * cirrus.set({ coverage: 0.6 })
+ * ```
+ */
+export class CloudLayer {
+  #parameters: CloudLayerParameters
+
+  /**
+   * @param parameters - What differs from scattered fair-weather cumulus.
+   * @throws Error naming the parameter and its value when one is out of its range.
+   */
+  constructor(parameters: Partial<CloudLayerParameters> = {}) {
+    this.#parameters = merge(defaults, parameters)
+  }
+
+  /** The layer's parameters: a frozen object, replaced by each `set`. */
+  get parameters(): CloudLayerParameters {
+    return this.#parameters
+  }
+
+  /**
+   * Changes some parameters; leaves the layer as it was when the result would not be valid.
+   *
+   * @throws Error naming the parameter and its value when one is out of its range.
+   */
+  set(changes: Partial<CloudLayerParameters>): this {
+    this.#parameters = merge(this.#parameters, changes)
+    return this
+  }
+
+  clone(): CloudLayer {
+    return new CloudLayer(this.#parameters)
+  }
+}
+
+function merge(
+  base: CloudLayerParameters,
+  changes: Partial<CloudLayerParameters>
+): CloudLayerParameters {
+  const merged = { ...base, ...changes }
+  requireParameters(merged)
+  const [a, b, c, d] = merged.weatherWeights
+  const weatherWeights = Object.freeze([a, b, c, d] as const)
+  return Object.freeze({ ...merged, weatherWeights, wind: Object.freeze({ ...merged.wind }) })
+}

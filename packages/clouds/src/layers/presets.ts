@@ -1,0 +1,109 @@
+import type { CloudLayerParameters } from './CloudLayer'
+import { named } from '../check'
+import { CloudLayers } from './CloudLayers'
+
+type Layers = readonly Partial<CloudLayerParameters>[]
+
+const cumulus: Partial<CloudLayerParameters> = {
+  topAltitude: 2000,
+  coverage: 0.3,
+  profileExponent: 0.4,
+  detailAmount: 0.7,
+  wind: { east: 7, north: 2 }
+}
+
+const cirrus: Partial<CloudLayerParameters> = {
+  baseAltitude: 8500,
+  topAltitude: 9600,
+  coverage: 0.5,
+  density: 0.0015,
+  profileExponent: 1,
+  shapeAmount: 0.75,
+  detailAmount: 0.5,
+  weatherWeights: [0, 0, 0, 1],
+  wind: { east: 28, north: -8 },
+  shadow: false
+}
+
+/** Names of {@link cloudPreset}. */
+export type CloudPresetName =
+  | 'fairWeather'
+  | 'stratocumulus'
+  | 'overcast'
+  | 'cumulonimbus'
+  | 'cirrus'
+  | 'mixed'
+
+const presets: Readonly<Record<CloudPresetName, Layers>> = {
+  fairWeather: [cumulus],
+  stratocumulus: [
+    {
+      baseAltitude: 800,
+      topAltitude: 1400,
+      coverage: 0.8,
+      density: 0.04,
+      shapeAmount: 0.8,
+      detailAmount: 0.5,
+      weatherWeights: [0, 1, 0, 0],
+      wind: { east: 9, north: 4 }
+    }
+  ],
+  overcast: [
+    {
+      baseAltitude: 600,
+      topAltitude: 1500,
+      coverage: 1,
+      density: 0.02,
+      profileExponent: 0.7,
+      shapeAmount: 0.7,
+      detailAmount: 0.4,
+      weatherWeights: [0, 1, 0, 0],
+      wind: { east: 10, north: 5 }
+    }
+  ],
+  cumulonimbus: [
+    {
+      baseAltitude: 700,
+      topAltitude: 11_000,
+      coverage: 0.25,
+      density: 0.06,
+      profileExponent: 0.55,
+      shapeAmount: 0.9,
+      detailAmount: 0.5,
+      weatherWeights: [0, 0, 1, 0],
+      wind: { east: 12, north: 3 }
+    },
+    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.3 }
+  ],
+  cirrus: [cirrus],
+  mixed: [
+    cumulus,
+    {
+      baseAltitude: 3600,
+      topAltitude: 4100,
+      coverage: 0.3,
+      density: 0.01,
+      profileExponent: 0.8,
+      weatherWeights: [0, 1, 0, 0],
+      wind: { east: 16, north: -3 }
+    },
+    cirrus
+  ]
+}
+
+/**
+ * Layers for a well-known sky, to be changed as one likes.
+ *
+ * - `fairWeather`: scattered cumulus
+ * - `stratocumulus`: a deck with gaps
+ * - `overcast`: a closed grey sky
+ * - `cumulonimbus`: towers up to 11 km among small cumulus
+ * - `cirrus`: thin, fibrous, high
+ * - `mixed`: cumulus, altocumulus and cirrus above each other
+ *
+ * @param count - How many layers there are at least, to take other presets by `copy` later.
+ * @throws If there is no preset of this name.
+ */
+export function cloudPreset(name: CloudPresetName, count = 1): CloudLayers {
+  return new CloudLayers(named('cloudPreset', 'name', presets, name), count)
+}

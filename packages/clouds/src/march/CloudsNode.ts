@@ -1,0 +1,321 @@
+import { AtmosphereNode, checkOptions } from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
+import { checkNonNegative, fail } from '@welkin/geo'
+import { Vector2 } from 'three'
+import type { Camera, DepthTexture, PerspectiveCamera, Texture } from 'three'
+import { Fn, If, exp2, uniform, uv, vec3, vec4 } from 'three/tsl'
+import type { Node, NodeBuilder, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
+import { CloudField } from '../density/CloudField'
+import type { CloudLayers } from '../layers/CloudLayers'
+import { CloudLightTable } from '../light/CloudLightTable'
+import type { CloudNoise } from '../noise/CloudNoise'
+import { CloudRenderer } from './CloudRenderer'
+import { CloudShadowMap } from '../shadow/CloudShadowMap'
+import { FrameUniforms } from './FrameUniforms'
+import {
+  QualityUniforms,
+  resolveQuality,
+  type CloudQuality,
+  type CloudQualityName
+} from './quality'
+import { unpack, type CloudPictures } from '../temporal/tsl/pictures'
+import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
+
+const _size = new Vector2()
+
+/** Slices of its own noise that a node draws in a frame: all in about 28. */
+const NOISE_SLICES = 24
+
+/** Options of {@link clouds}. */
+export interface CloudsOptions {
+  /** How finely clouds are marched; by default `'high'`. */
+  quality?: CloudQualityName | CloudQuality
+  /** Cloud cover of the whole planet: see `CloudFieldOptions`. */
+  worldMap?: Texture | null
+  /**
+   * Noise to share between nodes, drawn at once if it is not yet. Left out, the node makes and owns its
+   * own, and draws it over its first frames: the sky is clear until then, and clouds grow in the next.
+   */
+  noise?: CloudNoise
+  /** Light table to share between nodes; left out, the node makes and owns its own. */
+  light?: CloudLightTable
+}
+
+/** What the picture shows instead of clouds, for looking into them: white is most. */
+export type CloudsDebug =
+  /** How opaque they are, all along the line of sight. */
+  | 'density'
+  /** Steps of the last ray marched nearby, of 256. */
+  | 'steps'
+  /** Distance, by its logarithm: black at 100 m, white at 1000 km. */
+  | 'depth'
+  /** Looks that a pixel remembers, of 32. */
+  | 'history'
+
+const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', 'depth', 'history']
+
+/**
+ * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
+ * atmosphere's sun, sky and ground, in the night by its moon if that was added to it and by the night
+ * sky, with the air in front of them.
+ *
+ * ```ts
+ * const scenePass = pass(scene, camera, { samples: 0 })
+ * const depth = scenePass.getTextureNode('depth')
+ * const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
+ * pipeline.outputNode = clouds(air, depth, camera, atmosphere, cloudPreset('fairWeather'))
+ * ```
+ *
+ * A frame marches a part of the pixels and takes the others from the frames before, looked up where the
+ * clouds were: draw with one node per camera, and give `depth` as a texture node.
+ *
+ * Layers may be changed at any time. What is transparent and writes no depth is taken to be where the
+ * things behind it are. Knows standard, reversed and logarithmic depth.
+ */
+export class CloudsNode extends AtmosphereNode {
+  static get type(): string {
+    return 'CloudsNode'
+  }
+
+  /** What was drawn, air and sky included: linear colour. */
+  colorNode: Node
+  /** Its depth, as the renderer writes it. */
+  depthNode: Node
+  /** The camera that drew it. */
+  readonly camera: PerspectiveCamera
+  readonly field: CloudField
+  readonly light: CloudLightTable
+  /** Optical depths towards the sun about the camera. */
+  readonly shadows: CloudShadowMap
+  /** Whether pixels remember what was marched before; without, pictures are coarse. */
+  accumulates = true
+  /** After `dispose`: it casts no shadows any more. */
+  isDisposed = false
+  #time: number | null = null
+  readonly #ownsLight: boolean
+  readonly #noiseSlices: number
+  readonly #uniforms = new QualityUniforms()
+  readonly #frame = new FrameUniforms()
+  #drawnBy: Renderer | null = null
+  #renderer: CloudRenderer | undefined
+  readonly #current = uniform(0)
+  readonly #exposure = uniform(1)
+  readonly #debug = uniform(0)
+  #quality: CloudQuality
+
+  /** @throws If an argument is missing or of the wrong kind. */
+  constructor(
+    colorNode: Node,
+    depthNode: Node,
+    camera: Camera,
+    atmosphere: Atmosphere,
+    layers: CloudLayers,
+    options: CloudsOptions = {}
+  ) {
+    super(atmosphere, camera)
+    checkOptions('CloudsNode', options, 'quality', 'worldMap', 'noise', 'light')
+    const { quality = 'high', noise, light } = options
+    if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
+    if (!isDepth(depthNode))
+      fail('CloudsNode', "depthNode must be a depth texture's", depthNode?.type)
+    if (!isPerspective(camera)) {
+      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera?.type)
+    }
+    this.colorNode = colorNode
+    this.depthNode = depthNode
+    this.camera = camera
+    this.#quality = resolveQuality(quality)
+    this.field = new CloudField(atmosphere, layers, this.view, options)
+    this.light = light ?? new CloudLightTable()
+    this.#ownsLight = light === undefined
+    this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
+    this.shadows = new CloudShadowMap(this.field)
+  }
+
+  /** Time, by which clouds drift [s]; null, the default, for the renderer's clock. */
+  get time(): number | null {
+    return this.#time
+  }
+
+  /** @throws If it is not finite. */
+  set time(seconds: number | null) {
+    if (seconds !== null && !Number.isFinite(seconds)) {
+      fail('CloudsNode', 'time must be a finite number or null', seconds)
+    }
+    this.#time = seconds
+  }
+
+  /** Whether there is noise to make clouds of. Before, the sky is clear; `field.bake` makes all at once. */
+  get isReady(): boolean {
+    return this.field.noise.isReady
+  }
+
+  /** How finely clouds are marched. */
+  get quality(): CloudQuality {
+    return this.#quality
+  }
+
+  /** @throws If a parameter is out of its range. */
+  set quality(quality: CloudQualityName | CloudQuality) {
+    this.#quality = resolveQuality(quality)
+  }
+
+  /**
+   * Illuminance of level ground by the night sky, which lights clouds when sun and moon are down [lx].
+   * By default that of `NightLightProbe`.
+   */
+  get nightIlluminance(): number {
+    return this.field.night.illuminance
+  }
+
+  /** @throws If it is negative or not finite. */
+  set nightIlluminance(illuminance: number) {
+    checkNonNegative('CloudsNode', 'nightIlluminance', illuminance)
+    this.field.night.illuminance = illuminance
+  }
+
+  /** What is shown instead of clouds; null, the default, for clouds. */
+  get debugView(): CloudsDebug | null {
+    return debugViews[this.#debug.value]
+  }
+
+  /** @throws If there is no such view. */
+  set debugView(view: CloudsDebug | null) {
+    const index = debugViews.indexOf(view)
+    if (index < 0) fail('CloudsNode', `debugView must be one of ${debugViews.map(String)}`, view)
+    this.#debug.value = index
+  }
+
+  /** Size of the pictures on the GPU, without noise and light table [bytes]. */
+  get bytes(): number {
+    return this.shadows.bytes + (this.#renderer?.bytes ?? 0)
+  }
+
+  override updateBefore(frame: NodeFrame): undefined {
+    super.updateBefore(frame)
+    const { camera, field, light } = this
+    const { renderer } = frame
+    if (renderer === null) return
+    this.#drawnBy = renderer
+    const wasReady = this.isReady
+    // Of clouds that appear there is no history.
+    if (field.bake(renderer, this.#noiseSlices) && !wasReady) this.#frame.reset()
+    // Light is there when the clouds are; later it may follow its changes slowly.
+    light.update(this.isReady && !light.isReady ? Infinity : 1)
+    // What is drawn here and now reads the view too.
+    const view = this.view.update(frame)
+    if (view === undefined) return
+    const { width, height } = sizeOf(renderer)
+    this.#uniforms.set(this.#quality)
+    field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
+    field.depthScale.value = light.nodes.depthScale.value
+    field.update(view, this.#time ?? frame.time)
+    this.shadows.update(renderer, view)
+    this.#renderer ??= this.#createRenderer(renderer)
+    this.#renderer.setSize(width, height, this.#quality.block)
+    const { version } = light.texture
+    this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
+    this.#renderer.render(renderer)
+    this.#current.value = this.#renderer.current
+    this.#exposure.value = 1 / this.#frame.gain.value
+  }
+
+  #createRenderer(renderer: Renderer): CloudRenderer {
+    const { logarithmicDepthBuffer: isLogarithmic } = renderer as Renderer & {
+      logarithmicDepthBuffer: boolean
+    }
+    return new CloudRenderer({
+      field: this.field,
+      light: this.light.nodes,
+      shadows: this.shadows.nodes,
+      quality: this.#uniforms,
+      sights: {
+        field: this.field,
+        frame: this.#frame,
+        isLogarithmic,
+        depthAt: at => {
+          const depth = this.depthNode as unknown as LevelTexture<Vec2> & Vec4
+          return (
+            typeof depth.sample === 'function' ? (depth.sample(at) as unknown as Vec4) : depth
+          ).r
+        }
+      }
+    })
+  }
+
+  override setup(builder: NodeBuilder): Node {
+    this.#renderer ??= this.#createRenderer(builder.renderer)
+    const { marched, pictures } = this.#renderer
+    return Fn(() => {
+      const color = vec4(this.colorNode as Vec4).toConst()
+      const at = uv() as unknown as Vec2
+      const latest = (part: keyof CloudPictures): Vec4 => {
+        const value = vec4(0).toVar() as Vec4
+        const [first, second] = pictures.map(picture => () => {
+          value.assign(picture[part].sample(at).level(0))
+        })
+        If(this.#current.equal(0), first).Else(second)
+        return value
+      }
+      const clouds = latest('light')
+      const light = clouds.rgb.mul(this.#exposure)
+      const result = vec4(
+        color.rgb.mul(clouds.a).add(light),
+        color.a.mul(clouds.a).add(clouds.a.oneMinus())
+      ).toVar()
+      If(this.#debug.greaterThan(0), () => {
+        const place = unpack(latest('place'))
+        const views = [
+          clouds.a.oneMinus(),
+          marched.place.sample(at).level(0).w,
+          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
+          place.z.abs().div(32)
+        ]
+        views.forEach((view, i) => {
+          If(this.#debug.equal(i + 1), () => {
+            result.assign(vec4(vec3(view), 1))
+          })
+        })
+      })
+      return result
+    })()
+  }
+
+  /** Frees its pictures and maps, and the noise and the light table if they are the node's own. */
+  override dispose(): void {
+    this.isDisposed = true
+    // three compiles all materials again: those that had the clouds' shadows read freed textures.
+    if (this.#drawnBy !== null) this.#drawnBy.contextNode.needsUpdate = true
+    this.#renderer?.dispose()
+    this.shadows.dispose()
+    this.field.dispose()
+    if (this.#ownsLight) this.light.dispose()
+    super.dispose()
+  }
+}
+
+/** Of a texture; or one for all pixels. */
+function isDepth(node: Node): boolean {
+  const value = (node as TextureNode | null)?.value as DepthTexture | number | undefined
+  return typeof value === 'number' || value?.isDepthTexture === true
+}
+
+function isPerspective(camera: Camera): camera is PerspectiveCamera {
+  return (camera as PerspectiveCamera).isPerspectiveCamera
+}
+
+/** Of what is drawn into [pixels]. */
+function sizeOf(renderer: Renderer): { width: number; height: number } {
+  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
+  return { width: Math.max(width, 1), height: Math.max(height, 1) }
+}
+
+/** Volumetric clouds as a post effect: see {@link CloudsNode}. */
+export const clouds = (
+  color: Node,
+  depth: Node,
+  camera: Camera,
+  atmosphere: Atmosphere,
+  layers: CloudLayers,
+  options: CloudsOptions = {}
+): CloudsNode => new CloudsNode(color, depth, camera, atmosphere, layers, options)

@@ -1,0 +1,80 @@
+import { renderGroup, uniform } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
+import { fail } from '@welkin/geo'
+import { checkRanges, named } from '../check'
+import { number } from '../uniforms'
+
+/** How finely clouds are marched. All may be changed at any time; nothing is recompiled. */
+export interface CloudQuality {
+  /** Most steps of a ray, in [1, 1024]. Rays that need more end early, with too little cloud. */
+  readonly steps: number
+  /** Length of a step per distance from the camera, in (0, 1]. */
+  readonly stepGrowth: number
+  /** Shortest step [m], in [0.1, 1000]. */
+  readonly shortestStep: number
+  /** Least number of steps through a layer, in [1, 256]. */
+  readonly layerSteps: number
+  /** Samples of the clouds towards the sun, near each lit place, in [1, 16]. */
+  readonly sunSteps: number
+  /**
+   * A frame marches one pixel of each block of so many by so many, 1, 2, 3 or 4; what was marched before
+   * fills the rest.
+   */
+  readonly block: number
+}
+
+/** Names of {@link cloudQualities}. */
+export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
+
+/** Well-tried qualities. */
+export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
+  low: { steps: 64, stepGrowth: 0.06, shortestStep: 120, layerSteps: 8, sunSteps: 1, block: 4 },
+  medium: { steps: 96, stepGrowth: 0.04, shortestStep: 100, layerSteps: 11, sunSteps: 2, block: 4 },
+  high: { steps: 128, stepGrowth: 0.03, shortestStep: 85, layerSteps: 16, sunSteps: 2, block: 3 },
+  ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 25, layerSteps: 32, sunSteps: 4, block: 2 }
+}
+
+const ranges = {
+  steps: [1, 1024],
+  stepGrowth: [1e-3, 1],
+  shortestStep: [0.1, 1000],
+  layerSteps: [1, 256],
+  sunSteps: [1, 16],
+  block: [1, 4]
+} as const satisfies Record<keyof CloudQuality, readonly [number, number]>
+
+/**
+ * The quality of a name, or the given one.
+ *
+ * @throws Error naming the parameter and its value when one is out of its range.
+ */
+export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQuality {
+  if (typeof quality === 'string') {
+    return named('CloudsNode', 'quality', cloudQualities, quality)
+  }
+  checkRanges('CloudsNode.quality', quality, ranges)
+  if (!Number.isInteger(quality.block)) {
+    fail('CloudsNode.quality', 'block must be 1, 2, 3 or 4', quality.block)
+  }
+  return Object.freeze({ ...quality })
+}
+
+const whole = (): UniformNode<'int', number> => uniform(1, 'int').setGroup(renderGroup)
+
+/** A {@link CloudQuality} as shader uniforms. */
+export class QualityUniforms {
+  /** Half as many as steps. */
+  readonly pairs = whole()
+  readonly stepGrowth = number()
+  readonly shortestStep = number()
+  readonly layerSteps = number()
+  readonly sunSteps = whole()
+
+  set(quality: CloudQuality): void {
+    this.pairs.value = Math.ceil(quality.steps / 2)
+    this.stepGrowth.value = quality.stepGrowth
+    this.shortestStep.value = quality.shortestStep
+    this.layerSteps.value = quality.layerSteps
+    this.sunSteps.value = Math.round(quality.sunSteps)
+  }
+}

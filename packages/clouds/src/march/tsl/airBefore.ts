@@ -1,0 +1,28 @@
+import { aerialPerspectiveTo, linearSRGB } from '@welkin/atmosphere'
+import type { ViewNodes } from '@welkin/atmosphere'
+import { If, vec4 } from 'three/tsl'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import type { MarchedClouds } from './march'
+
+/**
+ * Marched clouds as pictures have them: light with that of the air before them, times a gain, and
+ * transmittance. To be called inside of a shader function.
+ *
+ * @param directionView - In view space, for each metre of the mapped space [world units/m].
+ */
+export function withAirBefore(
+  view: ViewNodes,
+  { radiance, transmittance, distance }: MarchedClouds,
+  directionView: Vec3,
+  gain: Float
+): Vec4 {
+  const color = vec4(0, 0, 0, transmittance).toVar() as Vec4
+  const opacity = transmittance.oneMinus().toConst()
+  If(opacity.greaterThan(0), () => {
+    const air = aerialPerspectiveTo(view, directionView.mul(distance).toConst())
+    const spectral = linearSRGB(view.air.uniforms, radiance)
+    const seen = spectral.mul(air.transmittance).add(air.inScatter.mul(opacity))
+    color.assign(vec4(seen.mul(gain), transmittance))
+  })
+  return color
+}

@@ -1,0 +1,103 @@
+import { If, float, int } from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import type { Float, Int } from '../../tsl-types'
+import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'
+
+/** Farther than anything [m]. */
+export const FAR_AWAY = 1e12
+
+/** The two distances at which a ray's line crosses the sphere at an altitude; `FAR_AWAY` if none. */
+function crossings(
+  field: CloudField,
+  cosView: Float,
+  altitude: Float
+): { near: Float; far: Float } {
+  const { height } = field.view
+  const radial = field.radius.add(height).mul(cosView).toConst() as Float
+  const product = height.sub(altitude).mul(field.radius.mul(2).add(height).add(altitude)).toConst()
+  const discriminant = radial.mul(radial).sub(product).toConst()
+  // The roots of t² + 2bt + c as q and c/q, q = −(b ± √D): nothing cancels.
+  const root = discriminant.max(0).sqrt()
+  const q = radial.add(radial.lessThan(0).select(root.negate(), root)).negate().toConst() as Float
+  // Where q is 0, so is c.
+  const other = product.div(q.equal(0).select(1, q))
+  const meets = discriminant.greaterThan(0)
+  return {
+    near: meets.select(q.min(other), FAR_AWAY).toConst(),
+    far: meets.select(q.max(other), FAR_AWAY).toConst()
+  }
+}
+
+/** Distance to where a ray from the camera meets the sphere at altitude 0; `FAR_AWAY` if it does not. */
+export function groundDistance(field: CloudField, cosView: Float): Float {
+  const { near } = crossings(field, cosView, float(0))
+  return near.greaterThan(0).select(near, FAR_AWAY).toConst()
+}
+
+/**
+ * The next place after a distance where a ray enters or leaves a layer.
+ *
+ * @param cosView - Ray against the zenith of the camera.
+ * @returns Distance from the camera; `FAR_AWAY` if there is none [m].
+ */
+export function nextShell(field: CloudField, cosView: Float, distance: Float): Float {
+  const next = float(FAR_AWAY).toVar()
+  const consider = (at: Float): void => {
+    next.assign(at.greaterThan(distance).select(next.min(at), next))
+  }
+  forLayers(field, index => {
+    const { baseAltitude, thickness } = layerAt(field, index)
+    for (const altitude of [baseAltitude, baseAltitude.add(thickness)]) {
+      const { near, far } = crossings(field, cosView, altitude)
+      consider(near)
+      consider(far)
+    }
+  })
+  return next
+}
+
+/** The layers around an altitude, taken together. */
+export interface Surroundings {
+  /** Altitude of the lowest base; above `top` if no layer is there [m]. */
+  base: Float
+  /** Altitude of the highest top [m]. */
+  top: Float
+  /** 1 where clouds are plane-parallel layers, 0 where each is as wide as it is deep. */
+  layered: Float
+  /** Greatest vertical optical depth of a layer. */
+  depth: Float
+  /** All of them, and perhaps others between. */
+  range: LayerRange
+}
+
+/** Coverages between which single clouds grow together to a layer. */
+const GROWING_TOGETHER = [0.35, 1] as const
+
+/** @param altitude - Above the sphere [m]. */
+export function surroundings(field: CloudField, altitude: Float): Surroundings {
+  const base = float(FAR_AWAY).toVar()
+  const top = float(-FAR_AWAY).toVar()
+  const coverage = float(0).toVar()
+  const depth = float(0).toVar()
+  const first = int(field.layers.length).toVar() as Int
+  const last = int(0).toVar() as Int
+  forLayers(field, index => {
+    const layer = layerAt(field, index)
+    const layerTop = layer.baseAltitude.add(layer.thickness).toConst()
+    const isInside = altitude
+      .greaterThanEqual(layer.baseAltitude)
+      .and(altitude.lessThanEqual(layerTop))
+      .and(layer.coverage.greaterThan(0))
+    If(isInside, () => {
+      base.assign(base.min(layer.baseAltitude))
+      top.assign(top.max(layerTop))
+      coverage.assign(coverage.max(layer.coverage))
+      depth.assign(depth.max(layer.density.mul(layer.thickness)))
+      first.assign(index.lessThan(first).select(index, first))
+      last.assign(index.add(1))
+    })
+  })
+  const [from, to] = GROWING_TOGETHER
+  const layered = coverage.smoothstep(from, to).toConst() as Float
+  return { base, top, layered, depth, range: { first, last } }
+}

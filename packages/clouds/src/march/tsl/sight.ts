@@ -1,0 +1,73 @@
+import {
+  If,
+  float,
+  getViewPosition,
+  isBackgroundDepth,
+  logarithmicDepthToViewZ,
+  vec3
+} from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import type { FrameUniforms } from '../FrameUniforms'
+import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../../tsl-types'
+import { FAR_AWAY, groundDistance } from './shells'
+
+/** A line of sight through a pixel. */
+export interface Sight {
+  /** Normalized device coordinates of the pixel, and 1. */
+  place: Vec3
+  /** Length of `FrameUniforms.rays` times `place`, in the mapped space [m]. */
+  length: Float
+  /** Unit length, in the mapped space. */
+  direction: Vec3
+  /** The same in view space, for each metre of the mapped space [world units/m]. */
+  directionView: Vec3
+}
+
+/** How a camera's pixels are turned to lines of sight. */
+export interface SightNodes {
+  readonly field: CloudField
+  readonly frame: FrameUniforms
+  /** Depth as the renderer writes it. */
+  readonly depthAt: (uv: Vec2) => Float
+  readonly isLogarithmic: boolean
+}
+
+/** The line of sight of a place in the picture; to be called inside of a shader function. */
+export function sightAt({ field, frame }: SightNodes, uv: Vec2): Sight {
+  const place = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
+  const ray = (frame.rays as unknown as Mat3).mul(place).toConst() as Vec3
+  const mapped = field.view.toMapped(ray).toConst() as Vec3
+  const length = mapped.length().toConst() as Float
+  const direction = mapped.div(length).toConst() as Vec3
+  return { place, length, direction, directionView: ray.div(length).toConst() }
+}
+
+/**
+ * Distance along a line of sight to what was drawn, or to the ground; `FAR_AWAY` where there is neither
+ * [m]. To be called inside of a shader function.
+ *
+ * @param isOpen - Where it holds, the ground is known not to be in sight.
+ */
+export function sightEnd(
+  { field, frame, depthAt, isLogarithmic }: SightNodes,
+  uv: Vec2,
+  { direction, directionView }: Sight,
+  isOpen?: Bool
+): Float {
+  const depth = depthAt(uv).toConst() as Float
+  const cosView = direction.dot(field.view.up).clamp(-1, 1).toConst() as Float
+  const end = float(FAR_AWAY).toVar()
+  const findGround = (): void => {
+    end.assign(groundDistance(field, cosView))
+  }
+  if (isOpen === undefined) findGround()
+  else If(isOpen.not(), findGround)
+  If(isBackgroundDepth(depth).not(), () => {
+    const inverse = frame.projectionInverse as unknown as Mat4
+    const viewZ = isLogarithmic
+      ? logarithmicDepthToViewZ(depth, frame.near, frame.far)
+      : getViewPosition(uv, depth, inverse).z
+    end.assign(end.min(float(viewZ).div(directionView.z)))
+  })
+  return end
+}

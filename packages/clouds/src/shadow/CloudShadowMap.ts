@@ -1,0 +1,330 @@
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
+import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
+import { Quaternion, Vector3 } from 'three'
+import type { RenderTarget, Vector4 } from 'three'
+import { texture } from 'three/tsl'
+import type { Renderer, UniformNode } from 'three/webgpu'
+import { eyePosition, type CloudField } from '../density/CloudField'
+import { CASCADE_SIZE as SIZE, ShadowDrawing } from './ShadowDrawing'
+import { shadowRay } from './tsl/shadowMap'
+import type { LevelTexture, Vec2 } from '../tsl-types'
+import { number, vector3, vector4 } from '../uniforms'
+
+/** Half widths of the cascades for a camera near the ground [m]. */
+const HALF_WIDTHS = [5000, 20_000, 80_000] as const
+
+/** Cascades double in width with each doubling of the camera's height above this [m]. */
+const WIDENING_HEIGHT = 6000
+
+/** Highest camera for which maps are drawn [m]: farther away the clouds are a thin skin. */
+const HIGHEST = 150_000
+
+/** Cosine of the angle about the planet's centre after which the plane's origin follows the camera. */
+const ANCHOR_COSINE = Math.cos(0.005)
+
+/** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
+const LIGHT_JUMP = 0.01
+const PLACE_JUMP = 0.5
+
+/** Frames over which a cascade is drawn anew. */
+const STRIPS = 4
+
+/**
+ * What a cascade is drawn anew for: moves of its middle [texels], moves of layers against each other
+ * [texels], and changes of the light's direction, which move the far end of its rays by a tenth of a texel.
+ */
+const STALE_PLACE = 8
+const STALE_DRIFT = 0.25
+const STALE_LIGHT = 6e-4
+
+/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
+export interface CascadeNodes {
+  readonly u: UniformNode<'vec4', Vector4>
+  readonly v: UniformNode<'vec4', Vector4>
+  readonly w: UniformNode<'vec4', Vector4>
+  /** 1 once it is drawn. */
+  readonly isDrawn: UniformNode<'float', number>
+  /** Which of the map's squares it is in. */
+  readonly square: UniformNode<'float', number>
+}
+
+/** A shadow map as shaders see it. */
+export interface CloudShadows {
+  readonly map: LevelTexture<Vec2>
+  readonly cascades: readonly CascadeNodes[]
+  /** Of squares, one more than cascades. */
+  readonly count: number
+  /** 1 if it is of moonlight, 0 of sunlight. */
+  readonly isMoonlit: UniformNode<'float', number>
+  /** From the camera of the map to the one of the shader, if they are two [m]. */
+  readonly shift?: UniformNode<'vec3', Vector3>
+}
+
+/** What the shader of a cascade reads. Vectors are in the mapped space, from the camera [m]. */
+export interface ShadowRayUniforms {
+  /** Direction to the source of light. */
+  readonly toLight: UniformNode<'vec3', Vector3>
+  /** Middle of the cascade in its plane. */
+  readonly origin: UniformNode<'vec3', Vector3>
+  /** Edges of the cascade. */
+  readonly across: UniformNode<'vec3', Vector3>
+  readonly along: UniformNode<'vec3', Vector3>
+  readonly halfWidth: UniformNode<'float', number>
+  /** Texels along an edge. */
+  readonly size: number
+}
+
+interface Cascade {
+  readonly nodes: CascadeNodes
+  isDrawn: boolean
+  drawing: ShadowDrawing
+}
+
+const _foot = new Vector3()
+const _offset = new Vector3()
+const _drift = new Vector3()
+const _turn = new Quaternion()
+
+/**
+ * Beer shadow maps of clouds: optical depth towards the sun, or towards the moon in the night, in three
+ * cascades about the camera.
+ *
+ * A texel is a sun ray. It is named by where it crosses a plane among the clouds, level unless the sun
+ * is low, so that texels are spread over the ground whatever the sun's height. Each cascade's middle
+ * moves by whole texels. A cascade drifts with the clouds, and is drawn anew, a strip a frame, when it no
+ * longer fits them: a sky that stands still costs nothing.
+ */
+export class CloudShadowMap {
+  readonly field: CloudField
+  readonly target: RenderTarget
+  readonly nodes: CloudShadows
+  readonly #cascades: readonly Cascade[]
+  /** Whose drawing goes on, which strip is next, and where it is drawn: it is swapped in when it is done. */
+  #current: Cascade | null = null
+  #strip = 0
+  #spare: ShadowDrawing
+  readonly #ray: ShadowRayUniforms
+  readonly #pass: FragmentPass
+  /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
+  readonly camera = new Vector3()
+  readonly #anchor = new Vector3()
+  readonly #light = new Vector3()
+  /** Whose light the maps are of. */
+  source: LightSource
+  #inputs: readonly unknown[] = []
+  #order = 0
+  /** Index of the thickest layer, with which maps drift. */
+  #thickest = 0
+
+  constructor(field: CloudField) {
+    this.field = field
+    this.source = field.atmosphere.sun
+    const count = HALF_WIDTHS.length + 1
+    this.target = tableTarget('Welkin.CloudShadows', SIZE * count, SIZE)
+    this.#cascades = HALF_WIDTHS.map((_, i) => ({
+      nodes: {
+        u: vector4(),
+        v: vector4(),
+        w: vector4(),
+        isDrawn: number(),
+        square: number()
+      },
+      isDrawn: false,
+      drawing: new ShadowDrawing(i, field.turns)
+    }))
+    this.#spare = new ShadowDrawing(HALF_WIDTHS.length, field.turns)
+    this.nodes = {
+      map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
+      cascades: this.#cascades.map(cascade => cascade.nodes),
+      count,
+      isMoonlit: number()
+    }
+    this.#ray = {
+      toLight: vector3(),
+      origin: vector3(),
+      across: vector3(),
+      along: vector3(),
+      halfWidth: number(),
+      size: SIZE
+    }
+    this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray))
+  }
+
+  /** Whether there are maps: not before the first update, and not far away. */
+  get isDrawn(): boolean {
+    return this.#cascades[0].isDrawn
+  }
+
+  /** Size on the GPU [bytes]. */
+  get bytes(): number {
+    return 8 * this.target.width * this.target.height
+  }
+
+  /**
+   * Draws what no longer fits: a strip, or all cascades at once after a jump. The field must be up to
+   * date.
+   *
+   * @param view - Of the field's camera, up to date.
+   */
+  update(renderer: Renderer, view: AtmosphereView): void {
+    const radius = this.field.radius.value
+    eyePosition(view, this.camera)
+    const { night, atmosphere } = this.field
+    const isMoonlit = night.rulesAt(view)
+    this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
+    this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
+    this.#light.copy(isMoonlit ? night.direction.value : view.sunDirection)
+    if (view.height > HIGHEST) {
+      for (const cascade of this.#cascades) cascade.isDrawn = false
+      this.#current = null
+    } else {
+      this.#draw(renderer, view, radius)
+    }
+    this.#follow()
+  }
+
+  #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
+    const { layers, noise, grown, worldMapTexture } = this.field
+    const parameters = [...layers].map(layer => layer.parameters)
+    this.#inputs = [noise.isReady, radius, grown, worldMapTexture?.version, ...parameters]
+    _foot.copy(view.up).multiplyScalar(radius + this.#middle())
+    if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
+      this.#anchor.copy(_foot)
+    }
+    const scale = 2 ** Math.max(Math.ceil(Math.log2(view.height / WIDENING_HEIGHT)), 0)
+    let oldest = this.#current
+    for (const [index, cascade] of this.#cascades.entries()) {
+      const halfWidth = HALF_WIDTHS[index] * scale
+      const { drawing } = cascade
+      if (!cascade.isDrawn || !this.#fits(drawing, halfWidth)) {
+        if (cascade === this.#current) this.#current = null
+        if (cascade === oldest) oldest = null
+        this.#place(drawing, halfWidth)
+        this.#render(renderer, drawing, 0, SIZE)
+        cascade.isDrawn = true
+      } else if (this.#current === null && this.#isStale(drawing)) {
+        if (oldest === null || drawing.order < oldest.drawing.order) oldest = cascade
+      }
+    }
+    if (oldest === null) return
+    if (this.#current === null) {
+      this.#current = oldest
+      this.#strip = 0
+      this.#place(this.#spare, oldest.drawing.halfWidth)
+    }
+    const rows = SIZE / STRIPS
+    this.#render(renderer, this.#spare, this.#strip * rows, rows)
+    if (++this.#strip < STRIPS) return
+    const { drawing } = oldest
+    oldest.drawing = this.#spare
+    this.#spare = drawing
+    this.#current = null
+  }
+
+  /** Draws some rows of a cascade. */
+  #render(renderer: Renderer, drawing: ShadowDrawing, from: number, rows: number): void {
+    this.#setRay(drawing)
+    const { viewport, scissor } = this.target
+    viewport.set(drawing.square * SIZE, 0, SIZE, SIZE)
+    scissor.set(drawing.square * SIZE, from, SIZE, rows)
+    this.target.scissorTest = true
+    this.#pass.render(renderer, this.target)
+  }
+
+  /** An altitude in the middle of the thickest clouds [m]. */
+  #middle(): number {
+    let [middle, most] = [0, 0]
+    for (const [index, { parameters }] of [...this.field.layers].entries()) {
+      const { baseAltitude, topAltitude, coverage, density } = parameters
+      const depth = coverage === 0 ? 0 : density * (topAltitude - baseAltitude)
+      if (depth <= most) continue
+      ;[middle, most] = [0.6 * baseAltitude + 0.4 * topAltitude, depth]
+      this.#thickest = index
+    }
+    return middle
+  }
+
+  /** How far the wind has carried a layer, where the camera is, since a cascade was drawn [m]. */
+  #driftOf({ turns }: ShadowDrawing, target: Vector3, layer = this.#thickest): Vector3 {
+    _turn.copy(turns[layer]).invert().multiply(this.field.turns[layer])
+    return target.copy(_foot).applyQuaternion(_turn).sub(_foot).negate()
+  }
+
+  /** How far the camera is from a cascade's middle, along its axes [m]. */
+  #distance(drawing: ShadowDrawing): number {
+    const { anchor, across, measure, center } = drawing
+    this.#driftOf(drawing, _drift)
+    _offset.copy(_foot).sub(anchor).sub(_drift)
+    const u = across.dot(_offset) - center.u
+    const v = measure.dot(_offset) - center.v
+    return Math.max(Math.abs(u), Math.abs(v))
+  }
+
+  /** Whether a cascade is of use until it is drawn anew. */
+  #fits(drawing: ShadowDrawing, halfWidth: number): boolean {
+    return (
+      drawing.halfWidth === halfWidth &&
+      // Until the noise is there, so is no cloud.
+      drawing.inputs[0] === this.#inputs[0] &&
+      drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
+      this.#distance(drawing) < PLACE_JUMP * halfWidth
+    )
+  }
+
+  #isStale(drawing: ShadowDrawing): boolean {
+    const { inputs, light, texel } = drawing
+    const place = this.#distance(drawing)
+    return (
+      place > STALE_PLACE * texel ||
+      light.distanceTo(this.#light) > STALE_LIGHT ||
+      this.#inputs.some((value, i) => value !== inputs[i]) ||
+      [...this.field.layers].some(
+        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
+      )
+    )
+  }
+
+  #place(drawing: ShadowDrawing, halfWidth: number): void {
+    drawing.place(this.#light, this.#anchor, _foot, halfWidth, this.field.turns)
+    drawing.inputs = this.#inputs
+    drawing.order = this.#order++
+  }
+
+  #setRay(drawing: ShadowDrawing): void {
+    const { light, anchor, across, along, center, halfWidth } = drawing
+    const ray = this.#ray
+    ray.toLight.value.copy(light)
+    ray.origin.value
+      .copy(anchor)
+      .add(this.#driftOf(drawing, _drift))
+      .sub(this.camera)
+      .addScaledVector(across, center.u)
+      .addScaledVector(along, center.v)
+    ray.across.value.copy(across).multiplyScalar(2 * halfWidth)
+    ray.along.value.copy(along).multiplyScalar(2 * halfWidth)
+    ray.halfWidth.value = halfWidth
+  }
+
+  /** Sets what look-ups need, for the camera and the clouds where they are now. */
+  #follow(): void {
+    for (const { nodes, isDrawn, drawing } of this.#cascades) {
+      nodes.isDrawn.value = isDrawn ? 1 : 0
+      if (!isDrawn) continue
+      const { square, halfWidth, anchor, across, measure, normal, center } = drawing
+      nodes.square.value = square
+      _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(drawing, _drift))
+      const row = (target: Vector4, axis: Vector3, shift: number, width: number): void => {
+        target.set(axis.x, axis.y, axis.z, axis.dot(_offset) + shift).divideScalar(width)
+      }
+      row(nodes.u.value, across, halfWidth - center.u, 2 * halfWidth)
+      row(nodes.v.value, measure, halfWidth - center.v, 2 * halfWidth)
+      row(nodes.w.value, normal, 0, halfWidth)
+    }
+  }
+
+  /** Frees the map. */
+  dispose(): void {
+    this.target.dispose()
+    this.#pass.dispose()
+  }
+}

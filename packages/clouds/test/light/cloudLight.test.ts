@@ -1,0 +1,174 @@
+import fc from 'fast-check'
+import { gaussLegendre } from '@welkin/atmosphere'
+import { beforeAll, describe, expect, it } from 'vitest'
+import { collisionsInBall, RINGS, STEPS } from '../../scripts/ball'
+import { CloudLightTable } from '../../src/light/CloudLightTable'
+import { cloudAmbient, cloudSource, lateralLeak } from '../../src/light/cpu/cloudLight'
+import {
+  sampleSunlitSlab,
+  slabColumn,
+  slabRow,
+  solveCloudLight
+} from '../../src/light/cpu/cloudLightTable'
+import { aureolePhase, cloudPhase, scalePhase } from '../../src/light/cpu/cloudPhase'
+import { SlabSolver } from '../../src/light/cpu/solveSlab'
+
+const unit = fc.double({ min: 0, max: 1, noNaN: true })
+const depths = fc.double({ min: -4, max: 5, noNaN: true }).map(Math.exp)
+const { phase } = new CloudLightTable()
+const rule = gaussLegendre(200)
+
+let table: Float32Array
+beforeAll(() => {
+  table = solveCloudLight(phase)
+})
+
+describe('cloud-light table', () => {
+  // Against all scattered light: in thin slabs nearly all of it was scattered but once.
+  it('is what the solver says between its texels, within 4 % of the light', () => {
+    const solver = new SlabSolver(scalePhase(phase))
+    fc.assert(
+      fc.property(unit, depths, fc.double({ min: 0.1, max: 1, noNaN: true }), (part, t, mu0) => {
+        const [exact] = solver.slab(t, [part * t]).fromSun(mu0)
+        const sampled = sampleSunlitSlab(table, part * t, t, mu0)
+        const once = Math.exp((-part * t) / mu0) / (4 * Math.PI)
+        const light = exact.s00 + once
+        for (const key of ['s00', 's10', 's20', 's11', 's21', 's22'] as const) {
+          expect(Math.abs(sampled[key] - exact[key]) / light).toBeLessThan(0.04)
+        }
+      }),
+      { numRuns: 100 }
+    )
+  })
+
+  it('places both faces of a slab at its ends, and the middle in the middle', () => {
+    fc.assert(
+      fc.property(depths, t => {
+        expect(slabColumn(0, t)).toBeCloseTo(0, 9)
+        expect(slabColumn(t, t)).toBeCloseTo(1, 9)
+        expect(slabColumn(t / 2, t)).toBeCloseTo(0.5, 9)
+        expect(slabRow(t)).toBeLessThanOrEqual(1)
+      })
+    )
+  })
+
+  it('bakes in steps; a change on the way starts over', () => {
+    const light = new CloudLightTable()
+    light.update(3)
+    expect(light.isReady).toBe(false)
+    light.set({ forwardShare: 0.5 })
+    light.update(28)
+    expect(light.isDirty).toBe(true)
+    light.update(1)
+    const changed = new CloudLightTable({ forwardShare: 0.5 })
+    changed.bake()
+    expect(light.isDirty).toBe(false)
+    expect(light.isReady).toBe(true)
+    expect(light.texture.image.data).toEqual(changed.texture.image.data)
+    expect(light.nodes.depthScale.value).toBe(changed.nodes.depthScale.value)
+    // Until a table is solved, the old one stands with its phase function.
+    light.set({ forwardShare: 0.9 })
+    for (let frames = 1; light.isDirty; frames++) {
+      expect(light.nodes.forwardShare.value).toBe(0.5)
+      expect(frames).toBeLessThan(30)
+      light.update(1)
+    }
+    expect(light.nodes.forwardShare.value).toBe(0.9)
+  })
+
+  it.for([
+    [{ forwardAsymmetry: 1 }, /forwardAsymmetry must be .* got 1/],
+    [{ forwardShare: NaN }, /forwardShare must be .* got NaN/],
+    [{ scatteringAlbedo: 1 }, /scatteringAlbedo must be .* got 1/],
+    [{ asymmetry: 0.8 }, /options must be forwardAsymmetry, .* got asymmetry/]
+  ] as [object, RegExp][])('rejects %o', ([parameters, message]) => {
+    expect(() => new CloudLightTable(parameters)).toThrow(message)
+  })
+})
+
+describe('aureole', () => {
+  it('is the phase function where nothing was crossed', () => {
+    for (const cosine of [-1, 0, 0.9, 0.99, 1]) {
+      expect(aureolePhase(phase, cosine, 0) / cloudPhase(phase, cosine)).toBeCloseTo(1, 2)
+    }
+  })
+
+  it('is fainter in its middle the more cloud was crossed, and scatters no light away', () => {
+    let previous = Infinity
+    for (const depth of [0, 0.5, 1, 2, 4, 8]) {
+      const middle = aureolePhase(phase, 1, depth)
+      expect(middle).toBeLessThan(previous)
+      previous = middle
+      const whole = rule.nodes.reduce(
+        (sum, x, i) => sum + 4 * Math.PI * rule.weights[i] * aureolePhase(phase, 2 * x - 1, depth),
+        0
+      )
+      expect(whole).toBeCloseTo(1, 6)
+    }
+  })
+})
+
+const puff = { depthToEye: 0, layered: 0, cosSun: 1, cosView: 1, cosViewSun: 1 }
+
+describe('lateral leak', () => {
+  it('gives balls the light that Monte Carlo gives them, for phase functions between those fitted', () => {
+    for (const [diameter, chi1] of [
+      [0.9, 0.1],
+      [4, 0.4],
+      [14, 0.25]
+    ]) {
+      const solver = new SlabSolver({ depthScale: 1, albedo: 0.99999, moments: [1, chi1, 0.15] })
+      const sources = collisionsInBall(diameter, chi1, 0.15, diameter < 1 ? 400_000 : 60_000)
+      let error = 0
+      let total = 0
+      for (let ring = 0; ring < RINGS; ring++) {
+        const depthThrough = diameter * Math.sqrt(1 - (ring + 0.5) / RINGS)
+        for (let step = 0; step < STEPS; step++) {
+          const depthToSun = ((step + 0.5) / STEPS) * depthThrough
+          const [{ s00 }] = solver.slab(depthThrough, [depthToSun]).fromSun(1)
+          const sample = { ...puff, depthToSun, depthThrough, depthAcross: diameter }
+          const source = sources[ring * STEPS + step]
+          error += Math.abs(s00 * lateralLeak(sample, 1 - chi1) - source)
+          total += source
+        }
+      }
+      expect(error / total).toBeLessThan(0.12)
+    }
+  })
+})
+
+describe('cloudSource', () => {
+  it('knows no leak and no width in layers', () => {
+    const sample = {
+      ...puff,
+      layered: 1,
+      depthToSun: 1,
+      depthThrough: 4,
+      cosSun: 0.5,
+      cosView: 0.3
+    }
+    const narrow = cloudSource(phase, table, { ...sample, cosViewSun: 0.2, depthAcross: 1 })
+    const wide = cloudSource(phase, table, { ...sample, cosViewSun: 0.2, depthAcross: 1e3 })
+    expect(narrow).toBe(wide)
+  })
+
+  it('is the same from below under a sun below the horizon as from above', () => {
+    const sample = { ...puff, layered: 1, depthToSun: 1, depthThrough: 4, depthAcross: 1 }
+    const above = { ...sample, cosSun: 0.2, cosView: 0.5, cosViewSun: 0.3 }
+    const below = { ...sample, cosSun: -0.2, cosView: -0.5, cosViewSun: 0.3 }
+    expect(cloudSource(phase, table, below)).toBeCloseTo(cloudSource(phase, table, above), 12)
+  })
+})
+
+describe('cloudAmbient', () => {
+  it('hides a cloud between a sky and a ground of equal radiance', () => {
+    fc.assert(
+      fc.property(unit, unit, unit, unit, (above, below, layered, cosView) => {
+        // The default droplets absorb: it shows in clouds thicker than these.
+        const [depthAbove, depthBelow] = [15 * above, 15 * below]
+        const { sky, ground } = cloudAmbient(table, { depthAbove, depthBelow, layered, cosView })
+        expect(Math.abs(sky + ground - 1)).toBeLessThan(0.005)
+      })
+    )
+  })
+})

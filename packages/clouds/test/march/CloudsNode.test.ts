@@ -1,0 +1,90 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { OrthographicCamera, PerspectiveCamera, Scene } from 'three'
+import { float, pass, vec4 } from 'three/tsl'
+import { describe, expect, test } from 'vitest'
+import { cloudOverlay, cloudQualities, CloudLayers, cloudShadow, clouds } from '../../src'
+
+const atmosphere = new Atmosphere()
+const [color, depth, camera] = [vec4(0), float(0), new PerspectiveCamera()]
+const make = (options = {}) => clouds(color, depth, camera, atmosphere, new CloudLayers(), options)
+
+describe('CloudsNode', () => {
+  test('refuses what is missing or of the wrong kind', () => {
+    const layers = new CloudLayers()
+    expect(() => clouds(color, depth, camera, null as never, layers)).toThrow(/atmosphere/)
+    expect(() => clouds(color, null as never, camera, atmosphere, layers)).toThrow(/depthNode/)
+    expect(() => clouds(color, depth, camera, atmosphere, [] as never)).toThrow(/layers/)
+    const scene = pass(new Scene(), camera)
+    for (const other of [scene, scene.getTextureNode(), color]) {
+      expect(() => clouds(scene, other, camera, atmosphere, layers)).toThrow(
+        "CloudsNode: depthNode must be a depth texture's, got "
+      )
+    }
+    const node = clouds(scene, scene.getTextureNode('depth'), camera, atmosphere, layers)
+    expect(node.isReady).toBe(false)
+    node.dispose()
+    expect(() => make({ qualty: 'low' })).toThrow(
+      'CloudsNode: options must be quality, worldMap, noise, light, got qualty'
+    )
+    expect(() => clouds(color, depth, new OrthographicCamera(), atmosphere, layers)).toThrow(
+      'CloudsNode: camera must be a PerspectiveCamera, got OrthographicCamera'
+    )
+  })
+
+  test('knows qualities by name or number, and keeps the last valid one', () => {
+    const node = make({ quality: 'low' })
+    expect(node.quality).toBe(cloudQualities.low)
+    expect(() => (node.quality = 'best' as never)).toThrow(/one of low, medium, high, ultra/)
+    const wrong = { ...cloudQualities.high, steps: NaN }
+    expect(() => (node.quality = wrong)).toThrow(/quality: steps must be in \[1, 1024\]/)
+    const more = { ...cloudQualities.high, stps: 9 } as never
+    expect(() => (node.quality = more)).toThrow(/options must be steps, .* got stps/)
+    const between = { ...cloudQualities.high, block: 2.5 }
+    expect(() => (node.quality = between)).toThrow(/quality: block must be 1, 2, 3 or 4, got 2\.5/)
+    expect(node.quality).toBe(cloudQualities.low)
+    node.quality = { ...cloudQualities.high, steps: 20 }
+    expect(node.quality).toEqual({ ...cloudQualities.high, steps: 20 })
+    node.dispose()
+  })
+
+  test('drifts by a time that is a number, or by the clock', () => {
+    const node = make()
+    node.time = 7
+    expect(() => (node.time = NaN)).toThrow(
+      'CloudsNode: time must be a finite number or null, got NaN'
+    )
+    expect(node.time).toBe(7)
+    node.time = null
+    node.dispose()
+  })
+
+  test('shows a debug view of those it has', () => {
+    const node = make()
+    expect(node.debugView).toBe(null)
+    node.debugView = 'history'
+    expect(node.debugView).toBe('history')
+    expect(() => (node.debugView = 'opacity' as never)).toThrow(
+      'CloudsNode: debugView must be one of null,density,steps,depth,history, got opacity'
+    )
+    expect(node.debugView).toBe('history')
+    node.dispose()
+  })
+})
+
+describe('cloudOverlay', () => {
+  test('refuses options that it does not know', () => {
+    const node = make()
+    expect(() => cloudOverlay(node, { sise: 64 } as never)).toThrow(
+      'CloudOverlay: options must be size, quality, drift, got sise'
+    )
+    node.dispose()
+  })
+})
+
+describe('cloudShadow', () => {
+  test('refuses what are no clouds', () => {
+    expect(() => cloudShadow(new CloudLayers() as never)).toThrow(
+      'CloudShadowNode: clouds must be a CloudsNode, got CloudLayers'
+    )
+  })
+})

@@ -1,0 +1,152 @@
+import { Atmosphere, FragmentPass } from '@welkin/atmosphere'
+import type { AtmosphereView } from '@welkin/atmosphere'
+import type { RenderTarget } from 'three'
+import { PerspectiveCamera, Vector3, Vector4 } from 'three'
+import type { Renderer } from 'three/webgpu'
+import { afterEach, expect, test, vi } from 'vitest'
+import { CloudField } from '../../src/density/CloudField'
+import { cloudPreset, type CloudPresetName } from '../../src/layers/presets'
+import { CloudShadowMap } from '../../src/shadow/CloudShadowMap'
+
+/** Frames that drawing a cascade anew takes. */
+const STRIPS = 4
+const radius = 6_371_000
+
+/** A sky of which frames are drawn; nothing reaches a GPU. */
+class Sky {
+  readonly layers
+  readonly field
+  readonly shadows
+  /** Of the camera, east of where it was [m]. */
+  east = 0
+  height = 2
+  sun = new Vector3(0.5, 0.6, 0.7).normalize()
+  /** Texels drawn, by the map's square. */
+  drawn: number[] = []
+  #seconds = 0
+
+  constructor(preset: CloudPresetName) {
+    const atmosphere = new Atmosphere()
+    atmosphere.parameters.set({ bottomRadius: radius, topRadius: radius + 1e5 })
+    this.layers = cloudPreset(preset)
+    this.field = new CloudField(atmosphere, this.layers)
+    this.shadows = new CloudShadowMap(this.field)
+    vi.spyOn(FragmentPass.prototype, 'render').mockImplementation(
+      (_, { scissor }: RenderTarget) => {
+        this.drawn[scissor.x / 256] = (this.drawn[scissor.x / 256] ?? 0) + scissor.w * scissor.z
+      }
+    )
+  }
+
+  get up(): Vector3 {
+    const angle = this.east / radius
+    return new Vector3(Math.cos(angle), Math.sin(angle), 0)
+  }
+
+  get #view(): AtmosphereView {
+    const { atmosphere } = this.field
+    const { up, height, sun: sunDirection } = this
+    const camera = new PerspectiveCamera()
+    const view: Partial<AtmosphereView> = { atmosphere, camera, up, height, sunDirection }
+    return view as AtmosphereView
+  }
+
+  /** @returns Cascades' worth of texels that were drawn. */
+  frames(count: number, seconds = 1 / 60, eastwards = 0): number {
+    this.drawn = []
+    for (let i = 0; i < count; i++) {
+      this.east += eastwards
+      this.#seconds += seconds
+      this.field.update(this.#view, this.#seconds)
+      this.shadows.update({} as Renderer, this.#view)
+    }
+    return this.drawn.reduce((sum, texels) => sum + texels, 0) / 256 ** 2
+  }
+
+  /** Where a cascade has a place, from the planet's centre in the mapped space [texels, texels, m]. */
+  texelOf(cascade: number, place: Vector3): Vector3 {
+    const { u, v, w } = this.shadows.nodes.cascades[cascade]
+    const offset = place.clone().sub(this.up.multiplyScalar(radius + this.height))
+    const at = new Vector4(...offset.toArray(), 1)
+    return new Vector3(at.dot(u.value) * 256, at.dot(v.value) * 256, at.dot(w.value))
+  }
+}
+
+afterEach(() => vi.restoreAllMocks())
+
+test('draws all cascades at first, and none as long as nothing changes', () => {
+  const sky = new Sky('fairWeather')
+  expect(sky.frames(1)).toBe(3)
+  expect(sky.frames(200, 0)).toBe(0)
+})
+
+test('draws all anew, a strip a frame, when the layers change', () => {
+  const sky = new Sky('fairWeather')
+  sky.frames(1)
+  sky.layers.at(0).set({ coverage: 0.6 })
+  expect(sky.frames(1, 0)).toBe(1 / STRIPS)
+  expect(sky.frames(3 * STRIPS - 1, 0)).toBe(3 - 1 / STRIPS)
+  expect(sky.frames(50, 0)).toBe(0)
+})
+
+test('draws all cascades at once when there is noise', () => {
+  const sky = new Sky('fairWeather')
+  sky.frames(1)
+  vi.spyOn(sky.field.noise, 'isReady', 'get').mockReturnValue(true)
+  expect(sky.frames(1, 0)).toBe(3)
+  expect(sky.frames(50, 0)).toBe(0)
+})
+
+test('serves all cascades in turn while everything changes', () => {
+  const sky = new Sky('fairWeather')
+  sky.frames(1)
+  for (let i = 0; i < 60 * STRIPS; i++) {
+    sky.layers.at(0).set({ coverage: 0.3 + i * 1e-3 })
+    expect(sky.frames(1)).toBe(1 / STRIPS)
+  }
+  const orders = sky.shadows.nodes.cascades.map(({ square }) => square.value)
+  expect(new Set(orders).size).toBe(3)
+})
+
+test('drifts with the clouds instead of being drawn anew', () => {
+  const sky = new Sky('fairWeather')
+  sky.frames(1)
+  const place = sky.up.multiplyScalar(radius + 1500)
+  const [turn] = sky.field.turns
+  // Of the noise, which the clouds take along.
+  const noise = place.clone().applyQuaternion(turn)
+  const before = sky.texelOf(0, place)
+  expect(sky.frames(600)).toBe(0)
+  const moved = noise.applyQuaternion(turn.clone().invert())
+  expect(moved.distanceTo(place)).toBeCloseTo(10 * Math.hypot(7, 2), 0)
+  const after = sky.texelOf(0, moved)
+  expect(Math.hypot(after.x - before.x, after.y - before.y)).toBeLessThan(0.01)
+})
+
+test('is drawn anew when layers have drifted apart, the narrowest cascade the most often', () => {
+  const sky = new Sky('mixed')
+  sky.frames(1)
+  const minute = sky.frames(3600)
+  // 21 m/s against each other are a quarter of a texel of 39 m in 0.4 s.
+  expect(minute).toBeGreaterThan(60)
+  expect(minute).toBeLessThan(220)
+})
+
+test('follows a camera in flight, and the sun', () => {
+  const sky = new Sky('fairWeather')
+  sky.frames(1)
+  // 250 m/s: eight texels of 39 m in 1.25 s, of 156 m in 5 s.
+  const flight = sky.frames(600, 1 / 60, 250 / 60)
+  expect(flight).toBeGreaterThan(6)
+  expect(flight).toBeLessThan(14)
+  for (const cascade of [0, 1, 2]) {
+    const { x, y } = sky.texelOf(cascade, sky.up.multiplyScalar(radius + 1400))
+    expect(Math.max(Math.abs(x - 128), Math.abs(y - 128))).toBeLessThan(12)
+  }
+  sky.sun.x += 0.001
+  sky.sun.normalize()
+  expect(sky.frames(50, 0)).toBe(3)
+  sky.sun.x += 0.1
+  sky.sun.normalize()
+  expect(sky.frames(1, 0)).toBe(3)
+})
