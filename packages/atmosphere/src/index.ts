@@ -100,5 +100,5 @@ export { NIGHT_ILLUMINANCE } from './night/cpu/twilight'
 export { ofLuminance } from './stars/starColor'
 
 // Preconditions that Welkin's packages share; not for use elsewhere.
-export { checkOptions, checkRange, checkSource, checkSpectrum } from './check'
+export { checkRange, checkSource, checkSpectrum, withDefaults } from './check'
 export { checkAtmosphere } from './view/ViewNodes'
