@@ -1,7 +1,7 @@
 import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
-import type { Backend } from '../gpu/harness/gpu-test'
+import type { Backend } from '../harness/backend'
 import { printClouds, validateClouds } from './clouds'
 import { evaluateInBrowser } from './evaluate'
 import { colorRequest, compareColors, compareSky, compareSun, skyRequest } from './figures'
