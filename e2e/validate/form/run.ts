@@ -64,15 +64,10 @@ export async function validateForm(
   coverage?: number
 ): Promise<FormResult> {
   const found: FormFigures[] = []
-  const requests = PLACES.map(([longitude, latitude]) => ({
-    backend,
-    preset,
-    longitude,
-    latitude,
-    size: SIZE,
-    cell: CELL,
-    ...(coverage === undefined ? {} : { coverage })
-  }))
+  const about = { backend, preset, size: SIZE, cell: CELL, coverage }
+  const requests = PLACES.map(([longitude, latitude]) =>
+    Object.assign({ longitude, latitude }, about)
+  )
   await drawCloudFields(requests, grid => {
     if (grid.data.some(value => value > 0)) found.push(formFigures(grid))
   })

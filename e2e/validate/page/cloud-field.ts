@@ -17,7 +17,7 @@ export interface CloudFieldRequest {
   longitude: number
   latitude: number
   /** Coverage of the lowest layer, in place of the preset's, and of the others in proportion. */
-  coverage?: number
+  coverage?: number | undefined
   /** Width of the grid, and of a cell [m]. */
   size: number
   cell: number
@@ -91,8 +91,7 @@ window.welkinOpenCloudField = async request => {
   const east = atmosphere.space.direction(new Vector3(1, 0, 0), new Vector3())
   east.addScaledVector(up, -east.dot(up)).normalize()
   const north = up.clone().cross(east)
-  const axis = ({ x, y, z }: Vector3): Node<'vec3'> =>
-    uniform(new Vector3(x, y, z)) as unknown as Node<'vec3'>
+  const axis = ({ x, y, z }: Vector3): Node<'vec3'> => uniform(new Vector3(x, y, z))
   const axes = [axis(east), axis(north), axis(up)]
   const bottom = uniform(0)
   const sampleAt = (i: number, j: number, k: number): Node<'float'> => {
