@@ -1,9 +1,9 @@
 import { Break, If, float, int, vec2, vec3, vec4 } from 'three/tsl'
 import { loop, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
-import { pairMatter } from '../../density/tsl/density'
+import { samplePair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
-import { lightUp, OPAQUE, sourceAt, type ShadingContext } from '../../light/tsl/lighting'
-import { FAR_AWAY, nextShell, surroundings } from './shells'
+import { shade, OPAQUE, sourceAt, type ShadingContext } from '../../light/tsl/lighting'
+import { FAR_AWAY, nextLayerBoundary, layersAt } from './layerBoundaries'
 
 /** Least number of steps through a layer that is thinner than a few samples are wide. */
 const LEAST_STEPS = 4
@@ -88,7 +88,7 @@ export function marchClouds(
   const leaveLayers = (): void => {
     If(passingSeen.greaterThan(0), () => {
       const sample = sampleAt(passing.w.div(passingSeen))
-      radiance.addAssign(lightUp(field, sample, passing.xyz))
+      radiance.addAssign(shade(field, sample, passing.xyz))
       weightedDistance.addAssign(passing.w)
       passing.assign(vec4(0))
       passingSeen.assign(0)
@@ -102,13 +102,13 @@ export function marchClouds(
     steps.addAssign(2)
     If(position.greaterThanEqual(shell), () => {
       leaveLayers()
-      const next = nextShell(field, cosView, position.mul(1 + 1e-6).add(0.01))
+      const next = nextLayerBoundary(field, cosView, position.mul(1 + 1e-6).add(0.01))
         .min(end)
         .toConst()
       shell.assign(next)
       part.assign(jitter)
       const { altitude } = view.place(direction.mul(position.add(next).mul(0.5)))
-      const found = surroundings(field, altitude)
+      const found = layersAt(field, altitude)
       about.base.assign(found.base)
       about.top.assign(found.top)
       about.layered.assign(found.layered)
@@ -138,7 +138,7 @@ export function marchClouds(
       part.assign(1)
       const ahead = [0.5, 1.5].map(at => length.mul(at).toConst() as Float)
       const places = ahead.map(distance => position.add(distance).toConst() as Float)
-      const matter = pairMatter(
+      const matter = samplePair(
         field,
         sampleAt(position.add(length)),
         places.map(at => () => sampleAt(at)),
@@ -172,7 +172,7 @@ export function marchClouds(
         transmittance.mulAssign(through.x.mul(through.y))
         position.addAssign(length.mul(2))
       }).Else(() => {
-        const clear = ahead[1].add(matter.clearance).toConst() as Float
+        const clear = ahead[1].add(matter.emptyDistance).toConst() as Float
         part.assign(clear.greaterThan(whole.mul(2)).select(jitter, 1))
         position.addAssign(length.mul(2).max(clear.min(left)))
       })
