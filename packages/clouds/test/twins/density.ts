@@ -28,7 +28,7 @@ import type { NoiseTextures } from './noiseTextures'
 /** Where the clouds are: what a `CloudField` tells its shaders. */
 export interface CloudState {
   readonly layers: readonly CloudLayerParameters[]
-  /** How each layer's noise is turned: `CloudField.turns`. */
+  /** Rotation of each layer's noise: `CloudField.rotations`. */
   readonly rotations: readonly Quaternion[]
   readonly bottomRadius: number
   /** Angle between neighbouring samples [rad]. */
@@ -143,7 +143,10 @@ export function weatherAt(
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const fieldLevel = Math.max(level - Math.log2(FIELD_PERIOD), 0)
   const lookUp = (lattice: Quaternion, length: number, levelThere: number): number[] =>
-    sample(shifted(placeIn(subpoint, layerRotation, lattice, length), region, WEATHER_WARP), levelThere)
+    sample(
+      shifted(placeIn(subpoint, layerRotation, lattice, length), region, WEATHER_WARP),
+      levelThere
+    )
   const fields = lookUp(latticeRotations.fields, period * FIELD_PERIOD, fieldLevel)
   const clouds = lookUp(latticeRotations.weather, period, level)
   const c = coverageAt(state, layer, subpoint, new Vector3(fields[2], fields[0], fields[1]))
@@ -162,7 +165,8 @@ export function weatherAt(
     (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lostShare(regionLevel - 0.8)) / 12
   const odds = clamp(c, 1e-6, 1 - 1e-6)
   const quantile = Math.log(odds / (1 - odds)) / 1.702
-  const { edgeSoftness, leastEdgeSoftness, leastVariance, fullCoverageExcess, meanEdge } = strengthForm
+  const { edgeSoftness, leastEdgeSoftness, leastVariance, fullCoverageExcess, meanEdge } =
+    strengthForm
   const edges = Math.max(edgeSoftness * layer.shapeAmount, leastEdgeSoftness)
   const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
   const surely = fullCoverageExcess * (2 * c - 1) ** 33

@@ -55,10 +55,9 @@ export function billows(
   { position, footprint }: NoisePlace
 ): Float {
   const { shape } = field.textures
-  const place = rotate(
-    latticeRotations.shape,
-    position.add(shapeWarp.mul(layer.perStretch))
-  ).mul(layer.perShapePeriod)
+  const place = rotate(latticeRotations.shape, position.add(shapeWarp.mul(layer.perStretch))).mul(
+    layer.perShapePeriod
+  )
   const level = levelOf(footprint, float(1 / NOISE_SIZE.shape).div(layer.perShapePeriod))
   const noise = shape.sample(place.add(layer.shapeAnchor)).level(level).toConst()
   const { finerBillows, fadeLevels, filteredShape } = erosionForm
@@ -96,10 +95,7 @@ function stirredDetail(
   { position, footprint }: NoisePlace
 ): Float {
   const { detail } = field.textures
-  const place = rotate(
-    latticeRotations.detail,
-    position.add(detailWarp.mul(layer.perStretch))
-  )
+  const place = rotate(latticeRotations.detail, position.add(detailWarp.mul(layer.perStretch)))
     .div(DETAIL_PERIOD)
     .add(layer.detailAnchor)
     .toConst()

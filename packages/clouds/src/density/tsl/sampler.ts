@@ -10,14 +10,7 @@ import {
 } from './emptyDistance'
 import { billows, detailErosion, meanDetailErosion, noisePlace, shapeErosion } from './erosion'
 import { edgeDensity, extinctionAt } from './extinction'
-import {
-  forLayers,
-  heightIn,
-  isWithin,
-  layerAt,
-  type LayerNodes,
-  type LayerRange
-} from './layer'
+import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
 import { dimensionalProfile, layerHeight } from './profile'
 import { subpointOffset, type CloudSample } from './sample'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'

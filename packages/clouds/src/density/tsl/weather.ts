@@ -32,10 +32,7 @@ const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
 
 /** Sum of the weather's noise on all scales, of mean 0 and variance 1 where nothing is blurred. */
-const weatherSum = (
-  layer: LayerNodes,
-  { clouds, fields, regions, waves }: WeatherNoise
-): Float =>
+const weatherSum = (layer: LayerNodes, { clouds, fields, regions, waves }: WeatherNoise): Float =>
   clouds
     .add(fields.mul(FIELD_WEIGHT))
     .dot(layer.weights)

@@ -2,12 +2,7 @@ import { int, log2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { latticeRotations } from '../lattice'
-import {
-  FIELD_PERIOD,
-  PLANET_WARP,
-  REGION_PERIOD,
-  WEATHER_WARP
-} from '../../layers/layerUniforms'
+import { FIELD_PERIOD, PLANET_WARP, REGION_PERIOD, WEATHER_WARP } from '../../layers/layerUniforms'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { coverageAt } from './coverage'
 import { layerAt, rotate, type LayerNodes } from './layer'
@@ -90,9 +85,7 @@ export function weatherNoise(
     .toConst() as Vec4
   const coverage = coverageAt(field, layer, sample, footprint, fields.zxy)
   const clouds = weather
-    .sample(
-      rotate(latticeRotations.weather, inLayer).mul(scale).add(layer.weatherAnchor).add(warp)
-    )
+    .sample(rotate(latticeRotations.weather, inLayer).mul(scale).add(layer.weatherAnchor).add(warp))
     .level(level)
     .sub(0.5)
     .toConst() as Vec4
