@@ -76,12 +76,12 @@ export function shapeErosion(layer: LayerNodes, profile: Float, billows: Float):
   const eroded = layer.shapeAmount
     .mul(billows.oneMinus().max(erosionForm.leastShape))
     .toConst() as Float
-  return { eroded, left: profile.sub(eroded).toVar() as FloatVariable }
+  return { eroded, left: profile.sub(eroded).toVar() }
 }
 
 /** Most that detail takes away from a layer [–]. */
 const mostDetail = (layer: LayerNodes): Float =>
-  layer.detailAmount.mul(erosionForm.mostDetail).toConst() as Float
+  layer.detailAmount.mul(erosionForm.mostDetail).toConst()
 
 /**
  * Detail noise, stirred by turbulence, in [0, 1].
@@ -102,7 +102,7 @@ function stirredDetail(
   const level = levelOf(footprint, DETAIL_PERIOD / NOISE_SIZE.detail).toConst() as Float
   const curl = detail.sample(place.div(CURL_PERIOD)).level(level).yzw
   const stirred = place.add(curl.sub(0.5).mul(CURL_AMOUNT / CURL_SCALE))
-  return detail.sample(stirred).level(level).x.toConst() as Float
+  return detail.sample(stirred).level(level).x.toConst()
 }
 
 /**

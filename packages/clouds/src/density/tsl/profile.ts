@@ -52,8 +52,4 @@ export const dimensionalProfile = (
   strength: Float,
   { anvil, profile }: LayerHeight
 ): Float =>
-  strength
-    .sub(layer.anvil.sub(anvil).mul(anvilForm.narrowing))
-    .clamp(0, 1.3)
-    .mul(profile)
-    .toConst() as Float
+  strength.sub(layer.anvil.sub(anvil).mul(anvilForm.narrowing)).clamp(0, 1.3).mul(profile).toConst()

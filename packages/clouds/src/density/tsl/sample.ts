@@ -15,7 +15,7 @@ export interface CloudSample {
 
 /** Width of what a sample stands for: a pixel's, or more [m]. */
 export const footprintOf = (field: CloudField, { distance }: CloudSample): Float =>
-  distance.mul(field.pixelAngle).toConst() as Float
+  distance.mul(field.pixelAngle).toConst()
 
 /**
  * Displacement from the camera's subpoint to a sample's, in the mapped space [m]. A subpoint is the point

@@ -45,7 +45,7 @@ const weatherSum = (layer: LayerNodes, { clouds, fields, regions, waves }: Weath
         .mul(layer.planet)
         .mul(Math.sqrt(2 / 3))
     )
-    .toConst() as Float
+    .toConst()
 
 /** Variance of the weather's sum that levels of detail have lost: none near by. */
 function lostVariance(
@@ -82,7 +82,7 @@ export function columnStrength(layer: LayerNodes, weather: Float, coverage: Floa
     .mul(strengthForm.meanEdge)
     .add(cumulative(weather).sub(1).add(coverage).mul(layer.steepness))
     .add(surely)
-    .toConst() as Float
+    .toConst()
 }
 
 /**

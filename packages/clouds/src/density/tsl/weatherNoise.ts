@@ -51,7 +51,7 @@ function weatherSystems(
     .level(regionLevel)
     .xyz.sub(0.5)
     .toConst() as Vec3
-  return { regions, regionLevel: regionLevel as Float, waves }
+  return { regions, regionLevel: regionLevel, waves }
 }
 
 /**
