@@ -126,7 +126,7 @@ export class Moon implements SkyLayer {
     const { uniforms, transmittance, diffuseLight } = atmosphere.tables
     const volumes = new MoonSkyVolumes(uniforms, transmittance.target, diffuseLight.target)
     this.source = new LightSource(
-      (_, target, from = _position.set(0, 0, 0)) => target.copy(this.#directionFrom(from)),
+      (target, from = _position.set(0, 0, 0)) => target.copy(this.#directionFrom(from)),
       volumes
     )
     this.source.irradianceAt = position => this.#irradiance(this.#geometryFrom(position))

@@ -9,6 +9,7 @@ import type { HazeLine, SkyRay } from '../view/SkyLayer'
 import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
 import { viewNodes, type ViewNodes } from '../view/ViewNodes'
+import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** Cosine of the sun's zenith angle above which its light in the air masks the moon's: the horizon. */
 const MAX_COS_SUN = 0
@@ -23,7 +24,7 @@ const _direction = new Vector3()
 export class MoonlitAir {
   /** 1 while moonlit air can be seen, else 0. */
   readonly #isVisible = uniform(0).setGroup(renderGroup)
-  readonly #views = new Map<ViewNodes, ViewNodes>()
+  readonly #views = new Map<ViewUniforms, ViewNodes>()
   #renderer: Renderer | null = null
 
   /** @param volumes - Sky volumes of the source. */
@@ -45,7 +46,7 @@ export class MoonlitAir {
     if (view.height > parameters.topRadius - parameters.bottomRadius) return true
     if (view.up.dot(view.sunDirection) > MAX_COS_SUN) return false
     _position.setFromMatrixPosition(view.camera.matrixWorld)
-    this.source.direction(this.atmosphere, _direction, _position)
+    this.source.direction(_direction, _position)
     return view.up.dot(space.direction(_direction, _position)) > MIN_COS_MOON
   }
 
@@ -79,7 +80,7 @@ export class MoonlitAir {
   }
 
   /** Nodes of the same view, lit by the moon instead of the sun. */
-  #nodes(view: ViewNodes): ViewNodes {
+  #nodes(view: ViewUniforms): ViewNodes {
     let nodes = this.#views.get(view)
     if (nodes === undefined) {
       nodes = viewNodes(this.atmosphere, view.camera, this.source)

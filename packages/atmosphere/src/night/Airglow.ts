@@ -8,7 +8,7 @@ import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from '../view/SkyLa
 import { scaleToLuminance } from '../parameters/photometry'
 import { vanRhijnFactors, thinLayerVanRhijnFactor } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
-import type { ViewNodes } from '../view/ViewNodes'
+import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** Options of {@link Airglow}. */
 export interface AirglowOptions {
@@ -114,7 +114,7 @@ export class Airglow implements SkyLayer {
   }
 
   #vanRhijnFactors(
-    view: ViewNodes,
+    view: ViewUniforms,
     cosView: Float,
     distance: Float | null
   ): { down: Float; up: Float } {
