@@ -1,6 +1,5 @@
 import { renderGroup, uniform } from 'three/tsl'
-import { checkNonNegative, checkPositive } from '@welkin/geo'
-import { checkOptions } from '../check'
+import { checkNonNegative, checkOptions, checkPositive } from '@welkin/geo'
 
 /** Halo that an eye or a lens makes around a bright source, in two lobes. */
 export interface FlareOptions {
@@ -17,7 +16,7 @@ export interface FlareOptions {
 /** Radiance at which a lobe is cut off, for unit irradiance by its source [1/sr]. */
 const MIN_RADIANCE = 1e-8
 
-const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength']
+const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength'] as const
 
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 

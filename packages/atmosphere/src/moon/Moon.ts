@@ -1,11 +1,18 @@
 import { Matrix4, Vector3 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
+import {
+  checkBoolean,
+  checkDirection,
+  checkNonNegative,
+  checkOptions,
+  checkPositive,
+  fail
+} from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkRange } from '../check'
+import { checkRange } from '../check'
 import { eclipsedSunlight } from './cpu/eclipse'
 import { MOON_RADIUS, moonIrradiance } from './cpu/moonIrradiance'
 import { HaloUniforms, type FlareOptions } from '../halo/HaloUniforms'
@@ -110,7 +117,20 @@ export class Moon implements SkyLayer {
   /** @throws If an argument is of the wrong kind or out of its range. */
   constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
     checkAtmosphere('Moon', atmosphere)
-    const { lightsAir = true, flare = {}, mapSize = 1024 } = checkOptions('Moon', options)
+    checkOptions(
+      'Moon',
+      options,
+      'direction',
+      'phase',
+      'distance',
+      'radius',
+      'strength',
+      'lightsAir',
+      'flare',
+      'mapSize'
+    )
+    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+    checkBoolean('Moon', 'lightsAir', lightsAir)
     if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
       fail('Moon', 'mapSize must be a power of two in [16, 8192]', mapSize)
     }
@@ -139,9 +159,9 @@ export class Moon implements SkyLayer {
   }
 
   set direction(value: Vector3 | null) {
-    const square = value?.isVector3 ? value.lengthSq() : 0
-    if (value !== null && !(square > 0 && square < Infinity)) {
-      fail('Moon', 'direction must be a Vector3, finite and not zero, or null', value)
+    if (value !== null) {
+      if (!value?.isVector3) fail('Moon', 'direction must be a Vector3 or null', value)
+      checkDirection('Moon', 'direction', value)
     }
     this.#directionWorld = value?.clone().normalize() ?? null
     const direction = this.#directionWorld ?? NO_DIRECTION
