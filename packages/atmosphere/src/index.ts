@@ -99,6 +99,6 @@ export { NIGHT_ILLUMINANCE } from './night/cpu/twilight'
 export { ofLuminance } from './stars/starColor'
 
 // Preconditions that Welkin's packages share; not for use elsewhere.
-export { checkOptions, checkRange, checkSpectrum } from './check'
+export { checkRange, checkSpectrum, withDefaults } from './check'
 export { checkSource } from './view/LightSource'
 export { checkAtmosphere } from './view/ViewNodes'

@@ -16,4 +16,20 @@ export { moonDirectionECEF, moonOrientation, moonPositionECEF } from './moon'
 export { offsetPoint } from './tsl/offsetPoint'
 export type { OffsetPoint } from './tsl/offsetPoint'
 // Preconditions that Welkin's packages share; not for use elsewhere.
-export { checkDirection, checkNonNegative, checkPositive, checkVector, fail } from './check'
+export {
+  checkBoolean,
+  checkChoice,
+  checkDate,
+  checkDirection,
+  checkFinite,
+  checkMatrix,
+  checkNonNegative,
+  checkOptions,
+  checkPlace,
+  checkPositive,
+  checkVector,
+  fail,
+  failUnknown,
+  setOptions
+} from './check'
+export { checkEllipsoid } from './Ellipsoid'
