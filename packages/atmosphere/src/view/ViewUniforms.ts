@@ -16,7 +16,7 @@ const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGro
 /** Uniforms and textures of an atmosphere as a camera sees it in the light of one source. */
 export class ViewUniforms {
   readonly source: LightSource
-  /** Whose view it is; null for whichever renders. */
+  /** Camera of the view; null for whichever renders. */
   readonly camera: Camera | null
   readonly air: Air
   readonly volume: VolumeTextures

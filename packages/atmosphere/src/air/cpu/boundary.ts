@@ -4,7 +4,7 @@ export function distanceToTop(radius: number, cosView: number, topRadius: number
   return Math.max(-radius * cosView + Math.sqrt(Math.max(discriminant, 0)), 0)
 }
 
-/** Whether a ray from outside the planet meets the ground: it looks down and passes within it. */
+/** True if a ray from outside the planet meets the ground: it looks down and passes within it. */
 export function hitsGround(radius: number, cosView: number, bottomRadius: number): boolean {
   return cosView < 0 && radius * Math.sqrt(1 - cosView ** 2) <= bottomRadius
 }
