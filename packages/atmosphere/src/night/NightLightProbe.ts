@@ -10,6 +10,7 @@ import { linearSRGB } from '../air/tsl/color'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 /**
  * Light of the night sky on surfaces: what is left when sun and moon are down, so that nights are dark
@@ -35,6 +36,11 @@ export class NightLightProbe extends LightProbe {
     checkNonNegative('NightLightProbe', 'illuminance', illuminance)
     this.atmosphere = atmosphere
     this.illuminance = illuminance
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    watchScene('NightLightProbe', this)
+    super.updateMatrixWorld(force)
   }
 
   override clone(): this {

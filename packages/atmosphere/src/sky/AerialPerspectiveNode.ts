@@ -99,7 +99,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
     const pass = this.#pass
     if (!this.showSky || pass === null || passOf(this.colorNode) === pass) return color
     const { a } = (pass.getTextureNode() as unknown as Vec4).toConst() as Vec4
-    return vec4(color.rgb, select(color.a.lessThan(1), color.a, a)).toConst() as Vec4
+    return vec4(color.rgb, select(color.a.lessThan(1), color.a, a)).toConst()
   }
 
   override setup(builder: NodeBuilder): Node {
