@@ -102,3 +102,4 @@ export { ofLuminance } from './stars/starColor'
 // Preconditions that Welkin's packages share; not for use elsewhere.
 export { checkOptions, checkRange, checkSource, checkSpectrum } from './check'
 export { checkAtmosphere } from './view/ViewNodes'
+export { checkOwner, checkRenderer } from './view/renderers'
