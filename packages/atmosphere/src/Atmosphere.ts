@@ -74,10 +74,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** What is kept on the GPU. */
   readonly tables = new AtmosphereTables()
   /** The sun as a source of light; its `irradiance` dims in an eclipse. */
-  readonly sun = new LightSource(
-    (atmosphere, target) => target.copy(atmosphere.sunDirection),
-    this.tables.volumes
-  )
+  readonly sun = new LightSource(target => target.copy(this.sunDirection), this.tables.volumes)
   readonly #layers: SkyLayer[] = []
   #layersVersion = 0
   readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()
@@ -366,7 +363,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    */
   query(position = new Vector3(), source: LightSource = this.sun): AtmosphereQuery {
     const { parameters, space, tables } = this
-    const direction = source.direction(this, new Vector3(), position)
+    const direction = source.direction(new Vector3(), position)
     const irradiance = source.irradianceAt(position)
     return new AtmosphereQuery(parameters, space, direction, tables.data, irradiance)
   }

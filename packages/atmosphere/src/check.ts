@@ -1,6 +1,5 @@
 import { Matrix4 } from 'three'
 import { fail } from '@welkin/geo'
-import { LightSource } from './view/LightSource'
 
 /**
  * @param names - Of all options that there are; without any, others are let pass.
@@ -58,19 +57,6 @@ export function checkFade(where: string, fade: readonly [number, number]): void 
   }
   fade.forEach((value, i) => checkRange(where, `fade[${i}]`, value, -1e7, Infinity))
   if (!(fade[1] > fade[0])) fail(where, 'fade must rise', fade)
-}
-
-/** @throws If it is no source of light. */
-export function checkSource(where: string, name: string, source: LightSource): void {
-  if (!(source instanceof LightSource)) {
-    fail(where, `${name} must be a LightSource, such as a moon's source`, source)
-  }
-}
-
-/** @throws If they are no sources of light. */
-export function checkSources(where: string, sources: readonly LightSource[]): void {
-  if (!Array.isArray(sources)) fail(where, 'sources must be an array', sources)
-  sources.forEach((source, i) => checkSource(where, `sources[${i}]`, source))
 }
 
 /** @throws If it is neither null nor a matrix. */

@@ -2,12 +2,12 @@ import type { Camera } from 'three'
 import { Vector3 } from 'three'
 import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { checkOptions, checkSources } from '../check'
+import { checkOptions } from '../check'
 import { clampCosine } from '../AtmosphereQuery'
 import { sampleDiffuseLight } from '../diffuseLight/cpu/diffuseLight'
 import { sunTransmittance } from '../transmittance/cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../night/cpu/twilight'
-import type { LightSource } from '../view/LightSource'
+import { checkSources, type LightSource } from '../view/LightSource'
 import { luminanceOf } from '../stars/starColor'
 import { checkAtmosphere } from '../view/ViewNodes'
 
@@ -131,10 +131,7 @@ export function exposureFor(
   up.normalize()
   const reach = Math.acos(parameters.bottomRadius / radius) / 2
   const illuminances = [atmosphere.sun, ...sources].map(source => {
-    const direction = space.direction(
-      source.direction(atmosphere, _direction, position),
-      new Vector3()
-    )
+    const direction = space.direction(source.direction(_direction, position), new Vector3())
     const zenithAngle = Math.acos(clampCosine(up.dot(direction)))
     const cosSun = Math.cos(Math.max(zenithAngle - reach, 0))
     return groundIlluminance(atmosphere, source, position, cosSun)

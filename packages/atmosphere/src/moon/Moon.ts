@@ -144,7 +144,7 @@ export class Moon implements SkyLayer {
     const { uniforms, transmittance, diffuseLight } = atmosphere.tables
     const volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
     this.source = new LightSource(
-      (_, target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
+      (target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
       volumes
     )
     this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))

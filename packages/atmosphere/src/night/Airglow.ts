@@ -8,7 +8,7 @@ import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from '../view/SkyLa
 import { ofLuminance } from '../stars/starColor'
 import { glowGains, overheadGain } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
-import type { ViewNodes } from '../view/ViewNodes'
+import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** Options of {@link Airglow}. */
 export interface AirglowOptions {
@@ -114,7 +114,7 @@ export class Airglow implements SkyLayer {
     this.#isAround.value = height < altitude.value - MARGIN * width.value ? 0 : 1
   }
 
-  #gains(view: ViewNodes, cosView: Float, distance: Float | null): { down: Float; up: Float } {
+  #gains(view: ViewUniforms, cosView: Float, distance: Float | null): { down: Float; up: Float } {
     const { bottomRadius } = view.air.uniforms
     return glowGains(this.#layer, view.height, cosView, bottomRadius, distance)
   }

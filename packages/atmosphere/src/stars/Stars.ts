@@ -1,7 +1,6 @@
 import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
 import { checkNonNegative, fail } from '@welkin/geo'
-import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkOptions, checkOrientation } from '../check'
 import { CelestialFrame } from '../night/CelestialFrame'
@@ -97,7 +96,7 @@ export class Stars implements SkyLayer {
     this.#updatePalette(view.atmosphere)
   }
 
-  #updatePalette({ parameters }: Atmosphere): void {
+  #updatePalette({ parameters }: AtmosphereView['atmosphere']): void {
     const { wavelengths, solarIrradiance, spectralToXYZ } = parameters
     const state = [this.intensity, wavelengths, solarIrradiance, spectralToXYZ].join(' ')
     if (state === this.#paletteOf) return
