@@ -23,7 +23,7 @@ import type { WebGPURenderer } from 'three/webgpu'
 import { drawToFloat, expectLight, relativeDifferences } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
-import type { Picture } from '../harness/picture'
+import { Picture } from '../harness/picture'
 
 const size = { width: 64, height: 36 }
 
@@ -108,12 +108,12 @@ gpuTest('refuses a second renderer until the first is disposed of', async t => {
     await t.createRenderer(size)
   ]
   const draw = async (renderer: WebGPURenderer, what = scene): Promise<Picture> => {
-    let picture
+    let picture = new Picture(0, 0, new Float32Array())
     // The environment is complete after some frames.
     for (let i = 0; i < 3; i++)
       picture = await drawToFloat(renderer, () => renderer.render(what, camera))
-    expectLight(picture!, 'a picture')
-    return picture!
+    expectLight(picture, 'a picture')
+    return picture
   }
   const expected = await draw(first)
   const most = (picture: Picture): number => relativeDifferences(expected, picture).at(-1)!

@@ -37,7 +37,7 @@ const _watched = new WeakSet<Object3D>()
 export function watchScene(where: string, light: Object3D): void {
   let root: Object3D = light
   while (root.parent !== null) root = root.parent
-  if (_watched.has(root) || (root as Scene).isScene !== true) return
+  if (_watched.has(root) || !('isScene' in root)) return
   _watched.add(root)
   const scene = root as Hooked
   const before = scene.onBeforeRender
