@@ -42,7 +42,8 @@ export { moonIlluminanceAt, moonSkyIlluminanceAt } from './moon/moonIlluminance'
 export { PlanetGround, planetGround } from './ground/PlanetGround'
 export type { PlanetGroundOptions } from './ground/PlanetGround'
 export { AtmosphereShell, atmosphereShell } from './shell/AtmosphereShell'
-export type { AtmosphereShellOptions, ShellSun } from './shell/AtmosphereShell'
+export type { AtmosphereShellOptions } from './shell/AtmosphereShell'
+export type { ShellSun } from './shell/ShellSun'
 export {
   airlessBody,
   isAirless,

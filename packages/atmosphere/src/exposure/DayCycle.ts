@@ -28,10 +28,10 @@ const DAY = 86_400_000
 const YEAR = 365.2422
 
 /** An equinox of March; later ones come every {@link YEAR} [ms since 1970]. */
-const EQUINOX = Date.UTC(2026, 2, 20, 14, 46)
+const MARCH_EQUINOX = Date.UTC(2026, 2, 20, 14, 46)
 
 /** A tenth of a millisecond, lest rounding makes midnight the day before [days]. */
-const MOMENT = 1e-9
+const ROUNDING = 1e-9
 
 const _origin = new Vector3()
 const _geodetic = new Geodetic()
@@ -78,7 +78,7 @@ export class DayCycle {
   /** Of exposure 1 [1/(cd/m²)]. */
   readonly #daylightScale: number
   /** The season that was set and the day that it was set to; null if the time was set since. */
-  #asked: { season: number; day: number } | null = null
+  #requestedSeason: { season: number; day: number } | null = null
 
   /** @throws If an argument is of the wrong kind or out of range. */
   constructor(atmosphere: Atmosphere, options: DayCycleOptions = {}) {
@@ -114,7 +114,7 @@ export class DayCycle {
 
   set time(value: number) {
     this.#moveTo(value)
-    this.#asked = null
+    this.#requestedSeason = null
   }
 
   #moveTo(time: number): void {
@@ -164,14 +164,14 @@ export class DayCycle {
    * @throws If it is set out of range, or in a frame that `atmosphere.place` did not make.
    */
   get latitude(): number {
-    return this.#place().latitude
+    return this.#originGeodetic().latitude
   }
 
   set latitude(value: number) {
     checkRange('DayCycle', 'latitude', value, -90, 90)
     const { frame, metersPerUnit, worldToECEF, ellipsoid } = this.atmosphere
     if (frame !== 'local') fail('DayCycle', "frame must be 'local' to set latitude", frame)
-    const { longitude, height } = this.#place()
+    const { longitude, height } = this.#originGeodetic()
     ellipsoid.localYUpFrame(_origin, _frame).scale(_scale.setScalar(metersPerUnit))
     if (!_frame.equals(worldToECEF)) {
       fail('DayCycle', 'frame must be of place() to set latitude', 'worldToECEF')
@@ -184,8 +184,11 @@ export class DayCycle {
    * nearest day, at the time of day that it is.
    */
   get season(): number {
-    const { season, day } = this.#asked ?? { season: 0, day: this.#dayOf(EQUINOX) }
-    return wrap(season + (this.#dayOf(this.#time) - day) / YEAR, 1)
+    const { season, day } = this.#requestedSeason ?? {
+      season: 0,
+      day: this.#solarDayNumber(MARCH_EQUINOX)
+    }
+    return wrap(season + (this.#solarDayNumber(this.#time) - day) / YEAR, 1)
   }
 
   set season(value: number) {
@@ -193,22 +196,23 @@ export class DayCycle {
     const season = wrap(value, 1)
     const last = this.season
     // What the day last set to was off by.
-    const off = (last - (this.#dayOf(this.#time) - this.#dayOf(EQUINOX)) / YEAR) % 1
+    const off =
+      (last - (this.#solarDayNumber(this.#time) - this.#solarDayNumber(MARCH_EQUINOX)) / YEAR) % 1
     const days = Math.round((season - last + off - Math.round(off)) * YEAR)
     this.#moveTo(this.#time + days * DAY)
-    this.#asked = { season, day: this.#dayOf(this.#time) }
+    this.#requestedSeason = { season, day: this.#solarDayNumber(this.#time) }
   }
 
   /** Mean solar time at the world's origin, in [0, 24); setting it keeps the day [h]. */
   get hour(): number {
-    return this.#dayPart() * 24
+    return this.#dayFraction() * 24
   }
 
   set hour(value: number) {
     if (!(Number.isFinite(value) && value >= 0 && value < 24)) {
       fail('DayCycle', 'hour must be in [0, 24)', value)
     }
-    this.#moveTo(this.#time + (value / 24 - this.#dayPart()) * DAY)
+    this.#moveTo(this.#time + (value / 24 - this.#dayFraction()) * DAY)
   }
 
   /** What {@link update} last set: 1 in full daylight. */
@@ -217,7 +221,7 @@ export class DayCycle {
   }
 
   /** In the ECEF frame the origin is the planet's centre: then it is Greenwich's time that counts. */
-  #place(): Geodetic {
+  #originGeodetic(): Geodetic {
     const { worldToECEF, ellipsoid } = this.atmosphere
     _origin.setFromMatrixPosition(worldToECEF)
     if (_origin.length() < ellipsoid.radii.x / 2) return _geodetic.set(0, 0, 0)
@@ -225,17 +229,17 @@ export class DayCycle {
   }
 
   /** Solar days since 1970. */
-  #days(time: number): number {
-    return time / DAY + this.#place().longitude / 360
+  #solarDays(time: number): number {
+    return time / DAY + this.#originGeodetic().longitude / 360
   }
 
   /** Number of the solar day. */
-  #dayOf(time: number): number {
-    return Math.floor(this.#days(time) + MOMENT)
+  #solarDayNumber(time: number): number {
+    return Math.floor(this.#solarDays(time) + ROUNDING)
   }
 
-  #dayPart(): number {
-    return Math.max(this.#days(this.#time) - this.#dayOf(this.#time), 0)
+  #dayFraction(): number {
+    return Math.max(this.#solarDays(this.#time) - this.#solarDayNumber(this.#time), 0)
   }
 
   /**
@@ -255,7 +259,7 @@ export class DayCycle {
 
   /** How far the sky moves while an even clock moves [ms]: clock and sky agree at 6 and at 18 h. */
   #advance(clock: number): number {
-    const start = this.#dayPart()
+    const start = this.#dayFraction()
     const end = this.#skyPart(this.#clockPart(start) + clock / DAY)
     const days = end - start
     return (this.holdDay ? wrap(end, 1) - start : days) * DAY

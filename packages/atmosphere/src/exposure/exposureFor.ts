@@ -20,13 +20,13 @@ export interface ExposureOptions {
 }
 
 /** Reflectance of what is looked at. */
-const REFLECTANCE = 0.2
+const SCENE_REFLECTANCE = 0.2
 
 /** Illuminance that exposure 1 is for: full daylight [lx]. */
-const DAYLIGHT = 1e5
+const DAYLIGHT_ILLUMINANCE = 1e5
 
 /** Luminance under which the eye sees with its rods, and ever less [cd/m²]. */
-const SCOTOPIC = 0.01
+const SCOTOPIC_LUMINANCE = 0.01
 
 /** Power of luminance by which pictures darken there. */
 const SCOTOPIC_POWER = 0.3
@@ -43,9 +43,9 @@ const _direction = new Vector3()
  *   falls from 0.7 in daylight to 0.03 where only rods see. Below 0.01 cd/m² the power of 0.3 is ours:
  *   a moonless night stays darker than one with a moon.
  */
-function keyOf(luminance: number): number {
+function keyValue(luminance: number): number {
   const key = 1.03 - 2 / (2 + Math.log10(luminance + 1))
-  return key * (luminance / (luminance + SCOTOPIC)) ** SCOTOPIC_POWER
+  return key * (luminance / (luminance + SCOTOPIC_LUMINANCE)) ** SCOTOPIC_POWER
 }
 
 /**
@@ -58,10 +58,10 @@ function keyOf(luminance: number): number {
 export function exposureOfIlluminance(illuminance: number): number {
   checkNonNegative('exposureOfIlluminance', 'illuminance', illuminance)
   const exposure = (lux: number): number => {
-    const luminance = (lux * REFLECTANCE) / Math.PI
-    return keyOf(luminance) / luminance
+    const luminance = (lux * SCENE_REFLECTANCE) / Math.PI
+    return keyValue(luminance) / luminance
   }
-  return exposure(Math.max(illuminance, 1e-9)) / exposure(DAYLIGHT)
+  return exposure(Math.max(illuminance, 1e-9)) / exposure(DAYLIGHT_ILLUMINANCE)
 }
 
 /** @throws If an option is of the wrong kind or out of range. */

@@ -73,7 +73,7 @@ export class DistanceFog implements SkyLayer {
       const { uniforms } = view.air
       const { eye, source } = view
       // The same azimuth, a little above the horizon where the way leads lower.
-      const cosRaised = cosView.max(eye.cosHorizon.add(CLEARANCE)).min(1).toConst() as Float
+      const cosRaised = cosView.max(eye.cosHorizon.add(HORIZON_MARGIN)).min(1).toConst() as Float
       const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
       const turned = sine(cosRaised).div(sine(cosView).max(1e-4))
       const cosRaisedSun = cosRaised
@@ -101,7 +101,7 @@ export class DistanceFog implements SkyLayer {
 }
 
 /** Sine of an angle above the horizon, about that of a pixel. */
-const CLEARANCE = 1e-3
+const HORIZON_MARGIN = 1e-3
 
 /** Fog by distance alone: see {@link DistanceFog}. */
 export const distanceFog = (options?: DistanceFogOptions): DistanceFog => new DistanceFog(options)

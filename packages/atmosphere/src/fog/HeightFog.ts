@@ -53,14 +53,14 @@ export class HeightFog implements SkyLayer {
   readonly #height = number(0)
   readonly #asymmetry = number(0)
   readonly #albedo = uniform(new Vector4()).setGroup(renderGroup)
-  readonly #lamps: readonly Lamp[]
+  readonly #lights: readonly FogLight[]
   #options: Required<HeightFogOptions>
   #version = 0
 
   /** @throws If an option is out of range. */
   constructor(options: HeightFogOptions = {}) {
     this.#options = checked(DEFAULTS, options)
-    this.#lamps = this.#options.sources.map(source => ({
+    this.#lights = this.#options.sources.map(source => ({
       source,
       direction: uniform(new Vector3()).setGroup(renderGroup),
       irradiance: uniform(new Vector4()).setGroup(renderGroup)
@@ -101,7 +101,7 @@ export class HeightFog implements SkyLayer {
     this.#asymmetry.value = asymmetry
     this.#albedo.value.set(...albedo)
     _position.setFromMatrixPosition(view.camera.matrixWorld)
-    for (const { source, direction, irradiance } of this.#lamps) {
+    for (const { source, direction, irradiance } of this.#lights) {
       source.direction(_direction, _position)
       view.atmosphere.space.direction(_direction, direction.value)
       irradiance.value.set(...source.irradianceAt(_position))
@@ -123,7 +123,7 @@ export class HeightFog implements SkyLayer {
 
       // Where half of what shows of the fog is passed, for an altitude that changes evenly.
       const shown = fog.depth.min(1).mul(0.5)
-      const near = fog.start.min(HIGH).toConst()
+      const near = fog.start.min(MAX_ALTITUDE).toConst()
       const here = this.#density.mul(near.negate().exp()).max(1e-30).toConst()
       const growth = shown.mul(fog.fall).div(here).clamp(-0.99, 1e20).toConst()
       const isEven = growth.abs().lessThan(1e-3)
@@ -131,7 +131,7 @@ export class HeightFog implements SkyLayer {
       const inFog = shown.div(here).mul(factor).toConst()
       const above = fog.start.sub(near).div(fog.fall.max(1e-7))
       const reach = inFog.add(above).clamp(0, distance).toConst() as Float
-      const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, HIGH).toConst() as Float
+      const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, MAX_ALTITUDE).toConst() as Float
 
       // The air in front of that and its light; fog dims the rest.
       const { volume } = line.view
@@ -140,7 +140,7 @@ export class HeightFog implements SkyLayer {
       const front = ahead.radiance.mul(source.irradiance).min(air.light).toConst()
       const place = { line, radius, middle }
       let own = this.#light(place, eye.cosSun, cosViewSun).mul(source.irradiance)
-      for (const { direction, irradiance } of this.#lamps) {
+      for (const { direction, irradiance } of this.#lights) {
         const cosLamp = line.view.up.dot(direction).clamp(-1, 1).toConst() as Float
         const cosViewLamp = line.direction.dot(direction).clamp(-1, 1).toConst() as Float
         own = own.add(this.#light(place, cosLamp, cosViewLamp).mul(irradiance))
@@ -153,7 +153,7 @@ export class HeightFog implements SkyLayer {
   }
 
   /** Sunlight that fog scatters towards the eye, for all of it at one altitude [1/sr]. */
-  #light({ line, radius, middle }: FogPlace, cosSun: Float, cosViewSun: Float): Vec4 {
+  #light({ line, radius, middle }: FogSample, cosSun: Float, cosViewSun: Float): Vec4 {
     const { view, cosView } = line
     const { air } = view
     const { uniforms } = air
@@ -177,7 +177,7 @@ export class HeightFog implements SkyLayer {
 }
 
 /** A source besides the sun, as seen from the camera. */
-interface Lamp {
+interface FogLight {
   source: LightSource
   /** In the mapped space. */
   direction: UniformNode<'vec3', Vector3>
@@ -185,7 +185,7 @@ interface Lamp {
 }
 
 /** Where on a line fog is lit. */
-interface FogPlace {
+interface FogSample {
   line: Sightline
   /** Planet's centre to the eye [m]. */
   radius: Float
@@ -204,7 +204,7 @@ const DEFAULTS: Required<HeightFogOptions> = {
 }
 
 /** Altitude in falloff heights above which there is as good as no fog. */
-const HIGH = 40
+const MAX_ALTITUDE = 40
 
 const _position = new Vector3()
 const _direction = new Vector3()

@@ -24,7 +24,7 @@ import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { reflectanceColumns, sunWhite } from './cpu/reflectance'
 import { groundIrradiance } from '../diffuseLight/tsl/diffuseLight'
-import { orenNayar, seaSlopeVariance, skyGlint, sunGlint } from './tsl/groundReflection'
+import { orenNayar, seaSlopeVariance, skyReflectance, sunGlint } from './tsl/groundReflection'
 import { proceduralGround, type GroundSurface } from './tsl/proceduralGround'
 import { rayLimits, sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { sunTransmittance } from '../transmittance/tsl/transmittance'
@@ -62,13 +62,13 @@ const DEFAULTS: Required<PlanetGroundOptions> = {
 }
 
 /** Light that comes back out of the sea by absorbing and scattering water, over what fell on it. */
-const WATER_BODY = [0.05, 0.03, 0.018, 0.006] as const
+const WATER_REFLECTANCE = [0.05, 0.03, 0.018, 0.006] as const
 
 /** Part of diffuse light that the sea's surface reflects in all directions. */
-const WATER_SURFACE = 0.045
+const SURFACE_REFLECTANCE = 0.045
 
 /** Coarsest sight that textures are read for when the size of pixels is not known [rad]. */
-const FINEST_PIXEL = 2e-4
+const MIN_PIXEL_ANGLE = 2e-4
 
 type GradientSampler = TextureNode & {
   sample(uv: Vec2): { grad(x: Vec2, y: Vec2): Vec4; level(level: number): Vec4 }
@@ -217,7 +217,11 @@ export class PlanetGround implements SkyLayer {
         cosSunEye: cosViewSun.negate() as Float
       }
       // A pixel on the ground, in units of the radius: across the line of sight and along it.
-      const width = ray.pixel.max(FINEST_PIXEL).mul(distance).div(uniforms.bottomRadius).toConst()
+      const width = ray.pixel
+        .max(MIN_PIXEL_ANGLE)
+        .mul(distance)
+        .div(uniforms.bottomRadius)
+        .toConst()
       const side = direction.cross(up).toConst()
       const across = side.div(side.length().max(1e-6)).mul(width).toConst() as Vec3
       const along = up.cross(across).div(cosEye.max(0.02)).toConst() as Vec3
@@ -244,8 +248,8 @@ export class PlanetGround implements SkyLayer {
       const rough = orenNayar(angles, this.#roughness)
       const albedo = this.#spectrum(this.#columns, color).clamp(0, 1)
       const land = level.mul(rough).add(skylight).mul(albedo).div(Math.PI)
-      const body = level.add(skylight).mul(vec4(...WATER_BODY))
-      const mirrored = skylight.mul(skyGlint(cosEye, this.#variance))
+      const body = level.add(skylight).mul(vec4(...WATER_REFLECTANCE))
+      const mirrored = skylight.mul(skyReflectance(cosEye, this.#variance))
       const glint = sunlight.mul(sunGlint(angles, this.#variance))
       const sea = body.add(mirrored).div(Math.PI).add(glint)
       const light = land.mul(water.oneMinus()).add(sea.mul(water)).toVar()
@@ -293,7 +297,7 @@ export class PlanetGround implements SkyLayer {
         }
         const { color, water } = this.#surfaceAt(normal, float(3 / height), read)
         const land = this.#spectrum(this.#columns, color).clamp(0, 1)
-        const sea = vec4(...WATER_BODY).add(WATER_SURFACE)
+        const sea = vec4(...WATER_REFLECTANCE).add(SURFACE_REFLECTANCE)
         return land.mul(water.oneMinus()).add(sea.mul(water))
       })()
     )

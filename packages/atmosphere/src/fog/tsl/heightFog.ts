@@ -11,8 +11,8 @@ export interface FogLayerNodes {
 }
 
 /** Exponents that float32 still holds, with room for a chord's length. */
-const MOST = 60
-const LEAST = -30
+const MAX_EXPONENT = 60
+const MIN_EXPONENT = -30
 
 /** e^{x²} erfc x for x ≥ 0, within 7e-6: a polynomial in 1/(1 + cx), exact at 0, with its slope, and at ∞. */
 export function erfcx(x: Float): Float {
@@ -67,7 +67,8 @@ export function fogDepth(
   cosView: Float,
   distance: Float
 ): FogDepth {
-  const exponent = (above: Float): Float => above.div(falloff).clamp(LEAST, MOST).toConst()
+  const exponent = (above: Float): Float =>
+    above.div(falloff).clamp(MIN_EXPONENT, MAX_EXPONENT).toConst()
   const along = radius.mul(cosView).toConst()
   const rise = along.mul(2).add(distance).mul(distance).toConst()
   const radiusThere = radius.mul(radius).add(rise).max(1).sqrt().toConst()

@@ -42,7 +42,7 @@ export function waterFresnel(cosine: Float): Float {
 }
 
 /** Λ of Smith's shadowing for a Gaussian of slopes. @see Walter et al. 2007, equation 15 */
-function shadowing(cosine: Float, slope: Float): Float {
+function smithLambda(cosine: Float, slope: Float): Float {
   const sine = cosine.mul(cosine).oneMinus().max(1e-6).sqrt()
   const a = cosine.max(0).div(sine.mul(slope)).min(1.6).toConst()
   const square = a.mul(a)
@@ -79,7 +79,7 @@ export function sunGlint(angles: GroundAngles, variance: Float): Float {
   const distribution = slopes.div(variance.mul(Math.PI).mul(square).mul(square))
   const slope = variance.sqrt().toConst()
   // Shadowing keeps this from 0 where the eye's cosine is.
-  const visible = shadowing(cosSun, slope).add(shadowing(cosEye, slope)).add(1).mul(cosEye)
+  const visible = smithLambda(cosSun, slope).add(smithLambda(cosEye, slope)).add(1).mul(cosEye)
   const glint = waterFresnel(length.mul(0.5)).mul(distribution).div(visible.mul(4))
   return cosSun.greaterThan(0).select(glint, 0)
 }
@@ -89,6 +89,6 @@ export function sunGlint(angles: GroundAngles, variance: Float): Float {
  *
  * @param variance - {@link seaSlopeVariance}.
  */
-export function skyGlint(cosEye: Float, variance: Float): Float {
+export function skyReflectance(cosEye: Float, variance: Float): Float {
   return waterFresnel(cosEye.mul(cosEye).add(variance).sqrt().min(1))
 }

@@ -12,11 +12,11 @@ export interface GroundSurface {
 const noise = mx_noise_float as unknown as (position: Vec3) => Float
 
 /** A rotation, so that the lattices of the octaves do not lie on each other. */
-const turn = (p: Vec3): Vec3 =>
+const rotateLattice = (p: Vec3): Vec3 =>
   vec3(p.dot(vec3(0, 0.8, 0.6)), p.dot(vec3(-0.8, 0.36, -0.48)), p.dot(vec3(-0.6, -0.48, 0.64)))
 
 /** Octaves of noise, each left out where it is finer than a pixel. */
-function relief(position: Vec3, octaves: number, footprint: Float): Float {
+function bandLimitedNoise(position: Vec3, octaves: number, footprint: Float): Float {
   let sum: Float = float(0)
   let at = position
   for (let octave = 0; octave < octaves; octave++) {
@@ -27,7 +27,7 @@ function relief(position: Vec3, octaves: number, footprint: Float): Float {
         .mul(visible)
         .mul(0.55 ** octave)
     )
-    at = turn(at).mul(2.03).toConst()
+    at = rotateLattice(at).mul(2.03).toConst()
   }
   return sum
 }
@@ -44,10 +44,10 @@ export function proceduralGround(normal: Vec3, footprint: Float, seed: number): 
     .mul(1.6)
     .add(vec3(seed * 7.31, seed * 3.17, seed * 5.73))
     .toConst() as Vec3
-  const height = relief(at, 9, footprint.mul(1.6)).sub(0.06).toConst()
+  const height = bandLimitedNoise(at, 9, footprint.mul(1.6)).sub(0.06).toConst()
   const shore = footprint.mul(0.7).add(0.008).toConst()
   const land = smoothstep(shore.negate(), shore, height).toConst()
-  const moisture = relief(at.mul(1.9).add(11.5), 4, footprint.mul(3)).toConst()
+  const moisture = bandLimitedNoise(at.mul(1.9).add(11.5), 4, footprint.mul(3)).toConst()
   const sine = normal.z.abs().toConst()
   // Wet tropics, dry belts about 25°, temperate, then cold.
   const belt = smoothstep(0.1, 0.35, sine).mul(smoothstep(0.45, 0.75, sine).oneMinus())

@@ -20,7 +20,7 @@ function scaledErfc(z: Vec2): Vec2 {
 }
 
 /** d/w of a point on the middle of the absorber's layer along its horizon, (3/8)²: see {@link absorberColumn}. */
-const WITHIN = 9 / 64
+const HORIZON_WEIGHT = 9 / 64
 
 /**
  * Divisors and factors of an atmosphere that every point on a ray needs.
@@ -49,7 +49,7 @@ export interface ProfileConstants {
 /** Growth of steps that suits thin air, over that of density. */
 const GROWTH = 0.35
 /** Optical depth to the zenith that halves it. */
-const THICK = 10
+const THICK_DEPTH = 10
 
 /** {@link ProfileConstants} as uniforms. */
 export class ProfileUniforms implements ProfileConstants {
@@ -75,7 +75,7 @@ export class ProfileUniforms implements ProfileConstants {
         parameters.mieExtinction[i] * mieScaleHeight +
         parameters.absorptionExtinction[i] * absorptionHalfWidth
     )
-    this.growth.value = GROWTH / (1 + Math.max(...depths) / THICK) / Math.max(...heights)
+    this.growth.value = GROWTH / (1 + Math.max(...depths) / THICK_DEPTH) / Math.max(...heights)
     this.absorberSlope.value = 1 / absorptionHalfWidth
     this.absorberWidth.value = (2 * absorptionHalfWidth) / bottomRadius
   }
@@ -129,8 +129,8 @@ function absorberLength(
   inLayer: Float,
   square: Float
 ): Float {
-  const below = inLayer.mul(-0.68).add(WITHIN).max(inLayer.add(0.18).negate())
-  const d = below.max(inLayer.mul(-WITHIN).add(WITHIN)).max(1e-3)
+  const below = inLayer.mul(-0.68).add(HORIZON_WEIGHT).max(inLayer.add(0.18).negate())
+  const d = below.max(inLayer.mul(-HORIZON_WEIGHT).add(HORIZON_WEIGHT)).max(1e-3)
   return absorptionHalfWidth.mul(d.mul(absorberWidth).add(square).inverseSqrt())
 }
 
