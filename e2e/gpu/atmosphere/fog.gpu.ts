@@ -9,7 +9,7 @@ import {
   Scene
 } from 'three'
 import { float } from 'three/tsl'
-import * as twin from '../../../packages/atmosphere/src/fog/cpu/heightFog'
+import * as twin from '../../../packages/atmosphere/test/twins/fog/heightFog'
 import {
   airMass,
   erfcx,

@@ -1,21 +1,21 @@
 import { float, mix, mx_noise_float, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 
-/** What a patch of ground looks like. */
+/** Surface of the ground. */
 export interface GroundSurface {
-  /** Reflectance of what is not water, linear sRGB. */
+  /** Reflectance of land, linear sRGB. */
   color: Vec3
-  /** Part that is open water, in [0, 1]. */
+  /** Fraction of open water, in [0, 1]. */
   water: Float
 }
 
 const noise = mx_noise_float as unknown as (position: Vec3) => Float
 
-/** A rotation, so that the lattices of the octaves do not lie on each other. */
+/** Rotation between octaves, so that their lattices do not coincide. */
 const rotateLattice = (p: Vec3): Vec3 =>
   vec3(p.dot(vec3(0, 0.8, 0.6)), p.dot(vec3(-0.8, 0.36, -0.48)), p.dot(vec3(-0.6, -0.48, 0.64)))
 
-/** Octaves of noise, each left out where it is finer than a pixel. */
+/** Fractal noise without octaves finer than a pixel. */
 function bandLimitedNoise(position: Vec3, octaves: number, footprint: Float): Float {
   let sum: Float = float(0)
   let at = position
@@ -33,11 +33,14 @@ function bandLimitedNoise(position: Vec3, octaves: number, footprint: Float): Fl
 }
 
 /**
- * Land, sea and ice of no particular planet.
+ * Procedural land, sea and ice.
  *
- * @param normal - Unit length; z towards the north pole.
- * @param footprint - Size of a pixel [rad].
- * @param seed - Another number, other continents.
+ * Colours and thresholds were found by looking: a higher sea level (0.06) drowns the continents, a larger
+ * share of moisture (1.8) breaks up the belt of deserts. Story: Planets, MadeUp.
+ *
+ * @param normal - Unit length, z to the north pole.
+ * @param footprint - Size of a pixel, in units of the radius.
+ * @param seed - Another number gives other continents.
  */
 export function proceduralGround(normal: Vec3, footprint: Float, seed: number): GroundSurface {
   const at = normal

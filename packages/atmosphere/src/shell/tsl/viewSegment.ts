@@ -65,8 +65,8 @@ function rayOrigin(
   })
   return {
     height: height.max(1).toConst() as Float,
-    radius: radius as unknown as Float,
-    up: up as unknown as Vec3
+    radius,
+    up
   }
 }
 
