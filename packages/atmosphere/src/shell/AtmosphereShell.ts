@@ -18,6 +18,7 @@ import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
 import { isAirless } from '../parameters/planets'
+import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
 import { circumscribedSphere } from './circumscribedSphere'
@@ -163,6 +164,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Acquires tables and volumes of a renderer, and builds the material from them. */
   #acquire(renderer: Renderer): void {
     if (renderer === this.#renderer) return
+    checkRenderer('AtmosphereShell', renderer)
     this.#release()
     this.#renderer = renderer
     const tables = this.#isSingle

@@ -1,4 +1,5 @@
 import { If, dot } from 'three/tsl'
+import { offsetPoint } from '@welkin/geo'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Sight } from '../../skyVolume/tsl/skyVolume'
 import type { Bool, Float, Mat3, Vec2, Vec3 } from '../../tsl-types'
@@ -51,17 +52,15 @@ function rayOrigin(
   originView: Vec3,
   isOrthographic: Bool
 ): RayOrigin {
-  const cameraRadius = bottomRadius.add(view.height).toConst() as Float
   const height = view.height.toVar()
-  const radius = cameraRadius.max(1).toVar()
+  const radius = bottomRadius.add(view.height).max(1).toVar()
   const up = view.up.toVar()
   If(isOrthographic, () => {
-    // h' = h + (2 r o·up + o²)/(r' + r) for the point beside the camera.
     const offset = view.viewToMapped.mul(originView).toConst() as Vec3
-    const rise = offset.dot(view.up).mul(cameraRadius).mul(2).add(offset.dot(offset)).toConst()
-    radius.assign(cameraRadius.mul(cameraRadius).add(rise).max(1).sqrt())
-    height.addAssign(rise.div(radius.add(cameraRadius)))
-    up.assign(view.up.mul(cameraRadius).add(offset).div(radius))
+    const beside = offsetPoint(offset, view.up, view.height, bottomRadius)
+    height.assign(beside.height)
+    radius.assign(beside.radius)
+    up.assign(beside.up)
   })
   return {
     height: height.max(1).toConst() as Float,
