@@ -61,7 +61,7 @@ const columnUniforms = (): Columns =>
 
 /** Spectrum of a linear-sRGB colour by the columns of a matrix. */
 function spectrumOfColor([red, green, blue]: Columns, color: Vec3): Vec4 {
-  return red.mul(color.x).add(green.mul(color.y)).add(blue.mul(color.z)) as Vec4
+  return red.mul(color.x).add(green.mul(color.y)).add(blue.mul(color.z))
 }
 
 /**
@@ -220,7 +220,7 @@ export class PlanetGround implements SkyLayer {
     this.#setColumns(parameters)
     return meanGroundAlbedo(renderer, (normal, footprint, read) => {
       const { color, water } = this.#surfaceAt(normal, footprint, read)
-      return this.#albedoOf(color).mul(water.oneMinus()).add(seaAlbedo().mul(water)) as Vec4
+      return this.#albedoOf(color).mul(water.oneMinus()).add(seaAlbedo().mul(water))
     })
   }
 }

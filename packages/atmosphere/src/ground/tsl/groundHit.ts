@@ -48,14 +48,14 @@ export function groundHit(
     .toConst() as Vec3
   return {
     angles: {
-      cosSun: up.dot(view.sunDirection).clamp(-1, 1).toConst() as Float,
+      cosSun: up.dot(view.sunDirection).clamp(-1, 1).toConst(),
       cosEye,
-      cosSunEye: cosViewSun.negate() as Float
+      cosSunEye: cosViewSun.negate()
     },
     normal,
-    footprint: width.div(cosEye.max(0.1).sqrt()) as Float,
-    uv: equirectangular(normal).toConst() as Vec2,
-    uvAcross: equirectangularStep(normal, across).toConst() as Vec2,
-    uvAlong: equirectangularStep(normal, along).toConst() as Vec2
+    footprint: width.div(cosEye.max(0.1).sqrt()),
+    uv: equirectangular(normal).toConst(),
+    uvAcross: equirectangularStep(normal, across).toConst(),
+    uvAlong: equirectangularStep(normal, along).toConst()
   }
 }

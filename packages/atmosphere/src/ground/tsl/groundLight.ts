@@ -9,7 +9,7 @@ const WATER_REFLECTANCE = [0.05, 0.03, 0.018, 0.006] as const
 const SURFACE_REFLECTANCE = 0.045
 
 /** Mean reflectance of the sea. */
-export const seaAlbedo = (): Vec4 => vec4(...WATER_REFLECTANCE).add(SURFACE_REFLECTANCE) as Vec4
+export const seaAlbedo = (): Vec4 => vec4(...WATER_REFLECTANCE).add(SURFACE_REFLECTANCE)
 
 /** Sun and sky on the ground, over `solarIrradiance`. */
 export interface GroundIllumination {
@@ -32,7 +32,7 @@ export function landRadiance(
   roughness: Float
 ): Vec4 {
   const direct = sun.mul(angles.cosSun.max(0)).mul(orenNayar(angles, roughness))
-  return direct.add(sky).mul(albedo).div(Math.PI) as Vec4
+  return direct.add(sky).mul(albedo).div(Math.PI)
 }
 
 /**
@@ -51,5 +51,5 @@ export function seaRadiance(
     .mul(vec4(...WATER_REFLECTANCE))
   const mirroredSky = sky.mul(skyReflectance(angles.cosEye, variance))
   const glint = sun.mul(sunGlint(angles, variance))
-  return fromWater.add(mirroredSky).div(Math.PI).add(glint) as Vec4
+  return fromWater.add(mirroredSky).div(Math.PI).add(glint)
 }

@@ -63,7 +63,7 @@ function rayOrigin(
     up.assign(beside.up)
   })
   return {
-    height: height.max(1).toConst() as Float,
+    height: height.max(1).toConst(),
     radius,
     up
   }
