@@ -22,7 +22,7 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from '../march/quality'
-import { withAirBefore } from '../march/tsl/airBefore'
+import { withAerialPerspective } from '../march/tsl/aerialPerspective'
 import { marchClouds } from '../march/tsl/march'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { groundDistance } from '../march/tsl/shells'
@@ -205,7 +205,7 @@ export class CloudOverlay implements SkyOverlay {
       const ray = { direction, end, jitter }
       const marched = marchClouds(field, light.nodes, maps, this.#quality, ray)
       const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
-      return withAirBefore(view, marched, directionView, this.#gain)
+      return withAerialPerspective(view, marched, directionView, this.#gain)
     })
     this.#pass?.dispose()
     this.#pass = new FragmentPass('Welkin.CloudOverlay', picture())

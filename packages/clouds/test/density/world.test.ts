@@ -115,18 +115,18 @@ test('light is raised as deep as night is at the lightest place in sight', () =>
 test('a picture forgets the light of before at motion’s pace, then rests; another light starts anew', () => {
   const frames = new FrameUniforms()
   node.field.radius.value = radius
-  const next = (elevation: number): { looks: number; hasHistory: number } => {
+  const next = (elevation: number): { samples: number; hasHistory: number } => {
     const view = Object.assign(viewAt(elevation), { viewToMapped: new Matrix3() })
     node.field.night.update(view)
     frames.next(camera, view, node.field, 2, true)
-    return { looks: frames.memory.value, hasHistory: frames.hasHistory.value }
+    return { samples: frames.maxSamples.value, hasHistory: frames.hasHistory.value }
   }
   expect(next(50).hasHistory).toBe(0)
   const rest = next(50)
   expect(rest.hasHistory).toBe(1)
-  expect(next(40).looks).toBeLessThan(rest.looks / 10)
-  // Twelve looks at each of four pixels.
-  for (let frame = 1; frame < 48; frame++) expect(next(40).looks).toBeLessThan(rest.looks / 10)
+  expect(next(40).samples).toBeLessThan(rest.samples / 10)
+  // Twelve samples of each of four pixels.
+  for (let frame = 1; frame < 48; frame++) expect(next(40).samples).toBeLessThan(rest.samples / 10)
   expect(next(40)).toEqual(rest)
   expect(next(-40).hasHistory).toBe(0)
   expect(next(-40)).toEqual(rest)
