@@ -18,9 +18,10 @@ const { values, positionals } = parseArgs({
 const backends = (values.backend?.split(',') ?? ['webgpu', 'webgl']) as Backend[]
 
 const folder = fileURLToPath(new URL('.', import.meta.url))
-const suites = readdirSync(folder)
+/** Files by their path without ending, such as `clouds/density`. */
+const suites = readdirSync(folder, { recursive: true, encoding: 'utf8' })
   .filter(file => file.endsWith('.gpu.ts'))
-  .map(file => file.replace('.gpu.ts', ''))
+  .map(file => file.replace('.gpu.ts', '').replaceAll('\\', '/'))
   .filter(suite => positionals.length === 0 || positionals.some(word => suite.includes(word)))
   .toSorted()
 

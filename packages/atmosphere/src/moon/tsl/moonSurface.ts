@@ -170,7 +170,7 @@ export const BRIGHTEST_GROUND = 2
 /**
  * Makes the mean of the full disc 1.
  *
- * @see e2e/gpu/moon.gpu.ts, which holds it to 2 %.
+ * @see e2e/gpu/atmosphere/moon.gpu.ts, which holds it to 2 %.
  */
 const MEAN = 0.979
 

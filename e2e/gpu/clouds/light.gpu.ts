@@ -1,17 +1,17 @@
 import { CloudLightTable } from '@welkin/clouds'
 import { float, vec4 } from 'three/tsl'
-import * as twin from '../../packages/clouds/src/light/cpu/cloudLight'
-import { solveCloudLight } from '../../packages/clouds/src/light/cpu/cloudLightTable'
+import * as twin from '../../../packages/clouds/src/light/cpu/cloudLight'
+import { solveCloudLight } from '../../../packages/clouds/src/light/cpu/cloudLightTable'
 import {
   aureolePhase,
   cloudPhase,
   type CloudPhaseParameters
-} from '../../packages/clouds/src/light/cpu/cloudPhase'
-import { cloudAmbient, cloudSource } from '../../packages/clouds/src/light/tsl/cloudLight'
-import { singlePhase } from '../../packages/clouds/src/light/tsl/cloudPhase'
-import { evaluateOnGpu } from './harness/evaluate'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+} from '../../../packages/clouds/src/light/cpu/cloudPhase'
+import { cloudAmbient, cloudSource } from '../../../packages/clouds/src/light/tsl/cloudLight'
+import { singlePhase } from '../../../packages/clouds/src/light/tsl/cloudPhase'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 /** Evenly spread numbers in [0, 1), the same in every run. */
 const spread = (i: number, k: number): number =>

@@ -33,14 +33,14 @@ import {
 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import * as twin from '../../packages/clouds/src/environment/cpu/overcast'
-import { cloudyIrradiance, eddington } from '../../packages/clouds/src/environment/tsl/overcast'
-import { drawToFloat, random } from './harness/atmosphere'
-import { evaluateOnGpu } from './harness/evaluate'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import { nextFrame } from './harness/graphics'
-import type { Picture } from './harness/picture'
+import * as twin from '../../../packages/clouds/src/environment/cpu/overcast'
+import { cloudyIrradiance, eddington } from '../../../packages/clouds/src/environment/tsl/overcast'
+import { drawToFloat, random } from '../harness/atmosphere'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
 
 const size = { width: 24, height: 16 }
 /** Coarse: what is tested here does not depend on steps. */

@@ -11,9 +11,9 @@ import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { drawToFloat, random } from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+import { drawToFloat, random } from '../harness/atmosphere'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 const [width, height] = [32, 18]
 /** Coarse: what is tested here does not depend on steps. */

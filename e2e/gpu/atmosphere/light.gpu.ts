@@ -15,10 +15,10 @@ import {
 } from 'three'
 import { skyBackground } from '@welkin/atmosphere'
 import { CubeRenderTarget } from 'three/webgpu'
-import { drawForward, expectLight } from './harness/atmosphere'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import { readPicture } from './harness/picture'
+import { drawForward, expectLight } from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { readPicture } from '../harness/picture'
 
 const small = { width: 16, height: 16 }
 const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b

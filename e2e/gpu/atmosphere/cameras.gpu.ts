@@ -18,9 +18,9 @@ import {
   postPath,
   random,
   relativeDifferences
-} from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+} from '../harness/atmosphere'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 const size = { width: 64, height: 36 }
 const seed = 20260621

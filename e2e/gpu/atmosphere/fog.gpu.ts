@@ -9,22 +9,22 @@ import {
   Scene
 } from 'three'
 import { float } from 'three/tsl'
-import * as twin from '../../packages/atmosphere/src/fog/cpu/heightFog'
+import * as twin from '../../../packages/atmosphere/src/fog/cpu/heightFog'
 import {
   airMass,
   erfcx,
   fogDepth,
   multipleScattering
-} from '../../packages/atmosphere/src/fog/tsl/heightFog'
+} from '../../../packages/atmosphere/src/fog/tsl/heightFog'
 import {
   drawForward,
   expectLight,
   postPath,
   random,
   relativeDifferences
-} from './harness/atmosphere'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+} from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 const BOTTOM = 6_378_137
 const size = { width: 48, height: 27 }

@@ -19,10 +19,10 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { drawForward, expectLight, postPath } from './harness/atmosphere'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import type { Picture } from './harness/picture'
+import { drawForward, expectLight, postPath } from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import type { Picture } from '../harness/picture'
 
 const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
 const origin = new Vector3()

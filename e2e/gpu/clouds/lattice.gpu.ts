@@ -3,12 +3,12 @@ import { CloudLayers, CloudNoise, cloudPreset, cloudQualities, clouds } from '@w
 import { PerspectiveCamera, Vector3, type Quaternion } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { latticeRotation } from '../../packages/clouds/src/density/lattice'
-import { drawToFloat } from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import { nextFrame } from './harness/graphics'
-import { alignment, contrasts, placeIn, straighten, type SkySquare } from './harness/sky-plane'
+import { latticeRotation } from '../../../packages/clouds/src/density/lattice'
+import { drawToFloat } from '../harness/atmosphere'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../harness/sky-plane'
 
 const canvas = { width: 192, height: 160 }
 /** Of the straightened picture [pixels]. */

@@ -4,12 +4,12 @@ import type { CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import { drawToFloat } from './harness/atmosphere'
-import { expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import type { GpuContext } from './harness/context'
-import { nextFrame } from './harness/graphics'
-import type { Picture } from './harness/picture'
+import { drawToFloat } from '../harness/atmosphere'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import type { GpuContext } from '../harness/context'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
 
 const [width, height] = [64, 36]
 

@@ -25,12 +25,12 @@ import {
 } from 'three'
 import { pass, shadow, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import { drawToFloat, expectLight, random } from './harness/atmosphere'
-import type { GpuContext } from './harness/context'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import { countObjects, finishWork, nextFrame } from './harness/graphics'
-import type { Picture } from './harness/picture'
+import { drawToFloat, expectLight, random } from '../harness/atmosphere'
+import type { GpuContext } from '../harness/context'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { countObjects, finishWork, nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
 
 const size = { width: 24, height: 14 }
 const coarse: CloudQuality = {

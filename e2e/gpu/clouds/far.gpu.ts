@@ -3,13 +3,13 @@ import { CloudField, CloudLayers, CloudLightTable, cloudPreset } from '@welkin/c
 import { DataTexture, FloatType, PerspectiveCamera, RenderTarget } from 'three'
 import { float, Fn, screenCoordinate, texture, uniform, vec4 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type NodeFrame } from 'three/webgpu'
-import type { CloudShadows } from '../../packages/clouds/src/shadow/CloudShadowMap'
-import { QualityUniforms, resolveQuality } from '../../packages/clouds/src/march/quality'
-import { marchClouds } from '../../packages/clouds/src/march/tsl/march'
-import { number } from '../../packages/clouds/src/uniforms'
-import { expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import { readPicture } from './harness/picture'
+import type { CloudShadows } from '../../../packages/clouds/src/shadow/CloudShadowMap'
+import { QualityUniforms, resolveQuality } from '../../../packages/clouds/src/march/quality'
+import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
+import { number } from '../../../packages/clouds/src/uniforms'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { readPicture } from '../harness/picture'
 
 /** Half the width of the view, as a slope. */
 const SPREAD = 0.125

@@ -9,10 +9,10 @@ import {
 } from '@welkin/geo'
 import { Vector3 } from 'three'
 import { float, vec3 } from 'three/tsl'
-import { offsetHeight as offsetHeightTwin } from '../../packages/geo/test/twins/offsetHeight'
-import { raySphere as raySphereTwin } from '../../packages/geo/test/twins/rayEllipsoid'
-import { expectClose } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+import { offsetHeight as offsetHeightTwin } from '../../../packages/geo/test/twins/offsetHeight'
+import { raySphere as raySphereTwin } from '../../../packages/geo/test/twins/rayEllipsoid'
+import { expectClose } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 const earth = Ellipsoid.WGS84
 const radius = earth.a

@@ -28,12 +28,12 @@ import { HDRLoader } from 'three/addons/loaders/HDRLoader.js'
 import { pmremTexture, positionWorldDirection, uniform, vec3, vec4 } from 'three/tsl'
 import { CubeRenderTarget, NodeMaterial, PMREMGenerator } from 'three/webgpu'
 import type { Node, WebGPURenderer } from 'three/webgpu'
-import { PrefilteredCube } from '../../packages/atmosphere/src/environment/PrefilteredCube'
-import { drawToFloat, random } from './harness/atmosphere'
-import { evaluateOnGpu } from './harness/evaluate'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import type { Picture } from './harness/picture'
+import { PrefilteredCube } from '../../../packages/atmosphere/src/environment/PrefilteredCube'
+import { drawToFloat, random } from '../harness/atmosphere'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import type { Picture } from '../harness/picture'
 
 const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
 const size = { width: 32, height: 32 }

@@ -14,8 +14,8 @@ import { Ellipsoid } from '@welkin/geo'
 import { Mesh, PerspectiveCamera, PlaneGeometry, Scene } from 'three'
 import { Fn, positionView, vec4 } from 'three/tsl'
 import { MeshBasicNodeMaterial, type Node } from 'three/webgpu'
-import { expectClose } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+import { expectClose } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 /** Light scattered between the camera and a fragment, as an app of its own would march it. */
 class MarchedHazeNode extends AtmosphereNode {

@@ -12,8 +12,8 @@ import {
   Vector3
 } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
 
 const size = { width: 128, height: 72 }
 /** Where the near cascade ends and the far one begins, and where that ends [m from the camera]. */

@@ -32,10 +32,10 @@ import {
   postPath,
   random,
   relativeDifferences
-} from './harness/atmosphere'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import type { Picture } from './harness/picture'
+} from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import type { Picture } from '../harness/picture'
 
 const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
 

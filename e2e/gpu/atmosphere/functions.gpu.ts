@@ -1,30 +1,30 @@
 import { Atmosphere, AtmosphereParameters, standardAtmosphere } from '@welkin/atmosphere'
 import { float, vec4 } from 'three/tsl'
-import { AtmosphereUniforms } from '../../packages/atmosphere/src/air/AtmosphereUniforms'
-import * as boundaryTwin from '../../packages/atmosphere/src/air/cpu/boundary'
+import { AtmosphereUniforms } from '../../../packages/atmosphere/src/air/AtmosphereUniforms'
+import * as boundaryTwin from '../../../packages/atmosphere/src/air/cpu/boundary'
 import {
   diffuseColumnCosine,
   sampleDiffuseLight
-} from '../../packages/atmosphere/src/diffuseLight/cpu/diffuseLight'
-import { densities as densitiesTwin } from '../../packages/atmosphere/src/air/cpu/medium'
-import * as phaseTwin from '../../packages/atmosphere/src/air/cpu/phase'
-import { skyIrradiance as skyIrradianceTwin } from '../../packages/atmosphere/src/diffuseLight/cpu/skyIrradiance'
-import { solveDiffuseLight } from '../../packages/atmosphere/src/diffuseLight/cpu/solveDiffuseLight'
-import { sunTransmittance as sunTransmittanceTwin } from '../../packages/atmosphere/src/transmittance/cpu/transmittance'
+} from '../../../packages/atmosphere/src/diffuseLight/cpu/diffuseLight'
+import { densities as densitiesTwin } from '../../../packages/atmosphere/src/air/cpu/medium'
+import * as phaseTwin from '../../../packages/atmosphere/src/air/cpu/phase'
+import { skyIrradiance as skyIrradianceTwin } from '../../../packages/atmosphere/src/diffuseLight/cpu/skyIrradiance'
+import { solveDiffuseLight } from '../../../packages/atmosphere/src/diffuseLight/cpu/solveDiffuseLight'
+import { sunTransmittance as sunTransmittanceTwin } from '../../../packages/atmosphere/src/transmittance/cpu/transmittance'
 import {
   altitudeAlong,
   distanceToGround,
   distanceToTop,
   groundDiscriminant
-} from '../../packages/atmosphere/src/air/tsl/boundary'
-import { densities } from '../../packages/atmosphere/src/air/tsl/medium'
-import { miePhase, rayleighPhase } from '../../packages/atmosphere/src/air/tsl/phase'
-import { skyIrradiance } from '../../packages/atmosphere/src/diffuseLight/tsl/skyIrradiance'
-import { sunTransmittance } from '../../packages/atmosphere/src/transmittance/tsl/transmittance'
-import { viewNodes } from '../../packages/atmosphere/src/view/ViewNodes'
-import { evaluateOnGpu } from './harness/evaluate'
-import { expectClose, expectTrue } from './harness/expect'
-import { gpuTest, type GpuTest } from './harness/gpu-test'
+} from '../../../packages/atmosphere/src/air/tsl/boundary'
+import { densities } from '../../../packages/atmosphere/src/air/tsl/medium'
+import { miePhase, rayleighPhase } from '../../../packages/atmosphere/src/air/tsl/phase'
+import { skyIrradiance } from '../../../packages/atmosphere/src/diffuseLight/tsl/skyIrradiance'
+import { sunTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
+import { viewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest, type GpuTest } from '../harness/gpu-test'
 
 const earth = new AtmosphereParameters()
 const bottom = earth.bottomRadius

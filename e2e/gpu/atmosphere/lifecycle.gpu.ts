@@ -18,13 +18,13 @@ import {
   SphereGeometry
 } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
-import { drawForward, drawToFloat, postPath, relativeDifferences } from './harness/atmosphere'
-import type { GpuContext } from './harness/context'
-import { expectTrue } from './harness/expect'
-import { gpuTest } from './harness/gpu-test'
-import { countCompilations, countObjects, finishWork, nextFrame } from './harness/graphics'
-import type { Picture } from './harness/picture'
-import { reuseTables } from './harness/reuse-tables'
+import { drawForward, drawToFloat, postPath, relativeDifferences } from '../harness/atmosphere'
+import type { GpuContext } from '../harness/context'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { countCompilations, countObjects, finishWork, nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+import { reuseTables } from '../harness/reuse-tables'
 
 const all = (value: number): Spectrum => [value, value, value, value]
 const small = { width: 64, height: 36 }

@@ -1,0 +1,274 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { CloudField, CloudLayers, cloudPreset } from '@welkin/clouds'
+import { Vector3 } from 'three'
+import { float, Loop, texture3D, vec3, vec4 } from 'three/tsl'
+import type { Node } from 'three/webgpu'
+import { cloudExtinction as extinctionTwin } from '../../../packages/clouds/test/twins/density'
+import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
+import { NOISE_SIZE, type NoiseName } from '../../../packages/clouds/src/noise/noiseSizes'
+import { cloudColumn } from '../../../packages/clouds/src/density/tsl/columns'
+import {
+  clearanceAt,
+  cloudBound,
+  cloudExtinction
+} from '../../../packages/clouds/src/density/tsl/density'
+import { random } from '../harness/atmosphere'
+import { CloudColumns } from '../harness/cloud-columns'
+import { cloudScene, mean, offsets, places, worldMap } from '../harness/cloud-scene'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectFinite, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { reuseTables } from '../harness/reuse-tables'
+
+const twin = new NoiseTextures()
+const names = Object.keys(NOISE_SIZE) as NoiseName[]
+
+gpuTest('bakes the noise that float64 computes, levels of detail and all', async t => {
+  reuseTables(false)
+  const renderer = await t.createRenderer()
+  const field = new CloudField(new Atmosphere(), new CloudLayers())
+  let frames = 0
+  do {
+    expectTrue(!field.noise.isReady && frames < 40, `not drawn after ${frames} frames`)
+    frames++
+  } while (!field.bake(renderer, 24))
+  t.note(`${frames} frames of 24 slices, ${field.noise.bytes} bytes`)
+  expectTrue(frames > 20, `drawn in ${frames} frames`)
+  expectTrue(field.noise.bytes <= 20e6, `${field.noise.bytes} bytes of noise`)
+  const draw = random(1)
+  for (const name of names) {
+    const source = texture3D(field.noise[name].target.texture)
+    for (const level of [0, 1, 2.5]) {
+      // Beyond the period, too: it repeats.
+      const inputs = Array.from({ length: level === 0 ? 60 : 6 }, () =>
+        [4, 4, 4].map(range => Math.fround(range * draw() - 1))
+      )
+      const results = await evaluateOnGpu(renderer, inputs, input =>
+        vec4(
+          (source.sample(input.xyz) as unknown as { level: (n: Node) => Node<'vec4'> }).level(
+            float(level)
+          )
+        )
+      )
+      inputs.forEach(([x, y, z], i) => {
+        const expected = twin.sample(name, [x, y, z], level)
+        const got = results.subarray(4 * i, 4 * i + expected.length)
+        expectClose(got, expected, { absolute: 0.012 }, `${name} level ${level}`)
+      })
+    }
+  }
+  field.dispose()
+})
+
+/** Altitudes in one of the layers each, by a number in [0, 1). */
+const altitudeIn =
+  (layers: CloudLayers) =>
+  (share: number): number => {
+    const place = layers.length * share
+    const { baseAltitude, topAltitude } = layers.at(Math.floor(place)).parameters
+    return baseAltitude + (topAltitude - baseAltitude) * (place % 1)
+  }
+
+for (const [where, place] of places) {
+  gpuTest(`puts clouds where float64 does ${where}`, async t => {
+    const layers = cloudPreset('mixed')
+    for (const layer of layers) layer.set({ coverage: 0.7 })
+    const scene = await cloudScene(t, layers, place)
+    scene.update(7200)
+    let cloudy = 0
+    for (const detail of [false, true]) {
+      const inputs = offsets(scene.eye, 60, 20_000, 7, altitudeIn(layers))
+      const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+        scene.extinction(input.xyz, input.w, detail)
+      )
+      const state = scene.state()
+      const differences = inputs.map(([x, y, z, distance], i) => {
+        const position = scene.eye.clone().add(new Vector3(x, y, z))
+        const expected = extinctionTwin(state, twin, position, distance, detail)
+        if (expected > 0) cloudy++
+        return Math.abs(results[4 * i] - expected) / 0.05
+      })
+      const worst = differences.toSorted((a, b) => b - a)
+      t.note(
+        `detail ${detail}: worst ${worst
+          .slice(0, 3)
+          .map(x => x.toFixed(4))
+          .join(' ')}`
+      )
+      // A byte of the noise is 0.03 of the density at a sharp edge.
+      expectTrue(worst[0] < 0.04, `worst difference ${worst[0]} of full density`)
+    }
+    expectTrue(cloudy > 30, `${cloudy} cloudy points`)
+    scene.dispose()
+  })
+}
+
+/** Without shape, whose coarse levels take float64 minutes. */
+class ShapelessTwin extends NoiseTextures {
+  override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {
+    return name === 'shape' ? [0.5, 0.5] : twin.sample(name, p, level)
+  }
+}
+
+gpuTest('puts clouds where float64 does, of a world map and where they blur', async t => {
+  const layers = cloudPreset('mixed')
+  for (const layer of layers) layer.set({ coverage: 0.5, shapeAmount: 0 })
+  const map = worldMap()
+  const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
+  const shapeless = new ShapelessTwin()
+  // Their footprints are up to 1.2 km.
+  scene.field.pixelAngle.value = 0.12
+  const inputs = offsets(scene.eye, 15, 2000, 7, altitudeIn(layers))
+  const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+    scene.extinction(input.xyz, input.w, false)
+  )
+  const state = scene.state()
+  let cloudy = 0
+  const differences = inputs.map(([x, y, z, distance], i) => {
+    const position = scene.eye.clone().add(new Vector3(x, y, z))
+    const expected = extinctionTwin(state, shapeless, position, distance, false)
+    if (expected > 0) cloudy++
+    return Math.abs(results[4 * i] - expected) / 0.05
+  })
+  t.note(`worst ${Math.max(...differences).toExponential(1)}`)
+  expectTrue(cloudy > 10, `${cloudy} cloudy points`)
+  expectTrue(Math.max(...differences) < 0.002, `worst difference ${Math.max(...differences)}`)
+  scene.dispose()
+  map.dispose()
+})
+
+gpuTest('bounds the density from above, in every preset', async t => {
+  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
+    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+    const inputs = offsets(scene.eye, 4096, 300_000, 3)
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const { altitude, up } = scene.field.view.place(offset)
+      const sample = { offset, altitude, up, distance: input.w }
+      const column = cloudColumn(scene.field, sample)
+      return vec4(
+        cloudBound(scene.field, sample),
+        cloudExtinction(scene.field, sample, true),
+        column,
+        1
+      )
+    })
+    let [clear, empty] = [0, 0]
+    inputs.forEach((_, i) => {
+      const [bound, extinction, column] = results.subarray(4 * i, 4 * i + 3)
+      expectTrue(bound > 0 || extinction === 0, `${name}: ${extinction} where the bound is 0`)
+      expectTrue(column >= 0 && column < 1000, `${name}: column of ${column}`)
+      if (bound === 0) clear++
+      if (extinction === 0) empty++
+    })
+    t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
+    scene.dispose()
+  }
+})
+
+gpuTest('has clear air as far as it says', async t => {
+  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus'] as const) {
+    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+    const { field } = scene
+    const inputs = offsets(scene.eye, 2048, 30_000, 5, share => 3000 * share)
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const here = { offset, ...field.view.place(offset), distance: input.w }
+      const clearance = clearanceAt(field, here).toConst()
+      const most = float(0).toVar()
+      const count = 24
+      Loop(count, ({ i }) => {
+        // Spread over the ball.
+        const index = float(i)
+        const z = index
+          .add(0.5)
+          .mul(2 / count)
+          .oneMinus()
+          .toConst()
+        const across = z.mul(z).oneMinus().sqrt()
+        const angle = index.mul(2.399963)
+        const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
+        const radius = clearance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
+        const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
+        most.assign(most.max(scene.extinction(there, input.w, true)))
+      })
+      return vec4(clearance, most, scene.extinction(offset, input.w, true), 1)
+    })
+    let clear = 0
+    inputs.forEach((_, i) => {
+      const [clearance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
+      expectTrue(clearance >= 0, `${name}: a clearance of ${clearance}`)
+      expectTrue(
+        clearance === 0 || most === 0,
+        `${name}: ${most} within ${clearance} m of clear air`
+      )
+      if (clearance > 100 && extinction === 0) clear++
+    })
+    t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
+    expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
+    scene.dispose()
+  }
+})
+
+gpuTest('follows a layer without compiling', async t => {
+  const layers = new CloudLayers()
+  const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+  const columns = new CloudColumns(scene.field, 64, 20_000, 8)
+  const before = mean((await columns.draw(scene.renderer)).depth)
+  layers.at(0).set({ coverage: 0.9 })
+  scene.update()
+  const after = mean((await columns.draw(scene.renderer)).depth)
+  expectTrue(after > 2 * before, `mean depth ${before} then ${after}`)
+  expectTrue(columns.builds === 1, `${columns.builds} builds of the shader`)
+  columns.dispose()
+  scene.dispose()
+})
+
+gpuTest('gives numbers for any parameters', async t => {
+  const draw = random(11)
+  const pick = (...values: number[]): number => values[Math.floor(draw() * values.length)]
+  const layers = new CloudLayers([{}, {}, {}, {}])
+  const scene = await cloudScene(t, layers, { longitude: -75, latitude: -60, height: 3000 })
+  const inputs = [
+    ...offsets(scene.eye, 400, 50_000, 5),
+    ...offsets(scene.eye, 100, 3_000_000, 6),
+    [0, 0, 0, 0],
+    [0, 0, 0, 1e9],
+    [scene.eye.x, scene.eye.y, scene.eye.z, 1e7],
+    [-scene.eye.x, -scene.eye.y, -scene.eye.z, 1e7]
+  ]
+  for (let round = 0; round < 12; round++) {
+    for (const layer of layers) {
+      const baseAltitude = pick(0, 500, 29_999)
+      layer.set({
+        baseAltitude,
+        topAltitude: pick(baseAltitude + 1e-3, baseAltitude + 1, 30_000),
+        coverage: pick(0, 1e-6, 0.5, 1),
+        density: pick(0, 1e-9, 0.05, 1),
+        profileExponent: pick(1e-9, 0.01, 1, 8),
+        shapeAmount: pick(0, 0.5, 1),
+        detailAmount: pick(0, 1),
+        weatherWeights: [pick(0, 1), pick(0, 1e-9), pick(0, 1), pick(0, 1)],
+        wind: { east: pick(0, 1e6), north: pick(0, -1e9) }
+      })
+    }
+    scene.update(pick(0, 1, 1e12))
+    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const { altitude, up } = scene.field.view.place(offset)
+      const sample = { offset, altitude, up, distance: input.w }
+      return vec4(
+        cloudExtinction(scene.field, sample, true),
+        cloudBound(scene.field, sample),
+        cloudColumn(scene.field, sample),
+        1
+      )
+    })
+    expectFinite(results, `round ${round}`)
+    expectTrue(
+      results.every(x => x >= 0),
+      `round ${round}: a negative extinction`
+    )
+  }
+  scene.dispose()
+})
