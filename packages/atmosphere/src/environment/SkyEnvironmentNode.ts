@@ -27,7 +27,7 @@ export interface SkyEnvironmentOptions extends EnvironmentOptions {
   angle?: number
   /** How far the camera may climb or sink, as a part of its height (at least 500 m), > 0. */
   climb?: number
-  /** What is in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
+  /** What is in front of the sky: `cloudEnvironment` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
 

@@ -6,7 +6,7 @@ import type { Renderer } from 'three/webgpu'
 import { describe, expect, test, vi } from 'vitest'
 import {
   CloudField,
-  cloudOverlay,
+  cloudEnvironment,
   CloudLayers,
   clouds,
   cloudShadow,
@@ -162,16 +162,22 @@ describe('cloudSkyLight', () => {
   })
 })
 
-describe('cloudOverlay', () => {
+describe('cloudEnvironment', () => {
   test('refuses what is missing or out of range', () => {
-    expect(() => cloudOverlay(null as never)).toThrow('CloudOverlay: clouds must be a CloudsNode')
-    expect(() => cloudOverlay(node, { size: 8 })).toThrow('CloudOverlay: size must be')
-    expect(() => cloudOverlay(node, { drift: 0 })).toThrow('CloudOverlay: drift must be positive')
-    expect(() => cloudOverlay(node, { quality: 'best' as never })).toThrow(/quality must be one of/)
+    expect(() => cloudEnvironment(null as never)).toThrow(
+      'CloudEnvironment: clouds must be a CloudsNode'
+    )
+    expect(() => cloudEnvironment(node, { size: 8 })).toThrow('CloudEnvironment: size must be')
+    expect(() => cloudEnvironment(node, { drift: 0 })).toThrow(
+      'CloudEnvironment: drift must be positive'
+    )
+    expect(() => cloudEnvironment(node, { quality: 'best' as never })).toThrow(
+      /quality must be one of/
+    )
   })
 
   test('has nothing drawn at first', () => {
-    const overlay = cloudOverlay(node)
+    const overlay = cloudEnvironment(node)
     expect(overlay.version).toBe(1)
     expect(overlay.version).toBe(1)
     overlay.dispose()

@@ -137,11 +137,11 @@ export function estimate(
   const closest = kernel.first.min(kernel.second).toConst() as Vec2
   const isWhole = passesCellDepthTest(end, cell.distances).toConst() as Bool
   const gathered: Gathered = {
-    light: vec4(0).toVar() as Vec4,
-    mean: vec4(0, 0, 0, 1).toVar() as Vec4,
-    statistics: cell.light.toVar() as Vec4,
-    distance: cell.distances.x.toVar() as Float,
-    nearest: closest.x.add(closest.y).toVar() as Float
+    light: vec4(0).toVar(),
+    mean: vec4(0, 0, 0, 1).toVar(),
+    statistics: cell.light.toVar(),
+    distance: cell.distances.x.toVar(),
+    nearest: closest.x.add(closest.y).toVar()
   }
   const { light, mean, statistics, distance, nearest } = gathered
   If(isWhole, () => {
