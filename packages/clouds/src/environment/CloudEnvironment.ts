@@ -204,7 +204,10 @@ export class CloudEnvironment implements SkyOverlay {
       const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
       const jitter = interleavedNoise(pixel, float(0))
       const ray = { direction, end, jitter }
-      const marched = marchClouds(field, light.nodes, maps, this.#quality, ray)
+      const marched = marchClouds(
+        { field, light: light.nodes, shadows: maps, quality: this.#quality },
+        ray
+      )
       const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
       return withAerialPerspective(view, marched, directionView, this.#gain)
     })

@@ -3,11 +3,8 @@ import { NearestFilter, UnsignedByteType } from 'three'
 import type { RenderTarget } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import type { CloudField } from '../density/CloudField'
-import type { CloudLight } from '../light/CloudLightTable'
-import type { CloudShadows } from '../shadow/CloudShadowMap'
+import type { ShadingContext } from '../light/tsl/lighting'
 import type { FrameUniforms } from './FrameUniforms'
-import type { QualityUniforms } from './quality'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
 import { encodeDistance } from '../temporal/tsl/packing'
@@ -20,11 +17,7 @@ import { viewRayAt, viewRayEnd, type ViewRayInputs } from './tsl/viewRay'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
 
 /** Inputs of a camera's passes. */
-export interface CloudScene {
-  readonly field: CloudField
-  readonly light: CloudLight
-  readonly shadows: CloudShadows
-  readonly quality: QualityUniforms
+export interface CloudScene extends ShadingContext {
   readonly viewRays: ViewRayInputs
 }
 
@@ -41,10 +34,8 @@ function texturesOf({ textures }: RenderTarget): CloudTargets {
 }
 
 /** Marches one pixel of each block: light with the air in front of it, and its distances. */
-function marchPixels(
-  { field, light, shadows, quality, viewRays }: CloudScene,
-  emptyDistance: LevelTexture<Vec2>
-): TwoOutputs {
+function marchPixels(scene: CloudScene, emptyDistance: LevelTexture<Vec2>): TwoOutputs {
+  const { field, viewRays } = scene
   const { frame } = viewRays
   return twoOutputs(([color, distances]) =>
     Fn(() => {
@@ -59,7 +50,7 @@ function marchPixels(
       const start = frame.isAmongClouds
         .greaterThan(0)
         .select(emptyDistance.sample(tile).level(0).x, 0)
-      const marched = marchClouds(field, light, shadows, quality, {
+      const marched = marchClouds(scene, {
         direction,
         end,
         jitter: interleavedNoise(block, frame.noiseShift),
