@@ -1,7 +1,7 @@
 import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
-import type { Backend } from '../gpu/harness/gpu-test'
+import type { Backend } from '../harness/backend'
 import { cloudPresetNames, type CloudPresetName } from '@welkin/clouds'
 import { drawCloudFields, writeGrid } from './cloud-field'
 import { printClouds, validateClouds } from './clouds'

@@ -1,5 +1,5 @@
 import type { CloudPresetName } from '@welkin/clouds'
-import type { Backend } from '../../gpu/harness/gpu-test'
+import type { Backend } from '../../harness/backend'
 import { drawCloudFields } from '../cloud-field'
 import { quantile } from '../score'
 import { formFigures, type FormFigures } from './figures'

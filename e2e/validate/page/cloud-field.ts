@@ -6,7 +6,7 @@ import type { Node, NodeFrame, WebGPURenderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
 import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/density'
 import { createContext, type ContextHandle } from '../../gpu/harness/context'
-import type { Backend } from '../../gpu/harness/gpu-test'
+import type { Backend } from '../../harness/backend'
 import { readPicture } from '../../gpu/harness/picture'
 
 /** Field of a preset's clouds, and the grid on which it is wanted. */

@@ -52,12 +52,10 @@ export {
 } from './parameters/planets'
 export { standardAtmosphere } from './parameters/standardAtmosphere'
 export type { SkyOverlay } from './environment/SkyOverlay'
-export {
-  ImageEnvironmentNode,
-  SkyEnvironmentNode,
-  skyEnvironment
-} from './environment/SkyEnvironmentNode'
-export type { EnvironmentOptions, SkyEnvironmentOptions } from './environment/SkyEnvironmentNode'
+export { SkyEnvironmentNode, skyEnvironment } from './environment/SkyEnvironmentNode'
+export type { SkyEnvironmentOptions } from './environment/SkyEnvironmentNode'
+export { ImageEnvironmentNode } from './environment/ImageEnvironmentNode'
+export type { EnvironmentOptions } from './environment/ImageEnvironmentNode'
 export { HeightFog, heightFog } from './fog/HeightFog'
 export type { HeightFogOptions } from './fog/HeightFog'
 export { DistanceFog, distanceFog } from './fog/DistanceFog'
@@ -70,6 +68,7 @@ export { FragmentPass, tableTarget } from './tables/FragmentPass'
 export { viewNodes } from './view/ViewNodes'
 export type { AtmosphereUniforms } from './air/AtmosphereUniforms'
 export type { ViewNodes } from './view/ViewNodes'
+export type { ViewUniforms } from './view/ViewUniforms'
 export { pointAlong, scatteredRadiance, scattering } from './scattering/tsl/scattering'
 export type { Air, LightSources, Ray, Scattered } from './scattering/tsl/scattering'
 export { marchedAir, marchedSky } from './scattering/tsl/marchedAir'
@@ -100,5 +99,6 @@ export { NIGHT_ILLUMINANCE } from './night/cpu/twilight'
 export { ofLuminance } from './stars/starColor'
 
 // Preconditions that Welkin's packages share; not for use elsewhere.
-export { checkOptions, checkRange, checkSource, checkSpectrum } from './check'
+export { checkRange, checkSpectrum, withDefaults } from './check'
+export { checkSource } from './view/LightSource'
 export { checkAtmosphere } from './view/ViewNodes'

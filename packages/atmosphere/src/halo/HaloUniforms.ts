@@ -1,6 +1,5 @@
 import { renderGroup, uniform } from 'three/tsl'
-import { checkNonNegative, checkPositive } from '@welkin/geo'
-import { checkOptions } from '../check'
+import { checkNonNegative, checkOptions, checkPositive } from '@welkin/geo'
 
 /** Light that an eye or a lens spreads around something bright, in two lobes. */
 export interface FlareOptions {
@@ -17,7 +16,7 @@ export interface FlareOptions {
 /** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
 const FAINTEST = 1e-8
 
-const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength']
+const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength'] as const
 
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 

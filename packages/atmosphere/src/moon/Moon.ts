@@ -2,11 +2,18 @@ import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import type { Quaternion } from 'three'
 import { If, renderGroup, texture, uniform, mix } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
+import {
+  checkBoolean,
+  checkDirection,
+  checkNonNegative,
+  checkOptions,
+  checkPositive,
+  fail
+} from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkRange } from '../check'
+import { checkRange } from '../check'
 import { CORONA, eclipsedSun } from './cpu/eclipse'
 import { earthshine, MOON_RADIUS, moonIrradiance, surfacePhase } from './cpu/moonlight'
 import { visibleSun } from '../transmittance/cpu/transmittance'
@@ -128,7 +135,20 @@ export class Moon implements SkyLayer {
   /** @throws If an argument is of the wrong kind or out of its range. */
   constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
     checkAtmosphere('Moon', atmosphere)
-    const { lightsAir = true, flare = {}, mapSize = 1024 } = checkOptions('Moon', options)
+    checkOptions(
+      'Moon',
+      options,
+      'direction',
+      'phase',
+      'distance',
+      'radius',
+      'strength',
+      'lightsAir',
+      'flare',
+      'mapSize'
+    )
+    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+    checkBoolean('Moon', 'lightsAir', lightsAir)
     if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
       fail('Moon', 'mapSize must be a power of two in [16, 8192]', mapSize)
     }
@@ -144,7 +164,7 @@ export class Moon implements SkyLayer {
     const { uniforms, transmittance, diffuseLight } = atmosphere.tables
     const volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
     this.source = new LightSource(
-      (_, target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
+      (target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
       volumes
     )
     this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
@@ -157,9 +177,9 @@ export class Moon implements SkyLayer {
   }
 
   set direction(value: Vector3 | null) {
-    const square = value?.isVector3 ? value.lengthSq() : 0
-    if (value !== null && !(square > 0 && square < Infinity)) {
-      fail('Moon', 'direction must be a Vector3, finite and not zero, or null', value)
+    if (value !== null) {
+      if (!value?.isVector3) fail('Moon', 'direction must be a Vector3 or null', value)
+      checkDirection('Moon', 'direction', value)
     }
     this.#byHand = value?.clone().normalize() ?? null
     const direction = this.#byHand ?? NOWHERE

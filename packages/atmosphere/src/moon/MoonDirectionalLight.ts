@@ -1,3 +1,5 @@
+import { checkAtmosphere } from '../view/ViewNodes'
+import { LightSource } from '../view/LightSource'
 import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Moon } from './Moon'
@@ -18,8 +20,9 @@ export class MoonDirectionalLight extends SunDirectionalLight {
    * @throws If the moon is none, or made for another atmosphere.
    */
   constructor(atmosphere: Atmosphere, moon: Moon, distance = 1) {
-    if (moon?.source === undefined) {
-      throw new Error(`MoonDirectionalLight: moon must be a Moon, got ${typeof moon}`)
+    checkAtmosphere('MoonDirectionalLight', atmosphere)
+    if (!(moon?.source instanceof LightSource)) {
+      fail('MoonDirectionalLight', 'moon must be a Moon', moon)
     }
     super(atmosphere, distance, moon.source)
     if (moon.atmosphere !== atmosphere) {

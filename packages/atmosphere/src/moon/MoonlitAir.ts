@@ -9,6 +9,7 @@ import type { HazeLine, SkyRay } from '../view/SkyLayer'
 import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
 import { viewNodes, type ViewNodes } from '../view/ViewNodes'
+import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** With the sun above this, or the moon below that, moonlight in the air is not seen. cos of zenith angles. */
 const SUN_DROWNS = 0
@@ -21,7 +22,7 @@ const _direction = new Vector3()
 export class MoonlitAir {
   /** 1 while moonlight in the air can be seen. */
   readonly #glows = uniform(0).setGroup(renderGroup)
-  readonly #views = new Map<ViewNodes, ViewNodes>()
+  readonly #views = new Map<ViewUniforms, ViewNodes>()
   #renderer: Renderer | null = null
 
   /** @param volumes - The source's. */
@@ -43,7 +44,7 @@ export class MoonlitAir {
     if (view.height > parameters.topRadius - parameters.bottomRadius) return true
     if (view.up.dot(view.sunDirection) > SUN_DROWNS) return false
     _position.setFromMatrixPosition(view.camera.matrixWorld)
-    this.source.direction(this.atmosphere, _direction, _position)
+    this.source.direction(_direction, _position)
     return view.up.dot(space.direction(_direction, _position)) > MOON_IS_DOWN
   }
 
@@ -77,7 +78,7 @@ export class MoonlitAir {
   }
 
   /** The nodes of a view in the light of the moon. */
-  #nodes(view: ViewNodes): ViewNodes {
+  #nodes(view: ViewUniforms): ViewNodes {
     let nodes = this.#views.get(view)
     if (nodes === undefined) {
       nodes = viewNodes(this.atmosphere, view.camera, this.source)

@@ -1,14 +1,14 @@
 import { Vector4 } from 'three'
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
-import { checkNonNegative } from '@welkin/geo'
+import { checkNonNegative, checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkRange, checkSpectrum } from '../check'
+import { checkRange, checkSpectrum } from '../check'
 import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from '../view/SkyLayer'
 import { ofLuminance } from '../stars/starColor'
 import { glowGains, overheadGain } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
-import type { ViewNodes } from '../view/ViewNodes'
+import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** Options of {@link Airglow}. */
 export interface AirglowOptions {
@@ -76,7 +76,7 @@ export class Airglow implements SkyLayer {
       altitude = 96_000,
       width = 4000,
       spectrum = GREENISH
-    } = checkOptions('Airglow', options)
+    } = checkOptions('Airglow', options, 'luminance', 'altitude', 'width', 'spectrum')
     checkRange('Airglow', 'luminance', luminance, 0, 1e9)
     checkRange('Airglow', 'altitude', altitude, 1, 1e7)
     checkRange('Airglow', 'width', width, 1, 1e6)
@@ -114,7 +114,7 @@ export class Airglow implements SkyLayer {
     this.#isAround.value = height < altitude.value - MARGIN * width.value ? 0 : 1
   }
 
-  #gains(view: ViewNodes, cosView: Float, distance: Float | null): { down: Float; up: Float } {
+  #gains(view: ViewUniforms, cosView: Float, distance: Float | null): { down: Float; up: Float } {
     const { bottomRadius } = view.air.uniforms
     return glowGains(this.#layer, view.height, cosView, bottomRadius, distance)
   }

@@ -2,9 +2,9 @@ import { Matrix3, Vector4 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
 import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { checkNonNegative } from '@welkin/geo'
+import { checkNonNegative, checkOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkOrientation } from '../check'
+import { checkOrientation } from '../check'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { DROWNS, type SkyLayer, type SkyRay } from '../view/SkyLayer'
@@ -57,7 +57,7 @@ export class MilkyWay implements SkyLayer {
 
   /** @throws If an option is of the wrong kind. */
   constructor(options: MilkyWayOptions = {}) {
-    this.orientation = checkOptions('MilkyWay', options).orientation ?? null
+    this.orientation = checkOptions('MilkyWay', options, 'orientation').orientation ?? null
     this.#map = texture(this.#target.texture)
   }
 

@@ -1,9 +1,8 @@
 import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
-import { checkNonNegative, fail } from '@welkin/geo'
-import type { Atmosphere } from '../Atmosphere'
+import { checkBoolean, checkNonNegative, checkOptions, fail } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkOrientation } from '../check'
+import { checkOrientation } from '../check'
 import { CelestialFrame } from '../night/CelestialFrame'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { COLOR_STEPS, ENTRY_COLUMNS, STAR_LEVELS, starCells } from './starCells'
@@ -54,7 +53,13 @@ export class Stars implements SkyLayer {
 
   /** @throws If a star lacks a finite number, or an option is of the wrong kind. */
   constructor(catalogue: readonly Star[], options: StarsOptions = {}) {
-    const { overlay = false, orientation } = checkOptions('Stars', options)
+    const { overlay = false, orientation } = checkOptions(
+      'Stars',
+      options,
+      'overlay',
+      'orientation'
+    )
+    checkBoolean('Stars', 'overlay', overlay)
     if (!Array.isArray(catalogue)) fail('Stars', 'catalogue must be an array of stars', catalogue)
     catalogue.forEach((star, i) => {
       for (const name of ['ascension', 'declination', 'magnitude', 'colorIndex'] as const) {
@@ -97,7 +102,7 @@ export class Stars implements SkyLayer {
     this.#updatePalette(view.atmosphere)
   }
 
-  #updatePalette({ parameters }: Atmosphere): void {
+  #updatePalette({ parameters }: AtmosphereView['atmosphere']): void {
     const { wavelengths, solarIrradiance, spectralToXYZ } = parameters
     const state = [this.intensity, wavelengths, solarIrradiance, spectralToXYZ].join(' ')
     if (state === this.#paletteOf) return

@@ -11,6 +11,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
+import { checkPostEffect } from '../check'
 import type { Atmosphere } from '../Atmosphere'
 import { AtmosphereNode } from '../view/AtmosphereNode'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
@@ -55,11 +56,7 @@ export class StarsOverlayNode extends AtmosphereNode {
   /** @throws If an argument is missing. */
   constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
     super(atmosphere, camera)
-    for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
-      if (value === undefined || value === null) {
-        throw new Error(`StarsOverlayNode: ${name} is missing, got ${value}`)
-      }
-    }
+    checkPostEffect('StarsOverlayNode', colorNode, depthNode, camera)
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera

@@ -1,5 +1,5 @@
-import { fail } from '@welkin/geo'
-import { checkOptions, checkRange } from '../check'
+import { checkOptions, fail } from '@welkin/geo'
+import { checkRange } from '../check'
 import type { Star } from './starCode'
 
 /** Options of {@link proceduralStars}. */
@@ -25,9 +25,13 @@ const BRIGHTEST_SPAN = 7.5
  * @throws If an option is out of range.
  */
 export function proceduralStars(options: ProceduralStarsOptions = {}): Star[] {
-  const { count = 5000, faintest = 6, seed = 1 } = checkOptions('proceduralStars', options)
+  const {
+    count = 5000,
+    faintest = 6,
+    seed = 1
+  } = checkOptions('proceduralStars', options, 'count', 'faintest', 'seed')
   if (!(Number.isInteger(count) && count >= 1 && count <= 50_000)) {
-    throw new Error(`proceduralStars: count must be an integer in [1, 50000], got ${count}`)
+    fail('proceduralStars', 'count must be an integer in [1, 50000]', count)
   }
   checkRange('proceduralStars', 'faintest', faintest, -10, 20)
   if (!Number.isFinite(seed)) fail('proceduralStars', 'seed must be finite', seed)

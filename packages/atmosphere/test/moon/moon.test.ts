@@ -210,15 +210,17 @@ describe('Moon', () => {
     expect(() => new Moon(atmosphere, { radius: NaN })).toThrow('Moon: radius must be')
     expect(() => new Moon(atmosphere, { strength: -1 })).toThrow('Moon: strength must be')
     expect(() => new Moon(atmosphere, { mapSize: 100 })).toThrow('Moon: mapSize must be')
-    expect(() => new Moon(atmosphere, { direction: origin })).toThrow('Moon: direction must be')
+    expect(() => new Moon(atmosphere, { direction: origin })).toThrow(
+      'Moon: direction must not be zero'
+    )
     expect(() => new Moon(atmosphere, { flare: { innerPower: 0 } })).toThrow('Moon: innerPower')
     expect(() => new MoonDirectionalLight(atmosphere, null as never)).toThrow('must be a Moon')
     const other = moon(new Atmosphere())
     expect(() => new MoonDirectionalLight(atmosphere, other)).toThrow(
-      'MoonDirectionalLight: moon must be made for the same atmosphere, got Moon'
+      'MoonDirectionalLight: moon must be made for the same atmosphere, got a Moon'
     )
     expect(() => atmosphere.add(other)).toThrow(
-      'Atmosphere: layer must be made for this atmosphere, got Moon'
+      'Atmosphere.add: layer must be made for this atmosphere, got a Moon'
     )
   })
 })

@@ -77,7 +77,7 @@ export class NightLight {
     _position.setFromMatrixPosition(camera.matrixWorld)
     if (this.source !== null) {
       this.irradiance.value.fromArray(this.source.irradianceAt(_position))
-      this.source.direction(atmosphere, _direction, _position)
+      this.source.direction(_direction, _position)
       atmosphere.space.direction(_direction, this.direction.value)
     }
     const values = ofLuminance(atmosphere.parameters, [1, 1, 1, 1], this.illuminance / Math.PI)
