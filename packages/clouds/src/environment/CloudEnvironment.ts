@@ -137,7 +137,7 @@ export class CloudEnvironment implements SkyOverlay {
 
   #state(): CloudState {
     const { field, light, shadows } = this.clouds
-    const { direction, illuminance, irradiance } = field.night
+    const { moonDirection, illuminance, moonIrradiance } = field.night
     return {
       inputs: [
         light.texture.version,
@@ -147,7 +147,7 @@ export class CloudEnvironment implements SkyOverlay {
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
       turns: field.turns.map(turn => turn.clone()),
-      moonlight: direction.value.clone().multiplyScalar(irradiance.value.y)
+      moonlight: moonDirection.value.clone().multiplyScalar(moonIrradiance.value.y)
     }
   }
 

@@ -67,10 +67,10 @@ const isAmongClouds = (height: number, { layers }: CloudField): boolean =>
 
 /** Everything that shapes and lights the clouds, as numbers. */
 function cloudInputs({ values, night }: CloudField, lightVersion: number): number[] {
-  const { direction, irradiance, radiance } = night
+  const { moonDirection, moonIrradiance, skyRadiance } = night
   const vectors = [
     ...values.filter((_, i) => i % LAYER_STRIDE < 3),
-    ...[direction, irradiance, radiance].map(({ value }) => value)
+    ...[moonDirection, moonIrradiance, skyRadiance].map(({ value }) => value)
   ]
   return [...vectors.flatMap(vector => vector.toArray()), lightVersion]
 }

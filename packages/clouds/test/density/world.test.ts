@@ -39,7 +39,7 @@ describe('NightLight', () => {
     const night = new NightLight()
     const isSeen = (elevation: number, height: number): boolean => {
       night.update(viewAt(elevation, height))
-      return night.isSeen.value === 1
+      return night.isVisible.value === 1
     }
     expect(isSeen(1, 2)).toBe(false)
     expect(isSeen(-7, 2)).toBe(true)
@@ -52,11 +52,11 @@ describe('NightLight', () => {
   test('sets in where the sun’s light reaches no cloud, on small planets too', () => {
     const night = new NightLight()
     night.update(viewAt(-20))
-    expect(Math.asin(night.sunk.value) / degrees).toBeCloseTo(-6, 6)
-    expect(Math.asin(night.dark.value) / degrees).toBeCloseTo(-8, 6)
+    expect(Math.asin(night.nightfall.value) / degrees).toBeCloseTo(-6, 6)
+    expect(Math.asin(night.deepNight.value) / degrees).toBeCloseTo(-8, 6)
     // Of the highest clouds, and half of the sun's disc.
     const lowest = -Math.acos(radius / (radius + 30_000)) - atmosphere.parameters.sunAngularRadius
-    expect(Math.asin(night.sunk.value)).toBeLessThan(lowest)
+    expect(Math.asin(night.nightfall.value)).toBeLessThan(lowest)
   })
 
   test('takes moonlight from a moon that was added, and none by day', () => {
@@ -65,16 +65,18 @@ describe('NightLight', () => {
     const night = new NightLight()
     night.update(viewAt(-20, 2, world))
     expect(night.source).toBe(null)
-    expect(night.irradiance.value.length()).toBe(0)
+    expect(night.moonIrradiance.value.length()).toBe(0)
     world.add(luna)
     night.update(viewAt(-20, 2, world))
     expect(night.source).toBe(luna.source)
-    expect(night.irradiance.value.toArray()).toEqual([...luna.source.irradianceAt(new Vector3())])
-    expect(night.rulesAt(viewAt(-20, 2, world))).toBe(true)
-    expect(night.rulesAt(viewAt(-5, 2, world))).toBe(false)
+    expect(night.moonIrradiance.value.toArray()).toEqual([
+      ...luna.source.irradianceAt(new Vector3())
+    ])
+    expect(night.isMoonlitAt(viewAt(-20, 2, world))).toBe(true)
+    expect(night.isMoonlitAt(viewAt(-5, 2, world))).toBe(false)
     night.update(viewAt(20, 2, world))
-    expect(night.irradiance.value.length()).toBe(0)
-    expect(night.rulesAt(viewAt(20, 2, world))).toBe(false)
+    expect(night.moonIrradiance.value.length()).toBe(0)
+    expect(night.isMoonlitAt(viewAt(20, 2, world))).toBe(false)
   })
 })
 

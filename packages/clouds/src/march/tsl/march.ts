@@ -2,7 +2,8 @@ import { Break, If, float, int, vec2, vec3, vec4 } from 'three/tsl'
 import { loop, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import { pairMatter } from '../../density/tsl/density'
 import type { CloudSample } from '../../density/tsl/sample'
-import { lightUp, OPAQUE, sourceAt, type ShadingContext } from '../../light/tsl/lighting'
+import { LEAST_TRANSMITTANCE, shade, sourceAt } from '../../light/tsl/lighting'
+import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, nextShell, surroundings } from './shells'
 
 /** Least number of steps through a layer that is thinner than a few samples are wide. */
@@ -88,7 +89,7 @@ export function marchClouds(
   const leaveLayers = (): void => {
     If(passingSeen.greaterThan(0), () => {
       const sample = sampleAt(passing.w.div(passingSeen))
-      radiance.addAssign(lightUp(field, sample, passing.xyz))
+      radiance.addAssign(shade(field, sample, passing.xyz))
       weightedDistance.addAssign(passing.w)
       passing.assign(vec4(0))
       passingSeen.assign(0)
@@ -96,7 +97,7 @@ export function marchClouds(
   }
 
   loop('cloudPair', quality.pairs, () => {
-    If(position.greaterThanEqual(end).or(transmittance.lessThan(OPAQUE)), () => {
+    If(position.greaterThanEqual(end).or(transmittance.lessThan(LEAST_TRANSMITTANCE)), () => {
       Break()
     })
     steps.addAssign(2)
@@ -156,7 +157,7 @@ export function marchClouds(
         const at = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
         sinceLit.addAssign(both)
         If(sinceLit.greaterThan(SHARED_LIGHT), () => {
-          const { sun, sky, ground } = sourceAt(context, {
+          const { direct, sky, ground } = sourceAt(context, {
             sample: sampleAt(at.div(both)),
             weather: matter.weather,
             direction,
@@ -164,7 +165,7 @@ export function marchClouds(
             dither: jitter,
             layers: about
           })
-          source.assign(vec3(sun, sky, ground))
+          source.assign(vec3(direct, sky, ground))
           sinceLit.assign(0)
         })
         passing.addAssign(vec4(source.mul(both), at))
@@ -183,9 +184,9 @@ export function marchClouds(
   const opacity = transmittance.oneMinus().toConst()
   // What is as good as opaque is opaque: nothing bright may shine through.
   const passed = transmittance
-    .sub(OPAQUE)
+    .sub(LEAST_TRANSMITTANCE)
     .max(0)
-    .div(1 - OPAQUE)
+    .div(1 - LEAST_TRANSMITTANCE)
     .toConst() as Float
   const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY))
   return {
