@@ -12,7 +12,7 @@ import type { Quaternion, RenderTarget } from 'three'
 import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
-import { CloudField, eyePosition } from '../density/CloudField'
+import { CloudField, viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import { nightGain } from '../light/NightLight'
 import {
@@ -24,7 +24,7 @@ import {
 import { withAerialPerspective } from '../march/tsl/aerialPerspective'
 import { marchClouds } from '../march/tsl/march'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
-import { groundDistance } from '../march/tsl/shells'
+import { groundDistance } from '../march/tsl/layerBoundaries'
 import type { LevelTexture, Mat3, Mat4, Vec2, Vec3 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3 } from '../uniforms'
 
@@ -141,12 +141,12 @@ export class CloudEnvironment implements SkyOverlay {
     return {
       inputs: [
         light.texture.version,
-        field.grown === 1,
+        field.fadeIn === 1,
         shadows.isDrawn,
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
-      turns: field.turns.map(turn => turn.clone()),
+      turns: field.rotations.map(turn => turn.clone()),
       moonlight: moonDirection.value.clone().multiplyScalar(moonIrradiance.value.y)
     }
   }
@@ -172,7 +172,7 @@ export class CloudEnvironment implements SkyOverlay {
     if (strip < 0) return
     if (strip === 0) this.#begin(view, field)
     this.#gain.value = this.#storedScale / atmosphere.luminanceScale
-    eyePosition(view, this.#shift.value).sub(shadows.camera)
+    viewpointMapped(view, this.#shift.value).sub(shadows.camera)
     const { width: size } = this.#target
     const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
@@ -181,10 +181,10 @@ export class CloudEnvironment implements SkyOverlay {
 
   /** Takes clouds, sun and place as they are now, for all strips. */
   #begin(view: AtmosphereView, field: CloudField): void {
-    const { turns, night, depthScale } = this.clouds.field
+    const { rotations, night, depthScale } = this.clouds.field
     if (!this.#isAsDrawn()) this.#version++
     this.#drawn = this.#state()
-    turns.forEach((turn, i) => field.turns[i].copy(turn))
+    rotations.forEach((turn, i) => field.rotations[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width
     field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance

@@ -13,12 +13,12 @@ import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { conePrepass, TILE } from './tsl/conePrepass'
 import { marchClouds } from './tsl/march'
-import { viewRayAt, viewRayEnd, type ViewRayInputs } from './tsl/viewRay'
+import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
 
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
-  readonly viewRays: ViewRayInputs
+  readonly viewRays: ViewRayNodes
 }
 
 /** @param isPacked - Whether distances are bytes: see `pack`. */

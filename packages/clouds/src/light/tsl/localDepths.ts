@@ -1,5 +1,5 @@
 import { float, int, smoothstep, vec4 } from 'three/tsl'
-import { extinctionNearby } from '../../density/tsl/density'
+import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
@@ -88,7 +88,7 @@ export function localDepths(
   // Where no map is: as near, thinning out towards the top.
   const density = found.y.div(probed).toConst()
   const guess = density.mul(toTop.sub(probed)).toConst()
-  const depthToLight = found.y.add(known.mix(guess, far.toSun)).toConst() as Float
+  const depthToLight = found.y.add(known.mix(guess, far.toLight)).toConst() as Float
   const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
   const through = known
     .mix(depthToLight.add(behind), far.through.max(depthToLight))

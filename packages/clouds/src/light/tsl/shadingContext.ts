@@ -1,8 +1,8 @@
 import type { CloudField } from '../../density/CloudField'
-import type { KeptWeather } from '../../density/tsl/density'
 import type { CloudSample } from '../../density/tsl/sample'
+import type { WeatherCache } from '../../density/tsl/sampler'
 import type { QualityUniforms } from '../../march/quality'
-import type { Surroundings } from '../../march/tsl/shells'
+import type { LayersAt } from '../../march/tsl/layerBoundaries'
 import type { CloudShadows } from '../../shadow/tsl/sampleShadows'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { CloudLight } from '../CloudLightTable'
@@ -18,7 +18,7 @@ export interface ShadingContext {
 /** Place in the clouds that is to be shaded. */
 export interface ShadedSample {
   readonly sample: CloudSample
-  readonly weather: KeptWeather
+  readonly weather: WeatherCache
   /** Direction of the view ray on which it is seen, unit length, in the mapped space. */
   readonly direction: Vec3
   /** Transmittance of the clouds between it and the camera, in [0, 1]. */
@@ -26,7 +26,7 @@ export interface ShadedSample {
   /** Noise in [0, 1), in which cascades of the shadow map meet. */
   readonly dither: Float
   /** The layers around it. */
-  readonly layers: Pick<Surroundings, 'base' | 'top' | 'layered'>
+  readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered'>
 }
 
 /** Light source that clouds are shaded for: sun or moon. */

@@ -1,7 +1,7 @@
 import { Break, Fn, If, float, uv, vec4 } from 'three/tsl'
 import { loop, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
-import { clearanceAt } from '../../density/tsl/density'
-import { viewRayAt, type ViewRayInputs } from './viewRay'
+import { emptyDistanceAt } from '../../density/tsl/sampler'
+import { viewRayAt, type ViewRayNodes } from './viewRay'
 
 /** Marched pixels along an edge of the tiles that share a cone. */
 export const TILE = 8
@@ -25,7 +25,7 @@ const PRECISION = 0.999
  * @returns Distance in red, at most `MAX_DISTANCE` [m].
  * @see Hart 1996, "Sphere tracing", §2.3: steps of the size of an empty sphere
  */
-export function conePrepass(inputs: ViewRayInputs): Vec4 {
+export function conePrepass(inputs: ViewRayNodes): Vec4 {
   const { field, frame } = inputs
   return Fn(() => {
     const edge = frame.block.mul(TILE).div(frame.size).toConst() as unknown as Vec2
@@ -37,7 +37,11 @@ export function conePrepass(inputs: ViewRayInputs): Vec4 {
     const position = float(0).toVar()
     loop('approach', STEPS, () => {
       const offset = direction.mul(position).toConst() as Vec3
-      const empty = clearanceAt(field, { offset, ...field.view.place(offset), distance: position })
+      const empty = emptyDistanceAt(field, {
+        offset,
+        ...field.view.place(offset),
+        distance: position
+      })
       const step = empty.sub(position.mul(spread)).div(spread.add(1)).toConst() as Float
       const isBlocked = step.lessThan(position.mul(STEP_GROWTH).add(SHORTEST_STEP))
       If(isBlocked.or(position.greaterThan(MAX_DISTANCE)), () => {

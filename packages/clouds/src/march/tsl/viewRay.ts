@@ -9,7 +9,7 @@ import {
 import type { CloudField } from '../../density/CloudField'
 import type { FrameUniforms } from '../FrameUniforms'
 import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../../tsl-types'
-import { FAR_AWAY, groundDistance } from './shells'
+import { FAR_AWAY, groundDistance } from './layerBoundaries'
 
 /** View ray through a pixel. */
 export interface ViewRay {
@@ -24,7 +24,7 @@ export interface ViewRay {
 }
 
 /** Inputs from which view rays are made: the camera of a frame and the depth that it drew. */
-export interface ViewRayInputs {
+export interface ViewRayNodes {
   readonly field: CloudField
   readonly frame: FrameUniforms
   /** Depth as the renderer writes it. */
@@ -33,7 +33,7 @@ export interface ViewRayInputs {
 }
 
 /** View ray through a point of the image; to be called inside of a shader function. */
-export function viewRayAt({ field, frame }: ViewRayInputs, uv: Vec2): ViewRay {
+export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
   const ndc = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
   const rayView = (frame.rays as unknown as Mat3).mul(ndc).toConst() as Vec3
   const mapped = field.view.toMapped(rayView).toConst() as Vec3
@@ -49,7 +49,7 @@ export function viewRayAt({ field, frame }: ViewRayInputs, uv: Vec2): ViewRay {
  * @param missesGround - Where it holds, the ground is known not to be in sight.
  */
 export function viewRayEnd(
-  { field, frame, depthAt, isLogarithmic }: ViewRayInputs,
+  { field, frame, depthAt, isLogarithmic }: ViewRayNodes,
   uv: Vec2,
   { direction, directionView }: ViewRay,
   missesGround?: Bool

@@ -1,6 +1,6 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
-import type { ViewRayInputs } from '../../march/tsl/viewRay'
+import type { ViewRayNodes } from '../../march/tsl/viewRay'
 import { passesCellDepthTest, type Cell } from './cells'
 import { passesDepthTest } from './depthTest'
 import { SAMPLE_STEPS } from './packing'
@@ -37,7 +37,7 @@ export interface CellPlace {
 }
 
 /** The cell that a pixel is in. */
-export function cellPlace({ frame }: ViewRayInputs, pixel: Vec2): CellPlace {
+export function cellPlace({ frame }: ViewRayNodes, pixel: Vec2): CellPlace {
   const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst() as Vec2
   const corner = at.floor().toConst() as Vec2
   return { corner, part: at.sub(corner).toConst() }
@@ -74,7 +74,7 @@ function cornerKernel(part: Vec2): CornerKernel {
 /** Estimate from those corners of a cell that pass the depth test, one by one. */
 function gatherCorners(
   gathered: Gathered,
-  { frame }: ViewRayInputs,
+  { frame }: ViewRayNodes,
   marched: CloudTargets,
   corner: Vec2,
   kernel: CornerKernel,
@@ -125,7 +125,7 @@ function gatherCorners(
  * @see Kopf et al. 2007, "Joint bilateral upsampling", §3: weights by distance in the image and by depth
  */
 export function estimate(
-  viewRays: ViewRayInputs,
+  viewRays: ViewRayNodes,
   marched: CloudTargets,
   { corner, part }: CellPlace,
   cell: Cell,

@@ -1,6 +1,6 @@
 import { exp2, vec2, vec4 } from 'three/tsl'
 import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import type { ViewRay, ViewRayInputs } from '../../march/tsl/viewRay'
+import type { ViewRay, ViewRayNodes } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'
 import { clampDistance, unpack } from './packing'
 import type { CloudTargets } from './renderTargets'
@@ -40,7 +40,7 @@ export interface ReprojectedHistory {
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §3.2 (reprojection), §4.1 (rejection)
  */
 export function reprojectHistory(
-  { frame }: ViewRayInputs,
+  { frame }: ViewRayNodes,
   history: CloudTargets,
   pixel: Vec2,
   { ndc, length }: ViewRay,

@@ -1,6 +1,6 @@
 import { Fn, If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
 import { twoOutputs, type Float, type TwoOutputs, type Vec2, type Vec4 } from '../../tsl-types'
-import { viewRayAt, viewRayEnd, type ViewRayInputs } from '../../march/tsl/viewRay'
+import { viewRayAt, viewRayEnd, type ViewRayNodes } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
 import { cellPlace, estimate, type Estimate } from './estimate'
@@ -38,7 +38,7 @@ interface Accumulated {
  */
 function accumulate(
   { light, samples }: Accumulated,
-  { frame }: ViewRayInputs,
+  { frame }: ViewRayNodes,
   now: Estimate,
   history: ReprojectedHistory
 ): void {
@@ -69,7 +69,7 @@ function accumulate(
  *   temporal antialiasing techniques", §5 (temporal upsampling)
  */
 export function upscale(
-  viewRays: ViewRayInputs,
+  viewRays: ViewRayNodes,
   marched: CloudTargets,
   cells: CloudTargets,
   history: CloudTargets
