@@ -285,7 +285,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => skyEnvironment(wrong(new Scene()))
   ],
   [
-    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudOverlay(), or null, got a Mesh',
+    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudEnvironment(), or null, got a Mesh',
     () => skyEnvironment(atmosphere, { overlay: wrong(new Mesh()) })
   ],
   [
