@@ -1,12 +1,10 @@
 import { renderGroup, uniform } from 'three/tsl'
-import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { visibleSun } from '../transmittance/cpu/transmittance'
-import { HaloUniforms, type FlareOptions } from './HaloUniforms'
+import { Flare, type FlareOptions } from './Flare'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { addHalo } from './tsl/halo'
 import type { Vec4 } from '../tsl-types'
-import { checkAtmosphere } from '../view/ViewNodes'
 
 const DEFAULTS = { innerPower: 6000, innerStrength: 0.006, outerPower: 150, outerStrength: 0.004 }
 
@@ -15,52 +13,36 @@ const DEFAULTS = { innerPower: 6000, innerStrength: 0.006, outerPower: 150, oute
  * reddens it, and it goes when the sun sets or is eclipsed.
  *
  * ```ts
- * atmosphere.add(sunFlare(atmosphere))
+ * atmosphere.add(sunFlare())
  * ```
  *
  * Drawn on the sky, not over what stands in front of it.
  */
-export class SunFlare implements SkyLayer {
-  /** Shared, not owned. */
-  readonly atmosphere: Atmosphere
-  readonly #halo: HaloUniforms
+export class SunFlare extends Flare implements SkyLayer {
   /** Part of the sun's disc that is above the horizon. */
   readonly #visible = uniform(0).setGroup(renderGroup)
 
-  /** @throws If an argument is of the wrong kind or out of its range. */
-  constructor(atmosphere: Atmosphere, options: FlareOptions = {}) {
-    checkAtmosphere('SunFlare', atmosphere)
-    this.atmosphere = atmosphere
-    this.#halo = new HaloUniforms('SunFlare', DEFAULTS)
+  /** @throws If an option is unknown or out of its range. */
+  constructor(options: FlareOptions = {}) {
+    super('SunFlare', DEFAULTS)
     this.set(options)
   }
 
-  /**
-   * Changes powers and strengths.
-   *
-   * @throws If one is unknown or out of its range; then nothing has changed.
-   */
-  set(options: FlareOptions): this {
-    this.#halo.set(options)
-    return this
-  }
-
   update(view: AtmosphereView): void {
-    const { parameters } = this.atmosphere
+    const { parameters } = view.atmosphere
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     this.#visible.value = visibleSun(parameters, radius, view.up.dot(view.sunDirection))
-    this.#halo.update(this.#visible.value > 0)
+    this.setReach(this.#visible.value > 0)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
     const { direction, cosViewSun, view } = ray
     const light = farther.toVar()
     const irradiance = view.source.irradiance.mul(this.#visible)
-    addHalo(light, this.#halo, irradiance, direction, view.sunDirection, cosViewSun)
+    addHalo(light, this.uniforms, irradiance, direction, view.sunDirection, cosViewSun)
     return light
   }
 }
 
 /** The sun's halo: see {@link SunFlare}. */
-export const sunFlare = (atmosphere: Atmosphere, options: FlareOptions = {}): SunFlare =>
-  new SunFlare(atmosphere, options)
+export const sunFlare = (options?: FlareOptions): SunFlare => new SunFlare(options)

@@ -2,13 +2,15 @@ import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import type { Quaternion } from 'three'
 import { If, renderGroup, texture, uniform, mix } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import type { Triple } from '../air/cpu/color'
 import {
   checkBoolean,
   checkDirection,
   checkNonNegative,
   checkOptions,
   checkPositive,
-  fail
+  fail,
+  setOptions
 } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
@@ -17,7 +19,7 @@ import { checkRange } from '../check'
 import { CORONA, eclipsedSun } from './cpu/eclipse'
 import { earthshine, MOON_RADIUS, moonIrradiance, surfacePhase } from './cpu/moonlight'
 import { visibleSun } from '../transmittance/cpu/transmittance'
-import { HaloUniforms, type FlareOptions } from '../halo/HaloUniforms'
+import { Flare, type FlareOptions } from '../halo/Flare'
 import { LightSource } from '../view/LightSource'
 import { MoonPlace, type MoonGeometry } from './moonGeometry'
 import { MoonSurface } from './MoonSurface'
@@ -49,6 +51,13 @@ export interface MoonOptions {
   mapSize?: number
 }
 
+/** The atmosphere that a moon is in, and what it made for it. */
+interface Home {
+  readonly atmosphere: Atmosphere
+  readonly source: LightSource
+  readonly air: MoonlitAir
+}
+
 /** The moon from somewhere. */
 export interface MoonAppearance {
   /** World, unit length. */
@@ -62,6 +71,9 @@ export interface MoonAppearance {
   /** Part of the disc that the sun lights, in [0, 1]. */
   litFraction: number
 }
+
+/** Options that may change later. */
+const SETTINGS = ['direction', 'phase', 'distance', 'radius', 'strength'] as const
 
 /** Angle that a pixel of the coarsest picture covers [rad]. */
 const WIDEST_PIXEL = 0.06
@@ -85,7 +97,7 @@ const spectrum = () => uniform(new Vector4()).setGroup(renderGroup)
  * The moon: its disc, halo and light in the air, and eclipses of the sun by it.
  *
  * ```ts
- * const luna = moon(atmosphere)
+ * const luna = moon()
  * atmosphere.add(luna)
  * scene.add(new MoonDirectionalLight(atmosphere, luna), new SkyLightProbe(atmosphere, luna.source))
  * ```
@@ -99,11 +111,7 @@ const spectrum = () => uniform(new Vector4()).setGroup(renderGroup)
  * at the camera, and the corona shows. Refraction and eclipses of the moon itself are left out.
  */
 export class Moon implements SkyLayer {
-  /** Shared, not owned. */
-  readonly atmosphere: Atmosphere
-  /** The moon as a source of light, for lights and probes. */
-  readonly source: LightSource
-  /** Whether it lights the air: glow of the sky, and haze. Set it before the first render. */
+  /** Whether it lights the air: glow of the sky, and haze. */
   readonly lightsAir: boolean
   #byHand: Vector3 | null = null
   #phase: number | null = null
@@ -114,9 +122,13 @@ export class Moon implements SkyLayer {
   /** Where it was when that was last counted up for its direction. */
   readonly #counted = new Vector3()
   readonly #place = new MoonPlace()
-  readonly #air: MoonlitAir
   readonly #surface: MoonSurface
-  readonly #halo = new HaloUniforms('Moon', FLARE)
+  /** Its halo; the strengths are of its light. Change it by its properties or with `flare.set(…)`. */
+  readonly flare = new Flare('Moon', FLARE)
+  /** Width of the map of its ground [texels]. */
+  readonly mapSize: number
+  /** What it is in; null before it is added. */
+  #home: Home | null = null
 
   readonly #direction = vector()
   readonly #light = vector()
@@ -124,7 +136,7 @@ export class Moon implements SkyLayer {
   readonly #angularRadius = uniform(0).setGroup(renderGroup)
   readonly #sunlit = spectrum()
   readonly #earthlit = spectrum()
-  readonly #flare = spectrum()
+  readonly #glare = spectrum()
   /** Cosine of the angle from the sun within which there is something of it. */
   readonly #nearSun = uniform(1).setGroup(renderGroup)
   /** The same of the moon and its halo. */
@@ -133,42 +145,54 @@ export class Moon implements SkyLayer {
   readonly #sunShows = uniform(1).setGroup(renderGroup)
 
   /** @throws If an argument is of the wrong kind or out of its range. */
-  constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
-    checkAtmosphere('Moon', atmosphere)
-    checkOptions(
-      'Moon',
-      options,
-      'direction',
-      'phase',
-      'distance',
-      'radius',
-      'strength',
-      'lightsAir',
-      'flare',
-      'mapSize'
-    )
-    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+  constructor(options: MoonOptions = {}) {
+    checkOptions('Moon', options, ...SETTINGS, 'lightsAir', 'flare', 'mapSize')
+    const { lightsAir = true, flare = {}, mapSize = 1024, ...settings } = options
     checkBoolean('Moon', 'lightsAir', lightsAir)
     if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
       fail('Moon', 'mapSize must be a power of two in [16, 8192]', mapSize)
     }
-    this.atmosphere = atmosphere
     this.lightsAir = lightsAir
-    this.direction = options.direction ?? null
-    this.phase = options.phase ?? null
-    this.distance = options.distance ?? null
-    this.radius = options.radius ?? MOON_RADIUS
-    this.strength = options.strength ?? 1
-    this.setFlare(flare)
+    this.mapSize = mapSize
+    this.flare.set(flare)
+    this.set(settings)
     this.#surface = new MoonSurface(mapSize)
+  }
+
+  /**
+   * Makes it the moon of an atmosphere, for good. `atmosphere.add` and `MoonDirectionalLight` do this.
+   *
+   * @throws If it is another atmosphere's.
+   */
+  attach(atmosphere: Atmosphere): this {
+    checkAtmosphere('Moon.attach', atmosphere)
+    if (this.#home !== null) {
+      if (this.#home.atmosphere === atmosphere) return this
+      fail('Moon.attach', 'atmosphere must be the one that it was added to before')
+    }
     const { uniforms, transmittance, diffuseLight } = atmosphere.tables
     const volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
-    this.source = new LightSource(
+    const source = new LightSource(
       (target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
       volumes
     )
-    this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
-    this.#air = new MoonlitAir(atmosphere, this.source, volumes)
+    source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
+    this.#home = { atmosphere, source, air: new MoonlitAir(atmosphere, source, volumes) }
+    return this
+  }
+
+  #inHome(): Home {
+    return this.#home ?? fail('Moon', 'is in no atmosphere yet: call atmosphere.add(moon) first')
+  }
+
+  /** What it is in, once it was added. Shared, not owned. */
+  get atmosphere(): Atmosphere {
+    return this.#inHome().atmosphere
+  }
+
+  /** The moon as a source of light, for lights and probes, once it was added. */
+  get source(): LightSource {
+    return this.#inHome().source
   }
 
   /** To the moon in world space, unit length, a copy; null while it follows the date. */
@@ -238,13 +262,36 @@ export class Moon implements SkyLayer {
   }
 
   /**
-   * Changes powers and strengths of the halo.
+   * Changes some settings.
    *
-   * @throws If one is out of its range; then nothing has changed.
+   * @throws If one is unknown or out of its range; then nothing has changed.
    */
-  setFlare(options: FlareOptions): this {
-    this.#halo.set(options)
-    return this
+  set(settings: Pick<MoonOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('Moon', this, settings, ...SETTINGS)
+  }
+
+  /**
+   * Illuminance by the moon on a plane that faces it, reddened by the air and blocked by the planet.
+   *
+   * @param position - World.
+   * @returns Linear sRGB [lx].
+   */
+  illuminanceAt(position: Vector3): Triple {
+    const { atmosphere, source } = this.#inHome()
+    return atmosphere.query(position, source).sunIlluminance(position)
+  }
+
+  /**
+   * Illuminance by moonlit sky and ground on a plane.
+   *
+   * @param position - World.
+   * @param normal - World, unit length: where the plane faces.
+   * @returns Linear sRGB [lx].
+   * @throws Before the tables were baked and read back: await `atmosphere.bake(renderer)` first.
+   */
+  skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
+    const { atmosphere, source } = this.#inHome()
+    return atmosphere.query(position, source).skyIlluminance(position, normal)
   }
 
   /**
@@ -299,7 +346,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (this.lightsAir && this.#strength > 0) this.#air.prepare(renderer, view)
+    if (this.lightsAir && this.#strength > 0) this.#home?.air.prepare(renderer, view)
   }
 
   update(view: AtmosphereView): void {
@@ -323,11 +370,11 @@ export class Moon implements SkyLayer {
     this.#earthlit.value.fromArray(full.map((value, i) => value * shine[i]))
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleSun(parameters, radius, view.up.dot(this.#direction.value))
-    this.#flare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
-    this.#halo.update(this.#flare.value.y > 0)
+    this.#glare.value.set(...this.#irradiance(geometry)).multiplyScalar(visible)
+    this.flare.setReach(this.#glare.value.y > 0)
     this.#nearSun.value = cosBeyond(CORONA_RADII * parameters.sunAngularRadius)
-    this.#nearMoon.value = Math.min(cosBeyond(angularRadius), this.#halo.cosReach.value)
-    this.#air.update(view)
+    this.#nearMoon.value = Math.min(cosBeyond(angularRadius), this.flare.uniforms.cosReach.value)
+    this.#home?.air.update(view)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
@@ -363,24 +410,24 @@ export class Moon implements SkyLayer {
         )
         light.assign(mix(light, disc.radiance, disc.coverage))
       })
-      addHalo(light, this.#halo, this.#flare, direction, this.#direction, cosMoon)
+      addHalo(light, this.flare.uniforms, this.#glare, direction, this.#direction, cosMoon)
     })
     return light
   }
 
   glow(ray: SkyRay, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#air.glow(ray, without) : without
+    return this.lightsAir ? this.#inHome().air.glow(ray, without) : without
   }
 
   haze(line: HazeLine, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#air.haze(line, without) : without
+    return this.lightsAir ? this.#inHome().air.haze(line, without) : without
   }
 
   /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */
   dispose(): void {
-    this.atmosphere.remove(this)
+    this.#home?.atmosphere.remove(this)
+    this.#home?.air.dispose()
     this.#surface.dispose()
-    this.#air.dispose()
   }
 }
 
@@ -392,5 +439,4 @@ function setRotation(target: Matrix3, rotation: Quaternion): void {
 }
 
 /** The moon: see {@link Moon}. */
-export const moon = (atmosphere: Atmosphere, options: MoonOptions = {}): Moon =>
-  new Moon(atmosphere, options)
+export const moon = (options?: MoonOptions): Moon => new Moon(options)
