@@ -62,6 +62,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   #overlayVersion = 0
   #frame = -1
   #camera: Camera | null = null
+  #renderer: Renderer | null = null
   #angle = 0.1
   #climb = 0.1
   readonly #release = (): void => this.#free()
@@ -137,6 +138,9 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     if (isLed && this.redraws > 0) return
     this.#frame = frameId
     this.#camera = camera
+    // What another renderer drew went with it.
+    if (renderer !== this.#renderer) this.needsRedraw = true
+    this.#renderer = renderer
     const cube = this.#cube
     const version = this.overlay?.version ?? 0
     const isSame = (): boolean =>

@@ -8,7 +8,7 @@ import { sampleDiffuseLight } from '../diffuseLight/cpu/diffuseLight'
 import { sunTransmittance } from '../transmittance/cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../night/cpu/twilight'
 import { checkSources, type LightSource } from '../view/LightSource'
-import { luminanceOf } from '../stars/starColor'
+import { luminanceOf } from '../parameters/photometry'
 import { checkAtmosphere } from '../view/ViewNodes'
 
 /** Options of {@link exposureFor}. */

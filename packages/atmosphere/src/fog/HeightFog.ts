@@ -1,7 +1,7 @@
 import { Vector3, Vector4 } from 'three'
 import { If, exp, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { fail } from '@welkin/geo'
+import { checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
@@ -106,7 +106,7 @@ export class HeightFog implements SkyLayer {
    * @throws If one is unknown or out of range; then nothing has changed.
    */
   set(settings: Omit<HeightFogOptions, 'sources'>): this {
-    if ('sources' in settings) fail('HeightFog.set', 'sources are fixed')
+    checkOptions('HeightFog', settings, ...SETTINGS)
     const values = (): string => JSON.stringify({ ...this.#options, sources: [] })
     const before = values()
     this.#options = checked(this.#options, settings)

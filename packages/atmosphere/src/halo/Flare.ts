@@ -1,26 +1,26 @@
 import { renderGroup, uniform } from 'three/tsl'
 import { checkNonNegative, checkPositive, setOptions } from '@welkin/geo'
 
-/** Light that an eye or a lens spreads around something bright, in two lobes. */
+/** Halo that an eye or a lens makes around a bright source, in two lobes. */
 export interface FlareOptions {
-  /** Power of the tight inner lobe, cosⁿ of the angle: the larger, the tighter; > 0. */
+  /** Power n of the tight inner lobe, cosⁿ of the angle: larger is tighter; > 0. */
   innerPower?: number
-  /** Part of the light that the inner lobe gets, ≥ 0. */
+  /** Fraction of the source's light in the inner lobe, ≥ 0. */
   innerStrength?: number
   /** Power of the broad outer lobe, > 0. */
   outerPower?: number
-  /** Part of the light that the outer lobe gets, ≥ 0. */
+  /** Fraction of the source's light in the outer lobe, ≥ 0. */
   outerStrength?: number
 }
 
-/** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
-const FAINTEST = 1e-8
+/** Radiance at which a lobe is cut off, for unit irradiance by its source [1/sr]. */
+const MIN_RADIANCE = 1e-8
 
 const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength'] as const
 
 const scalar = () => uniform(0).setGroup(renderGroup)
 
-/** A halo's figures: checked properties, kept in shader uniforms. They may be changed at any time. */
+/** Lobes of a halo: checked properties, kept in shader uniforms. They may be changed at any time. */
 export class Flare {
   declare innerPower: number
   declare innerStrength: number
@@ -32,8 +32,8 @@ export class Flare {
     innerStrength: scalar(),
     outerPower: scalar(),
     outerStrength: scalar(),
-    /** Cosine of the angle from its middle where a halo ends; above 1 for none. */
-    cosReach: uniform(2).setGroup(renderGroup)
+    /** Cosine of the angle from the source at which the halo ends; above 1 for no halo. */
+    cosMaxAngle: uniform(2).setGroup(renderGroup)
   }
   readonly #owner: string
 
@@ -67,14 +67,15 @@ export class Flare {
     return setOptions(this.#owner, this, options, ...NAMES)
   }
 
-  /** @param isSeen - Whether there is light to spread. */
-  setReach(isSeen: boolean): void {
+  /** @param isVisible - The source is above the horizon and shines. */
+  updateReach(isVisible: boolean): void {
+    // Square of the angle at which a lobe falls to MIN_RADIANCE.
     const square = (power: number, strength: number): number =>
-      (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * FAINTEST))
+      (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * MIN_RADIANCE))
     const widest = Math.max(
       square(this.innerPower, this.innerStrength),
       square(this.outerPower, this.outerStrength)
     )
-    this.uniforms.cosReach.value = isSeen && widest > 0 ? 1 - Math.min(widest, 4) / 2 : 2
+    this.uniforms.cosMaxAngle.value = isVisible && widest > 0 ? 1 - Math.min(widest, 4) / 2 : 2
   }
 }

@@ -5,8 +5,8 @@ import { Moon } from './Moon'
 import { SunDirectionalLight } from '../lights/SunDirectionalLight'
 
 /**
- * Moonlight: a directional light that comes from the moon, by its phase and distance, reddened by the air
- * above each fragment and blocked by the planet. The full moon gives about a quarter of a lux.
+ * Moonlight: a directional light from the moon. Its phase and distance set its brightness; the air above
+ * each fragment reddens it, the planet blocks it. The full moon gives about a quarter of a lux.
  *
  * Everything else is as with {@link SunDirectionalLight}, shadows included.
  */
@@ -15,8 +15,8 @@ export class MoonDirectionalLight extends SunDirectionalLight {
   readonly moon: Moon
 
   /**
-   * @param distance - From the target to the light [world units].
-   * @throws If the moon is none, or another atmosphere's.
+   * @param distance - Distance from the target to the light [world units].
+   * @throws If `moon` is no {@link Moon}, or another atmosphere's.
    */
   constructor(atmosphere: Atmosphere, moon: Moon, distance = 1) {
     checkAtmosphere('MoonDirectionalLight', atmosphere)

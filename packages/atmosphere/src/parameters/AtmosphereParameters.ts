@@ -201,37 +201,36 @@ function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: n
 }
 
 /**
- * What an atmosphere is made of. Setting a field checks it; so does {@link set}, which replaces several
- * at once. Both count `version` up, so that tables made from them know that they are stale.
+ * What an atmosphere is made of. Fields are read only; {@link set} replaces some and counts `version` up,
+ * so that tables made from them know that they are stale.
  *
  * ```ts
  * const parameters = new AtmosphereParameters({ turbidity: 4, ozone: 280 })
- * parameters.groundAlbedo = [0.3, 0.3, 0.3, 0.3]
- * parameters.set({ turbidity: 6, mieScaleHeight: 1500 })
+ * parameters.set({ turbidity: 6, groundAlbedo: [0.3, 0.3, 0.3, 0.3] })
  * ```
  */
 export class AtmosphereParameters {
   #version = 0
 
-  declare wavelengths: Spectrum
-  declare solarIrradiance: Spectrum
-  declare sunAngularRadius: number
-  declare limbDarkening: Spectrum
-  declare bottomRadius: number
-  declare ellipsoid: Ellipsoid | null
-  declare topRadius: number
-  declare rayleighScattering: Spectrum
-  declare rayleighScaleHeight: number
-  declare rayleighLayers: ScaleHeightLayers
-  declare mieScattering: Spectrum
-  declare mieExtinction: Spectrum
-  declare mieScaleHeight: number
-  declare mieAsymmetry: number | Spectrum
-  declare absorptionExtinction: Spectrum
-  declare absorptionAltitude: number
-  declare absorptionHalfWidth: number
-  declare groundAlbedo: Spectrum
-  declare spectralToXYZ: SpectralMatrix
+  declare readonly wavelengths: Spectrum
+  declare readonly solarIrradiance: Spectrum
+  declare readonly sunAngularRadius: number
+  declare readonly limbDarkening: Spectrum
+  declare readonly bottomRadius: number
+  declare readonly ellipsoid: Ellipsoid | null
+  declare readonly topRadius: number
+  declare readonly rayleighScattering: Spectrum
+  declare readonly rayleighScaleHeight: number
+  declare readonly rayleighLayers: ScaleHeightLayers
+  declare readonly mieScattering: Spectrum
+  declare readonly mieExtinction: Spectrum
+  declare readonly mieScaleHeight: number
+  declare readonly mieAsymmetry: number | Spectrum
+  declare readonly absorptionExtinction: Spectrum
+  declare readonly absorptionAltitude: number
+  declare readonly absorptionHalfWidth: number
+  declare readonly groundAlbedo: Spectrum
+  declare readonly spectralToXYZ: SpectralMatrix
 
   /**
    * @param init - Fields that differ from the Earth's.
@@ -243,7 +242,7 @@ export class AtmosphereParameters {
     this.#version = 0
   }
 
-  /** Counts the changes. */
+  /** Counts the calls of {@link set}. */
   get version(): number {
     return this.#version
   }
@@ -296,14 +295,8 @@ export class AtmosphereParameters {
     }, 1)
     check('topRadius', topRadius, bottomRadius * (1 + 1e-5), bottomRadius * 1.5)
     for (const [name, value] of Object.entries(next)) {
-      Object.defineProperty(this, name, {
-        configurable: true,
-        enumerable: true,
-        get: () => value,
-        set: (changed: unknown) => {
-          this.set({ [name]: changed })
-        }
-      })
+      // Assigning to a field throws: those who hold tables would not learn of it.
+      Object.defineProperty(this, name, { configurable: true, enumerable: true, value })
     }
     this.#version++
     return this

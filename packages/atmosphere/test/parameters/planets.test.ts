@@ -97,7 +97,7 @@ describe('planets', () => {
   it.each([
     [() => marsParameters({ dust: -1 }), /dust must be in \[0, 10\], got -1/],
     [() => airlessParameters({ distance: 0 }), /distance must be in .*got 0/],
-    [() => airlessParameters({ radius: NaN }), /bottomRadius .*NaN/],
+    [() => airlessParameters({ radius: NaN }), /airlessParameters: radius .*NaN/],
     [() => planetGround({ windSpeed: 99 }), /PlanetGround: windSpeed must be in \[0, 40\], got 99/],
     [() => planetGround({ roughness: NaN }), /PlanetGround: roughness .*NaN/]
   ])('refuses numbers that make no sense: %s', (make, message) => {
