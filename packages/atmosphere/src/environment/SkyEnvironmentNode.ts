@@ -14,11 +14,11 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 export interface SkyEnvironmentOptions extends EnvironmentOptions {
   /** Texels along the edge of a cube face, a power of two in [256, 2048]. */
   size?: number
-  /** How far the sun may move, or the axes of the world turn, before it is drawn again, > 0 [°]. */
+  /** Angle by which the sun or the axes of the world may turn before it is drawn again, > 0 [°]. */
   angle?: number
-  /** How far the camera may climb or sink, as a part of its height (at least 500 m), > 0. */
+  /** Climb of the camera before it is drawn again, as a part of its height (at least 500 m), > 0. */
   climb?: number
-  /** What is in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
+  /** Picture in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
 
@@ -52,7 +52,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly overlay: SkyOverlay | null
   /** Draws all of it before the next frame, whatever has changed. */
   needsRedraw = true
-  /** How often it was drawn. */
+  /** Number of times that it was drawn. */
   redraws = 0
   /** Texels along the edge of a cube face. */
   readonly size: number
