@@ -320,7 +320,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => imageEnvironment(wrong(atmosphere))
   ],
   [
-    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudOverlay(), or null, got a Mesh',
+    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudEnvironment(), or null, got a Mesh',
     () => skyEnvironment(atmosphere, { overlay: wrong(new Mesh()) })
   ],
   [

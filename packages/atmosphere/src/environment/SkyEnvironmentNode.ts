@@ -18,7 +18,7 @@ export interface SkyEnvironmentOptions extends EnvironmentOptions {
   angle?: number
   /** Climb of the camera before it is drawn again, as a part of its height (at least 500 m), > 0. */
   climb?: number
-  /** Picture in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
+  /** Picture in front of the sky: `cloudEnvironment` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
 
@@ -79,7 +79,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     }
     if (diffuse !== undefined) checkBoolean(where, 'diffuse', diffuse)
     if (overlay !== null && typeof overlay?.over !== 'function') {
-      fail(where, 'overlay must be a SkyOverlay, such as cloudOverlay(), or null', overlay)
+      fail(where, 'overlay must be a SkyOverlay, such as cloudEnvironment(), or null', overlay)
     }
     this.atmosphere = atmosphere
     this.diffuse = diffuse ?? null
