@@ -30,7 +30,7 @@ export interface DayCycleOptions {
   /** Time in which exposure adapts by 63 %, ≥ 0; 0 adapts at once [s]. Default 0.3. */
   adaptation?: number
   /** Options of `exposureFor`. */
-  exposure?: ExposureOptions
+  exposureOptions?: ExposureOptions
 }
 
 const _origin = new Vector3()
@@ -76,7 +76,7 @@ export class DayCycle {
   /** @throws If an argument is of the wrong kind or out of range. */
   constructor(atmosphere: Atmosphere, options: DayCycleOptions = {}) {
     checkAtmosphere('DayCycle', atmosphere)
-    const { date, rate, daylight, adaptation, holdDay, exposure } = checkOptions(
+    const { date, rate, daylight, adaptation, holdDay, exposureOptions } = checkOptions(
       'DayCycle',
       options,
       'date',
@@ -84,18 +84,17 @@ export class DayCycle {
       'daylight',
       'holdDay',
       'adaptation',
-      'exposure'
+      'exposureOptions'
     )
-    if (date !== undefined) checkDate('DayCycle', date)
     this.atmosphere = atmosphere
-    this.exposureOptions = checkExposure('DayCycle', exposure)
+    this.exposureOptions = checkExposure('DayCycle', exposureOptions)
     this.holdDay = holdDay ?? false
     if (rate !== undefined) this.rate = rate
     if (daylight !== undefined) this.daylight = daylight
     if (adaptation !== undefined) this.adaptation = adaptation
     this.#eyes = new ExposureAdaptation(atmosphere)
     this.#time = 0
-    this.time = (date ?? atmosphere.date ?? new Date()).getTime()
+    this.date = date ?? atmosphere.date ?? new Date()
   }
 
   /** Time that sun, moon and stars are drawn for [ms since 1970]. */
@@ -106,6 +105,16 @@ export class DayCycle {
   set time(value: number) {
     this.#moveTo(value)
     this.#requestedSeason = null
+  }
+
+  /** The same as a date, a copy. */
+  get date(): Date {
+    return new Date(this.#time)
+  }
+
+  set date(value: Date) {
+    checkDate('DayCycle', value)
+    this.time = value.getTime()
   }
 
   #moveTo(time: number): void {

@@ -13,11 +13,10 @@ import { NodeMaterial } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
 import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { AtmosphereParameters, checkParameters } from '../parameters/AtmosphereParameters'
+import { checkParameters, type AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
-import { isAirless } from '../parameters/planets'
 import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
@@ -33,7 +32,7 @@ import { singleScatteringLight } from './tsl/singleScattering'
 import type { ViewSegment } from './tsl/viewSegment'
 import type { Bool } from '../tsl-types'
 
-/** Options of {@link atmosphereShell}. */
+/** Options of {@link AtmosphereShell}. */
 export interface AtmosphereShellOptions {
   /**
    * The sun: an atmosphere's; or a light, with the colour and intensity of sunlight above the air; or a
@@ -87,8 +86,7 @@ function shellMaterial(): NodeMaterial {
  * many small planets. A child of the body's mesh:
  *
  * ```ts
- * const shell = atmosphereShell(new AtmosphereParameters(), 1, { sun: light })
- * if (shell !== null) globe.add(shell)
+ * globe.add(new AtmosphereShell(new AtmosphereParameters(), 1, { sun: light }))
  * ```
  *
  * Seen from space it is haze over the body and a rim of light around it, on the night side too; seen from
@@ -98,6 +96,8 @@ function shellMaterial(): NodeMaterial {
  * View rays end at the body's sphere, not at the scene's depth. Objects in front of the middle of a ray's
  * part in the air, such as a ship or a cockpit, are drawn without haze, objects behind it with all of it.
  * One alpha dims all colours of the background alike. Eclipses of its sun do not dim it.
+ *
+ * A shell of a body without air is not `visible`, and draws nothing.
  *
  * The mesh is transparent and premultiplied, draws back faces only, writes no depth, and has `renderOrder`
  * 1, after a body's own transparent tiles. It casts no shadow and raycasts miss it.
@@ -155,6 +155,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#luminanceScale = this.luminanceScale = luminanceScale
     this.name = 'AtmosphereShell'
     this.renderOrder = 1
+    this.visible = !parameters.isAirless
 
     this.#isSingle = model === 'single-scattering'
     const lends = !this.#isSingle && isAtmosphere(sun) && sun.parameters === parameters
@@ -315,20 +316,4 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#release()
     this.#renderer = null
   }
-}
-
-/**
- * A planet's air as a mesh, see {@link AtmosphereShell}; null for a body without air.
- *
- * @param parameters - Parameters of the air.
- * @param bodyRadius - Radius of the body, in units of the object that the shell is added to.
- * @throws If an argument is missing or out of its range.
- */
-export const atmosphereShell = (
-  parameters: AtmosphereParameters,
-  bodyRadius: number,
-  options: AtmosphereShellOptions = {}
-): AtmosphereShell | null => {
-  const isBare = parameters instanceof AtmosphereParameters && isAirless(parameters)
-  return isBare ? null : new AtmosphereShell(parameters, bodyRadius, options)
 }
