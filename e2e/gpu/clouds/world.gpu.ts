@@ -194,7 +194,7 @@ gpuTest(
     renderer.shadowMap.enabled = true
     const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
     const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
-    const luna = moon(atmosphere, { lightsAir: false })
+    const luna = moon({ lightsAir: false })
     luna.direction = towards(40, 100)
     atmosphere.add(luna)
     const camera = new PerspectiveCamera(50, size.width / size.height, 0.1, 1e4)

@@ -61,7 +61,7 @@ describe('NightLight', () => {
 
   test('takes moonlight from a moon that was added, and none by day', () => {
     const world = new Atmosphere()
-    const luna = moon(world, { direction: new Vector3(0, 1, 0), phase: 0.5 })
+    const luna = moon({ direction: new Vector3(0, 1, 0), phase: 0.5 }).attach(world)
     const night = new NightLight()
     night.update(viewAt(-20, 2, world))
     expect(night.source).toBe(null)
@@ -190,7 +190,7 @@ test('shadows of moonlight need a source of light', () => {
   expect(() => cloudShadow(node, null, {} as never)).toThrow(
     'CloudShadowNode: source must be a LightSource'
   )
-  const luna = moon(atmosphere)
+  const luna = moon().attach(atmosphere)
   expect(cloudShadow(node, null, luna.source).source).toBe(luna.source)
   expect(cloudShadow(node).source).toBe(atmosphere.sun)
 })
