@@ -164,7 +164,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly bodyRadius: number
   #sun: ShellSun
   #luminanceScale: number
-  readonly #isSingle: boolean
+  /** See {@link AtmosphereShellOptions}. */
+  readonly model: 'tables' | 'single-scattering'
   /** An atmosphere that is its sun and of the same air: its tables serve the shell, too. */
   readonly #lender: Atmosphere | null
   /** Those of all shells of its parameters, or the lender's; null before it is drawn, or if single. */
@@ -217,8 +218,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.renderOrder = 1
     this.visible = !parameters.isAirless
 
-    this.#isSingle = model === 'single-scattering'
-    const lends = !this.#isSingle && isAtmosphere(sun) && sun.parameters === parameters
+    this.model = model
+    const lends = model === 'tables' && isAtmosphere(sun) && sun.parameters === parameters
     this.#lender = lends ? sun : null
     const { material } = this
     material.name = 'Welkin.AtmosphereShell'
@@ -243,9 +244,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     checkRenderer('AtmosphereShell', renderer)
     this.#giveBack()
     this.#renderer = renderer
-    const tables = this.#isSingle
-      ? null
-      : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
+    const tables =
+      this.model === 'single-scattering'
+        ? null
+        : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
     this.#tables = tables
     if (tables !== null) this.#uniforms = tables.uniforms
     const air: Air = {
