@@ -24,19 +24,19 @@ export interface MoonArgs extends RendererArgs {
   day: number
   /** Hour of that day, UTC [h]. */
   hour: number
-  /** Whether the phase is `phase`, not that of the date. */
+  /** Takes `phase` instead of the date's phase. */
   setPhase: boolean
   /** 0 new, 0.5 full, 1 new. */
   phase: number
-  /** What the camera looks at. */
+  /** Target of the camera. */
   target: 'moon' | 'sun'
-  /** How far below that the middle of the picture is [degrees]. */
+  /** Angle from the target down to the middle of the picture [degrees]. */
   lower: number
   /** Vertical field of view [degrees]. */
   fieldOfView: number
   /** [stops], 0 for daylight. */
   exposure: number
-  /** What lights the land; none leaves the sky alone. Takes effect when the scene is made. */
+  /** Lights on the land; none draws the sky alone. Takes effect when the scene is made. */
   lights: 'sun' | 'moon' | 'both' | 'none'
   /** Width of the map of the moon's ground [texels]. */
   mapSize: number
@@ -47,7 +47,7 @@ const GROUND_RADIUS = 15_000
 /** Suffices for a small picture, and takes a sixteenth of the time [texels]. */
 const FRAME_MAP_SIZE = 256
 
-/** From what casts shadows to the light [m]. */
+/** Distance from shadow casters to the light [m]. */
 const SHADOW_DISTANCE = 150
 
 /** A meadow with trees and a hut. */
@@ -94,8 +94,8 @@ export async function createMoon(
   const { atmosphere } = air
   const mapSize = args.frame ? Math.min(args.mapSize, FRAME_MAP_SIZE) : args.mapSize
   // #region moon
-  const luna = moon(atmosphere, { mapSize }) // where the date has it, in its phase
-  atmosphere.add(sunFlare(atmosphere), luna) // far before near
+  const luna = moon({ mapSize }) // where the date has it, in its phase
+  atmosphere.add(sunFlare(), luna) // far before near
 
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 150) // 150 m from its target
   const moonlitSky = new SkyLightProbe(atmosphere, luna.source)

@@ -1,13 +1,12 @@
 import {
-  airlessBody,
+  airlessParameters,
   Atmosphere,
   AtmosphereParameters,
-  marsAtmosphere,
+  marsParameters,
   planetGround,
-  titanAtmosphere,
-  venusAtmosphere
+  titanParameters,
+  venusParameters
 } from '@welkin/atmosphere'
-import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene } from 'three'
 import { Air } from './air'
 import { earthPictures } from './globe/earthPictures'
@@ -18,17 +17,17 @@ export type PlanetName = 'earth' | 'made-up' | 'mars' | 'titan' | 'venus' | 'moo
 
 export interface PlanetsArgs extends RendererArgs {
   planet: PlanetName
-  /** Of the camera above the ground [m]. */
+  /** Height of the camera above the ground [m]. */
   height: number
   /** [degrees] */
   longitude: number
   /** [degrees] */
   latitude: number
-  /** Of the sun above the horizon [degrees]. */
+  /** Elevation of the sun [degrees]. */
   sunElevation: number
-  /** Of the sun from where the camera looks, clockwise [degrees]. */
+  /** Azimuth of the sun from the direction of view, clockwise [degrees]. */
   sunAzimuth: number
-  /** Of the line of sight above the horizontal [degrees]. */
+  /** Direction of view above the horizontal [degrees]. */
   pitch: number
   /** Vertical field of view [degrees]. */
   fieldOfView: number
@@ -61,16 +60,14 @@ export async function createPlanets(
     const { planet, dust } = current
     // #region planets
     const parameters = {
-      earth: AtmosphereParameters.earth(),
-      'made-up': AtmosphereParameters.earth(),
-      mars: marsAtmosphere({ dust }), // its optical depth
-      titan: titanAtmosphere(),
-      venus: venusAtmosphere(), // above its clouds
-      moon: airlessBody()
+      earth: new AtmosphereParameters(),
+      'made-up': new AtmosphereParameters(),
+      mars: marsParameters({ dust }), // its optical depth
+      titan: titanParameters(),
+      venus: venusParameters(), // above its clouds
+      moon: airlessParameters()
     }[planet]
-    const radius = parameters.bottomRadius
-    const ellipsoid = planet === 'earth' ? Ellipsoid.WGS84 : new Ellipsoid(radius, radius)
-    const atmosphere = new Atmosphere({ parameters, ellipsoid })
+    const atmosphere = new Atmosphere({ parameters })
     // #endregion
     if (planet === 'earth' || planet === 'made-up') {
       const options = planet === 'earth' ? pictures : { seed: 3 }

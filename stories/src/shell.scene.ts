@@ -1,11 +1,10 @@
 import {
-  airlessBody,
+  airlessParameters,
   AtmosphereParameters,
-  atmosphereShell,
-  marsAtmosphere,
-  titanAtmosphere
+  AtmosphereShell,
+  marsParameters,
+  titanParameters
 } from '@welkin/atmosphere'
-import type { AtmosphereShell } from '@welkin/atmosphere'
 import {
   BoxGeometry,
   Color,
@@ -28,9 +27,9 @@ export interface ShellArgs extends RendererArgs {
   /** A map of a few bodies, or the view out of a cockpit. */
   view: 'map' | 'cockpit'
   model: 'tables' | 'single-scattering'
-  /** Of the sun above the cockpit's horizon, or around the map [degrees]. */
+  /** Elevation of the sun above the cockpit's horizon, or its azimuth around the map [degrees]. */
   sun: number
-  /** Of the cockpit above the ground [m]. */
+  /** Height of the cockpit above the ground [m]. */
   height: number
   /** [stops], 0 for daylight. */
   exposure: number
@@ -39,7 +38,7 @@ export interface ShellArgs extends RendererArgs {
 /** Sunlight on a plane that faces it [lx], as bright as the sky's tables have it at scale 1e-4. */
 const SUNLIGHT = 13
 
-/** How far bodies are turned, for Africa to face the map's camera [radians]. */
+/** Rotation of the bodies that turns Africa to the map's camera [rad]. */
 const LONGITUDE = -1.6
 
 /** A kilometre in the cockpit's world [world units]. */
@@ -85,19 +84,19 @@ export async function createShell(
     meshes.push(ball)
     scene.add(ball)
     // #region shell
-    const shell = atmosphereShell(parameters, 1, { sun: light, model }) // null for a body without air
-    if (shell !== null) ball.add(shell) // a mesh whose geometry has radius 1, of any scale
+    const shell = new AtmosphereShell(parameters, 1, { sun: light, model })
+    ball.add(shell) // a mesh whose geometry has radius 1, of any scale
     // #endregion
-    if (shell !== null) shells.push(shell)
+    shells.push(shell)
   }
 
   const cockpit = new Group()
   const build = (): void => {
     if (args.view === 'map') {
       add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#ffffff', earth?.surface)
-      add(marsAtmosphere(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
-      add(titanAtmosphere(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
-      add(airlessBody(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
+      add(marsParameters(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
+      add(titanParameters(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
+      add(airlessParameters(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
       return
     }
     add(

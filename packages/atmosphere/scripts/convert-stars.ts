@@ -10,7 +10,7 @@ interface Feature {
   geometry: { coordinates: [longitude: number, latitude: number] }
 }
 
-/** Of the two stars of the catalogue with no colour index, which are white as most are [mag]. */
+/** Colour index for the two stars of the catalogue that have none: white, as most are [mag]. */
 const USUAL_COLOR_INDEX = 0.3
 
 const input = process.argv[2]
@@ -34,7 +34,7 @@ writeFileSync(
   file,
   `/*! Star catalogue of d3-celestial, Copyright (c) 2015, Olaf Frohn, BSD-3-Clause: see src/stars/LICENSE-d3-celestial.txt */
 
-/** Made by scripts/convert-stars.ts; \`starCode.ts\` says how to read it. Base64. */
+/** Made by scripts/convert-stars.ts; \`starEncoding.ts\` says how to read it. Base64. */
 export const brightStarData =
   '${text}'
 `

@@ -4,8 +4,8 @@ import type { Triple } from '../src/air/cpu/color'
 import {
   ANGSTROM_EXPONENT,
   rayleighCrossSection,
-  standardAtmosphere
-} from '../src/parameters/standardAtmosphere'
+  standardEarthParameters
+} from '../src/parameters/standardEarth'
 
 const spectra = JSON.parse(
   readFileSync(new URL('../../../e2e/reference/spectra.json', import.meta.url), 'utf8')
@@ -31,7 +31,7 @@ const lookUp = (values: number[], grid: number[], nm: number): number => {
 const solarIrradiance = (nm: number): number =>
   lookUp(spectra.solar_irradiance_W_m2_nm, spectra.wavelengths_nm, nm)
 
-/** The sun above the air, at {@link wavelengths} [W/m²/nm]. */
+/** Sunlight above the air at {@link wavelengths} [W/m²/nm]. */
 export const sunlight: number[] = wavelengths.map(solarIrradiance)
 
 const weights: Triple[] = wavelengths.map((nm, i) => {
@@ -53,7 +53,7 @@ const ozone = (nm: number): number =>
 const spectrumAt = (nm: readonly number[], f: (nm: number) => number): Spectrum =>
   nm.map(f) as unknown as Spectrum
 
-/** The Earth's default air at four of {@link wavelengths}. */
+/** Earth's default air at four of {@link wavelengths}. */
 export function earthAt(nm: readonly number[], groundAlbedo = 0.1): AtmosphereParameters {
   const earth = new AtmosphereParameters()
   const spectrum = (f: (nm: number) => number): Spectrum => spectrumAt(nm, f)
@@ -70,9 +70,9 @@ export function earthAt(nm: readonly number[], groundAlbedo = 0.1): AtmospherePa
   })
 }
 
-/** Air of `standardAtmosphere` at four of {@link wavelengths}. */
+/** Air of `standardEarthParameters` at four of {@link wavelengths}. */
 export function standardAt(nm: readonly number[]): AtmosphereParameters {
-  const air = standardAtmosphere()
+  const air = standardEarthParameters()
   const [first] = air.wavelengths
   const aerosols = (x: number): number => (x / first) ** -ANGSTROM_EXPONENT
   return air.set({

@@ -1,5 +1,5 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
-import { checkOptions } from '@welkin/geo'
+import { setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
 import type { Sightline, SkyLayer, Veil } from '../view/SkyLayer'
@@ -8,39 +8,51 @@ import type { Bool, Float } from '../tsl-types'
 
 /** Options of {@link DistanceFog}. */
 export interface DistanceFogOptions {
-  /** Of three's `FogExp2`: what is at 1/density has e⁻¹ of its light left, ≥ 0 [1/m]. */
+  /** Density as in three's `FogExp2`: at distance 1/density e⁻¹ of the light is left; in [0, 100] [1/m]. */
   density?: number
   /** Altitudes of the camera between which the fog fades away, rising [m]. */
   fade?: readonly [number, number]
 }
 
 /**
- * Fog by distance alone, exp(−(density × distance)²) as three's `FogExp2`, in the light of the sky: what is
- * far away takes the colour that the sky has behind it at the horizon, and so vanishes into it at any time
- * of the day. It hides where a scene ends. The sky itself stays clear.
+ * Fog by distance alone, exp(−(density × distance)²) as three's `FogExp2`, in the colour of the sky: far
+ * objects take the colour of the horizon behind them and vanish into it at any time of day. It hides the
+ * end of a scene. The sky itself stays clear.
  *
  * ```ts
  * atmosphere.add(distanceFog({ density: 1 / 4000 }))
  * ```
  */
 export class DistanceFog implements SkyLayer {
-  /** See {@link DistanceFogOptions} [m]. */
-  readonly fade: readonly [number, number]
-  #value = 0
+  #value = 1e-4
+  #fade: readonly [number, number] = [5000, 15_000]
   #version = 0
   readonly #density = uniform(0).setGroup(renderGroup)
 
   /** @throws If an option is out of range. */
   constructor(options: DistanceFogOptions = {}) {
-    const { density = 1e-4, fade = [5000, 15_000] } = checkOptions(
-      'DistanceFog',
-      options,
-      'density',
-      'fade'
-    )
-    checkFade('DistanceFog', fade)
-    this.density = density
-    this.fade = [...fade]
+    this.set(options)
+    this.#version = 0
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: DistanceFogOptions): this {
+    return setOptions('DistanceFog', this, settings, 'density', 'fade')
+  }
+
+  /** See {@link DistanceFogOptions}, rising [m]. */
+  get fade(): readonly [number, number] {
+    return this.#fade
+  }
+
+  set fade(value: readonly [number, number]) {
+    checkFade('DistanceFog', value)
+    this.#fade = [...value]
+    this.#version++
   }
 
   /** See {@link DistanceFogOptions}, in [0, 100] [1/m]. */
@@ -72,13 +84,13 @@ export class DistanceFog implements SkyLayer {
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = view.air
       const { eye, source } = view
-      // The same azimuth, a little above the horizon where the way leads lower.
-      const cosRaised = cosView.max(eye.cosHorizon.add(CLEARANCE)).min(1).toConst() as Float
+      // The same azimuth, raised to just above the horizon if the ray is lower.
+      const cosRaised = cosView.max(eye.cosHorizon.add(HORIZON_MARGIN)).min(1).toConst() as Float
       const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
-      const turned = sine(cosRaised).div(sine(cosView).max(1e-4))
+      const scale = sine(cosRaised).div(sine(cosView).max(1e-4))
       const cosRaisedSun = cosRaised
         .mul(eye.cosSun)
-        .add(cosViewSun.sub(cosView.mul(eye.cosSun)).mul(turned))
+        .add(cosViewSun.sub(cosView.mul(eye.cosSun)).mul(scale))
         .clamp(-1, 1)
         .toConst() as Float
       const isGround = float(0).greaterThan(1) as Bool
@@ -100,8 +112,8 @@ export class DistanceFog implements SkyLayer {
   }
 }
 
-/** Sine of an angle above the horizon, about that of a pixel. */
-const CLEARANCE = 1e-3
+/** Sine of an angle above the horizon, about a pixel. */
+const HORIZON_MARGIN = 1e-3
 
 /** Fog by distance alone: see {@link DistanceFog}. */
 export const distanceFog = (options?: DistanceFogOptions): DistanceFog => new DistanceFog(options)

@@ -2,9 +2,9 @@ import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
 import { DistanceFog } from '../../src/fog/DistanceFog'
 import { HeightFog } from '../../src/fog/HeightFog'
-import { ERFCX_COEFFICIENTS, ERFCX_SCALE, erfcx } from '../../src/fog/cpu/heightFog'
-import { fogDepth, multipleScattering } from '../../src/fog/cpu/heightFog'
-import type { FogLayer } from '../../src/fog/cpu/heightFog'
+import { ERFCX_COEFFICIENTS, ERFCX_SCALE } from '../../src/fog/tsl/erfcx'
+import { erfcx, fogDepth, multipleScattering } from '../twins/fog/heightFog'
+import type { FogLayer } from '../twins/fog/heightFog'
 import { gaussLegendre } from '../../src/math/cpu/quadrature'
 import { number, runs } from '../arbitraries'
 
@@ -179,6 +179,6 @@ describe('fog', () => {
     expect(() => new HeightFog({ fade: [5, 5] })).toThrow('fade must rise, got [5, 5]')
     expect(() => new HeightFog().set({ asymmetry: 1 })).toThrow('asymmetry')
     expect(() => new DistanceFog({ density: -1 })).toThrow('DistanceFog: density must be in')
-    expect(new HeightFog().set({ base: 20 }).options.falloff).toBe(50)
+    expect(new HeightFog().set({ base: 20 }).falloff).toBe(50)
   })
 })
