@@ -74,10 +74,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** What is kept on the GPU. */
   readonly tables = new AtmosphereTables()
   /** The sun as a source of light; its `irradiance` dims in an eclipse. */
-  readonly sun = new LightSource(
-    (atmosphere, target) => target.copy(atmosphere.sunDirection),
-    this.tables.volumes
-  )
+  readonly sun = new LightSource((atmosphere, target) => target.copy(atmosphere.sunDirection))
   readonly #layers: SkyLayer[] = []
   #layersVersion = 0
   readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()

@@ -164,9 +164,9 @@ export class SkyCube {
   }
 
   #prepare(renderer: Renderer, view: AtmosphereView): void {
-    const { layers, luminanceScale, sun, tables } = this.#atmosphere
+    const { layers, luminanceScale, tables } = this.#atmosphere
     // Another camera may have taken the sky volume since the last face.
-    view.slot = sun.volumes.volumeFor(renderer, view.eye!, tables.version).slot
+    view.volume = tables.volumes.volumeFor(renderer, view.eye!, tables.version)
     for (const layer of layers) layer.prepare?.(renderer, view)
     this.#view.update({ camera: this.camera })
     for (const layer of layers) layer.update?.(view)

@@ -15,7 +15,6 @@ import { LightSource } from '../view/LightSource'
 import { MoonPlace, type MoonGeometry } from './moonGeometry'
 import { MoonSurface } from './MoonSurface'
 import { MoonlitAir } from './MoonlitAir'
-import { MoonVolumes } from './MoonVolumes'
 import type { HazeLine, SkyLayer, SkyRay } from '../view/SkyLayer'
 import { addHalo } from '../halo/tsl/halo'
 import { corona, moonDisc } from './tsl/moonDisc'
@@ -107,7 +106,8 @@ export class Moon implements SkyLayer {
   /** Where it was when that was last counted up for its direction. */
   readonly #counted = new Vector3()
   readonly #place = new MoonPlace()
-  readonly #air: MoonlitAir
+  /** Null if it does not light the air. */
+  readonly #air: MoonlitAir | null
   readonly #surface: MoonSurface
   readonly #halo = new HaloUniforms('Moon', FLARE)
 
@@ -141,14 +141,12 @@ export class Moon implements SkyLayer {
     this.strength = options.strength ?? 1
     this.setFlare(flare)
     this.#surface = new MoonSurface(mapSize)
-    const { uniforms, transmittance, diffuseLight } = atmosphere.tables
-    const volumes = new MoonVolumes(uniforms, transmittance.target, diffuseLight.target)
     this.source = new LightSource(
       (_, target, from = _position.set(0, 0, 0)) => target.copy(this.#worldDirection(from)),
-      volumes
+      false
     )
     this.source.irradianceAt = position => this.#irradiance(this.#seenFrom(position))
-    this.#air = new MoonlitAir(atmosphere, this.source, volumes)
+    this.#air = lightsAir ? new MoonlitAir(atmosphere, this.source) : null
   }
 
   /** To the moon in world space, unit length, a copy; null while it follows the date. */
@@ -279,7 +277,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (this.lightsAir && this.#strength > 0) this.#air.prepare(renderer, view)
+    if (this.#strength > 0) this.#air?.prepare(renderer, view)
   }
 
   update(view: AtmosphereView): void {
@@ -307,7 +305,7 @@ export class Moon implements SkyLayer {
     this.#halo.update(this.#flare.value.y > 0)
     this.#nearSun.value = cosBeyond(CORONA_RADII * parameters.sunAngularRadius)
     this.#nearMoon.value = Math.min(cosBeyond(angularRadius), this.#halo.cosReach.value)
-    this.#air.update(view)
+    this.#air?.update(view)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
@@ -349,18 +347,18 @@ export class Moon implements SkyLayer {
   }
 
   glow(ray: SkyRay, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#air.glow(ray, without) : without
+    return this.#air?.glow(ray, without) ?? without
   }
 
   haze(line: HazeLine, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#air.haze(line, without) : without
+    return this.#air?.haze(line, without) ?? without
   }
 
   /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */
   dispose(): void {
     this.atmosphere.remove(this)
     this.#surface.dispose()
-    this.#air.dispose()
+    this.#air?.dispose()
   }
 }
 

@@ -4,7 +4,6 @@ import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
-import type { MoonVolumes } from './MoonVolumes'
 import type { HazeLine, SkyRay } from '../view/SkyLayer'
 import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
@@ -17,25 +16,22 @@ const MOON_IS_DOWN = -0.31
 const _position = new Vector3()
 const _direction = new Vector3()
 
-/** The air in the light of the moon, from its own sky volumes, which are computed while that can be seen. */
+/** The air in the light of the moon, from sky volumes that are computed while that can be seen. */
 export class MoonlitAir {
   /** 1 while moonlight in the air can be seen. */
   readonly #glows = uniform(0).setGroup(renderGroup)
   readonly #views = new Map<ViewNodes, ViewNodes>()
-  #renderer: Renderer | null = null
 
-  /** @param volumes - The source's. */
   constructor(
     readonly atmosphere: Atmosphere,
-    readonly source: LightSource,
-    readonly volumes: MoonVolumes
-  ) {}
+    readonly source: LightSource
+  ) {
+    atmosphere.tables.addSource(source)
+  }
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
-    if (renderer !== this.#renderer) this.volumes.invalidate()
-    this.#renderer = renderer
-    this.volumes.isNeeded = this.#isSeen(view)
-    if (this.volumes.isNeeded) this.atmosphere.update(renderer, view.camera, this.source)
+    this.source.lightsAir = this.#isSeen(view)
+    if (this.source.lightsAir) this.atmosphere.update(renderer, view.camera, this.source)
   }
 
   #isSeen(view: AtmosphereView): boolean {
@@ -48,7 +44,7 @@ export class MoonlitAir {
   }
 
   update(view: AtmosphereView): void {
-    this.#glows.value = this.volumes.isNeeded ? 1 : 0
+    this.#glows.value = this.source.lightsAir ? 1 : 0
     for (const nodes of this.#views.values()) {
       if (nodes.camera === null || nodes.camera === view.camera) nodes.update(view)
     }
@@ -87,8 +83,7 @@ export class MoonlitAir {
   }
 
   dispose(): void {
-    this.volumes.dispose()
-    this.volumes.isNeeded = false
-    this.#renderer = null
+    this.source.lightsAir = false
+    this.atmosphere.tables.removeSource(this.source)
   }
 }

@@ -17,7 +17,6 @@ import {
   cameraProjectionMatrix,
   modelViewMatrix,
   positionLocal,
-  texture,
   uniform,
   vec4
 } from 'three/tsl'
@@ -33,6 +32,7 @@ import { sunWhite } from '../ground/cpu/reflectance'
 import { isAirless } from '../parameters/planets'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
+import { TableAtlas } from '../tables/TableAtlas'
 import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from '../scattering/tsl/scattering'
 import { shellFragment, type ShellPlace, type Way } from './tsl/shell'
@@ -256,12 +256,9 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
     this.#tables = tables
     if (tables !== null) this.#uniforms = tables.uniforms
-    const air: Air = {
-      uniforms: this.#uniforms,
-      transmittance: (tables &&
-        texture(tables.transmittance.target.texture)) as Air['transmittance'],
-      diffuse: tables && texture(tables.diffuseLight.target.texture)
-    }
+    const uniforms = this.#uniforms
+    // Single scattering reads no table.
+    const air: Air = tables?.air ?? { uniforms, transmittance: null as never, diffuse: null }
     const place: ShellPlace = {
       height: this.#height,
       up: this.#up,
@@ -273,9 +270,9 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#volumes =
       tables &&
       new SkyVolumes(
-        tables.uniforms,
-        tables.transmittance.target,
-        tables.diffuseLight.target,
+        tables.air,
+        new TableAtlas('Welkin.AtmosphereShell', 1, 1),
+        undefined,
         tables.volumes.segments
       )
     const { color, depth } = shellFragment(air, place, this.#light(air, this.#volumes))
@@ -286,6 +283,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
 
   #giveBack(): void {
     this.#volumes?.dispose()
+    this.#volumes?.atlas.dispose()
     this.#volumes = null
     if (this.#renderer === null || this.#tables === null) return
     if (this.#lender === null) giveTablesBack(this.parameters, this.#renderer, this)
@@ -299,8 +297,6 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
 
   #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
     if (volumes === null) return way => singleScatteringShell(air, this.#profile, way)
-    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
-    const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
     const isMarched = this.#isMarched.greaterThan(0) as Bool
     return way => {
       const radiance = vec4(0).toVar()
@@ -310,7 +306,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       }).Else(() => {
-        const shell = volumeShell(air.uniforms, textures, this.#eye, way.sight)
+        const shell = volumeShell(air.uniforms, volumes.atlas, this.#eye, way.sight)
         radiance.assign(shell.radiance)
         depth.assign(shell.depth)
       })
@@ -400,7 +396,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (isMarched) return
     const cosSun = Math.min(Math.max(this.#up.value.dot(this.#sunDirection.value), -1), 1)
     const eye = eyeScalars(parameters, height, cosSun)
-    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, version).slot)
+    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, version))
   }
 
   #followSun(): void {

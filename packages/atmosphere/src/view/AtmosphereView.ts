@@ -5,6 +5,7 @@ import type { Atmosphere } from '../Atmosphere'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import { eyeScalars } from './cpu/eye'
 import type { LightSource } from './LightSource'
+import type { VolumeOrigins } from '../skyVolume/SkyVolumes'
 import type { EyeScalars } from './tsl/eye'
 
 /** Cosine of the source's zenith angle, 25° below the horizon. */
@@ -28,8 +29,8 @@ export class AtmosphereView {
   /** Whether the source can light any air that is seen. */
   isLit = true
   eye: EyeScalars<number> | null = null
-  /** Number of its volume in the atlas. */
-  slot = 0
+  /** Its sky volume; null if there is none. */
+  volume: VolumeOrigins | null = null
   readonly atmosphere: Atmosphere
   readonly camera: Camera
   readonly source: LightSource
@@ -61,7 +62,7 @@ export class AtmosphereView {
     // Then only the depth of the air counts, which one volume holds for all the night.
     this.eye = eyeScalars(parameters, this.height, this.isLit ? cosSun : DEEP_NIGHT)
     // Before the first bake is done there is no light to compute a volume from.
-    if (tables.version === 0) return
-    this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot
+    if (tables.version === 0 || !this.source.lightsAir) return
+    this.volume = tables.volumes.volumeFor(renderer, this.eye, tables.version)
   }
 }

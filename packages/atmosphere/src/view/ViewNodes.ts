@@ -1,6 +1,6 @@
 import { Matrix3, Vector3 } from 'three'
 import type { Camera } from 'three'
-import { renderGroup, texture, uniform } from 'three/tsl'
+import { renderGroup, uniform } from 'three/tsl'
 import type { NodeFrame, UniformNode } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
@@ -8,7 +8,7 @@ import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
 import { EyeUniforms } from '../skyVolume/SkyVolumes'
 import type { Air } from '../scattering/tsl/scattering'
-import type { VolumeTextures } from '../skyVolume/tsl/skyVolume'
+import type { Texels } from '../tables/TableAtlas'
 import type { Float, Mat3, Vec3 } from '../tsl-types'
 
 const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
@@ -18,7 +18,8 @@ export class ViewNodes {
   readonly atmosphere: Atmosphere
   readonly source: LightSource
   readonly air: Air
-  readonly volume: VolumeTextures
+  /** Where its sky volumes are kept. */
+  readonly volume: Texels
   readonly eye = new EyeUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */
   readonly height = uniform(0).setGroup(renderGroup)
@@ -35,22 +36,11 @@ export class ViewNodes {
 
   /** @param camera - The camera; null for whichever renders. */
   constructor(atmosphere: Atmosphere, camera: Camera | null, source: LightSource) {
-    const { uniforms, transmittance, diffuseLight } = atmosphere.tables
-    const { volumes } = source
-    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     this.atmosphere = atmosphere
     this.source = source
     this.camera = camera
-    this.air = {
-      uniforms,
-      transmittance: texture(transmittance.target.texture),
-      diffuse: texture(diffuseLight.target.texture)
-    }
-    this.volume = {
-      molecular: molecular,
-      aerosol: aerosol,
-      depth: texture(volumes.depth.texture)
-    }
+    this.air = atmosphere.tables.air
+    this.volume = atmosphere.tables.atlas
   }
 
   /** Bakes what the camera that renders needs. To be called before a render starts. */
@@ -65,7 +55,7 @@ export class ViewNodes {
     const camera = this.camera ?? frame.camera
     const view = camera === null ? undefined : this.atmosphere.viewOf(camera, this.source)
     if (view === undefined || view.eye === null) return undefined
-    this.eye.set(view.eye, view.slot)
+    this.eye.set(view.eye, view.volume)
     this.source.irradiance.value.set(...view.irradiance)
     this.height.value = view.height
     this.isLit.value = view.isLit ? 1 : 0

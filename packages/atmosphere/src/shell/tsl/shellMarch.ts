@@ -9,7 +9,8 @@ import {
   type Air,
   type Ray
 } from '../../scattering/tsl/scattering'
-import { sampleAir, type Sight, type VolumeTextures } from '../../skyVolume/tsl/skyVolume'
+import { sampleAir, type Sight } from '../../skyVolume/tsl/skyVolume'
+import type { Texels } from '../../tables/TableAtlas'
 
 /** Light scattered towards the start of a ray [1/sr], and optical depth of the way. */
 export interface Shell {
@@ -102,9 +103,9 @@ export function tableShell(air: Air, way: ShellRay, steps: number): Shell {
 /** Light of the air along a line of sight from a sky volume, all orders of scattering. */
 export function volumeShell(
   uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   sight: Sight
 ): Shell {
-  return sampleAir(uniforms, textures, eye, sight)
+  return sampleAir(uniforms, atlas, eye, sight)
 }
