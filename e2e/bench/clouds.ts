@@ -14,7 +14,13 @@ import {
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
-import { gpuMilliseconds, gpuPasses, nextFrame, release, type BenchDevice } from './device'
+import {
+  gpuMilliseconds,
+  gpuPasses,
+  nextFrame,
+  release,
+  type HeadlessDevice
+} from '../headless/device'
 import { placeCamera, setSun } from './scene'
 import { median } from './statistics'
 
@@ -172,7 +178,7 @@ export function psnr(a: Uint8Array, b: Uint8Array): number {
 
 /** What clouds cost at every quality in every view, and how near they come to the reference. */
 export async function timeClouds(
-  device: BenchDevice,
+  device: HeadlessDevice,
   size: readonly [number, number],
   frames: number
 ): Promise<CloudCost[]> {
@@ -211,7 +217,7 @@ export async function timeClouds(
 }
 
 /** GPU time of the noise, drawn in slices as a node does: in all, and the most in a frame [ms]. */
-export async function timeNoise(device: BenchDevice): Promise<{ total: number; most: number }> {
+export async function timeNoise(device: HeadlessDevice): Promise<{ total: number; most: number }> {
   const renderer = await device.renderer(64, 36)
   const runs: { total: number; most: number }[] = []
   for (let run = 0; run < 3; run++) {

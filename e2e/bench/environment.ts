@@ -8,7 +8,7 @@ import {
   SphereGeometry
 } from 'three'
 import { Atmosphere, skyBackground, skyEnvironment } from '@welkin/atmosphere'
-import { gpuMilliseconds, type BenchDevice } from './device'
+import { gpuMilliseconds, type HeadlessDevice } from '../headless/device'
 import { median } from './statistics'
 
 /** What drawing the environment anew costs. */
@@ -26,7 +26,7 @@ export interface EnvironmentCost {
  * volume for the sun are taken off.
  */
 export async function timeEnvironment(
-  device: BenchDevice,
+  device: HeadlessDevice,
   size: readonly [number, number],
   rebuilds: number
 ): Promise<EnvironmentCost> {

@@ -1,5 +1,5 @@
 import type { Atmosphere } from '@welkin/atmosphere'
-import { gpuMilliseconds, release, type BenchDevice } from './device'
+import { gpuMilliseconds, release, type HeadlessDevice } from '../headless/device'
 import { benchScene, setSun, type Path } from './scene'
 import { median } from './statistics'
 
@@ -22,7 +22,7 @@ export interface FrameCase {
 
 /** GPU milliseconds of one frame, median after warm-up; and CPU milliseconds to submit it. */
 export async function timeFrame(
-  device: BenchDevice,
+  device: HeadlessDevice,
   size: readonly [number, number],
   frames: number,
   { path, altitude, withAir = true, sunMoves = false, decorate, elevation }: FrameCase

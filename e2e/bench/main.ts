@@ -1,7 +1,7 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
 import { timeClouds, timeNoise } from './clouds'
-import { BenchDevice, finished, gpuMilliseconds } from './device'
+import { HeadlessDevice, finished, gpuMilliseconds } from '../headless/device'
 import { timeEnvironment } from './environment'
 import { timeFrame } from './frame'
 import { benchScene, type Path } from './scene'
@@ -34,7 +34,7 @@ interface Case {
   volumeUpdateMs: number
 }
 
-const device = await BenchDevice.open()
+const device = await HeadlessDevice.open()
 const log = (text: string): void => {
   if (!values.json) console.log(text)
 }

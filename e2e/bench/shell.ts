@@ -4,8 +4,8 @@ import {
   type AtmosphereShellOptions
 } from '@welkin/atmosphere'
 import { HalfFloatType, PerspectiveCamera, RenderTarget, Scene, Vector3 } from 'three'
-import type { BenchDevice } from './device'
-import { gpuMilliseconds } from './device'
+import type { HeadlessDevice } from '../headless/device'
+import { gpuMilliseconds } from '../headless/device'
 import { median } from './statistics'
 
 /** GPU time of a body's air that fills the screen [ms], seen from space and from within. */
@@ -18,7 +18,7 @@ export interface ShellCost {
 const WARM_UP = 15
 
 async function time(
-  device: BenchDevice,
+  device: HeadlessDevice,
   [width, height]: readonly [number, number],
   frames: number,
   model: ShellCost['model'],
@@ -54,7 +54,7 @@ async function time(
 
 /** What shells of both models cost. */
 export async function timeShells(
-  device: BenchDevice,
+  device: HeadlessDevice,
   size: readonly [number, number],
   frames: number
 ): Promise<ShellCost[]> {

@@ -1,7 +1,7 @@
 import { airglow, milkyWay, moon, stars, sunFlare } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
 import { PerspectiveCamera, Vector3 } from 'three'
-import type { BenchDevice } from './device'
+import type { HeadlessDevice } from '../headless/device'
 import { timeFrame } from './frame'
 import { placeCamera, type Path } from './scene'
 
@@ -64,7 +64,7 @@ function parts({ showsMoon = false }: SkyCase): ((atmosphere: Atmosphere) => voi
 
 /** Times the sky of day, dusk and night, part by part. */
 export async function timeSky(
-  device: BenchDevice,
+  device: HeadlessDevice,
   size: readonly [number, number],
   frames: number,
   paths: readonly Path[],

@@ -8,7 +8,7 @@ import { bundlePage } from '../harness/bundle'
 import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
-import type { Backend } from './harness/gpu-test'
+import type { Backend } from '../harness/backend'
 import type { TestListing, TestOutcome } from './page/main'
 
 const { values, positionals } = parseArgs({

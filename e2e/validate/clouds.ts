@@ -1,9 +1,10 @@
 import { fileURLToPath } from 'node:url'
-import type { Backend } from '../gpu/harness/gpu-test'
+import type { Backend } from '../harness/backend'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
 import { serveStatic } from '../harness/serve'
-import { readCloudReference, type CloudCase } from './cloud-reference'
+import type { CloudFigures, CloudResult, CloudStatistics } from './cloud-figures'
+import { readCloudReference } from './cloud-reference'
 import { cloudGoals, type CloudGoal } from './goals'
 import type { CloudRequest } from './page/clouds'
 import { quantile } from './score'
@@ -13,22 +14,6 @@ const NEGLIGIBLE = 1e-7
 
 /** Exits nearer to a slab's horizon than this are reported, but not scored [°]. */
 const LARGEST_EXIT = 75
-
-/** Relative errors of cases; fractions. */
-export interface CloudStatistics {
-  n: number
-  median: number
-  p90: number
-  p95: number
-}
-
-export type CloudResult = CloudCase & { model: number; error: number }
-
-export interface CloudFigures {
-  slab: CloudStatistics
-  sphere: CloudStatistics
-  cases: CloudResult[]
-}
 
 function statistics(cases: readonly CloudResult[]): CloudStatistics {
   const errors = cases.map(({ error }) => Math.abs(error))

@@ -1,4 +1,4 @@
-import type { CloudFigures } from './clouds'
+import type { CloudFigures } from './cloud-figures'
 import type { ColorFigures, SkyComparisons } from './figures'
 import type { Band, BandName, Comparison } from './score'
 

@@ -1,5 +1,5 @@
 import type { AtmosphereParametersInit } from '@welkin/atmosphere'
-import type { Backend } from '../gpu/harness/gpu-test'
+import type { Backend } from '../harness/backend'
 
 /** How light along rays is found: read from the sky volume, or marched. */
 export type Path = 'volume' | 'march'

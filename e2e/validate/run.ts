@@ -1,11 +1,14 @@
 import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
-import type { Backend } from '../gpu/harness/gpu-test'
+import type { Backend } from '../harness/backend'
+import { cloudPresetNames, type CloudPresetName } from '@welkin/clouds'
+import { drawCloudFields, writeGrid } from './cloud-field'
 import { printClouds, validateClouds } from './clouds'
 import { evaluateInBrowser } from './evaluate'
 import { colorRequest, compareColors, compareSky, compareSun, skyRequest } from './figures'
 import type { ColorFigures, SkyComparisons } from './figures'
+import { printForm, validateForm } from './form/run'
 import { missedCloudGoals, missedGoals } from './goals'
 import { printColors, printQuantities, printSun, printWorst } from './print'
 import { readColorReference, readSkyReference } from './reference'
@@ -23,6 +26,11 @@ const usage = `npm run validate -- [options]
   --json                     print JSON alone; missed goals go to standard error
   --worst N                  also list the N largest errors of each quantity; not with --json
   --check                    exit with 1 if a goal is missed, with --json as without
+  --form PRESET              instead: figures of the form of a cloud preset, as the GPU draws it;
+                             --coverage C for another one than the preset's
+  --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
+                             OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
+                             --latitude [°], --coverage C
   --help                     print this
 
 A default file that is not there leaves its quantities out.`
@@ -36,6 +44,15 @@ function count(name: string, value: string): number {
   if (/^\d+$/.test(value)) return Number(value)
   throw new Error(`--${name} must be a whole number from 0, got '${value}'`)
 }
+
+function inRange(name: string, value: string, min: number, max: number): number {
+  const number = value.trim() === '' ? NaN : Number(value)
+  if (number >= min && number <= max) return number
+  throw new Error(`--${name} must be in [${min}, ${max}], got '${value}'`)
+}
+
+const preset = (option: string, value: string): CloudPresetName =>
+  choice(option, value, cloudPresetNames)
 
 /** The file named on the command line, or the default one if it is there. */
 function input(named: string | undefined, standard: string): string | undefined {
@@ -55,6 +72,14 @@ async function main(): Promise<void> {
       json: { type: 'boolean', default: false },
       worst: { type: 'string', default: '0' },
       check: { type: 'boolean', default: false },
+      form: { type: 'string' },
+      'export-clouds': { type: 'string' },
+      preset: { type: 'string', default: 'fairWeather' },
+      size: { type: 'string', default: '6000' },
+      cell: { type: 'string', default: '20' },
+      longitude: { type: 'string', default: '139.77' },
+      latitude: { type: 'string', default: '35.68' },
+      coverage: { type: 'string' },
       help: { type: 'boolean', default: false }
     }
   })
@@ -67,9 +92,34 @@ async function main(): Promise<void> {
     path: choice<Path>('path', values.path, ['volume', 'march'])
   }
   const worst = count('worst', values.worst)
+  const coverage =
+    values.coverage === undefined
+      ? {}
+      : { coverage: inRange('coverage', values.coverage, Number.MIN_VALUE, 1) }
+  if (values['export-clouds'] !== undefined) {
+    const request = {
+      backend: where.backend,
+      preset: preset('preset', values.preset),
+      longitude: inRange('longitude', values.longitude, -180, 180),
+      latitude: inRange('latitude', values.latitude, -90, 90),
+      size: inRange('size', values.size, 1, 1e5),
+      cell: inRange('cell', values.cell, 1, 1e4),
+      ...coverage
+    }
+    const name = values['export-clouds']
+    await drawCloudFields([request], grid => writeGrid(name, grid))
+    return
+  }
   // What the tools on the way have to say must not get between the JSON.
   const print = console.log
   if (values.json) console.log = console.error
+  if (values.form !== undefined) {
+    const form = await validateForm(preset('form', values.form), where.backend, coverage.coverage)
+    if (values.check && form.rows.some(row => !row.isMet)) process.exitCode = 1
+    if (values.json) print(JSON.stringify({ form }, null, 2))
+    else printForm(form)
+    return
+  }
 
   const skyFile = input(values.sky, 'sky.json')
   const spectralFile = input(values.spectral, 'spectral_sky.json')

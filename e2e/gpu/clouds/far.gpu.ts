@@ -3,7 +3,7 @@ import { CloudField, CloudLayers, CloudLightTable, cloudPreset } from '@welkin/c
 import { DataTexture, FloatType, PerspectiveCamera, RenderTarget } from 'three'
 import { float, Fn, screenCoordinate, texture, uniform, vec4 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type NodeFrame } from 'three/webgpu'
-import type { CloudShadows } from '../../../packages/clouds/src/shadow/CloudShadowMap'
+import type { CloudShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
 import { QualityUniforms, resolveQuality } from '../../../packages/clouds/src/march/quality'
 import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
 import { number } from '../../../packages/clouds/src/uniforms'
@@ -25,7 +25,7 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
   light.bake()
   field.depthScale.value = light.nodes.depthScale.value
   const quality = new QualityUniforms()
-  quality.set(resolveQuality('high'))
+  quality.set(resolveQuality('test', 'high'))
   const update = (): void => {
     const view = atmosphere.update(renderer, camera)
     field.view.update({ renderer, camera } as unknown as NodeFrame)
@@ -54,7 +54,7 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
     const pixel = screenCoordinate.xy.floor()
     const jitter = pixel.x.mul(0.754877666).add(pixel.y.mul(0.569840296)).fract()
     const ray = { direction, end: float(3e6), jitter }
-    const marched = marchClouds(field, light.nodes, shadows, quality, ray)
+    const marched = marchClouds({ field, light: light.nodes, shadows, quality }, ray)
     return vec4(marched.radiance.y, marched.transmittance, 0, 0)
   })() as never
   const quad = new QuadMesh(material)

@@ -2,7 +2,7 @@ import { FloatType, RenderTarget, type Camera, type Scene, type TextureDataType 
 import { WebGPURenderer, type Node } from 'three/webgpu'
 import { ConsoleWatch } from './console'
 import { evaluateOnGpu } from './evaluate'
-import type { Backend } from './gpu-test'
+import type { Backend } from '../../harness/backend'
 import { finishWork } from './graphics'
 import { Picture, readPicture } from './picture'
 

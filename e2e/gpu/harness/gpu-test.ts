@@ -1,6 +1,5 @@
+import type { Backend } from '../../harness/backend'
 import type { GpuContext } from './context'
-
-export type Backend = 'webgpu' | 'webgl'
 
 export interface GpuTest {
   name: string

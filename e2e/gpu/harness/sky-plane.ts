@@ -1,6 +1,6 @@
 import type { PerspectiveCamera } from 'three'
 import { Vector3 } from 'three'
-import { powerSpectrum } from './cloud-columns'
+import { powerSpectrum } from '../../validate/power-spectrum'
 import type { Picture } from './picture'
 
 /** A square of a cloud deck, above the ground in a world whose y axis is up [m]. */

@@ -1,6 +1,7 @@
 import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
-import { registeredTests, type Backend } from '../harness/gpu-test'
+import { registeredTests } from '../harness/gpu-test'
+import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../harness/reuse-noise'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
 

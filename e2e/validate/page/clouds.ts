@@ -6,7 +6,7 @@ import { cloudSource } from '../../../packages/clouds/src/light/tsl/cloudLight'
 import type { Float, Vec4 } from '../../../packages/clouds/src/tsl-types'
 import { createContext } from '../../gpu/harness/context'
 import { evaluateOnGpu } from '../../gpu/harness/evaluate'
-import type { Backend } from '../../gpu/harness/gpu-test'
+import type { Backend } from '../../harness/backend'
 
 export type Shape = 'slab' | 'sphere'
 

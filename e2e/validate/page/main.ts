@@ -20,6 +20,7 @@ import { evaluateOnGpu } from '../../gpu/harness/evaluate'
 import type { EvaluationRequest, EvaluationResult, EyePlace, Path, RayRequest } from '../request'
 import { RayBatch, type RayNodes } from './RayBatch'
 import './clouds'
+import './cloud-field'
 
 declare global {
   interface Window {

@@ -1,6 +1,6 @@
 import { modules } from 'virtual:modules'
 import { ConsoleWatch } from '../../gpu/harness/console'
-import type { Backend } from '../../gpu/harness/gpu-test'
+import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 

@@ -2,7 +2,7 @@ export { CloudLayer, type CloudLayerParameters, type CloudWind } from './layers/
 export { CloudLayers } from './layers/CloudLayers'
 export { CloudField, type CloudFieldOptions } from './density/CloudField'
 export { CloudNoise } from './noise/CloudNoise'
-export { cloudPreset, type CloudPresetName } from './layers/presets'
+export { cloudPreset, cloudPresetNames, type CloudPresetName } from './layers/presets'
 export { CloudLightTable } from './light/CloudLightTable'
 export type { CloudPhaseParameters } from './light/cpu/cloudPhase'
 export { CloudsNode, clouds, type CloudsDebug, type CloudsOptions } from './march/CloudsNode'

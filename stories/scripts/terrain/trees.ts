@@ -2,8 +2,8 @@ import { woodland } from './colours.ts'
 import type { Elevation } from './elevation.ts'
 import type { Primitive } from './glb.ts'
 import { noise } from './noise.ts'
-import { gradient, localFrame, toECEF } from './tile.ts'
-import type { Vec3 } from './tile.ts'
+import { gradient, localFrame, toECEF } from './ellipsoid.ts'
+import type { Vec3 } from './ellipsoid.ts'
 
 /** Trees stand around here, where the story's valley camera is. */
 const GROVE = { longitude: -84.178, latitude: 36.622, radius: 2300, clearing: 45 }

@@ -70,10 +70,7 @@ class Workshop {
       'Welkin.DiffuseLight.reduce',
       reduceRays(sunOnly, texture(this.rays.texture), directions, row, MOST_RAYS)
     )
-    this.#sum = new FragmentPass(
-      'Welkin.DiffuseLight.sum',
-      sumOrders(this.orders)
-    )
+    this.#sum = new FragmentPass('Welkin.DiffuseLight.sum', sumOrders(this.orders))
   }
 
   /** Gathers one order of scattering for some rows of the table. */

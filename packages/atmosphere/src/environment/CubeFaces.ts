@@ -1,4 +1,5 @@
-import { BackSide, BoxGeometry, CubeCamera, Mesh, NoBlending, PerspectiveCamera } from 'three'
+import type { PerspectiveCamera } from 'three'
+import { BackSide, BoxGeometry, CubeCamera, Mesh, NoBlending } from 'three'
 import { NodeMaterial } from 'three/webgpu'
 import type { CubeRenderTarget, Node, Renderer } from 'three/webgpu'
 

@@ -1,23 +1,14 @@
-import { Matrix3, Vector3 } from 'three'
 import type { Camera, Texture } from 'three'
-import { normalWorld, pmremTexture, vec3 } from 'three/tsl'
+import { vec3 } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import { checkBoolean, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import type { AtmosphereView } from '../view/AtmosphereView'
-import type { SkyLayer } from '../view/SkyLayer'
+import { DrawnSky } from './DrawnSky'
+import { ImageEnvironmentNode, mirrored, type EnvironmentOptions } from './ImageEnvironmentNode'
 import { SkyCube } from './SkyCube'
 import type { SkyOverlay } from './SkyOverlay'
-import { viewNodes, type ViewNodes } from '../view/ViewNodes'
-
-/** Options of {@link skyEnvironment}. */
-export interface EnvironmentOptions {
-  /**
-   * Whether it lights matte surfaces too, besides being mirrored. By default it does, unless a
-   * `SkyLightProbe` lights the scene: their light must not count twice.
-   */
-  diffuse?: boolean
-}
+import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 
 /** Options of {@link SkyEnvironmentNode}. */
 export interface SkyEnvironmentOptions extends EnvironmentOptions {
@@ -30,14 +21,6 @@ export interface SkyEnvironmentOptions extends EnvironmentOptions {
   /** What is in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
-
-const RADIANS = Math.PI / 180
-/** Cameras lower than this see the same sky [m]. */
-const LOW = 500
-/** Change of the sun's irradiance, in an eclipse say, that shows. */
-const DIMMING = 0.02
-/** Factor of the luminance scale up to which half floats resolve a tenth of a grey level. */
-const RESCALING = 1000
 
 /**
  * Sky and ground as what materials mirror: a scene's environment, through three's prefiltered maps.
@@ -65,10 +48,6 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly atmosphere: Atmosphere
   /** See {@link EnvironmentOptions}; null for what suits the scene's lights. */
   readonly diffuse: boolean | null
-  /** See {@link SkyEnvironmentOptions} [°]. */
-  angle: number
-  /** See {@link SkyEnvironmentOptions}. */
-  climb: number
   /** See {@link SkyEnvironmentOptions}. */
   readonly overlay: SkyOverlay | null
   /** Draws all of it before the next frame, whatever has changed. */
@@ -77,30 +56,27 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   redraws = 0
   readonly #view: ViewNodes
   readonly #cube: SkyCube
-  readonly #drawn = new DrawnSky()
+  readonly #drawn: DrawnSky
   #overlayVersion = 0
   #frame = -1
   #camera: Camera | null = null
+  #angle = 0.1
+  #climb = 0.1
   readonly #release = (): void => this.#free()
 
   /** @throws If the atmosphere is missing or an option out of range. */
-  constructor(
-    atmosphere: Atmosphere,
-    { diffuse, size = 256, angle = 0.1, climb = 0.1, overlay = null }: SkyEnvironmentOptions = {}
-  ) {
+  constructor(atmosphere: Atmosphere, options: SkyEnvironmentOptions = {}) {
     super('vec3')
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(
-        `SkyEnvironmentNode: atmosphere must be an Atmosphere, got ${typeof atmosphere}`
-      )
-    }
+    const where = 'SkyEnvironmentNode'
+    checkAtmosphere(where, atmosphere)
+    checkOptions(where, options, 'diffuse', 'size', 'angle', 'climb', 'overlay')
+    const { diffuse, size = 256, angle = 0.1, climb = 0.1, overlay = null } = options
     if (!(size >= 256 && size <= 2048 && Number.isInteger(Math.log2(size)))) {
-      throw new Error(`SkyEnvironmentNode: size must be a power of two in [256, 2048], got ${size}`)
+      fail(where, 'size must be a power of two in [256, 2048]', size)
     }
-    for (const [name, value] of Object.entries({ angle, climb })) {
-      if (!(value > 0)) {
-        throw new Error(`SkyEnvironmentNode: ${name} must be positive, got ${value}`)
-      }
+    if (diffuse !== undefined) checkBoolean(where, 'diffuse', diffuse)
+    if (overlay !== null && typeof overlay?.over !== 'function') {
+      fail(where, 'overlay must be a SkyOverlay, such as cloudOverlay(), or null', overlay)
     }
     this.atmosphere = atmosphere
     this.diffuse = diffuse ?? null
@@ -110,8 +86,29 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
     this.#view = viewNodes(atmosphere)
+    this.#drawn = new DrawnSky(atmosphere)
     this.#cube = new SkyCube(atmosphere, size, overlay)
     atmosphere.addEventListener('dispose', this.#release)
+  }
+
+  /** See {@link SkyEnvironmentOptions}, > 0 [°]. */
+  get angle(): number {
+    return this.#angle
+  }
+
+  set angle(value: number) {
+    checkPositive('SkyEnvironmentNode', 'angle', value)
+    this.#angle = value
+  }
+
+  /** See {@link SkyEnvironmentOptions}, > 0. */
+  get climb(): number {
+    return this.#climb
+  }
+
+  set climb(value: number) {
+    checkPositive('SkyEnvironmentNode', 'climb', value)
+    this.#climb = value
   }
 
   override updateBefore(frame: NodeFrame): undefined {
@@ -176,97 +173,6 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   }
 }
 
-/** What the sky was when it was last drawn, by all that it depends on. */
-class DrawnSky {
-  #height = NaN
-  #tablesVersion = -1
-  #scale = NaN
-  #layers: readonly SkyLayer[] = []
-  #versions: readonly (number | undefined)[] = []
-  readonly #sun = new Vector3()
-  readonly #up = new Vector3()
-  readonly #axes = new Matrix3()
-  readonly #irradiance = [0, 0, 0, 0]
-  readonly #toMapped = new Matrix3()
-
-  /** World to mapped axes, of which columns of unit length count. */
-  #axesOf({ camera, viewToMapped }: AtmosphereView): Matrix3 {
-    const rotation = this.#toMapped.setFromMatrix4(camera.matrixWorld).transpose()
-    return rotation.premultiply(viewToMapped)
-  }
-
-  set(view: AtmosphereView): void {
-    this.#height = view.height
-    this.#tablesVersion = view.atmosphere.tables.version
-    this.#scale = view.atmosphere.luminanceScale
-    this.#layers = [...view.atmosphere.layers]
-    this.#versions = this.#layers.map(({ version }) => version)
-    this.#sun.copy(view.sunDirection)
-    this.#up.copy(view.up)
-    this.#axes.copy(this.#axesOf(view))
-    view.irradiance.forEach((value, i) => (this.#irradiance[i] = value))
-  }
-
-  resembles(view: AtmosphereView, angle: number, climb: number): boolean {
-    const reach = 2 * Math.sin((Math.min(angle, 180) * RADIANS) / 2)
-    const axes = this.#axesOf(view).elements
-    const scale = Math.hypot(axes[0], axes[1], axes[2]) || 1
-    const { layers, luminanceScale, tables } = view.atmosphere
-    return (
-      tables.version === this.#tablesVersion &&
-      layers.length === this.#layers.length &&
-      layers.every(
-        (layer, i) => layer === this.#layers[i] && layer.version === this.#versions[i]
-      ) &&
-      Math.abs(Math.log(luminanceScale / this.#scale)) <= Math.log(RESCALING) &&
-      this.#sun.distanceTo(view.sunDirection) <= reach &&
-      this.#up.distanceTo(view.up) <= reach &&
-      this.#axes.elements.every((value, i) => Math.abs(value - axes[i]) <= reach * scale) &&
-      Math.abs(view.height - this.#height) <= climb * Math.max(Math.abs(this.#height), LOW) &&
-      view.irradiance.every((value, i) => Math.abs(value - this.#irradiance[i]) <= DIMMING * value)
-    )
-  }
-}
-
-/** A picture of a sky in place of the sky: see {@link skyEnvironment}. */
-export class ImageEnvironmentNode extends Node<'vec3'> {
-  static get type(): string {
-    return 'ImageEnvironmentNode'
-  }
-
-  /** Equirectangular, a cube, or filtered already. Shared, not owned. */
-  readonly image: Texture
-  /** See {@link EnvironmentOptions}; null for what suits the scene's lights. */
-  readonly diffuse: boolean | null
-
-  constructor(image: Texture, { diffuse }: EnvironmentOptions = {}) {
-    super('vec3')
-    this.image = image
-    this.diffuse = diffuse ?? null
-  }
-
-  override setup(builder: NodeBuilder): Node {
-    let map = maps.get(this.image)
-    if (map === undefined) maps.set(this.image, (map = pmremTexture(this.image)))
-    return mirrored(builder, map, this.diffuse)
-  }
-}
-
-const maps = new WeakMap<Texture, Node>()
-
-/** What a material gets from a map: by roughness what it mirrors, or light from all around. */
-function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | null): Node {
-  const { context, lightsNode } = builder as unknown as {
-    context: { getUV?: (node: Node, builder: NodeBuilder) => unknown }
-    lightsNode: { getLights?: () => object[] } | null
-  }
-  // Light on matte surfaces is what three asks about the normal, not the mirrored ray.
-  if (context.getUV?.(map, builder) !== normalWorld) return map
-  const lights = lightsNode?.getLights?.() ?? []
-  const hasProbe = lights.some(light => 'isLightProbe' in light && 'atmosphere' in light)
-  return (diffuse ?? !hasProbe) ? map : vec3(0)
-}
-
 /**
  * What materials of a scene mirror: an atmosphere's sky, or a picture that stands in for it, loaded by
  * three's `HDRLoader` say. See {@link SkyEnvironmentNode}.
@@ -289,8 +195,8 @@ export function skyEnvironment(
   options?: SkyEnvironmentOptions
 ): SkyEnvironmentNode | ImageEnvironmentNode {
   if ('isTexture' in Object(source)) return new ImageEnvironmentNode(source as Texture, options)
-  if ('isAtmosphere' in Object(source)) {
-    return new SkyEnvironmentNode(source as Atmosphere, options)
+  if (!('isAtmosphere' in Object(source))) {
+    fail('skyEnvironment', 'source must be an Atmosphere or a Texture', source)
   }
-  throw new Error(`skyEnvironment: source must be an Atmosphere or a Texture, got ${typeof source}`)
+  return new SkyEnvironmentNode(source as Atmosphere, options)
 }

@@ -3,8 +3,8 @@ import { If, exp, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkFade, checkRange, checkSources, checkSpectrum, withDefaults } from '../check'
-import type { LightSource } from '../view/LightSource'
+import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
+import { checkSources, type LightSource } from '../view/LightSource'
 import type { Sightline, SkyLayer, Veil } from '../view/SkyLayer'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { diffuseMoments } from '../diffuseLight/tsl/diffuseLight'
@@ -102,7 +102,7 @@ export class HeightFog implements SkyLayer {
     this.#albedo.value.set(...albedo)
     _position.setFromMatrixPosition(view.camera.matrixWorld)
     for (const { source, direction, irradiance } of this.#lamps) {
-      source.direction(view.atmosphere, _direction, _position)
+      source.direction(_direction, _position)
       view.atmosphere.space.direction(_direction, direction.value)
       irradiance.value.set(...source.irradianceAt(_position))
     }

@@ -4,8 +4,7 @@ import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import { checkPositive } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { checkSource } from '../check'
-import type { LightSource } from '../view/LightSource'
+import { checkSource, type LightSource } from '../view/LightSource'
 import { linearSRGB } from '../air/tsl/color'
 import { coveredPosition } from '../view/tsl/coveredPosition'
 import { sunTransmittance } from '../transmittance/tsl/transmittance'
@@ -63,7 +62,7 @@ export class SunDirectionalLight extends DirectionalLight {
   follow(): void {
     this.target.updateWorldMatrix(true, false)
     this.position.setFromMatrixPosition(this.target.matrixWorld)
-    this.source.direction(this.atmosphere, _direction, this.position)
+    this.source.direction(_direction, this.position)
     this.position.addScaledVector(_direction, this.distance)
     this.parent?.worldToLocal(this.position)
   }

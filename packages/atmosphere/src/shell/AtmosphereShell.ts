@@ -22,9 +22,9 @@ import {
 } from 'three/tsl'
 import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
-import { checkPositive, fail } from '@welkin/geo'
+import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { AtmosphereParameters } from '../parameters/AtmosphereParameters'
+import { AtmosphereParameters, checkParameters } from '../parameters/AtmosphereParameters'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
@@ -194,27 +194,18 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   constructor(
     parameters: AtmosphereParameters,
     bodyRadius: number,
-    {
+    options: AtmosphereShellOptions = {}
+  ) {
+    const where = 'AtmosphereShell'
+    checkParameters(where, parameters)
+    checkPositive(where, 'bodyRadius', bodyRadius)
+    checkOptions(where, options, 'sun', 'model', 'luminanceScale')
+    const {
       sun = new Vector3(1, Math.SQRT2, 1),
       model = 'tables',
       luminanceScale = SCALE
-    }: AtmosphereShellOptions = {}
-  ) {
-    if (!(bodyRadius > 0 && bodyRadius < Infinity)) {
-      throw new Error(
-        `AtmosphereShell: bodyRadius must be positive and finite, got ${String(bodyRadius)}`
-      )
-    }
-    if (!(parameters instanceof AtmosphereParameters)) {
-      throw new Error(
-        `AtmosphereShell: parameters must be AtmosphereParameters, got ${typeof parameters}`
-      )
-    }
-    if (model !== 'tables' && model !== 'single-scattering') {
-      throw new Error(
-        `AtmosphereShell: model must be 'tables' or 'single-scattering', got ${String(model)}`
-      )
-    }
+    } = options
+    checkChoice(where, 'model', model, ['tables', 'single-scattering'])
     super(
       ballAround((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
       new NodeMaterial()

@@ -12,6 +12,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import { checkPostEffect } from '../check'
 import type { Atmosphere } from '../Atmosphere'
 import { AtmosphereNode } from '../view/AtmosphereNode'
 import { pixelAngle, skyColor } from './tsl/sky'
@@ -57,11 +58,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
   /** @throws If an argument is missing. */
   constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
     super(atmosphere, camera)
-    for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
-      if (value === undefined || value === null) {
-        throw new Error(`AerialPerspectiveNode: ${name} is missing, got ${value}`)
-      }
-    }
+    checkPostEffect('AerialPerspectiveNode', colorNode, depthNode, camera)
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera

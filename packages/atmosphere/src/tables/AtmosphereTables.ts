@@ -9,7 +9,13 @@ import type { Air } from '../scattering/tsl/scattering'
 import { SkyVolumes, VOLUMES_WIDTH } from '../skyVolume/SkyVolumes'
 import { TransmittanceTable } from '../transmittance/TransmittanceTable'
 import { GAP, TableAtlas } from './TableAtlas'
-import { DEPTH_SIZE, DIFFUSE_LAYOUT, DIFFUSE_SIZE, TRANSMITTANCE_SIZE, VOLUME_SLOTS } from './tableSizes'
+import {
+  DEPTH_SIZE,
+  DIFFUSE_LAYOUT,
+  DIFFUSE_SIZE,
+  TRANSMITTANCE_SIZE,
+  VOLUME_SLOTS
+} from './tableSizes'
 
 /** Where the tables are in the atlas, in a row at its top, and where volumes find room beside them [texels]. */
 const DIFFUSE_X = TRANSMITTANCE_SIZE[0] + GAP

@@ -1,11 +1,12 @@
 import { Matrix3, Vector3 } from 'three'
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
-import type { Atmosphere } from '../Atmosphere'
-import type { Spectrum } from '../parameters/AtmosphereParameters'
+import type { Ellipsoid } from '@welkin/geo'
+import type { AtmosphereParameters, Spectrum } from '../parameters/AtmosphereParameters'
 import { eyeScalars } from './cpu/eye'
+import type { SphericalSpace } from './cpu/spherical'
 import type { LightSource } from './LightSource'
-import type { VolumeOrigins } from '../skyVolume/SkyVolumes'
+import type { SkyVolumes, VolumeOrigins } from '../skyVolume/SkyVolumes'
 import type { EyeScalars } from './tsl/eye'
 
 /** Cosine of the source's zenith angle, 25° below the horizon. */
@@ -13,6 +14,19 @@ const DEEP_NIGHT = -0.42
 
 const _position = new Vector3()
 const _direction = new Vector3()
+
+/** An atmosphere as far as a camera's view and layers of the sky ask it. */
+export interface ViewedAtmosphere {
+  readonly parameters: AtmosphereParameters
+  readonly ellipsoid: Ellipsoid
+  readonly date: Date | null
+  /** World space to the space in which the planet is a sphere. */
+  readonly space: SphericalSpace
+  /** Layers of the sky, as far as they light the planet. */
+  readonly layers: readonly { readonly source?: LightSource }[]
+  /** `version` is 0 until the first bake is done. */
+  readonly tables: { readonly version: number; readonly volumes: Pick<SkyVolumes, 'volumeFor'> }
+}
 
 /** A camera in the space where the planet is a sphere, computed in float64. */
 export class AtmosphereView {
@@ -31,11 +45,11 @@ export class AtmosphereView {
   eye: EyeScalars<number> | null = null
   /** Its sky volume; null if there is none. */
   volume: VolumeOrigins | null = null
-  readonly atmosphere: Atmosphere
+  readonly atmosphere: ViewedAtmosphere
   readonly camera: Camera
   readonly source: LightSource
 
-  constructor(atmosphere: Atmosphere, camera: Camera, source: LightSource) {
+  constructor(atmosphere: ViewedAtmosphere, camera: Camera, source: LightSource) {
     this.atmosphere = atmosphere
     this.camera = camera
     this.source = source
@@ -53,7 +67,7 @@ export class AtmosphereView {
     else this.up.set(0, 0, 1)
     _position.setFromMatrixPosition(matrixWorld)
     this.irradiance = this.source.irradianceAt(_position)
-    this.source.direction(this.atmosphere, _direction, _position)
+    this.source.direction(_direction, _position)
     space.direction(_direction, this.sunDirection)
     space.displacement(matrixWorld, this.viewToMapped)
     const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)

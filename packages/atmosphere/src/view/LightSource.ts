@@ -1,7 +1,7 @@
 import type { Vector3 } from 'three'
 import { Vector4 } from 'three'
 import { renderGroup, uniform } from 'three/tsl'
-import type { Atmosphere } from '../Atmosphere'
+import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 
 /**
@@ -21,10 +21,23 @@ export class LightSource {
    * @param lightsAir - Whether its light in the air is seen, so that sky volumes are computed for it.
    */
   constructor(
-    readonly direction: (atmosphere: Atmosphere, target: Vector3, from?: Vector3) => Vector3,
+    readonly direction: (target: Vector3, from?: Vector3) => Vector3,
     public lightsAir = true
   ) {}
 
   /** {@link irradiance} at a position in world space. */
   irradianceAt: (position: Vector3) => Spectrum = () => [1, 1, 1, 1]
+}
+
+/** @throws If it is no source of light. */
+export function checkSource(where: string, name: string, source: LightSource): void {
+  if (!(source instanceof LightSource)) {
+    fail(where, `${name} must be a LightSource, such as a moon's source`, source)
+  }
+}
+
+/** @throws If they are no sources of light. */
+export function checkSources(where: string, sources: readonly LightSource[]): void {
+  if (!Array.isArray(sources)) fail(where, 'sources must be an array', sources)
+  sources.forEach((source, i) => checkSource(where, `sources[${i}]`, source))
 }

@@ -1,19 +1,19 @@
 import type { Vector3 } from 'three'
 import type { Renderer } from 'three/webgpu'
-import type { Atmosphere } from '../Atmosphere'
+import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
-import type { AtmosphereView } from './AtmosphereView'
+import type { AtmosphereView, ViewedAtmosphere } from './AtmosphereView'
 import type { LightSource } from './LightSource'
 import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 import type { Aim, VolumePlace } from '../skyVolume/tsl/skyVolume'
-import type { ViewNodes } from './ViewNodes'
+import type { ViewUniforms } from './ViewUniforms'
 
 /** Air this many times as bright as something faint in the sky hides it: less than half a grey level. */
 export const DROWNS = 10_000
 
 /** A line of sight into the sky, as shader nodes. */
 export interface SkyRay extends Readonly<Aim> {
-  readonly view: ViewNodes
+  readonly view: ViewUniforms
   /** Unit length, in the mapped space. */
   readonly direction: Vec3
   /** Against the sun. */
@@ -59,7 +59,7 @@ export interface SkyLayer {
   /** Whether {@link beyond} only adds light and hides nothing. */
   readonly isAdditive?: boolean
   /** The only atmosphere that it can be added to; absent if any will do. */
-  readonly atmosphere?: Atmosphere
+  readonly atmosphere?: ViewedAtmosphere
   /** The light that it sends to the planet, if it lights more than its own picture. */
   readonly source?: LightSource
   /** Part of the sun's light that it leaves at a position in world space. */
@@ -96,4 +96,14 @@ export interface SkyLayer {
   veil?(line: Sightline, air: Veil): Veil
   /** Frees GPU memory. */
   dispose?(): void
+}
+
+/** One of which a layer has: nothing else changes the sky. */
+const EFFECTS = ['eclipse', 'beyond', 'ground', 'glow', 'below', 'haze', 'veil'] as const
+
+/** @throws If it is no layer. */
+export function checkLayer(where: string, layer: SkyLayer): void {
+  if (!EFFECTS.some(name => typeof layer?.[name] === 'function')) {
+    fail(where, 'layer must be a SkyLayer, such as moon() or heightFog()', layer)
+  }
 }

@@ -3,11 +3,8 @@ import { NearestFilter, UnsignedByteType } from 'three'
 import type { RenderTarget } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import type { CloudField } from '../density/CloudField'
-import type { CloudLight } from '../light/CloudLightTable'
-import type { CloudShadows } from '../shadow/CloudShadowMap'
+import type { ShadingContext } from '../light/tsl/lighting'
 import type { FrameUniforms } from './FrameUniforms'
-import type { QualityUniforms } from './quality'
 import { withAirBefore } from './tsl/airBefore'
 import { approachClouds, TILE } from './tsl/approach'
 import { marchClouds } from './tsl/march'
@@ -19,11 +16,7 @@ import { upscale } from '../temporal/tsl/upscale'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
 
 /** What the pictures of clouds are made from. */
-export interface CloudScene {
-  readonly field: CloudField
-  readonly light: CloudLight
-  readonly shadows: CloudShadows
-  readonly quality: QualityUniforms
+export interface CloudScene extends ShadingContext {
   readonly sights: SightNodes
 }
 
@@ -40,10 +33,8 @@ function picturesOf({ textures }: RenderTarget): CloudPictures {
 }
 
 /** Marches one pixel of each block: light with the air in front of it, and where it is. */
-function marchPixels(
-  { field, light, shadows, quality, sights }: CloudScene,
-  clear: LevelTexture<Vec2>
-): TwoOutputs {
+function marchPixels(scene: CloudScene, clear: LevelTexture<Vec2>): TwoOutputs {
+  const { field, sights } = scene
   const { frame } = sights
   return twoOutputs(([color, place]) =>
     Fn(() => {
@@ -55,7 +46,7 @@ function marchPixels(
       const sight = sightAt(sights, at)
       const { direction, directionView } = sight
       const end = sightEnd(sights, at, sight)
-      const marched = marchClouds(field, light, shadows, quality, {
+      const marched = marchClouds(scene, {
         direction,
         end,
         jitter: interleavedNoise(block, frame.noiseShift),

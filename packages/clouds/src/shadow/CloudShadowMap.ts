@@ -3,10 +3,11 @@ import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
 import { Quaternion, Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
-import type { Renderer, UniformNode } from 'three/webgpu'
+import type { Renderer } from 'three/webgpu'
 import { eyePosition, type CloudField } from '../density/CloudField'
 import { CASCADE_SIZE as SIZE, ShadowDrawing } from './ShadowDrawing'
-import { shadowRay } from './tsl/shadowMap'
+import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
+import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
 import { number, vector3, vector4 } from '../uniforms'
 
@@ -36,43 +37,6 @@ const STRIPS = 4
 const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
 const STALE_LIGHT = 6e-4
-
-/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
-export interface CascadeNodes {
-  readonly u: UniformNode<'vec4', Vector4>
-  readonly v: UniformNode<'vec4', Vector4>
-  readonly w: UniformNode<'vec4', Vector4>
-  /** 1 once it is drawn. */
-  readonly isDrawn: UniformNode<'float', number>
-  /** Which of the map's squares it is in. */
-  readonly square: UniformNode<'float', number>
-}
-
-/** A shadow map as shaders see it. */
-export interface CloudShadows {
-  readonly map: LevelTexture<Vec2>
-  readonly cascades: readonly CascadeNodes[]
-  /** Of squares, one more than cascades. */
-  readonly count: number
-  /** 1 if it is of moonlight, 0 of sunlight. */
-  readonly isMoonlit: UniformNode<'float', number>
-  /** From the camera of the map to the one of the shader, if they are two [m]. */
-  readonly shift?: UniformNode<'vec3', Vector3>
-}
-
-/** What the shader of a cascade reads. Vectors are in the mapped space, from the camera [m]. */
-export interface ShadowRayUniforms {
-  /** Direction to the source of light. */
-  readonly toLight: UniformNode<'vec3', Vector3>
-  /** Middle of the cascade in its plane. */
-  readonly origin: UniformNode<'vec3', Vector3>
-  /** Edges of the cascade. */
-  readonly across: UniformNode<'vec3', Vector3>
-  readonly along: UniformNode<'vec3', Vector3>
-  readonly halfWidth: UniformNode<'float', number>
-  /** Texels along an edge. */
-  readonly size: number
-}
 
 interface Cascade {
   readonly nodes: CascadeNodes

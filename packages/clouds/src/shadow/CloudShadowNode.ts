@@ -7,7 +7,7 @@ import { checkClouds } from '../check'
 import { eyePosition } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import { columnTowards } from '../density/tsl/columns'
-import { sampleShadows } from './tsl/shadowMap'
+import { sampleShadows } from './tsl/sampleShadows'
 import type { Float, Vec3 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
 

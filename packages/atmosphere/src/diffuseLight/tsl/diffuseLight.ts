@@ -79,10 +79,6 @@ export function diffuseMoments(
  * @param table - Diffuse-light table.
  * @param cosSun - μ_s, cosine of the sun's zenith angle.
  */
-export function groundIrradiance(
-  uniforms: AtmosphereUniforms,
-  table: Table,
-  cosSun: Float
-): Vec4 {
+export function groundIrradiance(uniforms: AtmosphereUniforms, table: Table, cosSun: Float): Vec4 {
   return diffuseLightReader(uniforms, table, float(0), cosSun)(6).div(RADIANCE_SCALE)
 }

@@ -1,6 +1,6 @@
 import { If, vec4 } from 'three/tsl'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import type { Sightline, Veil } from '../../view/SkyLayer'
+import type { Sightline, SkyLayer, Veil } from '../../view/SkyLayer'
 import type { ViewNodes } from '../../view/ViewNodes'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
 import { placeInVolume, radianceBetween, rayLimits } from '../../skyVolume/tsl/skyVolume'
@@ -14,8 +14,8 @@ export interface AerialPerspective {
 }
 
 /** What the layers of the atmosphere make of the air's veil. */
-export function veiled(line: Sightline, air: Veil): Veil {
-  return line.view.atmosphere.layers.reduce((veil, layer) => layer.veil?.(line, veil) ?? veil, air)
+export function veiled(layers: readonly SkyLayer[], line: Sightline, air: Veil): Veil {
+  return layers.reduce((veil, layer) => layer.veil?.(line, veil) ?? veil, air)
 }
 
 /**
@@ -25,6 +25,7 @@ export function veiled(line: Sightline, air: Veil): Veil {
  */
 export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
   const { air, volume, eye } = view
+  const { layers } = view.atmosphere
   const offset = view.toMapped(displacementView).toConst()
   const square = offset.dot(offset).max(1e-6).toConst() as Float
   const inverse = square.inverseSqrt().toConst()
@@ -40,11 +41,11 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
     sunlit.assign(between.mul(view.source.irradiance))
   })
   const line = { view, direction, cosView, cosViewSun, distance, place }
-  const light = view.atmosphere.layers.reduce<Vec4>(
+  const light = layers.reduce<Vec4>(
     (without, layer) => layer.haze?.(line, without) ?? without,
     sunlit
   )
-  const veil = veiled(line, { depth: place.depth, light })
+  const veil = veiled(layers, line, { depth: place.depth, light })
   return {
     transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),
     inScatter: linearSRGB(air.uniforms, veil.light)

@@ -77,7 +77,7 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
     if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
     if (layer.glow !== undefined) radiance.assign(layer.glow(ray, radiance))
   }
-  const veil = veiled(ray, { depth: vec4(0), light: radiance })
+  const veil = veiled(layers, ray, { depth: vec4(0), light: radiance })
   radiance.assign(veil.light)
   const far = vec4(0).toVar()
   let isDimmed: Bool | null = null

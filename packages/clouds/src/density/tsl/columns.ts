@@ -1,9 +1,10 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
-import { asideFactor, spreadDepth, type CloudSample } from './density'
+import { asideFactor, spreadDepth } from './density'
 import { forLayers, layerAt } from './layer'
-import { footOffset, weatherAt } from './weather'
+import { footOffset, type CloudSample } from './sample'
+import { weatherAt } from './weather'
 
 /**
  * Vertical optical depth of all clouds above or below a place of the ground, from the weather alone.

@@ -21,19 +21,8 @@ import { CURL_AMOUNT, CURL_PERIOD, DETAIL_PERIOD } from '../../layers/layerUnifo
 import { CURL_SCALE } from '../../noise/noiseRecipes'
 import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { forLayers, layerAt, rotate, type LayerNodes, type LayerRange } from './layer'
-import { footOffset, squared, weatherAt, type CloudWeather } from './weather'
-
-/** A place in the air, as seen from the field's camera. */
-export interface CloudSample {
-  /** From the camera, in the mapped space [m]. */
-  offset: Vec3
-  /** Above the sphere [m]: `ViewNodes.place(offset).altitude`. */
-  altitude: Float
-  /** Zenith there, unit length. */
-  up: Vec3
-  /** From the camera [m]: sets the level of detail. */
-  distance: Float
-}
+import { footOffset, type CloudSample } from './sample'
+import { squared, weatherAt, type CloudWeather } from './weather'
 
 /** Farther than any cloud [m]. */
 const NOWHERE = 1e6

@@ -17,8 +17,8 @@ import {
   WEATHER_WARP
 } from '../../layers/layerUniforms'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import type { CloudSample } from './density'
 import { layerAt, rotate, type LayerNodes } from './layer'
+import type { CloudSample } from './sample'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 
 /** What the weather says of a place in a layer. */
@@ -35,17 +35,6 @@ export interface CloudWeather {
    */
   shapeWarp: Vec3
   detailWarp: Vec3
-}
-
-/**
- * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
- * (d − (h − h_c) u_c) R/r, which does not cancel.
- */
-export function footOffset(field: CloudField, { offset, altitude }: CloudSample): Vec3 {
-  const { up, height } = field.view
-  const rise = altitude.sub(height)
-  const scale = field.radius.div(field.radius.add(altitude))
-  return offset.sub(up.mul(rise)).mul(scale)
 }
 
 /** Share of the sky that the world map has covered around a place, in the direction of `up`. */

@@ -7,7 +7,8 @@ import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { columnFill } from '../../density/tsl/density'
 import { forLayers, layerAt } from '../../density/tsl/layer'
-import { footOffset, weatherAt } from '../../density/tsl/weather'
+import { footOffset } from '../../density/tsl/sample'
+import { weatherAt } from '../../density/tsl/weather'
 
 /** What light does to clouds one above the other: parts of unit flux. Twin: cpu/overcast.ts */
 export interface CloudSheetNodes {

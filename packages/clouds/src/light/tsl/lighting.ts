@@ -2,14 +2,14 @@ import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
 import { If, float, int, smoothstep, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../CloudLightTable'
-import type { CloudShadows } from '../../shadow/CloudShadowMap'
 import type { QualityUniforms } from '../../march/quality'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
-import { extinctionNearby, type CloudSample, type KeptWeather } from '../../density/tsl/density'
+import { extinctionNearby, type KeptWeather } from '../../density/tsl/density'
+import type { CloudSample } from '../../density/tsl/sample'
 import { isSunk, nightShare } from './night'
-import { sampleShadows } from '../../shadow/tsl/shadowMap'
-import { surroundings, type Surroundings } from '../../march/tsl/shells'
+import { sampleShadows, type CloudShadows } from '../../shadow/tsl/sampleShadows'
+import type { Surroundings } from '../../march/tsl/shells'
 
 /** A sun lower than this does not make its rays any longer. */
 const LOWEST_COSINE = 0.12
@@ -31,6 +31,38 @@ const UPWARDS = 0.35
 /** Transmittance below which nothing is seen. */
 export const OPAQUE = 0.01
 
+/** What shading needs to know, the same for all rays of a picture. */
+export interface ShadingContext {
+  readonly field: CloudField
+  readonly light: CloudLight
+  readonly shadows: CloudShadows
+  readonly quality: QualityUniforms
+}
+
+/** A place in the clouds that is to be shaded. */
+export interface ShadedSample {
+  readonly sample: CloudSample
+  readonly weather: KeptWeather
+  /** Direction of the ray on which it is seen, unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** Transmittance of the clouds between it and the camera, in [0, 1]. */
+  readonly transmittance: Float
+  /** Noise in [0, 1), in which cascades of the shadow map meet. */
+  readonly dither: Float
+  /** The layers around it. */
+  readonly layers: Pick<Surroundings, 'base' | 'top' | 'layered'>
+}
+
+/** The light that clouds are shaded for: sun or moon. */
+interface Lamp {
+  /** Direction to it, unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** 1 if the shadow maps are of this light, else 0. */
+  readonly isMapped: Float
+  /** Cosine between it and the zenith. */
+  readonly cosine: Float
+}
+
 /** Optical depths about a sample, not scaled. */
 interface Depths {
   toSun: Float
@@ -43,20 +75,11 @@ interface Depths {
 /**
  * Optical depths about a sample: a few samples near it, which see what is smaller than the shadow map's
  * texels, and the map beyond. Where there is no map, the cloud is taken to be as dense as it is near.
- *
- * @param isMapped - 1 if the map is of this light, else 0.
  */
 function depthsAbout(
-  field: CloudField,
-  shadows: CloudShadows,
-  quality: QualityUniforms,
-  kept: KeptWeather,
-  sample: CloudSample,
-  toLight: Vec3,
-  isMapped: Float,
-  cosSun: Float,
-  { base, top }: Pick<Surroundings, 'base' | 'top'>,
-  dither: Float
+  { field, shadows, quality }: ShadingContext,
+  { sample, weather, dither, layers: { base, top } }: ShadedSample,
+  { direction: toLight, isMapped, cosine: cosSun }: Lamp
 ): Depths {
   const rise = top.sub(sample.altitude).max(1).toConst()
   const fall = sample.altitude.sub(base).max(1).toConst()
@@ -85,7 +108,7 @@ function depthsAbout(
     const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
     const { altitude, up } = field.view.place(offset)
     const { distance } = sample
-    const extinction = extinctionNearby(field, kept, { offset, altitude, up, distance })
+    const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
     found.addAssign(
       isUpwards.select(
         vec4(0, 0, extinction, 0),
@@ -115,24 +138,10 @@ export interface CloudShares {
   ground: Float
 }
 
-/**
- * What a place sends towards the eye of the light that reaches it.
- *
- * @param dither - Noise in [0, 1), in which cascades of the shadow map meet.
- * @param about - The layers around the sample, where they are known.
- */
-export function sourceAt(
-  field: CloudField,
-  light: CloudLight,
-  shadows: CloudShadows,
-  quality: QualityUniforms,
-  kept: KeptWeather,
-  sample: CloudSample,
-  direction: Vec3,
-  transmittance: Float,
-  dither: Float,
-  about: Pick<Surroundings, 'base' | 'top' | 'layered'> = surroundings(field, sample.altitude)
-): CloudShares {
+/** What a place sends towards the eye of the light that reaches it. */
+export function sourceAt(context: ShadingContext, place: ShadedSample): CloudShares {
+  const { field, light, shadows } = context
+  const { sample, direction, transmittance } = place
   const { view } = field
   const isNight = isSunk(field, sample.up.dot(view.sunDirection)).toConst()
   const toLight = isNight.select(field.night.direction, view.sunDirection).toConst() as Vec3
@@ -140,20 +149,9 @@ export function sourceAt(
   const cosSun = sample.up.dot(toLight).clamp(-1, 1).toConst() as Float
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(toLight).clamp(-1, 1).toConst() as Float
-  const depths = depthsAbout(
-    field,
-    shadows,
-    quality,
-    kept,
-    sample,
-    toLight,
-    isMapped,
-    cosSun,
-    about,
-    dither
-  )
+  const depths = depthsAbout(context, place, { direction: toLight, isMapped, cosine: cosSun })
   const scale = light.depthScale
-  const layered = about.layered.toConst() as Float
+  const layered = place.layers.layered.toConst() as Float
   const depthThrough = depths.through.mul(scale).toConst() as Float
   const sun = cloudSource(light, {
     depthToSun: depths.toSun.mul(scale).toConst(),

@@ -1,11 +1,8 @@
 import { Break, If, float, int, vec2, vec3, vec4 } from 'three/tsl'
-import type { CloudField } from '../../density/CloudField'
-import type { CloudLight } from '../../light/CloudLightTable'
-import type { CloudShadows } from '../../shadow/CloudShadowMap'
-import type { QualityUniforms } from '../quality'
 import { loop, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
-import { pairMatter, type CloudSample } from '../../density/tsl/density'
-import { lightUp, OPAQUE, sourceAt } from '../../light/tsl/lighting'
+import { pairMatter } from '../../density/tsl/density'
+import type { CloudSample } from '../../density/tsl/sample'
+import { lightUp, OPAQUE, sourceAt, type ShadingContext } from '../../light/tsl/lighting'
 import { FAR_AWAY, nextShell, surroundings } from './shells'
 
 /** Least number of steps through a layer that is thinner than a few samples are wide. */
@@ -51,12 +48,10 @@ export interface MarchedClouds {
  * To be called inside of a shader function.
  */
 export function marchClouds(
-  field: CloudField,
-  light: CloudLight,
-  shadows: CloudShadows,
-  quality: QualityUniforms,
+  context: ShadingContext,
   { direction, end, jitter, start = float(0) }: CloudRay
 ): MarchedClouds {
+  const { field, light, quality } = context
   const { view } = field
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const radiance = vec4(0).toVar() as Vec4
@@ -161,20 +156,14 @@ export function marchClouds(
         const at = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
         sinceLit.addAssign(both)
         If(sinceLit.greaterThan(SHARED_LIGHT), () => {
-          const { weather } = matter
-          const sample = sampleAt(at.div(both))
-          const { sun, sky, ground } = sourceAt(
-            field,
-            light,
-            shadows,
-            quality,
-            weather,
-            sample,
+          const { sun, sky, ground } = sourceAt(context, {
+            sample: sampleAt(at.div(both)),
+            weather: matter.weather,
             direction,
             transmittance,
-            jitter,
-            about
-          )
+            dither: jitter,
+            layers: about
+          })
           source.assign(vec3(sun, sky, ground))
           sinceLit.assign(0)
         })

@@ -42,12 +42,12 @@ function offscreenCanvas(width: number, height: number): HTMLCanvasElement {
 
 async function requestAdapter(gpu: GPU): Promise<GPUAdapter> {
   const adapter = await gpu.requestAdapter({ powerPreference: 'high-performance' })
-  if (adapter === null) throw new Error('bench: no WebGPU adapter on this machine')
+  if (adapter === null) throw new Error('headless: no WebGPU adapter on this machine')
   return adapter
 }
 
 /** A device, named, and renderers on it that count GPU time. */
-export class BenchDevice {
+export class HeadlessDevice {
   readonly name: string
   readonly #gpu: GPU
 
@@ -57,7 +57,7 @@ export class BenchDevice {
     this.name = [description, device, vendor, architecture].find(text => text !== '') ?? 'unknown'
   }
 
-  static async open(): Promise<BenchDevice> {
+  static async open(): Promise<HeadlessDevice> {
     // Dawn rounds timestamps to 0.1 ms unless told otherwise.
     const gpu = create(['disable-dawn-features=timestamp_quantization'])
     Object.defineProperty(globalThis, 'navigator', {
@@ -71,9 +71,9 @@ export class BenchDevice {
     })
     const adapter = await requestAdapter(gpu)
     if (!adapter.features.has('timestamp-query')) {
-      throw new Error('bench: the adapter has no timestamp-query')
+      throw new Error('headless: the adapter has no timestamp-query')
     }
-    return new BenchDevice(gpu, adapter)
+    return new HeadlessDevice(gpu, adapter)
   }
 
   /** Lets go of the GPU: the process can end. */

@@ -1,6 +1,7 @@
+import type { Vector3 } from 'three'
 import { Break, Fn, If, bool, int, uv, vec2, vec3, vec4 } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
 import type { CloudField } from '../../density/CloudField'
-import type { CascadeNodes, CloudShadows, ShadowRayUniforms } from '../CloudShadowMap'
 import {
   loop,
   type Bool,
@@ -10,8 +11,23 @@ import {
   type Vec3,
   type Vec4
 } from '../../tsl-types'
-import { layerPair, type CloudSample } from '../../density/tsl/density'
+import { layerPair } from '../../density/tsl/density'
+import type { CloudSample } from '../../density/tsl/sample'
 import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
+
+/** What the shader of a cascade reads. Vectors are in the mapped space, from the camera [m]. */
+export interface ShadowRayUniforms {
+  /** Direction to the source of light. */
+  readonly toLight: UniformNode<'vec3', Vector3>
+  /** Middle of the cascade in its plane. */
+  readonly origin: UniformNode<'vec3', Vector3>
+  /** Edges of the cascade. */
+  readonly across: UniformNode<'vec3', Vector3>
+  readonly along: UniformNode<'vec3', Vector3>
+  readonly halfWidth: UniformNode<'float', number>
+  /** Texels along an edge. */
+  readonly size: number
+}
 
 /** Samples of a ray through a layer. */
 const STEPS = 32
@@ -22,7 +38,7 @@ const CUTS = 2
 const SEARCHES = 2
 
 /** Rays end this far from a cascade's plane, in its half widths: under a low sun they are long. */
-const REACH = 1.2
+export const REACH = 1.2
 
 /** Greatest optical depth: half floats hold a few times as much. */
 const MOST = 15_000
@@ -168,61 +184,4 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
     const depth = depths.min(MOST).toConst() as Vec2
     return vec4(vec2(front, half).mul(depth.x), depth)
   })()
-}
-
-/** Optical depths on the sun ray through a place, not scaled. */
-export interface SunDepths {
-  /** From the place to the sun. */
-  toSun: Float
-  /** Of all clouds on the ray. */
-  through: Float
-  /** Of all that cast shadows, from the place to the sun. */
-  shadow: Float
-  /** 1 where the map has the place; 0 where it does not, and the depths are 0. */
-  known: Float
-}
-
-/** Parts of a cascade's width that are left out at its edges. */
-const MARGIN = 0.02
-
-/** Parts of its width in which a cascade gives way to the next. */
-const FADE = 0.1
-
-/**
- * The smallest cascade that holds a place answers.
- *
- * @param dither - Noise in [0, 1), in which cascades meet.
- */
-export function sampleShadows(
-  { map, cascades, count, shift }: CloudShadows,
-  offset: Vec3,
-  dither: Float
-): SunDepths {
-  const edge = dither
-    .mul(-FADE)
-    .add(0.5 - MARGIN)
-    .toConst() as Float
-  const from = (shift === undefined ? offset : offset.add(shift)).toConst()
-  const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
-  // From the widest to the narrowest: the last that fits stays.
-  for (const { u, v, w, isDrawn, square } of cascades.toReversed()) {
-    const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
-    const at = vec2(row(u), row(v)).toConst() as Vec2
-    const aside = at.sub(0.5).abs().toConst() as Vec2
-    const above = row(w).toConst() as Float
-    const isInside = aside.x
-      .max(aside.y)
-      .lessThan(edge)
-      .and(above.abs().lessThan(edge.mul(2 * REACH)))
-      .and(isDrawn.greaterThan(0))
-    If(isInside, () => {
-      place.assign(vec4(at.x.add(square).div(count), at.y, above, 1))
-    })
-  }
-  const known = place.w.toConst() as Float
-  const texel = map.sample(place.xy).level(0).mul(known).toConst() as Vec4
-  // Front and half length come times the depth.
-  const share = texel.x.sub(texel.z.mul(place.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
-  const toSun = texel.z.mul(share).toConst() as Float
-  return { toSun, through: texel.z, shadow: texel.w.mul(share).toConst(), known }
 }

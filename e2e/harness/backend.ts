@@ -1,0 +1,2 @@
+/** Which of three's backends draws. */
+export type Backend = 'webgpu' | 'webgl'

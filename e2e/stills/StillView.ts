@@ -1,0 +1,176 @@
+import {
+  airglow,
+  aerialPerspective,
+  Atmosphere,
+  exposureFor,
+  marsAtmosphere,
+  milkyWay,
+  moon,
+  MoonDirectionalLight,
+  NightLightProbe,
+  planetGround,
+  SkyLightProbe,
+  standardAtmosphere,
+  stars,
+  SunDirectionalLight,
+  sunFlare,
+  type LightSource
+} from '@welkin/atmosphere'
+import {
+  cloudPreset,
+  clouds,
+  cloudShadow,
+  cloudSkyLight,
+  type CloudQuality,
+  type CloudQualityName,
+  type CloudsNode
+} from '@welkin/clouds'
+import { Ellipsoid } from '@welkin/geo'
+import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
+import { pass, shadow } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { Landscape, meadow, redDust } from './landscape'
+import type { Still } from './scenes'
+
+/** Vertical field of view [°]. */
+const FIELD_OF_VIEW = 55
+/** Distance of the sun from its target: its shadows begin there [m]. */
+const LIGHT_DISTANCE = 20_000
+/** Half width of the hills' shadow map [m]. */
+const SHADOW_EXTENT = 6000
+/** Clouds have drifted for so long [s]. */
+const TIME = 300
+
+function atmosphereOf({ planet, sun }: Still): Atmosphere {
+  const atmosphere =
+    planet === 'mars' ? marsBody() : new Atmosphere({ parameters: standardAtmosphere() })
+  atmosphere.place({ longitude: 139.77, latitude: 35.68 })
+  if (sun instanceof Date) atmosphere.date = sun
+  else atmosphere.setSunAngles(sun.elevation, sun.azimuth)
+  return atmosphere
+}
+
+function marsBody(): Atmosphere {
+  const parameters = marsAtmosphere()
+  const radius = parameters.bottomRadius
+  return new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
+}
+
+function sunOf(atmosphere: Atmosphere): SunDirectionalLight {
+  const sun = new SunDirectionalLight(atmosphere, LIGHT_DISTANCE)
+  sun.castShadow = true
+  sun.shadow.mapSize.setScalar(4096)
+  const { camera } = sun.shadow
+  camera.left = camera.bottom = -SHADOW_EXTENT
+  camera.right = camera.top = SHADOW_EXTENT
+  camera.far = 3 * LIGHT_DISTANCE
+  sun.shadow.normalBias = 20
+  return sun
+}
+
+function cameraOf({ altitude, view, land }: Still, aspect: number): PerspectiveCamera {
+  const isFar = land === 'planet'
+  const camera = new PerspectiveCamera(FIELD_OF_VIEW, aspect, isFar ? 2000 : 1, isFar ? 2e7 : 4e5)
+  camera.position.y = altitude
+  camera.rotation.order = 'YXZ'
+  camera.rotation.x = MathUtils.degToRad(view.pitch)
+  camera.rotation.y = -MathUtils.degToRad(view.azimuth)
+  camera.updateMatrixWorld()
+  return camera
+}
+
+/** A still's scene, drawn as an app would draw it: a pass, the air, the clouds. */
+export class StillView {
+  readonly #renderer: WebGPURenderer
+  readonly #target: RenderTarget
+  readonly #pipeline: RenderPipeline
+  readonly #camera: PerspectiveCamera
+  readonly #atmosphere: Atmosphere
+  readonly #sun: SunDirectionalLight
+  readonly #landscape: Landscape | undefined
+  readonly #clouds: CloudsNode | undefined
+  /** Lights besides the sun that exposure is for. */
+  readonly #sources: LightSource[] = []
+
+  constructor(
+    renderer: WebGPURenderer,
+    still: Still,
+    [width, height]: readonly [number, number],
+    quality: CloudQualityName | CloudQuality
+  ) {
+    this.#renderer = renderer
+    this.#target = new RenderTarget(width, height)
+    const atmosphere = (this.#atmosphere = atmosphereOf(still))
+    const camera = (this.#camera = cameraOf(still, width / height))
+    const scene = new Scene()
+    const sun = (this.#sun = sunOf(atmosphere))
+    const sky = new SkyLightProbe(atmosphere)
+    scene.add(sun, sun.target, sky)
+    // Continents and seas are the Earth's alone.
+    if (still.planet === undefined) atmosphere.add(planetGround())
+    if (still.sun instanceof Date) this.#addNight(scene)
+    else atmosphere.add(sunFlare(atmosphere))
+    if (still.land === 'hills') {
+      const isMars = still.planet === 'mars'
+      const radius = atmosphere.parameters.bottomRadius
+      this.#landscape = new Landscape(radius, isMars ? redDust : meadow, !isMars)
+      scene.add(this.#landscape)
+    }
+
+    const scenePass = pass(scene, camera, { samples: 0 })
+    const depth = scenePass.getTextureNode('depth')
+    const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
+    this.#pipeline = new RenderPipeline(renderer)
+    this.#pipeline.outputNode = air
+    if (still.clouds !== undefined) {
+      const { preset, coverage } = still.clouds
+      const layers = cloudPreset(preset)
+      if (coverage !== undefined) layers.at(0).set({ coverage })
+      const node = clouds(air, depth, camera, atmosphere, layers, { quality })
+      Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+      cloudSkyLight(sky, node)
+      node.field.bake(renderer)
+      node.time = TIME
+      this.#clouds = node
+      this.#pipeline.outputNode = node
+    }
+  }
+
+  /** Factor on daylight's brightness. */
+  get exposure(): number {
+    return exposureFor(this.#atmosphere, this.#camera, { sources: this.#sources })
+  }
+
+  draw(): void {
+    this.#atmosphere.luminanceScale = 1e-4 * this.exposure
+    this.#renderer.setRenderTarget(this.#target)
+    this.#pipeline.render()
+    this.#renderer.setRenderTarget(null)
+  }
+
+  /** What a viewer sees, RGBA, rows top-down. */
+  async picture(): Promise<Uint8Array> {
+    const { width, height } = this.#target
+    const pixels = this.#renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height)
+    return (await pixels) as Uint8Array
+  }
+
+  dispose(): void {
+    this.#pipeline.dispose()
+    this.#clouds?.dispose()
+    this.#landscape?.dispose()
+    this.#sun.dispose()
+    this.#atmosphere.dispose()
+    this.#target.dispose()
+  }
+
+  #addNight(scene: Scene): void {
+    const atmosphere = this.#atmosphere
+    const luna = moon(atmosphere)
+    atmosphere.add(milkyWay(), stars(), luna, airglow())
+    const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
+    const moonSky = new SkyLightProbe(atmosphere, luna.source)
+    scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
+    this.#sources.push(luna.source)
+  }
+}

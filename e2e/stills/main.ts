@@ -1,0 +1,115 @@
+import { cloudQualities, type CloudQualityName } from '@welkin/clouds'
+import { mkdirSync, writeFileSync } from 'node:fs'
+import { join } from 'node:path'
+import { parseArgs } from 'node:util'
+import { PNG } from 'pngjs'
+import { AgXToneMapping } from 'three'
+import { cloudReference } from '../bench/clouds'
+import { median } from '../bench/statistics'
+import { gpuMilliseconds, HeadlessDevice, nextFrame } from '../headless/device'
+import { selectStills, stills, type Still } from './scenes'
+import { StillView } from './StillView'
+
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: {
+    size: { type: 'string', default: '1920x1080' },
+    scenes: { type: 'string', multiple: true, default: [] },
+    out: { type: 'string', default: 'e2e/output/stills' },
+    frames: { type: 'string', default: '120' },
+    quality: { type: 'string', default: 'high' },
+    list: { type: 'boolean', default: false }
+  }
+})
+const HELP = '[--size 1920x1080] [--scenes NAME…] [--out DIR] [--quality high] [--frames 120]'
+
+/** Frames at the end whose GPU time is told. */
+const TIMED = 20
+
+const size = values.size.split('x').map(Number) as [number, number]
+const frames = Number(values.frames)
+if (size.length !== 2 || !size.every(side => Number.isInteger(side) && side > 0)) {
+  throw new Error(`stills: --size must be WIDTHxHEIGHT, got '${values.size}'; ${HELP}`)
+}
+if (!Number.isInteger(frames) || frames < 1) {
+  throw new Error(`stills: --frames must be a positive integer, got '${values.frames}'; ${HELP}`)
+}
+const names = [...Object.keys(cloudQualities), 'reference']
+if (!names.includes(values.quality)) {
+  throw new Error(`stills: --quality must be ${names.join(', ')}, got '${values.quality}'`)
+}
+const quality =
+  values.quality === 'reference' ? cloudReference : (values.quality as CloudQualityName)
+// `--scenes a b` and `--scenes a --scenes b` alike.
+const selected = selectStills([...values.scenes, ...positionals])
+
+/** A still's figures. */
+interface Taken {
+  name: string
+  file: string
+  /** Median of the last frames [ms]. */
+  gpuMs: number
+  exposure: number
+}
+
+/** @throws If nothing was drawn: the picture is of one colour. */
+function encode(name: string, pixels: Uint8Array): Buffer {
+  const [width, height] = size
+  const png = new PNG({ width, height })
+  png.data = Buffer.from(pixels)
+  let isEven = true
+  for (let i = 0; i < png.data.length; i += 4) {
+    png.data[i + 3] = 255
+    isEven &&= [0, 1, 2].every(channel => png.data[i + channel] === png.data[channel])
+  }
+  if (isEven) throw new Error(`stills: ${name} is of one colour`)
+  return PNG.sync.write(png)
+}
+
+async function take(renderer: Parameters<typeof gpuMilliseconds>[0], still: Still): Promise<Taken> {
+  const view = new StillView(renderer, still, size, quality)
+  try {
+    const times: number[] = []
+    for (let frame = 0; frame < frames; frame++) {
+      nextFrame()
+      view.draw()
+      times.push(await gpuMilliseconds(renderer))
+    }
+    const file = `${still.name}.png`
+    writeFileSync(join(values.out, file), encode(still.name, await view.picture()))
+    const { exposure } = view
+    return { name: still.name, file, gpuMs: median(times.slice(-TIMED)), exposure }
+  } finally {
+    view.dispose()
+  }
+}
+
+async function takeAll(): Promise<void> {
+  mkdirSync(values.out, { recursive: true })
+  const device = await HeadlessDevice.open()
+  console.log(`device: ${device.name}, ${values.size}, quality ${values.quality}, to ${values.out}`)
+  const renderer = await device.renderer(...size)
+  renderer.toneMapping = AgXToneMapping
+  renderer.shadowMap.enabled = true
+  const taken: Taken[] = []
+  for (const still of selected) {
+    try {
+      const result = await take(renderer, still)
+      taken.push(result)
+      console.log(
+        `${still.name.padEnd(22)} ${result.gpuMs.toFixed(2)} ms a frame   exposure ${result.exposure.toPrecision(3)}`
+      )
+    } catch (error) {
+      // The others are worth having all the same.
+      console.error(`${still.name.padEnd(22)} failed:`, error)
+      process.exitCode = 1
+    }
+  }
+  const report = { device: device.name, size, frames, quality: values.quality, stills: taken }
+  writeFileSync(join(values.out, 'stills.json'), JSON.stringify(report, null, 2))
+  device.close()
+}
+
+if (values.list) {
+  for (const { name, about } of stills) console.log(`${name.padEnd(22)} ${about}`)
+} else await takeAll()

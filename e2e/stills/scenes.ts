@@ -1,0 +1,183 @@
+import type { CloudPresetName } from '@welkin/clouds'
+
+/** A still: what is in it, where the sun stands, and where the camera looks. */
+export interface Still {
+  name: string
+  /** What to look for. */
+  about: string
+  /** Without one the sky is clear. */
+  clouds?: { preset: CloudPresetName; coverage?: number }
+  planet?: 'mars'
+  /** Camera above the ellipsoid [m]. */
+  altitude: number
+  /** Elevation and azimuth of the sun, clockwise from north [°]; or a date, which sets moon and stars too. */
+  sun: { elevation: number; azimuth: number } | Date
+  /** Azimuth, clockwise from north, and pitch of the camera [°]. */
+  view: { azimuth: number; pitch: number }
+  /** Hills and trees about the camera, or the bare planet. */
+  land: 'hills' | 'planet'
+}
+
+/** The presets from the ground: where to look. */
+const presets: Record<CloudPresetName, { azimuth: number; pitch: number }> = {
+  fairWeather: { azimuth: 330, pitch: 14 },
+  stratocumulus: { azimuth: 30, pitch: 14 },
+  overcast: { azimuth: 30, pitch: 10 },
+  cumulonimbus: { azimuth: 20, pitch: 14 },
+  cirrus: { azimuth: 20, pitch: 18 },
+  mixed: { azimuth: 300, pitch: 14 }
+}
+
+/** Suns of the presets: elevation, and azimuth from where the camera looks [°]. */
+const suns = {
+  aside: { elevation: 42, turn: -80, about: 'form and shading, shadows on the hills' },
+  behind: { elevation: 28, turn: 0, about: 'sun behind the clouds: silver linings, dark cores' },
+  low: { elevation: 5, turn: 15, about: 'reddened light, long shadows in haze' },
+  set: { elevation: -3, turn: 15, about: 'after sunset: only high clouds still have sun' }
+}
+
+const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, view]) =>
+  Object.entries(suns).map(([name, { elevation, turn, about }]) => ({
+    name: `${preset}-${name}`,
+    about,
+    clouds: { preset: preset as CloudPresetName },
+    altitude: 2,
+    sun: { elevation, azimuth: (view.azimuth + turn + 360) % 360 },
+    view,
+    land: 'hills' as const
+  }))
+)
+
+/** All stills, by name. */
+export const stills: readonly Still[] = [
+  ...fromTheGround,
+  {
+    name: 'among',
+    about: 'among cumulus: edges near the camera, depth of the sky',
+    clouds: { preset: 'fairWeather', coverage: 0.45 },
+    altitude: 1500,
+    sun: { elevation: 35, azimuth: 100 },
+    view: { azimuth: 60, pitch: 0 },
+    land: 'hills'
+  },
+  {
+    name: 'among-towers',
+    about: 'between the towers of a storm, sun aside',
+    clouds: { preset: 'cumulonimbus' },
+    altitude: 2500,
+    sun: { elevation: 35, azimuth: 120 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: '3km-deck',
+    about: 'a deck from above, low sun: its texture, its far edge in haze',
+    clouds: { preset: 'stratocumulus' },
+    altitude: 3000,
+    sun: { elevation: 18, azimuth: 60 },
+    view: { azimuth: 30, pitch: -8 },
+    land: 'hills'
+  },
+  {
+    name: '10km-cumulus',
+    about: 'from an airliner: cumulus and their shadows to the horizon',
+    clouds: { preset: 'fairWeather', coverage: 0.45 },
+    altitude: 10_500,
+    sun: { elevation: 30, azimuth: 100 },
+    view: { azimuth: 60, pitch: -12 },
+    land: 'hills'
+  },
+  {
+    name: '10km-storm',
+    about: 'from an airliner: anvils at eye height',
+    clouds: { preset: 'cumulonimbus' },
+    altitude: 9000,
+    sun: { elevation: 20, azimuth: 200 },
+    view: { azimuth: 80, pitch: -2 },
+    land: 'hills'
+  },
+  {
+    name: '100km',
+    about: 'three layers from the edge of the air',
+    clouds: { preset: 'mixed' },
+    altitude: 100_000,
+    sun: { elevation: 30, azimuth: 100 },
+    view: { azimuth: 60, pitch: -14 },
+    land: 'planet'
+  },
+  {
+    name: '400km',
+    about: 'three layers from orbit, limb in the picture',
+    clouds: { preset: 'mixed' },
+    altitude: 400_000,
+    sun: { elevation: 25, azimuth: 100 },
+    view: { azimuth: 60, pitch: -22 },
+    land: 'planet'
+  },
+  {
+    name: 'clear-noon',
+    about: 'blue of the zenith, pale horizon, haze before the hills',
+    altitude: 2,
+    sun: { elevation: 60, azimuth: 100 },
+    view: { azimuth: 0, pitch: 5 },
+    land: 'hills'
+  },
+  {
+    name: 'clear-sunset',
+    about: 'the reddened sun, 2° up',
+    altitude: 300,
+    sun: { elevation: 2, azimuth: 0 },
+    view: { azimuth: 10, pitch: 2 },
+    land: 'hills'
+  },
+  {
+    name: 'clear-dusk',
+    about: 'twilight arch with the sun 4° down',
+    altitude: 300,
+    sun: { elevation: -4, azimuth: 0 },
+    view: { azimuth: 10, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: 'night-moon',
+    about: 'a day before full moon: moonlit clouds and hills, stars, Milky Way',
+    clouds: { preset: 'fairWeather', coverage: 0.2 },
+    altitude: 300,
+    sun: new Date('2026-06-28T14:00:00Z'),
+    view: { azimuth: 150, pitch: 18 },
+    land: 'hills'
+  },
+  {
+    name: 'mars-noon',
+    about: 'butterscotch sky over red hills',
+    planet: 'mars',
+    altitude: 2,
+    sun: { elevation: 50, azimuth: 100 },
+    view: { azimuth: 0, pitch: 5 },
+    land: 'hills'
+  },
+  {
+    name: 'mars-sunset',
+    about: 'blue glow about a setting sun',
+    planet: 'mars',
+    altitude: 2,
+    sun: { elevation: 4, azimuth: 0 },
+    view: { azimuth: 5, pitch: 6 },
+    land: 'hills'
+  }
+]
+
+/**
+ * Stills by name or prefix, in their own order; all for none.
+ *
+ * @throws Error with the list if one matches none.
+ */
+export function selectStills(words: readonly string[]): readonly Still[] {
+  const unknown = words.find(word => stills.every(({ name }) => !name.startsWith(word)))
+  if (unknown !== undefined) {
+    const names = stills.map(({ name }) => name).join(', ')
+    throw new Error(`stills: no scene's name begins with '${unknown}'; there are ${names}`)
+  }
+  if (words.length === 0) return stills
+  return stills.filter(({ name }) => words.some(word => name.startsWith(word)))
+}

@@ -1,0 +1,57 @@
+import type { Texture } from 'three'
+import { normalWorld, pmremTexture, vec3 } from 'three/tsl'
+import { Node } from 'three/webgpu'
+import type { NodeBuilder } from 'three/webgpu'
+import { checkBoolean, checkOptions, fail } from '@welkin/geo'
+
+/** Options of {@link skyEnvironment}. */
+export interface EnvironmentOptions {
+  /**
+   * Whether it lights matte surfaces too, besides being mirrored. By default it does, unless a
+   * `SkyLightProbe` lights the scene: their light must not count twice.
+   */
+  diffuse?: boolean
+}
+
+/** A picture of a sky in place of the sky: see {@link skyEnvironment}. */
+export class ImageEnvironmentNode extends Node<'vec3'> {
+  static get type(): string {
+    return 'ImageEnvironmentNode'
+  }
+
+  /** Equirectangular, a cube, or filtered already. Shared, not owned. */
+  readonly image: Texture
+  /** See {@link EnvironmentOptions}; null for what suits the scene's lights. */
+  readonly diffuse: boolean | null
+
+  /** @throws If it is no texture, or an option is of the wrong kind. */
+  constructor(image: Texture, options: EnvironmentOptions = {}) {
+    super('vec3')
+    if (!image?.isTexture) fail('ImageEnvironmentNode', 'image must be a Texture', image)
+    const { diffuse } = checkOptions('ImageEnvironmentNode', options, 'diffuse')
+    if (diffuse !== undefined) checkBoolean('ImageEnvironmentNode', 'diffuse', diffuse)
+    this.image = image
+    this.diffuse = diffuse ?? null
+  }
+
+  override setup(builder: NodeBuilder): Node {
+    let map = maps.get(this.image)
+    if (map === undefined) maps.set(this.image, (map = pmremTexture(this.image)))
+    return mirrored(builder, map, this.diffuse)
+  }
+}
+
+const maps = new WeakMap<Texture, Node>()
+
+/** What a material gets from a map: by roughness what it mirrors, or light from all around. */
+export function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | null): Node {
+  const { context, lightsNode } = builder as unknown as {
+    context: { getUV?: (node: Node, builder: NodeBuilder) => unknown }
+    lightsNode: { getLights?: () => object[] } | null
+  }
+  // Light on matte surfaces is what three asks about the normal, not the mirrored ray.
+  if (context.getUV?.(map, builder) !== normalWorld) return map
+  const lights = lightsNode?.getLights?.() ?? []
+  const hasProbe = lights.some(light => 'isLightProbe' in light && 'atmosphere' in light)
+  return (diffuse ?? !hasProbe) ? map : vec3(0)
+}

@@ -1,0 +1,77 @@
+import { Matrix3, Vector3 } from 'three'
+import { renderGroup, uniform } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
+import type { Camera } from 'three'
+import type { AtmosphereTables } from '../tables/AtmosphereTables'
+import { EyeUniforms } from '../skyVolume/SkyVolumes'
+import type { Air } from '../scattering/tsl/scattering'
+import type { Texels } from '../tables/TableAtlas'
+import type { Float, Mat3, Vec3 } from '../tsl-types'
+import type { AtmosphereView } from './AtmosphereView'
+import type { LightSource } from './LightSource'
+
+const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
+
+/** Uniforms and textures of an atmosphere as a camera sees it in the light of one source. */
+export class ViewUniforms {
+  readonly source: LightSource
+  /** Whose view it is; null for whichever renders. */
+  readonly camera: Camera | null
+  readonly air: Air
+  /** Where its sky volumes are kept. */
+  readonly volume: Texels
+  readonly eye = new EyeUniforms()
+  /** Height of the camera above the ground, which may be negative [m]. */
+  readonly height = uniform(0).setGroup(renderGroup)
+  /** 1 where light of the source can reach what the camera sees of the air, 0 deep in the night. */
+  readonly isLit = uniform(1).setGroup(renderGroup)
+  /** Zenith at the camera, in the mapped space. */
+  readonly up = vector()
+  /** Direction to the source, in the mapped space. */
+  readonly sunDirection = vector()
+  /** Displacements in view space [world units] to the mapped space [m]. */
+  readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
+
+  constructor(tables: AtmosphereTables, source: LightSource, camera: Camera | null) {
+    this.source = source
+    this.camera = camera
+    this.air = tables.air
+    this.volume = tables.atlas
+  }
+
+  /** Takes the values of a view. */
+  protected set(view: AtmosphereView): void {
+    if (view.eye === null) return
+    this.eye.set(view.eye, view.volume)
+    this.source.irradiance.value.set(...view.irradiance)
+    this.height.value = view.height
+    this.isLit.value = view.isLit ? 1 : 0
+    this.up.value.copy(view.up)
+    this.sunDirection.value.copy(view.sunDirection)
+    this.viewToMapped.value.copy(view.viewToMapped)
+  }
+
+  /** A displacement in view space [world units] in the mapped space [m]. */
+  toMapped(displacementView: Vec3): Vec3 {
+    return (this.viewToMapped as unknown as Mat3).mul(displacementView)
+  }
+
+  /**
+   * Altitude and sun of a point, without cancellation: h' = h + (2 r d·up + d²)/(r' + r).
+   *
+   * @param offset - From the camera, in the mapped space [m].
+   */
+  place(offset: Vec3): { altitude: Float; cosSun: Float; up: Vec3 } {
+    const { bottomRadius, thickness } = this.air.uniforms
+    const radius = bottomRadius.add(this.height).toConst()
+    const rise = offset.dot(this.up).mul(radius).mul(2).add(offset.dot(offset)).toConst()
+    const radiusThere = radius.mul(radius).add(rise).max(1).sqrt().toConst()
+    const altitude = this.height.add(rise.div(radiusThere.add(radius))).clamp(0, thickness)
+    const up = this.up.mul(radius).add(offset).div(radiusThere).toConst()
+    return {
+      altitude: altitude.toConst(),
+      cosSun: up.dot(this.sunDirection).clamp(-1, 1).toConst(),
+      up: up
+    }
+  }
+}

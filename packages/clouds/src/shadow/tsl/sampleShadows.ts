@@ -1,0 +1,85 @@
+import type { Vector3, Vector4 } from 'three'
+import { If, vec2, vec4 } from 'three/tsl'
+import type { UniformNode } from 'three/webgpu'
+import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { REACH } from './shadowRay'
+
+/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
+export interface CascadeNodes {
+  readonly u: UniformNode<'vec4', Vector4>
+  readonly v: UniformNode<'vec4', Vector4>
+  readonly w: UniformNode<'vec4', Vector4>
+  /** 1 once it is drawn. */
+  readonly isDrawn: UniformNode<'float', number>
+  /** Which of the map's squares it is in. */
+  readonly square: UniformNode<'float', number>
+}
+
+/** A shadow map as shaders see it. */
+export interface CloudShadows {
+  readonly map: LevelTexture<Vec2>
+  readonly cascades: readonly CascadeNodes[]
+  /** Of squares, one more than cascades. */
+  readonly count: number
+  /** 1 if it is of moonlight, 0 of sunlight. */
+  readonly isMoonlit: UniformNode<'float', number>
+  /** From the camera of the map to the one of the shader, if they are two [m]. */
+  readonly shift?: UniformNode<'vec3', Vector3>
+}
+
+/** Optical depths on the sun ray through a place, not scaled. */
+export interface SunDepths {
+  /** From the place to the sun. */
+  toSun: Float
+  /** Of all clouds on the ray. */
+  through: Float
+  /** Of all that cast shadows, from the place to the sun. */
+  shadow: Float
+  /** 1 where the map has the place; 0 where it does not, and the depths are 0. */
+  known: Float
+}
+
+/** Parts of a cascade's width that are left out at its edges. */
+const MARGIN = 0.02
+
+/** Parts of its width in which a cascade gives way to the next. */
+const FADE = 0.1
+
+/**
+ * The smallest cascade that holds a place answers.
+ *
+ * @param dither - Noise in [0, 1), in which cascades meet.
+ */
+export function sampleShadows(
+  { map, cascades, count, shift }: CloudShadows,
+  offset: Vec3,
+  dither: Float
+): SunDepths {
+  const edge = dither
+    .mul(-FADE)
+    .add(0.5 - MARGIN)
+    .toConst() as Float
+  const from = (shift === undefined ? offset : offset.add(shift)).toConst()
+  const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
+  // From the widest to the narrowest: the last that fits stays.
+  for (const { u, v, w, isDrawn, square } of cascades.toReversed()) {
+    const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
+    const at = vec2(row(u), row(v)).toConst() as Vec2
+    const aside = at.sub(0.5).abs().toConst() as Vec2
+    const above = row(w).toConst() as Float
+    const isInside = aside.x
+      .max(aside.y)
+      .lessThan(edge)
+      .and(above.abs().lessThan(edge.mul(2 * REACH)))
+      .and(isDrawn.greaterThan(0))
+    If(isInside, () => {
+      place.assign(vec4(at.x.add(square).div(count), at.y, above, 1))
+    })
+  }
+  const known = place.w.toConst() as Float
+  const texel = map.sample(place.xy).level(0).mul(known).toConst() as Vec4
+  // Front and half length come times the depth.
+  const share = texel.x.sub(texel.z.mul(place.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
+  const toSun = texel.z.mul(share).toConst() as Float
+  return { toSun, through: texel.z, shadow: texel.w.mul(share).toConst(), known }
+}
