@@ -31,7 +31,7 @@ import type { Triple } from './air/cpu/color'
 
 /** Options of {@link Atmosphere}. */
 export interface AtmosphereOptions {
-  /** What the air is made of; by default the Earth's. Shared, not copied. */
+  /** Composition of the air; by default the Earth's. Shared, not copied. */
   parameters?: AtmosphereParameters
   /** The planet's figure; by default WGS84. */
   ellipsoid?: Ellipsoid
@@ -39,7 +39,7 @@ export interface AtmosphereOptions {
   flat?: boolean
 }
 
-/** How the scene's world space lies on the planet. */
+/** Lie of the scene's world space on the planet. */
 export type AtmosphereFrame = 'local' | 'ecef'
 
 const FULL: Spectrum = [1, 1, 1, 1]
@@ -63,7 +63,7 @@ const _rotation = new Matrix4()
 export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** For type testing. */
   readonly isAtmosphere = true
-  /** What the air is made of. Change it with `parameters.set(…)`. */
+  /** Composition of the air. Change it with `parameters.set(…)`. */
   readonly parameters: AtmosphereParameters
   /** The planet's figure. */
   readonly ellipsoid: Ellipsoid
@@ -80,7 +80,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   #date: Date | null = null
   readonly #sunECEF = new Vector3()
   readonly #sunWorld = new Vector3(1, Math.SQRT2, 1).normalize()
-  /** What is kept on the GPU. */
+  /** Tables on the GPU. */
   readonly tables = new AtmosphereTables()
   /** The sun as a source of light; its `irradiance` dims in an eclipse. */
   readonly sun = new LightSource(target => target.copy(this.sunDirection))
@@ -118,7 +118,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   /**
-   * Whether the world is flat: up is +Y wherever the camera goes, and height is y. For scenes with no
+   * Flat world: up is +Y wherever the camera goes, and height is y. For scenes with no
    * planet, however far they reach.
    *
    * It looks just as it does at the origin of a round world, the horizon's dip and the reddening of a
@@ -213,7 +213,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.worldToECEF.scale(_position.setScalar(unit))
   }
 
-  /** When it is, a copy: the sun follows. Null if the sun's direction was set by hand. */
+  /** Date that sun, moon and stars follow; a copy. Null if the sun's direction was set by hand. */
   get date(): Date | null {
     return this.#date && new Date(this.#date)
   }
@@ -298,7 +298,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return this.#views.get(source)?.get(camera)
   }
 
-  /** What is in the sky besides air and sun, from far to near. */
+  /** Layers of the sky besides air and sun, from far to near. */
   get layers(): readonly SkyLayer[] {
     return this.#layers
   }
@@ -360,7 +360,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   /**
-   * What answers questions about light, as things are now.
+   * Answers questions about light, as things are now.
    *
    * @param position - World: where light is asked about; by default the origin.
    * @param source - Whose light.

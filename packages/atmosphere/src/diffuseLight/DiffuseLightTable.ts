@@ -27,7 +27,7 @@ const ORDERS = 5
 
 const integer = (): UniformNode<'int', number> => uniform(0, 'int')
 
-/** What baking needs and the finished table does not. */
+/** Bake resources: textures and passes that the finished table does not need. */
 class Workshop {
   readonly rays = tableTarget('DiffuseLight.rays', MOST_RAYS, BAKE_ROWS * COLUMNS, 1, NearestFilter)
   readonly orders = Array.from({ length: ORDERS }, (_, order) =>

@@ -7,7 +7,7 @@ import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 /** Options of {@link skyEnvironment}. */
 export interface EnvironmentOptions {
   /**
-   * Whether it lights matte surfaces too, besides being mirrored. By default it does, unless a
+   * Lights matte surfaces too, besides being mirrored. By default it does, unless a
    * `SkyLightProbe` lights the scene: their light must not count twice.
    */
   diffuse?: boolean
@@ -43,7 +43,7 @@ export class ImageEnvironmentNode extends Node<'vec3'> {
 
 const maps = new WeakMap<Texture, Node>()
 
-/** What a material gets from a map: by roughness what it mirrors, or light from all around. */
+/** Look-up of a material in a map: by roughness what it mirrors, or light from all around. */
 export function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | null): Node {
   const { context, lightsNode } = builder as unknown as {
     context: { getUV?: (node: Node, builder: NodeBuilder) => unknown }

@@ -4,7 +4,7 @@ import { PMREMGenerator } from 'three/webgpu'
 import type { CubeRenderTarget, Node, Renderer } from 'three/webgpu'
 import { CubeFaces } from './CubeFaces'
 
-/** Of the passes of three's filter, those that run together. */
+/** Passes of three's filter that run together. */
 interface Part {
   /** Level of the map that they draw; −1 for those that prepare its source. */
   level: number
@@ -50,7 +50,7 @@ export class PrefilteredCube {
   #next = 0
   #renderer: Renderer | null = null
   #generator: PMREMGenerator | null = null
-  /** What is let through; null for all passes. */
+  /** Passes that are let through; null for all. */
   #part: Part | null = null
   #target: CubeRenderTarget | null = null
   #node: Node | null = null
@@ -60,7 +60,7 @@ export class PrefilteredCube {
     this.#source = source
   }
 
-  /** What materials mirror, once there is anything. */
+  /** Map that materials mirror, once there is one. */
   get node(): Node | null {
     return this.#node
   }

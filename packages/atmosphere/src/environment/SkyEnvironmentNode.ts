@@ -14,11 +14,11 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 export interface SkyEnvironmentOptions extends EnvironmentOptions {
   /** Texels along the edge of a cube face, a power of two in [256, 2048]. */
   size?: number
-  /** How far the sun may move, or the axes of the world turn, before it is drawn again, > 0 [°]. */
+  /** Angle by which the sun or the axes of the world may turn before it is drawn again, > 0 [°]. */
   angle?: number
-  /** How far the camera may climb or sink, as a part of its height (at least 500 m), > 0. */
+  /** Climb of the camera before it is drawn again, as a part of its height (at least 500 m), > 0. */
   climb?: number
-  /** What is in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
+  /** Picture in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
 
@@ -52,7 +52,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly overlay: SkyOverlay | null
   /** Draws all of it before the next frame, whatever has changed. */
   needsRedraw = true
-  /** How often it was drawn. */
+  /** Number of times that it was drawn. */
   redraws = 0
   readonly #view: ViewNodes
   readonly #cube: SkyCube
@@ -60,6 +60,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   #overlayVersion = 0
   #frame = -1
   #camera: Camera | null = null
+  #renderer: Renderer | null = null
   #angle = 0.1
   #climb = 0.1
   readonly #release = (): void => this.#free()
@@ -134,6 +135,9 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     if (isLed && this.redraws > 0) return
     this.#frame = frameId
     this.#camera = camera
+    // What another renderer drew went with it.
+    if (renderer !== this.#renderer) this.needsRedraw = true
+    this.#renderer = renderer
     const cube = this.#cube
     const version = this.overlay?.version ?? 0
     const isSame = (): boolean =>
@@ -174,7 +178,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
 }
 
 /**
- * What materials of a scene mirror: an atmosphere's sky, or a picture that stands in for it, loaded by
+ * Environment that materials of a scene mirror: an atmosphere's sky, or a picture that stands in for it, loaded by
  * three's `HDRLoader` say. See {@link SkyEnvironmentNode}.
  *
  * ```ts

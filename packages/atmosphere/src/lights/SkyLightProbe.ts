@@ -10,11 +10,12 @@ import { skyIrradiance } from '../diffuseLight/tsl/skyIrradiance'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 /** A small plane in the light of sky and ground, as shader nodes. */
 export interface SkyLitPlane {
   readonly view: ViewNodes
-  /** Where it is, from the camera in the mapped space [m]. */
+  /** Position from the camera, in the mapped space [m]. */
   readonly offset: Vec3
   /** Above the ground [m]. */
   readonly altitude: Float
@@ -36,11 +37,11 @@ export class SkyLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
 
-  /** Whose light sky and ground scatter: the sun's. */
+  /** Source of the light that sky and ground scatter; by default the sun. */
   readonly source: LightSource
 
   /**
-   * What clouds make of the irradiance that a plane has from a clear sky and its ground, for unit
+   * Irradiance under clouds, given that of a plane under a clear sky and its ground, for unit
    * irradiance of the source. Set it before the first render.
    */
   overcast: ((plane: SkyLitPlane, clear: Vec4) => Vec4) | null = null
@@ -55,6 +56,11 @@ export class SkyLightProbe extends LightProbe {
     checkSource('SkyLightProbe', 'source', source)
     this.atmosphere = atmosphere
     this.source = source
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    watchScene('SkyLightProbe', this)
+    super.updateMatrixWorld(force)
   }
 
   override clone(): this {

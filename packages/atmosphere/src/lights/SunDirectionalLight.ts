@@ -11,6 +11,7 @@ import { sunTransmittance } from '../transmittance/tsl/transmittance'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 const _direction = new Vector3()
 
@@ -27,7 +28,7 @@ export class SunDirectionalLight extends DirectionalLight {
   readonly atmosphere: Atmosphere
   #distance = 1
 
-  /** Whose light it is: the sun's. */
+  /** Source of the light; by default the sun. */
   readonly source: LightSource
 
   /**
@@ -44,7 +45,7 @@ export class SunDirectionalLight extends DirectionalLight {
     this.follow()
   }
 
-  /** From the target to the light, along the sun's direction, > 0 [world units]. */
+  /** Distance from the target to the light, along the sun's direction, > 0 [world units]. */
   get distance(): number {
     return this.#distance
   }
@@ -69,6 +70,7 @@ export class SunDirectionalLight extends DirectionalLight {
 
   override updateMatrixWorld(force?: boolean): void {
     this.follow()
+    watchScene('SunDirectionalLight', this)
     super.updateMatrixWorld(force)
   }
 }

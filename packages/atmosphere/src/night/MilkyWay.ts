@@ -7,6 +7,7 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkOrientation } from '../check'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { checkOwner } from '../view/renderers'
 import { DROWNS, type SkyLayer, type SkyRay } from '../view/SkyLayer'
 import { starIrradiance } from '../stars/starBrightness'
 import { CELESTIAL_TO_GALACTIC, milkyWayMap } from './tsl/milkyWay'
@@ -83,6 +84,7 @@ export class MilkyWay implements SkyLayer {
 
   prepare(renderer: Renderer): void {
     if (renderer === this.#renderer) return
+    checkOwner('MilkyWay', this.#renderer, renderer)
     this.#renderer = renderer
     this.#pass ??= new FragmentPass(
       'Welkin.MilkyWay',

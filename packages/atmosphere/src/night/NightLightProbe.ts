@@ -10,6 +10,7 @@ import { linearSRGB } from '../air/tsl/color'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 /**
  * Light of the night sky on surfaces, so that nights without a moon are dark but not black.
@@ -34,6 +35,11 @@ export class NightLightProbe extends LightProbe {
     checkNonNegative('NightLightProbe', 'illuminance', illuminance)
     this.atmosphere = atmosphere
     this.illuminance = illuminance
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    watchScene('NightLightProbe', this)
+    super.updateMatrixWorld(force)
   }
 
   override clone(): this {

@@ -30,6 +30,7 @@ import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
 import { sunWhite } from '../ground/cpu/reflectance'
 import { isAirless } from '../parameters/planets'
+import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
 import { TableAtlas } from '../tables/TableAtlas'
@@ -240,6 +241,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Draws with what a renderer has from now on. */
   #take(renderer: Renderer): void {
     if (renderer === this.#renderer) return
+    checkRenderer('AtmosphereShell', renderer)
     this.#giveBack()
     this.#renderer = renderer
     const tables = this.#isSingle

@@ -64,7 +64,7 @@ export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
 
 /** A volume's place in the atlas. */
 export interface SkyVolume extends VolumeOrigins {
-  /** What it was computed for; null before the first time. */
+  /** Viewpoint that it was computed for; null before the first time. */
   eye: EyeScalars<number> | null
   /** Version of the tables that it was computed from. */
   tablesVersion: number

@@ -1,6 +1,5 @@
 import { DataUtils } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { fail } from '@welkin/geo'
 import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { DiffuseLightTable } from '../diffuseLight/DiffuseLightTable'
@@ -8,6 +7,7 @@ import type { DiffuseLightData } from '../diffuseLight/cpu/diffuseLight'
 import type { Air } from '../scattering/tsl/scattering'
 import { SkyVolumes, VOLUMES_WIDTH } from '../skyVolume/SkyVolumes'
 import { TransmittanceTable } from '../transmittance/TransmittanceTable'
+import { checkOwner } from '../view/renderers'
 import { GAP, TableAtlas } from './TableAtlas'
 import {
   DEPTH_SIZE,
@@ -24,8 +24,8 @@ const DEPTH_Y = DEPTH_SIZE[1] + 1 + GAP
 const VOLUMES_Y = 2 * DEPTH_Y
 
 /**
- * What an atmosphere keeps on the GPU: its two tables and the sky volumes made from them, all in one
- * texture.
+ * Tables of an atmosphere on the GPU: transmittance, diffuse light, and the sky volumes made from them, all
+ * in one texture.
  */
 export class AtmosphereTables {
   readonly uniforms = new AtmosphereUniforms()
@@ -100,9 +100,9 @@ export class AtmosphereTables {
     luminanceScale: number,
     steps: number
   ): void {
-    if (!renderer?.isRenderer) fail('Atmosphere', 'renderer must be a WebGPURenderer', renderer)
+    checkOwner('Atmosphere', this.#renderer, renderer)
     if (renderer !== this.#renderer) {
-      // Another renderer shares no textures with the last one.
+      // Textures went with the renderer before.
       this.#startAgain()
       this.#renderer = renderer
     }

@@ -20,7 +20,7 @@ export const VOLUME_SIZE = [32, 96, 23] as const
 export const VOLUME_SLOTS = 2
 
 /**
- * How the distances of the sky volume lie in its atlas: columns × rows of tiles. One tile follows the
+ * Layout of the sky volume's distances in its atlas: columns × rows of tiles. One tile follows the
  * last distance: all the air along a ray and the ground behind it.
  */
 export const VOLUME_TILES = [6, 4] as const

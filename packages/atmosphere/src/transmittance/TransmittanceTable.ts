@@ -9,7 +9,7 @@ import { horizonCosine, transmittanceRay } from './tsl/transmittance'
 import { sine } from '../math/tsl/trigonometry'
 import type { Float, Vec4 } from '../tsl-types'
 
-/** Of a march to the top of the air; two evaluations each. */
+/** Steps of a march to the top of the air; two evaluations each. */
 const STEPS = 30
 
 /**

@@ -5,7 +5,7 @@ import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 
 /**
- * What lights the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both,
+ * Source of light in the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both,
  * and so are sky volumes, of which there are some for each source.
  */
 export class LightSource {

@@ -18,7 +18,7 @@ export interface SkyRay extends Readonly<Aim> {
   readonly direction: Vec3
   /** Against the sun. */
   readonly cosViewSun: Float
-  /** Whether there is air in this direction. */
+  /** True if there is air in this direction. */
   readonly meetsAir: Bool
   /** Angle that a pixel covers [rad]. */
   readonly pixel: Float
@@ -28,7 +28,7 @@ export interface SkyRay extends Readonly<Aim> {
 
 /** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */
 export interface Sightline extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewSun'> {
-  /** To a point [m]; absent for the sky. */
+  /** Distance to a point [m]; absent for the sky. */
   readonly distance?: Float
   /** For the sky: whether the planet is in the way. */
   readonly hitsGround?: Bool

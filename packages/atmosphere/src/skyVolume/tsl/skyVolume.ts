@@ -16,11 +16,11 @@ const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
 /** Number of the tile that holds all the air along a ray and the ground behind it. */
 export const SKY_TILE = DISTANCES
 
-/** Where a ray from the eye enters and leaves the air, or meets the ground. */
+/** Limits of a view ray: where it enters and leaves the air, or meets the ground. */
 export interface RayLimits {
   /** Distance to where the air begins: 0 inside it [m]. */
   start: Float
-  /** From there to the ground or out of the air; 0 if the ray misses the air [m]. */
+  /** Distance from there to the ground or out of the air; 0 if the ray misses the air [m]. */
   length: Float
   hitsGround: Bool
 }
@@ -47,7 +47,7 @@ export function rayLimits(eye: Eye, cosView: Float, forcedGround?: Bool): RayLim
 }
 
 /**
- * Where an elevation lies in its half (below or above the horizon), in [0, 1] from the horizon:
+ * Position of an elevation in its half (below or above the horizon), in [0, 1] from the horizon:
  * √tan(α/2), α the angle from it.
  *
  * @param cosView - μ, ray against the zenith of the eye.
@@ -201,9 +201,9 @@ function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
 
 /** An elevation of the sky volumes. */
 export interface Elevation {
-  /** Whether the ground is in the way. */
+  /** True if the ray meets the ground. */
   hitsGround: Bool
-  /** Where the elevation lies in its half, below or above the horizon. */
+  /** Position of the elevation in its half, below or above the horizon, in [0, 1] from the horizon. */
   elevation: Float
 }
 
@@ -364,7 +364,7 @@ export function sampleVolume(
   }
 }
 
-/** Which rays from an eye meet the ground, and which the air at all. */
+/** Tests of a view ray against ground and air. */
 export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsAir: Bool } {
   const radial = eye.radius.mul(cosView)
   const square = radial.mul(radial).toConst()
@@ -402,7 +402,7 @@ export interface Sight {
   sinView: Float
   /** ν, against the sun. */
   cosViewSun: Float
-  /** Whether the ground is behind. */
+  /** True if the ground is behind. */
   hitsGround: Bool
   /** Of the way through the air, to the ground or out of it [m]. */
   length: Float
