@@ -42,7 +42,8 @@ export { MoonDirectionalLight } from './moon/MoonDirectionalLight'
 export { PlanetGround, planetGround } from './ground/PlanetGround'
 export type { PlanetGroundOptions } from './ground/PlanetGround'
 export { AtmosphereShell } from './shell/AtmosphereShell'
-export type { AtmosphereShellOptions, ShellSun } from './shell/AtmosphereShell'
+export type { AtmosphereShellOptions } from './shell/AtmosphereShell'
+export type { ShellSun } from './shell/ShellSun'
 export {
   airlessParameters,
   marsParameters,
