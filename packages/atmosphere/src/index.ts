@@ -1,5 +1,6 @@
 export { Atmosphere } from './Atmosphere'
-export type { AtmosphereFrame, AtmosphereOptions } from './Atmosphere'
+export type { AtmosphereOptions } from './Atmosphere'
+export type { AtmosphereFrame } from './ScenePlanet'
 export { AtmosphereParameters } from './parameters/AtmosphereParameters'
 export type {
   AtmosphereParametersFields,
