@@ -1,5 +1,6 @@
 import { Atmosphere } from '@welkin/atmosphere'
 import { PerspectiveCamera } from 'three'
+import type { Vector2 } from 'three'
 import { float, vec3 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { createRenderer, exposureOf } from './scene'
@@ -56,7 +57,7 @@ const DIFFUSE = [
 const RADIANCE_SCALE = 4096
 
 /** Layout of the sky volume's atlas. */
-const VOLUME = { azimuths: 32, elevations: 96, columns: 6, rows: 4, slots: 2 }
+const VOLUME = { azimuths: 32, elevations: 96, columns: 6, rows: 4 }
 const SLICES = [0, 11, 22]
 const SLICE_COUNT = 23
 const PARTS = ['molecules', 'aerosols']
@@ -64,46 +65,54 @@ const PARTS = ['molecules', 'aerosols']
 const sliceLabel = (part: string, slice: number): string =>
   `Sky volume: ${part}, slice ${slice + 1} of ${SLICE_COUNT}`
 
-/** Without the outer half of the first and last texel, where filtering mixes in the next tile. */
-function inset([x, y, width, height]: Region, columns: number): Region {
-  return [x + 0.5 / columns, y, width - 1 / columns, height]
+/** A rectangle of the atlas [texels], without the outer half of its texels, where filtering mixes in others. */
+function regionOf({ tables }: Atmosphere, x: number, y: number, w: number, h: number): Region {
+  const { width, height } = tables.atlas.target
+  return [(x + 0.5) / width, (y + 0.5) / height, (w - 1) / width, (h - 1) / height]
 }
 
-function sliceRegion(slice: number, slot: number): Region {
-  const { azimuths, columns, rows, slots } = VOLUME
-  const row = Math.floor(slice / columns) + slot * rows
-  const width = 1 / columns
-  const height = 1 / (rows * slots)
-  return inset([(slice % columns) * width, row * height, width, height], azimuths * columns)
+/** A slice of the light by molecules or aerosols, of the volume that a view has. */
+function sliceRegion(atmosphere: Atmosphere, part: number, slice: number, light: Vector2): Region {
+  const { azimuths, elevations, columns } = VOLUME
+  const x = light.x + (part * columns + (slice % columns)) * azimuths
+  const y = light.y + Math.floor(slice / columns) * elevations
+  return regionOf(atmosphere, x, y, azimuths, elevations)
 }
 
 function pictures(atmosphere: Atmosphere): Picture[] {
-  const { transmittance: table, diffuseLight, volumes } = atmosphere.tables
+  const { transmittance: table, diffuseLight, atlas } = atmosphere.tables
+  const { texture } = atlas.target
   const { azimuths, elevations } = VOLUME
   const diffuse = DIFFUSE.map(({ name, color }, i) => ({
     label: `Diffuse light: ${name}`,
-    texture: diffuseLight.target.texture,
+    texture,
     width: 96,
     height: 48,
-    region: inset([i / DIFFUSE.length, 0, 1 / DIFFUSE.length, 1], 96 * DIFFUSE.length),
+    region: regionOf(
+      atmosphere,
+      diffuseLight.region.x + (i % 2) * 96,
+      diffuseLight.region.y + Math.floor(i / 2) * 16,
+      96,
+      16
+    ),
     color
   }))
-  const slices = PARTS.flatMap((part, i) =>
+  const slices = PARTS.flatMap(part =>
     SLICES.map(slice => ({
       label: sliceLabel(part, slice),
-      texture: volumes.light.textures[i],
+      texture,
       width: 2 * azimuths,
       height: elevations,
-      region: sliceRegion(slice, 0),
       color: light
     }))
   )
   return [
     {
       label: 'Transmittance to space: zenith → horizon, ground → top',
-      texture: table.target.texture,
+      texture,
       width: 256,
       height: 96,
+      region: regionOf(atmosphere, table.region.x, table.region.y, 256, 64),
       color: transmittance
     },
     ...diffuse,
@@ -148,10 +157,12 @@ export async function createTables(
     ready: Promise.resolve(),
     progress: 1,
     render() {
-      const { slot } = atmosphere.update(renderer, eye)
-      for (const part of PARTS) {
+      const { volume } = atmosphere.update(renderer, eye)
+      for (const [i, part] of PARTS.entries()) {
         for (const slice of SLICES) {
-          shown.set(sliceLabel(part, slice), { region: sliceRegion(slice, slot) })
+          if (volume === null) continue
+          const region = sliceRegion(atmosphere, i, slice, volume.light)
+          shown.set(sliceLabel(part, slice), { region })
         }
       }
       renderer.render(shown.scene, shown.camera)

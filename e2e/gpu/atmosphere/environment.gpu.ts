@@ -335,7 +335,6 @@ gpuTest(
     // Each counts its own parts.
     let parts = 1
     while (!filtered.filterNext(renderer)) parts++
-    filtered.show()
     expectTrue(parts === FRAMES - 6, `filtered in ${parts} parts`)
 
     const next = random(5)
@@ -357,10 +356,8 @@ gpuTest(
     tone.value.set(0.9, 0.5, 0.2)
     drawCube()
     for (let part = 1; part < parts; part++) expectTrue(!filtered.filterNext(renderer), 'too few')
-    filtered.show()
     expectClose(await look(filtered.node!), whole, { relative: 0 }, 'half done')
     expectTrue(filtered.filterNext(renderer), 'too many parts')
-    filtered.show()
     const redder = await look(filtered.node!)
     expectClose(redder[0], whole[2], { relative: 2e-3 }, 'red then is as blue before')
     filtered.dispose()

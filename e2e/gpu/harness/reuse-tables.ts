@@ -1,8 +1,9 @@
 import { DataTexture, HalfFloatType, NearestFilter, RGBAFormat, type RenderTarget } from 'three'
-import { int, ivec2, screenCoordinate, textureLoad } from 'three/tsl'
+import { ivec2, textureLoad, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { AtmosphereTables } from '../../../packages/atmosphere/src/tables/AtmosphereTables'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
+import type { TableRegion } from '../../../packages/atmosphere/src/tables/TableAtlas'
 
 /** Of a bake, in frames of one step: the library's count. */
 const BAKE_STEPS = 20
@@ -36,20 +37,20 @@ export async function readTexels<T extends Uint8Array | Uint16Array>(
   return flipped
 }
 
-async function keep(renderer: Renderer, target: RenderTarget, key: string): Promise<void> {
-  const halves = await readTexels<Uint16Array>(renderer, target)
+async function keep(renderer: Renderer, region: TableRegion, key: string): Promise<void> {
+  const halves = await region.read(renderer)
   localStorage.setItem(key, Array.from(halves, half => String.fromCharCode(half)).join(''))
 }
 
-function restore(renderer: Renderer, target: RenderTarget, kept: string): void {
-  const { width, height } = target
+function restore(renderer: Renderer, region: TableRegion, kept: string): void {
+  const { width, height } = region
   const halves = Uint16Array.from({ length: kept.length }, (_, i) => kept.charCodeAt(i))
   const source = new DataTexture(halves, width, height, RGBAFormat, HalfFloatType)
   source.minFilter = source.magFilter = NearestFilter
   source.needsUpdate = true
-  const pixel = ivec2(int(screenCoordinate.x), int(screenCoordinate.y))
-  const copy = new FragmentPass('Reuse.DiffuseLight', textureLoad(source, pixel))
-  copy.render(renderer, target)
+  const texel = ivec2(uv().mul(vec2(width, height)).floor())
+  const copy = new FragmentPass('Reuse.DiffuseLight', textureLoad(source, texel))
+  region.render(renderer, copy)
   copy.dispose()
   source.dispose()
 }
@@ -65,11 +66,11 @@ function prepare(tables: AtmosphereTables): void {
     if (kept === null) {
       yield* bake(renderer)
       if (!isReusing) return
-      waitFor(keep(renderer, diffuseLight.target, key))
+      waitFor(keep(renderer, diffuseLight.region, key))
       return
     }
     for (let step = 0; step < BAKE_STEPS; step++) yield
-    restore(renderer, diffuseLight.target, kept)
+    restore(renderer, diffuseLight.region, kept)
   }
 }
 

@@ -80,9 +80,9 @@ async function evaluateRays(
   }
   eyes.forEach(({ altitude, cosSun }, i) => {
     const scalars = eyeScalars(parameters, altitude, cosSun)
-    const slot =
-      path === 'volume' ? tables.volumes.volumeFor(renderer, scalars, tables.version).slot : 0
-    view.eye.set(scalars, slot)
+    const volume =
+      path === 'volume' ? tables.volumes.volumeFor(renderer, scalars, tables.version) : null
+    view.eye.set(scalars, volume)
     for (const part of Object.values(batches)) part.render(renderer, i)
   })
   return {

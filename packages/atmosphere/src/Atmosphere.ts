@@ -90,7 +90,7 @@ export class Atmosphere extends ScenePlanet {
   /** Tables on the GPU. */
   readonly tables = new AtmosphereTables()
   /** The sun as a source of light; its `irradiance` dims in an eclipse. */
-  readonly sun = new LightSource(target => target.copy(this.sunDirection), this.tables.volumes)
+  readonly sun = new LightSource(target => target.copy(this.sunDirection))
   readonly #layers: SkyLayer[] = []
   #layersVersion = 0
   readonly #views = new WeakMap<LightSource, WeakMap<Camera, AtmosphereView>>()

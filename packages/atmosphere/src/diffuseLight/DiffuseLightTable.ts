@@ -1,16 +1,18 @@
 import { NearestFilter, Vector4 } from 'three'
-import type { RenderTarget } from 'three'
 import { texture, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { gaussLegendre } from '../math/cpu/quadrature'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
-import { DIFFUSE_SIZE, DIFFUSE_TILES } from '../tables/tableSizes'
+import { TableAtlas, type Table, type TableRegion } from '../tables/TableAtlas'
+import { DIFFUSE_LAYOUT, DIFFUSE_SIZE } from '../tables/tableSizes'
 import { BAKE_ROWS, bakeRays, reduceRays, sumOrders } from './tsl/diffuseLightBake'
 import type { Air } from '../scattering/tsl/scattering'
-import { vec4Array } from '../tsl-types'
+import { sampleLevel0, vec4Array } from '../tsl-types'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
+/** Columns and rows of the table [texels]. */
+const [WIDTH, HEIGHT] = [COLUMNS * DIFFUSE_LAYOUT[0], ROWS * DIFFUSE_LAYOUT[1]] as const
 
 /**
  * Directions and steps of a round, and where its nodes start in the rule: sunlight has a sharp peak,
@@ -29,19 +31,19 @@ const integer = (): UniformNode<'int', number> => uniform(0, 'int')
 class Workshop {
   readonly rays = tableTarget('DiffuseLight.rays', MOST_RAYS, BAKE_ROWS * COLUMNS, 1, NearestFilter)
   readonly orders = Array.from({ length: ORDERS }, (_, order) =>
-    tableTarget(`DiffuseLight.order${order}`, COLUMNS * DIFFUSE_TILES, ROWS)
+    new TableAtlas(`DiffuseLight.order${order}`, WIDTH, HEIGHT).region(0, 0, WIDTH, HEIGHT)
   )
   readonly #elevations = integer()
   readonly #azimuths = integer()
   readonly #offset = integer()
   readonly #firstRow = integer()
-  readonly #previous = texture(this.orders[0].texture)
+  readonly #previous = texture(this.orders[0].atlas.target.texture)
   readonly #sunRays: FragmentPass
   readonly #diffuseRays: FragmentPass
   readonly #reduce: FragmentPass
   readonly #sum: FragmentPass
 
-  constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget) {
+  constructor(uniforms: AtmosphereUniforms, transmittance: Table) {
     const rounds = [SUN_ROUND, DIFFUSE_ROUND].flatMap(({ elevations }) => {
       const { nodes, weights } = gaussLegendre(elevations)
       return nodes.map((node, i) => new Vector4(node, weights[i], 0, 0))
@@ -52,8 +54,9 @@ class Workshop {
       rule: vec4Array(rounds),
       offset: this.#offset
     }
-    const sunOnly: Air = { uniforms, transmittance: texture(transmittance.texture), diffuse: null }
-    const diffuseOnly: Air = { ...sunOnly, diffuse: this.#previous }
+    const sunOnly: Air = { uniforms, transmittance, diffuse: null }
+    const previous: Table = { sample: at => sampleLevel0(this.#previous, at) }
+    const diffuseOnly: Air = { ...sunOnly, diffuse: previous }
     const row = this.#firstRow
     this.#sunRays = new FragmentPass(
       'Welkin.DiffuseLight.sunRays',
@@ -67,10 +70,7 @@ class Workshop {
       'Welkin.DiffuseLight.reduce',
       reduceRays(sunOnly, texture(this.rays.texture), directions, row, MOST_RAYS)
     )
-    this.#sum = new FragmentPass(
-      'Welkin.DiffuseLight.sum',
-      sumOrders(this.orders.map(order => texture(order.texture)))
-    )
+    this.#sum = new FragmentPass('Welkin.DiffuseLight.sum', sumOrders(this.orders))
   }
 
   /** Gathers one order of scattering for some rows of the table. */
@@ -80,20 +80,20 @@ class Workshop {
     this.#azimuths.value = round.azimuths
     this.#offset.value = round.offset
     this.#firstRow.value = firstRow
-    if (order > 0) this.#previous.value = this.orders[order - 1].texture
+    if (order > 0) this.#previous.value = this.orders[order - 1].atlas.target.texture
     const rays = order === 0 ? this.#sunRays : this.#diffuseRays
     rays.render(renderer, this.rays)
-    this.#reduce.render(renderer, this.orders[order])
+    this.orders[order].render(renderer, this.#reduce)
   }
 
   /** Sums all orders into the table. */
-  finish(renderer: Renderer, target: RenderTarget): void {
-    this.#sum.render(renderer, target)
+  finish(renderer: Renderer, region: TableRegion): void {
+    region.render(renderer, this.#sum)
   }
 
   /** Frees the textures, but not the shaders: the next bake compiles nothing. */
   release(): void {
-    for (const target of [this.rays, ...this.orders]) target.dispose()
+    for (const each of [this.rays, ...this.orders.map(order => order.atlas)]) each.dispose()
   }
 
   dispose(): void {
@@ -110,14 +110,20 @@ class Workshop {
  * scattered n − 1 times. Each order gathers rays in every direction from every cell.
  */
 export class DiffuseLightTable {
-  /** Target of the table: tiles side by side, see `DIFFUSE_TILES`; values × `RADIANCE_SCALE`. */
-  readonly target: RenderTarget = tableTarget('DiffuseLight', COLUMNS * DIFFUSE_TILES, ROWS)
+  /** Columns and rows of the table [texels]. */
+  static readonly size = [WIDTH, HEIGHT] as const
+  /** Where the table is kept: tiles as `DIFFUSE_LAYOUT` has them; values × `RADIANCE_SCALE`. */
+  readonly region: TableRegion
   readonly #uniforms: AtmosphereUniforms
-  readonly #transmittance: RenderTarget
+  readonly #transmittance: Table
   #workshop: Workshop | null = null
 
-  /** @param transmittance - Target of the transmittance table, baked before this one. */
-  constructor(uniforms: AtmosphereUniforms, transmittance: RenderTarget) {
+  /**
+   * @param region - Of {@link size}; its atlas frees it.
+   * @param transmittance - Baked before this one.
+   */
+  constructor(uniforms: AtmosphereUniforms, region: TableRegion, transmittance: Table) {
+    this.region = region
     this.#uniforms = uniforms
     this.#transmittance = transmittance
   }
@@ -135,15 +141,14 @@ export class DiffuseLightTable {
           yield
         }
       }
-      workshop.finish(renderer, this.target)
+      workshop.finish(renderer, this.region)
     } finally {
       workshop.release()
     }
   }
 
-  /** Frees the table. */
+  /** Frees its shaders. */
   dispose(): void {
-    this.target.dispose()
     this.#workshop?.dispose()
     this.#workshop = null
   }

@@ -1,7 +1,8 @@
-import type { CubeTexture } from 'three'
-import { pmremTexture, renderGroup, select, uniform } from 'three/tsl'
+import { NearestFilter, NearestMipmapNearestFilter, type CubeTexture } from 'three'
+import { cubeTexture, pmremTexture, positionWorldDirection, uniform } from 'three/tsl'
 import { PMREMGenerator } from 'three/webgpu'
 import type { CubeRenderTarget, Node, Renderer } from 'three/webgpu'
+import { CubeFaces } from './CubeFaces'
 
 /** Passes of three's filter that run together. */
 interface Part {
@@ -36,14 +37,15 @@ function partsOf({ texture: { mipmaps } }: CubeRenderTarget): Part[] {
  * the renderer that lets only the passes of that part through. What comes out is what the generator
  * itself makes of the cube, to the bit.
  *
- * Two maps take turns: materials see one of them until the other is complete.
+ * A map is made out of sight, and copied in one go to the one that materials see when it is complete: so
+ * they sample a single texture. Swapping textures would not reach all materials.
  */
 export class PrefilteredCube {
   readonly #source: CubeTexture
-  /** Index of the map that materials see. Not a swapped texture: that would not reach all materials. */
-  readonly #seen = uniform(0).setGroup(renderGroup)
-  #shown = 0
-  #maps: [CubeRenderTarget, CubeRenderTarget] | null = null
+  /** The map that materials see, and the one that is made. */
+  #maps: [shown: CubeRenderTarget, made: CubeRenderTarget] | null = null
+  readonly #copy = new CubeFaces('Welkin.SkyEnvironment.copy')
+  readonly #level = uniform(0)
   #parts: Part[] = []
   #next = 0
   #renderer: Renderer | null = null
@@ -67,7 +69,7 @@ export class PrefilteredCube {
   filterAll(renderer: Renderer): void {
     this.#allocate(renderer)
     this.#run(null)
-    this.#finish()
+    this.#finish(renderer)
   }
 
   /**
@@ -79,7 +81,7 @@ export class PrefilteredCube {
     this.#allocate(renderer)
     this.#run(this.#parts[this.#next++])
     if (this.#next < this.#parts.length) return false
-    this.#finish()
+    this.#finish(renderer)
     return true
   }
 
@@ -88,19 +90,20 @@ export class PrefilteredCube {
     this.#next = 0
   }
 
-  /** Has materials see the map that was completed last. */
-  show(): void {
-    this.#seen.value = this.#shown
-  }
-
-  #finish(): void {
-    this.#shown = 1 - this.#shown
+  /** Has materials see what was made. */
+  #finish(renderer: Renderer): void {
     this.#next = 0
+    if (this.#maps === null) return
+    const [shown] = this.#maps
+    for (const level of shown.texture.mipmaps.keys()) {
+      this.#level.value = level
+      for (let face = 0; face < 6; face++) this.#copy.draw(renderer, shown, face, level)
+    }
   }
 
-  #run(part: Part | null): void {
+  #run(part: Part | null, target = this.#maps?.[1] ?? null): void {
     this.#part = part
-    this.#target = this.#maps?.[1 - this.#shown] ?? null
+    this.#target = target
     this.#generator?.fromCubemap(this.#source, this.#target)
   }
 
@@ -114,15 +117,16 @@ export class PrefilteredCube {
     if (this.#maps === null) {
       this.#part = { level: 0, from: 0, to: 0 }
       const make = (): CubeRenderTarget => generator.fromCubemap(this.#source)
-      const [first, second] = (this.#maps = [make(), make()])
-      this.#parts = partsOf(first)
-      const isSecond = this.#seen.greaterThan(0.5)
-      this.#node = select(isSecond, pmremTexture(second.texture), pmremTexture(first.texture))
+      const [shown, made] = (this.#maps = [make(), make()])
+      this.#parts = partsOf(shown)
+      // Read texel by texel, by the copy alone.
+      made.texture.minFilter = NearestMipmapNearestFilter
+      made.texture.magFilter = NearestFilter
+      this.#node = pmremTexture(shown.texture)
+      this.#copy.shader = cubeTexture(made.texture, positionWorldDirection, this.#level)
     }
-    // The map that is not drawn yet is bound as well.
-    this.#shown = 1 - this.#shown
-    this.#run(ALLOCATION)
-    this.#shown = 1 - this.#shown
+    // The map that materials see is bound before it is copied to.
+    this.#run(ALLOCATION, this.#maps[0])
   }
 
   /** The renderer, but for the passes that it is not the turn of. */
@@ -151,6 +155,7 @@ export class PrefilteredCube {
   /** Frees GPU memory; it can be used again. */
   dispose(): void {
     for (const map of this.#maps ?? []) map.dispose()
+    this.#copy.dispose()
     this.#generator?.dispose()
     this.#generator = this.#renderer = null
   }

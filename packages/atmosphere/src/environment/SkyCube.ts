@@ -1,20 +1,10 @@
-import {
-  BackSide,
-  BoxGeometry,
-  CubeCamera,
-  HalfFloatType,
-  LinearSRGBColorSpace,
-  Matrix3,
-  Mesh,
-  NoBlending,
-  PerspectiveCamera,
-  Vector3
-} from 'three'
+import { HalfFloatType, LinearSRGBColorSpace, Matrix3, PerspectiveCamera, Vector3 } from 'three'
 import { Fn, positionWorldDirection, renderGroup, uniform, vec4 } from 'three/tsl'
-import { CubeRenderTarget, NodeMaterial, RendererUtils } from 'three/webgpu'
+import { CubeRenderTarget, RendererUtils } from 'three/webgpu'
 import type { Node, Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
+import { CubeFaces } from './CubeFaces'
 import { PrefilteredCube } from './PrefilteredCube'
 import type { SkyLayer } from '../view/SkyLayer'
 import type { SkyOverlay } from './SkyOverlay'
@@ -44,10 +34,9 @@ export class SkyCube {
   readonly #size: number
   readonly #view: ViewNodes
   readonly #faces: CubeRenderTarget
-  readonly #cameras = new CubeCamera(1, 10, null as never)
   /** Zenith in world space. */
   readonly #up = uniform(new Vector3()).setGroup(renderGroup)
-  readonly #box: Mesh<BoxGeometry, NodeMaterial>
+  readonly #drawer = new CubeFaces('Welkin.SkyEnvironment')
   readonly #filtered: PrefilteredCube
   #node: Node | null = null
   /** Luminance scale that all faces of a cube have; that of the map that was completed last. */
@@ -76,12 +65,6 @@ export class SkyCube {
     this.#faces.texture.name = 'SkyEnvironment'
     this.#filtered = new PrefilteredCube(this.#faces.texture)
     this.#size = size
-    const material = new NodeMaterial()
-    material.name = 'Welkin.SkyEnvironment'
-    material.side = BackSide
-    material.blending = NoBlending
-    material.depthTest = material.depthWrite = material.toneMapped = material.fog = false
-    this.#box = new Mesh(new BoxGeometry(5, 5, 5), material)
   }
 
   /** The sky in the direction of a fragment, with the layers that there are. */
@@ -121,8 +104,7 @@ export class SkyCube {
     const isSame = (layer: SkyLayer, i: number): boolean => layer === this.#layers?.[i]
     if (layers.length !== this.#layers?.length || !layers.every(isSame)) {
       this.#layers = [...layers]
-      this.#box.material.fragmentNode = this.#sky()
-      this.#box.material.needsUpdate = true
+      this.#drawer.shader = this.#sky()
     }
     this.#drawn = -(this.#overlay?.steps ?? 0)
     this.#filtered.restart()
@@ -157,16 +139,15 @@ export class SkyCube {
     return isComplete
   }
 
-  /** Has materials see what was completed last, at the luminance scale of now. */
+  /** Has materials see what was completed last at the luminance scale of now. */
   show(): void {
-    this.#filtered.show()
     this.#fromMap.value = this.#atmosphere.luminanceScale / this.#completedScale
   }
 
   #prepare(renderer: Renderer, view: AtmosphereView): void {
-    const { layers, luminanceScale, sun, tables } = this.#atmosphere
+    const { layers, luminanceScale, tables } = this.#atmosphere
     // Another camera may have taken the sky volume since the last face.
-    view.slot = sun.volumes.volumeFor(renderer, view.eye!, tables.version).slot
+    view.volume = tables.volumes.volumeFor(renderer, view.eye!, tables.version)
     for (const layer of layers) layer.prepare?.(renderer, view)
     this.#view.update({ camera: this.camera })
     for (const layer of layers) layer.update?.(view)
@@ -178,12 +159,7 @@ export class SkyCube {
       this.#overlay?.draw(renderer, view, face + this.#overlay.steps)
       return
     }
-    if (this.#cameras.coordinateSystem !== renderer.coordinateSystem) {
-      this.#cameras.coordinateSystem = renderer.coordinateSystem
-      this.#cameras.updateCoordinateSystem()
-    }
-    renderer.setRenderTarget(this.#faces, face)
-    renderer.render(this.#box, this.#cameras.children[face] as PerspectiveCamera)
+    this.#drawer.draw(renderer, this.#faces, face)
   }
 
   /** Frees GPU memory; it can be drawn again. */
@@ -191,7 +167,6 @@ export class SkyCube {
     this.#faces.dispose()
     this.#filtered.dispose()
     this.#drawn = null
-    this.#box.geometry.dispose()
-    this.#box.material.dispose()
+    this.#drawer.dispose()
   }
 }

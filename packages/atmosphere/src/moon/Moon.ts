@@ -22,7 +22,6 @@ import { LightSource } from '../view/LightSource'
 import { moonGeometryFrom, type MoonGeometry } from './moonGeometry'
 import { MoonSurfaceMap } from './MoonSurfaceMap'
 import { MoonlitAir } from './MoonlitAir'
-import { MoonSkyVolumes } from './MoonSkyVolumes'
 import { MoonUniforms } from './MoonUniforms'
 import { SunMoonEphemeris } from './sunMoonEphemeris'
 import type { HazeLine, SkyLayer, SkyRay } from '../view/SkyLayer'
@@ -54,7 +53,7 @@ export interface MoonOptions {
 interface Home {
   readonly atmosphere: Atmosphere
   readonly source: LightSource
-  readonly air: MoonlitAir
+  readonly air: MoonlitAir | null
 }
 
 /** Options that may change later. */
@@ -152,14 +151,13 @@ export class Moon implements SkyLayer {
       if (this.#home.atmosphere === atmosphere) return this
       fail('Moon.attach', 'atmosphere must be the one that it was added to before')
     }
-    const { uniforms, transmittance, diffuseLight } = atmosphere.tables
-    const volumes = new MoonSkyVolumes(uniforms, transmittance.target, diffuseLight.target)
     const source = new LightSource(
       (target, from = _position.set(0, 0, 0)) => target.copy(this.#directionFrom(from)),
-      volumes
+      false
     )
     source.irradianceAt = position => this.#irradiance(this.#geometryFrom(position))
-    this.#home = { atmosphere, source, air: new MoonlitAir(atmosphere, source, volumes) }
+    const air = this.lightsAir ? new MoonlitAir(atmosphere, source) : null
+    this.#home = { atmosphere, source, air }
     return this
   }
 
@@ -330,7 +328,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (this.lightsAir && this.#strength > 0) this.#home?.air.prepare(renderer, view)
+    if (this.#strength > 0) this.#home?.air?.prepare(renderer, view)
   }
 
   update(view: AtmosphereView): void {
@@ -344,7 +342,7 @@ export class Moon implements SkyLayer {
       irradiance: this.#irradiance(geometry)
     }
     this.#uniforms.update(view, state, this.flare)
-    this.#home?.air.update(view)
+    this.#home?.air?.update(view)
   }
 
   beyond(ray: SkyRay, background: Vec4): Vec4 {
@@ -353,17 +351,17 @@ export class Moon implements SkyLayer {
   }
 
   glow(ray: SkyRay, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#inHome().air.glow(ray, without) : without
+    return this.#inHome().air?.glow(ray, without) ?? without
   }
 
   haze(line: HazeLine, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#inHome().air.haze(line, without) : without
+    return this.#inHome().air?.haze(line, without) ?? without
   }
 
   /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */
   dispose(): void {
     this.#home?.atmosphere.remove(this)
-    this.#home?.air.dispose()
+    this.#home?.air?.dispose()
     this.#surface.dispose()
   }
 }

@@ -4,7 +4,6 @@ import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
-import type { MoonSkyVolumes } from './MoonSkyVolumes'
 import type { HazeLine, SkyRay } from '../view/SkyLayer'
 import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
@@ -20,25 +19,22 @@ const MIN_COS_MOON = -0.31
 const _position = new Vector3()
 const _direction = new Vector3()
 
-/** Moonlit air: in-scatter of moonlight, from sky volumes of its own. */
+/** Moonlit air: in-scatter of moonlight, from sky volumes that are computed while it can be seen. */
 export class MoonlitAir {
   /** 1 while moonlit air can be seen, else 0. */
   readonly #isVisible = uniform(0).setGroup(renderGroup)
   readonly #views = new Map<ViewUniforms, ViewNodes>()
-  #renderer: Renderer | null = null
 
-  /** @param volumes - Sky volumes of the source. */
   constructor(
     readonly atmosphere: Atmosphere,
-    readonly source: LightSource,
-    readonly volumes: MoonSkyVolumes
-  ) {}
+    readonly source: LightSource
+  ) {
+    atmosphere.tables.addSource(source)
+  }
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
-    if (renderer !== this.#renderer) this.volumes.invalidate()
-    this.#renderer = renderer
-    this.volumes.isNeeded = this.#canBeSeen(view)
-    if (this.volumes.isNeeded) this.atmosphere.update(renderer, view.camera, this.source)
+    this.source.lightsAir = this.#canBeSeen(view)
+    if (this.source.lightsAir) this.atmosphere.update(renderer, view.camera, this.source)
   }
 
   #canBeSeen(view: AtmosphereView): boolean {
@@ -51,7 +47,7 @@ export class MoonlitAir {
   }
 
   update(view: AtmosphereView): void {
-    this.#isVisible.value = this.volumes.isNeeded ? 1 : 0
+    this.#isVisible.value = this.source.lightsAir ? 1 : 0
     for (const nodes of this.#views.values()) {
       if (nodes.camera === null || nodes.camera === view.camera) nodes.update(view)
     }
@@ -90,8 +86,7 @@ export class MoonlitAir {
   }
 
   dispose(): void {
-    this.volumes.dispose()
-    this.volumes.isNeeded = false
-    this.#renderer = null
+    this.source.lightsAir = false
+    this.atmosphere.tables.removeSource(this.source)
   }
 }

@@ -5,7 +5,6 @@ import {
   cameraProjectionMatrix,
   modelViewMatrix,
   positionLocal,
-  texture,
   uniform,
   vec4
 } from 'three/tsl'
@@ -20,6 +19,7 @@ import { eyeScalars } from '../view/cpu/eye'
 import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
+import { TableAtlas } from '../tables/TableAtlas'
 import { circumscribedSphere } from './circumscribedSphere'
 import { ShellNode } from './ShellNode'
 import { isAtmosphere, isShellSun, SHELL_SCALE, sunlightAt, type ShellSun } from './ShellSun'
@@ -175,18 +175,15 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
     this.#tables = tables
     if (tables !== null) this.#uniforms = tables.uniforms
-    const air: Air = {
-      uniforms: this.#uniforms,
-      transmittance: (tables &&
-        texture(tables.transmittance.target.texture)) as Air['transmittance'],
-      diffuse: tables && texture(tables.diffuseLight.target.texture)
-    }
+    const uniforms = this.#uniforms
+    // Single scattering reads no table.
+    const air: Air = tables?.air ?? { uniforms, transmittance: null as never, diffuse: null }
     this.#volumes =
       tables &&
       new SkyVolumes(
-        tables.uniforms,
-        tables.transmittance.target,
-        tables.diffuseLight.target,
+        tables.air,
+        new TableAtlas('Welkin.AtmosphereShell', 1, 1),
+        undefined,
         tables.volumes.segments
       )
     const { color, depth } = shellFragment(air, this.#view, this.#light(air, this.#volumes))
@@ -197,6 +194,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
 
   #release(): void {
     this.#volumes?.dispose()
+    this.#volumes?.atlas.dispose()
     this.#volumes = null
     if (this.#renderer === null || this.#tables === null) return
     if (this.#lender === null) giveTablesBack(this.parameters, this.#renderer, this)
@@ -211,8 +209,6 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Light of a segment: from the sky volume, marched on the tables, or scattered once. */
   #light(air: Air, volumes: SkyVolumes | null): (segment: ViewSegment) => ShellLight {
     if (volumes === null) return segment => singleScatteringLight(air, this.#profile, segment)
-    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
-    const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
     const isMarched = this.#isMarched.greaterThan(0) as Bool
     return segment => {
       const radiance = vec4(0).toVar()
@@ -222,7 +218,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       }).Else(() => {
-        const light = sampledShellLight(air.uniforms, textures, this.#eye, segment.fromCamera)
+        const light = sampledShellLight(air.uniforms, volumes.atlas, this.#eye, segment.fromCamera)
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       })
@@ -308,7 +304,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (isMarched) return
     const cosSun = this.#view.up.value.dot(this.#view.sunDirectionMapped.value)
     const eye = eyeScalars(parameters, height, Math.min(Math.max(cosSun, -1), 1))
-    this.#eye.set(eye, volumes.volumeFor(renderer, eye, tablesVersion).slot)
+    this.#eye.set(eye, volumes.volumeFor(renderer, eye, tablesVersion))
   }
 
   /** Frees geometry, material and volumes, and the tables if no other shell uses them. */

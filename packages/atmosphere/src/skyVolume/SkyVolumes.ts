@@ -1,8 +1,9 @@
 import type { RenderTarget } from 'three'
+import { Vector2 } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
-import type { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { GAP, type TableAtlas } from '../tables/TableAtlas'
 import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tables/tableSizes'
 import type { EyeScalars } from '../view/tsl/eye'
 import type { Air } from '../scattering/tsl/scattering'
@@ -11,9 +12,26 @@ import { bakeDepth, bakeSegments, sumSegments } from './tsl/skyVolumeBake'
 const [AZIMUTHS, ELEVATIONS] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 
-const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
+/** Columns of a volume's light, of molecules or aerosols; rows of it; of its depth [texels]. */
+const LIGHT_COLUMNS = AZIMUTHS * TILE_COLUMNS
+const LIGHT_ROWS = ELEVATIONS * TILE_ROWS
+const DEPTH_COLUMNS = DEPTH_SIZE[0]
+const DEPTH_ROWS = DEPTH_SIZE[1] + 1
 
-/** Uniforms of an eye, and a way to set them all. */
+/** Volumes that lie side by side in an atlas, and how wide that is [texels]. */
+const ABREAST = 2
+export const VOLUMES_WIDTH = ABREAST * (2 * LIGHT_COLUMNS + GAP)
+
+const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
+const vector = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
+
+/** Where a volume lies in its atlas: the first texels of its light and of its depth. */
+export interface VolumeOrigins {
+  readonly light: Vector2
+  readonly depth: Vector2
+}
+
+/** Uniforms of an eye and its volume, and a way to set them all. */
 export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
   readonly altitude = scalar()
   readonly radius = scalar()
@@ -29,20 +47,23 @@ export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
   readonly groundGrowth = scalar()
   readonly skyStretch = scalar()
   readonly skyGrowth = scalar()
-  /** Number of the volume in the atlas. */
-  readonly slot = scalar()
+  /** First texels of its volume's light and depth in the atlas. */
+  readonly lightOrigin = vector()
+  readonly depthOrigin = vector()
 
-  set(values: EyeScalars<number>, slot: number): void {
+  /** @param volume - Null for none. */
+  set(values: EyeScalars<number>, volume: VolumeOrigins | null): void {
     for (const key of Object.keys(values) as (keyof EyeScalars<number>)[]) {
       this[key].value = values[key]
     }
-    this.slot.value = slot
+    if (volume === null) return
+    this.lightOrigin.value.copy(volume.light)
+    this.depthOrigin.value.copy(volume.depth)
   }
 }
 
 /** A volume's place in the atlas. */
-export interface SkyVolume {
-  readonly slot: number
+export interface SkyVolume extends VolumeOrigins {
   /** Viewpoint that it was computed for; null before the first time. */
   eye: EyeScalars<number> | null
   /** Version of the tables that it was computed from. */
@@ -51,68 +72,89 @@ export interface SkyVolume {
   lastUsed: number
 }
 
+/** What else there is in the atlas of the volumes [texels]. */
+export interface AtlasLayout {
+  /** Row that volumes begin at. */
+  readonly top: number
+  /** Room beside other tables: first texels for the depths of the first volumes, all of a row of them. */
+  readonly depths: readonly (readonly [x: number, y: number])[]
+}
+
 /**
  * Sky volumes: the light scattered between a place and everything around it, by elevation, azimuth
- * from the sun and distance. A volume serves every camera at its place, whichever way it looks.
+ * from the source of light and distance, for unit irradiance. A volume serves every camera at its place,
+ * whichever way it looks, and every source that stands as high.
  *
  * All lie in one atlas: materials choose theirs by a uniform, where swapping textures would not reach
- * materials that three does not refresh every frame.
+ * materials that three does not refresh every frame. Each has the light scattered by molecules, beside it
+ * that by aerosols straight from the source, and a table of mean extinction along rays.
  */
 export class SkyVolumes {
-  /** Attachments: light scattered by molecules, and by aerosols straight from the sun. */
-  readonly light: RenderTarget = tableTarget(
-    'SkyVolume',
-    AZIMUTHS * TILE_COLUMNS,
-    ELEVATIONS * TILE_ROWS * VOLUME_SLOTS,
-    2
-  )
-  /** Mean extinction along rays, and in the last column transmittance of all the air. */
-  readonly depth: RenderTarget = tableTarget(
-    'SkyVolume.depth',
-    DEPTH_SIZE[0] + 1,
-    DEPTH_SIZE[1] * VOLUME_SLOTS
-  )
+  readonly atlas: TableAtlas
   /** Light of each segment alone, before the sum: nothing that outlasts a bake. */
   readonly segments: RenderTarget
   readonly #ownsSegments: boolean
-  readonly #volumes: SkyVolume[] = Array.from({ length: VOLUME_SLOTS }, (_, slot) => ({
-    slot,
-    eye: null,
-    tablesVersion: -1,
-    lastUsed: 0
-  }))
+  readonly #layout: AtlasLayout
+  readonly #volumes: SkyVolume[] = []
   readonly #eye = new EyeUniforms()
   readonly #depthPass: FragmentPass
   readonly #segmentPass: FragmentPass
-  readonly #sumPass: FragmentPass
+  /** Of molecules and of aerosols. */
+  readonly #sumPasses: readonly FragmentPass[]
   #uses = 0
 
-  /** @param segments - Those of other volumes, to share them; whose they are frees them. */
+  /**
+   * @param atlas - Where they are kept; it grows, and is freed by its owner.
+   * @param segments - Those of other volumes, to share them; whose they are frees them.
+   */
   constructor(
-    uniforms: AtmosphereUniforms,
-    transmittance: RenderTarget,
-    diffuse: RenderTarget,
+    air: Air,
+    atlas: TableAtlas,
+    layout: AtlasLayout = { top: 0, depths: [] },
     segments?: RenderTarget
   ) {
+    this.atlas = atlas
+    this.#layout = layout
     this.#ownsSegments = segments === undefined
-    this.segments =
-      segments ??
-      tableTarget('SkyVolume.segments', AZIMUTHS * TILE_COLUMNS, ELEVATIONS * TILE_ROWS, 2)
-    const air: Air = {
-      uniforms,
-      transmittance: texture(transmittance.texture),
-      diffuse: texture(diffuse.texture)
-    }
-    const [molecular, aerosol] = this.segments.textures.map(part => texture(part))
+    this.segments = segments ?? tableTarget('SkyVolume.segments', LIGHT_COLUMNS, LIGHT_ROWS, 2)
     this.#depthPass = new FragmentPass('Welkin.SkyVolume.depth', bakeDepth(air, this.#eye))
     this.#segmentPass = new FragmentPass(
       'Welkin.SkyVolume.segments',
-      bakeSegments(air, this.#eye, texture(this.depth.texture))
+      bakeSegments(air, this.#eye, atlas)
     )
-    this.#sumPass = new FragmentPass(
-      'Welkin.SkyVolume.sum',
-      sumSegments(this.#eye, molecular, aerosol)
+    this.#sumPasses = this.segments.textures.map(
+      part => new FragmentPass('Welkin.SkyVolume.sum', sumSegments(texture(part)))
     )
+    this.reserve(VOLUME_SLOTS)
+  }
+
+  /**
+   * Makes room for so many volumes.
+   *
+   * @returns Whether the atlas grew: then all that was in it is lost.
+   */
+  reserve(count: number): boolean {
+    if (count <= this.#volumes.length) return false
+    const { top, depths } = this.#layout
+    this.#volumes.length = 0
+    let row = top
+    for (let slot = 0; slot < count; slot += ABREAST) {
+      const hasRoom = depths[slot] !== undefined
+      const lightRow = hasRoom ? row : row + DEPTH_ROWS + GAP
+      for (let i = 0; i < ABREAST; i++) {
+        const [x, y] = depths[slot + i] ?? [i * (DEPTH_COLUMNS + GAP), row]
+        this.#volumes.push({
+          light: new Vector2(i * (2 * LIGHT_COLUMNS + GAP), lightRow),
+          depth: new Vector2(x, y),
+          eye: null,
+          tablesVersion: -1,
+          lastUsed: 0
+        })
+      }
+      row = lightRow + LIGHT_ROWS + GAP
+    }
+    this.atlas.setSize(VOLUMES_WIDTH, row)
+    return true
   }
 
   /**
@@ -130,7 +172,7 @@ export class SkyVolumes {
       )
       volume.eye = eye
       volume.tablesVersion = tablesVersion
-      this.#bake(renderer, volume.slot, eye)
+      this.#bake(renderer, volume, eye)
     }
     volume.lastUsed = ++this.#uses
     return volume
@@ -141,22 +183,29 @@ export class SkyVolumes {
     for (const volume of this.#volumes) volume.eye = null
   }
 
-  #bake(renderer: Renderer, slot: number, eye: EyeScalars<number>): void {
-    this.#eye.set(eye, slot)
-    this.#depthPass.render(renderer, this.depth)
+  #bake(renderer: Renderer, volume: SkyVolume, eye: EyeScalars<number>): void {
+    const { atlas } = this
+    const { light, depth } = volume
+    this.#eye.set(eye, volume)
+    atlas.region(depth.x, depth.y, DEPTH_COLUMNS, DEPTH_ROWS).render(renderer, this.#depthPass)
     this.#segmentPass.render(renderer, this.segments)
-    this.#sumPass.render(renderer, this.light)
+    this.#sumPasses.forEach((pass, part) => {
+      const x = light.x + part * LIGHT_COLUMNS
+      atlas.region(x, light.y, LIGHT_COLUMNS, LIGHT_ROWS).render(renderer, pass)
+    })
   }
 
-  /** Targets that take GPU memory of their own. */
-  get targets(): RenderTarget[] {
-    return [this.light, this.depth, ...(this.#ownsSegments ? [this.segments] : [])]
+  /** Size on the GPU of what is its own besides the atlas [bytes]. */
+  get bytes(): number {
+    const { width, height, textures } = this.segments
+    return this.#ownsSegments ? 8 * width * height * textures.length : 0
   }
 
+  /** Frees all but the atlas. */
   dispose(): void {
     this.invalidate()
-    const passes = [this.#depthPass, this.#segmentPass, this.#sumPass]
-    for (const owned of [...this.targets, ...passes]) owned.dispose()
+    if (this.#ownsSegments) this.segments.dispose()
+    for (const pass of [this.#depthPass, this.#segmentPass, ...this.#sumPasses]) pass.dispose()
   }
 }
 

@@ -4,20 +4,54 @@ import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { DiffuseLightTable } from '../diffuseLight/DiffuseLightTable'
 import type { DiffuseLightData } from '../diffuseLight/cpu/diffuseLight'
-import { SkyVolumes } from '../skyVolume/SkyVolumes'
+import type { Air } from '../scattering/tsl/scattering'
+import { SkyVolumes, VOLUMES_WIDTH } from '../skyVolume/SkyVolumes'
 import { TransmittanceTable } from '../transmittance/TransmittanceTable'
 import { checkOwner } from '../view/renderers'
+import { GAP, TableAtlas } from './TableAtlas'
+import {
+  DEPTH_SIZE,
+  DIFFUSE_LAYOUT,
+  DIFFUSE_SIZE,
+  TRANSMITTANCE_SIZE,
+  VOLUME_SLOTS
+} from './tableSizes'
 
-/** Tables of an atmosphere on the GPU: transmittance, diffuse light, and the sky volumes made from them. */
+/** Where the tables are in the atlas, in a row at its top, and where volumes find room beside them [texels]. */
+const DIFFUSE_X = TRANSMITTANCE_SIZE[0] + GAP
+const DEPTH_X = DIFFUSE_X + DiffuseLightTable.size[0] + GAP
+const DEPTH_Y = DEPTH_SIZE[1] + 1 + GAP
+const VOLUMES_Y = 2 * DEPTH_Y
+
+/**
+ * Tables of an atmosphere on the GPU: transmittance, diffuse light, and the sky volumes made from them, all
+ * in one texture.
+ */
 export class AtmosphereTables {
   readonly uniforms = new AtmosphereUniforms()
-  readonly transmittance = new TransmittanceTable(this.uniforms)
-  readonly diffuseLight = new DiffuseLightTable(this.uniforms, this.transmittance.target)
-  readonly volumes = new SkyVolumes(
+  readonly atlas = new TableAtlas('Welkin.Atmosphere', VOLUMES_WIDTH, VOLUMES_Y)
+  readonly transmittance = new TransmittanceTable(
     this.uniforms,
-    this.transmittance.target,
-    this.diffuseLight.target
+    this.atlas.region(0, 0, ...TRANSMITTANCE_SIZE)
   )
+  readonly diffuseLight = new DiffuseLightTable(
+    this.uniforms,
+    this.atlas.region(DIFFUSE_X, 0, ...DiffuseLightTable.size),
+    this.transmittance.region
+  )
+  /** What shaders read of the tables. */
+  readonly air: Air = {
+    uniforms: this.uniforms,
+    transmittance: this.transmittance.region,
+    diffuse: this.diffuseLight.region
+  }
+  readonly volumes = new SkyVolumes(this.air, this.atlas, {
+    top: VOLUMES_Y,
+    depths: [
+      [DEPTH_X, 0],
+      [DEPTH_X, DEPTH_Y]
+    ]
+  })
   /** Counts the times that the tables were finished; 0 before the first. */
   version = 0
   /** The diffuse-light table as numbers, or null until it was read back. */
@@ -27,6 +61,33 @@ export class AtmosphereTables {
   #scale = NaN
   #work: Generator<void, void, void> | null = null
   #reading: Promise<void> | null = null
+  /** Those besides the sun that there are volumes for. */
+  readonly #sources = new Set<object>()
+  /** Whether the atlas grew since it was filled. */
+  #isLost = false
+
+  /**
+   * Makes room for the sky volumes of a source of light besides the sun. Where the tables were baked
+   * before, they are baked anew, at once.
+   */
+  addSource(source: object): void {
+    this.#sources.add(source)
+    if (!this.volumes.reserve(VOLUME_SLOTS * (1 + this.#sources.size))) return
+    this.#isLost = this.version > 0
+    this.#startAgain()
+  }
+
+  /** Leaves that room to the next source. */
+  removeSource(source: object): void {
+    this.#sources.delete(source)
+  }
+
+  #startAgain(): void {
+    this.#work?.return()
+    this.#work = null
+    this.volumes.invalidate()
+    this.#parametersVersion = -1
+  }
 
   /**
    * Brings the tables up to date, or some steps nearer to it.
@@ -42,13 +103,12 @@ export class AtmosphereTables {
     checkOwner('Atmosphere', this.#renderer, renderer)
     if (renderer !== this.#renderer) {
       // Textures went with the renderer before.
-      this.#work?.return()
-      this.#work = null
-      this.volumes.invalidate()
+      this.#startAgain()
       this.#renderer = renderer
-      this.#parametersVersion = -1
     }
-    for (let step = 0; step < steps; step++) {
+    const most = this.#isLost ? Infinity : steps
+    this.#isLost = false
+    for (let step = 0; step < most; step++) {
       // What changed during a bake is baked after it.
       if (this.#work === null) {
         if (parameters.version === this.#parametersVersion) break
@@ -80,20 +140,13 @@ export class AtmosphereTables {
   }
 
   async #read(renderer: Renderer): Promise<void> {
-    const { target } = this.diffuseLight
     const version = this.version
-    const { width, height } = target
-    const halves = await renderer
-      .readRenderTargetPixelsAsync(target, 0, 0, width, height)
-      .catch((error: unknown) => {
-        // Nobody misses what was disposed of or baked anew meanwhile.
-        if (version === this.version) throw error
-      })
-    if (version !== this.version) return
-    const values = Float32Array.from(halves as Uint16Array, half => DataUtils.fromHalfFloat(half))
-    // WebGL reads from the bottom row up, which texture coordinates there call the first.
-    const backend = renderer.backend as { isWebGPUBackend?: boolean }
-    this.data = { values, isFlipped: backend.isWebGPUBackend !== true }
+    const halves = await this.diffuseLight.region.read(renderer).catch((error: unknown) => {
+      // Nobody misses what was disposed of or baked anew meanwhile.
+      if (version === this.version) throw error
+    })
+    if (version !== this.version || halves === undefined) return
+    this.data = { values: sideBySide(halves) }
   }
 
   /** Resolves when the tables that were last finished have been read back. */
@@ -103,12 +156,7 @@ export class AtmosphereTables {
 
   /** Bytes of GPU memory that the tables and volumes take. */
   get bytes(): number {
-    const targets = [this.transmittance.target, this.diffuseLight.target, ...this.volumes.targets]
-    const bytesPerTexel = 8
-    return targets.reduce(
-      (sum, { width, height, textures }) => sum + width * height * textures.length * bytesPerTexel,
-      0
-    )
+    return this.atlas.bytes + this.volumes.bytes
   }
 
   /** Frees all of it. The next {@link update} starts from nothing. */
@@ -118,6 +166,26 @@ export class AtmosphereTables {
     this.#renderer = null
     this.version++
     this.data = null
-    for (const part of [this.transmittance, this.diffuseLight, this.volumes]) part.dispose()
+    for (const part of [this.transmittance, this.diffuseLight, this.volumes, this.atlas]) {
+      part.dispose()
+    }
   }
+}
+
+/** The tiles of the diffuse-light table side by side, as numbers. */
+function sideBySide(halves: Uint16Array): Float32Array {
+  const [columns, rows] = DIFFUSE_SIZE
+  const [across, down] = DIFFUSE_LAYOUT
+  const values = new Float32Array(halves.length)
+  for (let y = 0; y < rows * down; y++) {
+    for (let x = 0; x < columns * across; x++) {
+      const tile = Math.floor(y / rows) * across + Math.floor(x / columns)
+      const from = y * columns * across + x
+      const to = ((y % rows) * across * down + tile) * columns + (x % columns)
+      for (let k = 0; k < 4; k++) {
+        values[4 * to + k] = DataUtils.fromHalfFloat(halves[4 * from + k])
+      }
+    }
+  }
+  return values
 }

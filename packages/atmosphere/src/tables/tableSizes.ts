@@ -5,15 +5,18 @@ export const TRANSMITTANCE_SIZE = [256, 64] as const
 export const DIFFUSE_SIZE = [96, 16] as const
 
 /**
- * Tiles of the diffuse-light table, side by side: six moments, then the irradiance on
- * a plane that faces up and on one that faces down.
+ * Tiles of the diffuse-light table: six moments, then the irradiance on a plane that faces up and on one
+ * that faces down.
  */
 export const DIFFUSE_TILES = 8
+
+/** How those tiles lie in their texture: columns × rows. */
+export const DIFFUSE_LAYOUT = [2, 4] as const
 
 /** Sky volume: azimuth × elevation × distance. */
 export const VOLUME_SIZE = [32, 96, 23] as const
 
-/** Places that volumes are kept for at a time: a scene's camera and its mirror image, say. */
+/** Places that volumes are kept for at a time, for each source of light: a camera and its mirror image, say. */
 export const VOLUME_SLOTS = 2
 
 /**
@@ -23,10 +26,10 @@ export const VOLUME_SLOTS = 2
 export const VOLUME_TILES = [6, 4] as const
 
 /**
- * Mean extinction along rays: distance × elevation, and a column of the whole way's transmittance. It costs
- * a row little, and needs many.
+ * Mean extinction along rays: elevation × distance, and a row of the whole way's transmittance. It costs an
+ * elevation little, and needs many.
  */
-export const DEPTH_SIZE = [32, 192] as const
+export const DEPTH_SIZE = [192, 32] as const
 
 /** Factor by which tables of radiance are scaled, to stay clear of subnormal half floats at night. */
 export const RADIANCE_SCALE = 4096

@@ -1,9 +1,8 @@
 import { Fn, float, uv, vec4 } from 'three/tsl'
-import type { RenderTarget } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../air/AtmosphereUniforms'
-import { FragmentPass, tableTarget } from '../tables/FragmentPass'
-import { TRANSMITTANCE_SIZE } from '../tables/tableSizes'
+import { FragmentPass } from '../tables/FragmentPass'
+import type { TableRegion } from '../tables/TableAtlas'
 import { distanceToTop } from '../air/tsl/boundary'
 import { march, segmentDepth, type Air } from '../scattering/tsl/scattering'
 import { horizonCosine, transmittanceRay } from './tsl/transmittance'
@@ -42,11 +41,13 @@ function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
  * underflows, and is nearly linear between texels.
  */
 export class TransmittanceTable {
-  /** Target of the table; shaders sample `target.texture`. */
-  readonly target: RenderTarget = tableTarget('Transmittance', ...TRANSMITTANCE_SIZE)
+  /** Where the table is kept. */
+  readonly region: TableRegion
   readonly #pass: FragmentPass
 
-  constructor(uniforms: AtmosphereUniforms) {
+  /** @param region - Of `TRANSMITTANCE_SIZE`; its atlas frees it. */
+  constructor(uniforms: AtmosphereUniforms, region: TableRegion) {
+    this.region = region
     const { sunAngularRadius } = uniforms
     const air: Air = { uniforms, transmittance: null as never, diffuse: null }
     this.#pass = new FragmentPass(
@@ -75,12 +76,11 @@ export class TransmittanceTable {
 
   /** Computes the table from the uniforms. */
   bake(renderer: Renderer): void {
-    this.#pass.render(renderer, this.target)
+    this.region.render(renderer, this.#pass)
   }
 
-  /** Frees the table. */
+  /** Frees its shader. */
   dispose(): void {
-    this.target.dispose()
     this.#pass.dispose()
   }
 }

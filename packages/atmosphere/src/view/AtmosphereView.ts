@@ -6,6 +6,7 @@ import type { AtmosphereParameters, Spectrum } from '../parameters/AtmospherePar
 import { eyeScalars } from './cpu/eye'
 import type { SphericalSpace } from './cpu/spherical'
 import type { LightSource } from './LightSource'
+import type { SkyVolumes, VolumeOrigins } from '../skyVolume/SkyVolumes'
 import type { EyeScalars } from './tsl/eye'
 
 /** Cosine of the source's zenith angle, 25° below the horizon. */
@@ -24,7 +25,7 @@ export interface ViewedAtmosphere {
   /** Layers of the sky, as far as they light the planet. */
   readonly layers: readonly { readonly source?: LightSource }[]
   /** `version` is 0 until the first bake is done. */
-  readonly tables: { readonly version: number }
+  readonly tables: { readonly version: number; readonly volumes: Pick<SkyVolumes, 'volumeFor'> }
 }
 
 /** A camera in the space where the planet is a sphere, computed in float64. */
@@ -42,8 +43,8 @@ export class AtmosphereView {
   /** True if the source can light any air that is seen. */
   isLit = true
   eye: EyeScalars<number> | null = null
-  /** Number of its volume in the atlas. */
-  slot = 0
+  /** Its sky volume; null if there is none. */
+  volume: VolumeOrigins | null = null
   readonly atmosphere: ViewedAtmosphere
   readonly camera: Camera
   readonly source: LightSource
@@ -75,7 +76,7 @@ export class AtmosphereView {
     // Then only the depth of the air counts, which one volume holds for all the night.
     this.eye = eyeScalars(parameters, this.height, this.isLit ? cosSun : DEEP_NIGHT)
     // Before the first bake is done there is no light to compute a volume from.
-    if (tables.version === 0) return
-    this.slot = this.source.volumes.volumeFor(renderer, this.eye, tables.version).slot
+    if (tables.version === 0 || !this.source.lightsAir) return
+    this.volume = tables.volumes.volumeFor(renderer, this.eye, tables.version)
   }
 }

@@ -3,11 +3,10 @@ import { Vector4 } from 'three'
 import { renderGroup, uniform } from 'three/tsl'
 import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
-import type { SkyVolumes } from '../skyVolume/SkyVolumes'
 
 /**
- * Source of light in the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both;
- * sky volumes depend on the direction, so each source has its own.
+ * Source of light in the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both,
+ * and so are sky volumes, of which there are some for each source.
  */
 export class LightSource {
   /**
@@ -19,11 +18,11 @@ export class LightSource {
   /**
    * @param direction - Writes the direction to the source in world space, unit length, into its target;
    *   `from` is who looks, in world space.
-   * @param volumes - Where its sky volumes are kept.
+   * @param lightsAir - Whether its light in the air is seen, so that sky volumes are computed for it.
    */
   constructor(
     readonly direction: (target: Vector3, from?: Vector3) => Vector3,
-    readonly volumes: SkyVolumes
+    public lightsAir = true
   ) {}
 
   /** {@link irradiance} at a position in world space. */

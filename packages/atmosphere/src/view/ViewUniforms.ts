@@ -1,12 +1,12 @@
 import { Matrix3, Vector3 } from 'three'
-import { renderGroup, texture, uniform } from 'three/tsl'
+import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Camera } from 'three'
 import { offsetPoint } from '@welkin/geo'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { EyeUniforms } from '../skyVolume/SkyVolumes'
 import type { Air } from '../scattering/tsl/scattering'
-import type { VolumeTextures } from '../skyVolume/tsl/skyVolume'
+import type { Texels } from '../tables/TableAtlas'
 import type { Float, Mat3, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
@@ -19,7 +19,8 @@ export class ViewUniforms {
   /** Camera of the view; null for whichever renders. */
   readonly camera: Camera | null
   readonly air: Air
-  readonly volume: VolumeTextures
+  /** Where its sky volumes are kept. */
+  readonly volume: Texels
   readonly eye = new EyeUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */
   readonly height = uniform(0).setGroup(renderGroup)
@@ -33,27 +34,16 @@ export class ViewUniforms {
   readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
 
   constructor(tables: AtmosphereTables, source: LightSource, camera: Camera | null) {
-    const { uniforms, transmittance, diffuseLight } = tables
-    const { volumes } = source
-    const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     this.source = source
     this.camera = camera
-    this.air = {
-      uniforms,
-      transmittance: texture(transmittance.target.texture),
-      diffuse: texture(diffuseLight.target.texture)
-    }
-    this.volume = {
-      molecular: molecular,
-      aerosol: aerosol,
-      depth: texture(volumes.depth.texture)
-    }
+    this.air = tables.air
+    this.volume = tables.atlas
   }
 
   /** Takes the values of a view. */
   protected set(view: AtmosphereView): void {
     if (view.eye === null) return
-    this.eye.set(view.eye, view.slot)
+    this.eye.set(view.eye, view.volume)
     this.source.irradiance.value.set(...view.irradiance)
     this.height.value = view.height
     this.isLit.value = view.isLit ? 1 : 0

@@ -28,7 +28,7 @@ describe('sky irradiance', () => {
       const value = tile === 0 ? Math.sqrt(4 * Math.PI) : tile >= 6 ? Math.PI : 0
       values.fill(value * radiance * RADIANCE_SCALE, 4 * texel, 4 * texel + 4)
     }
-    const data = { values, isFlipped: false }
+    const data = { values }
     fc.assert(
       fc.property(number(0, 60_000), cosine, cosine, cosine, (altitude, normal, sun, normalSun) => {
         for (const value of skyIrradiance(earth, data, altitude, normal, sun, normalSun)) {

@@ -63,9 +63,15 @@ describe('AtmosphereTables', () => {
 
   it('has numbers once they were read', async () => {
     const { tables, read } = baked()
-    read.resolve(new Uint16Array([0x3c00, 0x4000]))
+    // Two tiles abreast and four down in the texture: the second row of the fourth begins with a 2.
+    const [columns, rows, tiles] = [96, 16, 8]
+    const texels = new Uint16Array(4 * columns * rows * tiles).fill(0x3c00)
+    texels[4 * ((rows + 1) * 2 * columns + columns)] = 0x4000
+    read.resolve(texels)
     await tables.read()
-    expect(tables.data).toEqual({ values: new Float32Array([1, 2]), isFlipped: false })
+    const values = new Float32Array(4 * columns * rows * tiles).fill(1)
+    values[4 * (columns * tiles + 3 * columns)] = 2
+    expect(tables.data).toEqual({ values })
   })
 
   it('finishes a bake with what it began with, then bakes what changed meanwhile', () => {

@@ -28,9 +28,8 @@ export function diffuseColumnCosine(column: number): number {
 
 /** The diffuse-light table, read back. */
 export interface DiffuseLightData {
-  /** Texels of four values, row by row; rows are altitudes, or from the highest down if flipped. */
+  /** Texels of four values, row by row, tiles side by side; rows are altitudes, from the ground up. */
   values: Float32Array
-  isFlipped: boolean
 }
 
 /**
@@ -41,7 +40,7 @@ export interface DiffuseLightData {
  * @returns A four-value spectrum per tile, for unit irradiance of the sun.
  */
 export function sampleDiffuseLight(
-  { values, isFlipped }: DiffuseLightData,
+  { values }: DiffuseLightData,
   altitudePart: number,
   cosSun: number
 ): number[][] {
@@ -60,8 +59,7 @@ export function sampleDiffuseLight(
   return Array.from({ length: DIFFUSE_TILES }, (_, tile) =>
     [0, 1, 2, 3].map(channel =>
       corners.reduce((sum, [i, j, weight]) => {
-        const storedRow = isFlipped ? rows - 1 - j : j
-        const texel = storedRow * columns * DIFFUSE_TILES + tile * columns + i
+        const texel = j * columns * DIFFUSE_TILES + tile * columns + i
         return sum + (weight * values[4 * texel + channel]) / RADIANCE_SCALE
       }, 0)
     )

@@ -319,7 +319,7 @@ export function solveDiffuseLight(
       }
     }
   }
-  return { values, isFlipped: false }
+  return { values }
 }
 
 /** Adds the orders after the last, each less than the one before by the ratio of the last two. */

@@ -1,13 +1,14 @@
 import { float, vec2 } from 'three/tsl'
-import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
-import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
-import { sampleLevel0, type Float, type Vec4 } from '../../tsl-types'
+import type { Table } from '../../tables/TableAtlas'
+import { DIFFUSE_LAYOUT, DIFFUSE_SIZE, RADIANCE_SCALE } from '../../tables/tableSizes'
+import type { Float, Vec4 } from '../../tsl-types'
 import { diffuseSunCosine, diffuseSunSlope, diffuseSunOrigin } from '../cpu/diffuseLight'
 import type { Moments } from './moments'
 import { asinh, sinh } from '../../math/tsl/trigonometry'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
+const [TILE_COLUMNS, TILE_ROWS] = DIFFUSE_LAYOUT
 
 type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 
@@ -34,16 +35,22 @@ function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float 
 /** A function that reads a tile of the diffuse-light table at an altitude and sun angle. */
 export function diffuseLightReader(
   uniforms: AtmosphereUniforms,
-  table: TextureNode,
+  table: Table,
   altitude: Float,
   cosSun: Float
 ): (tile: number) => Vec4 {
   const uv = vec2(sunColumn(cosSun), altitudeRow(uniforms, altitude))
     .mul(vec2(COLUMNS - 1, ROWS - 1))
     .add(0.5)
-    .div(vec2(COLUMNS * DIFFUSE_TILES, ROWS))
+    .div(vec2(COLUMNS * TILE_COLUMNS, ROWS * TILE_ROWS))
     .toConst()
-  return tile => sampleLevel0(table, tile === 0 ? uv : uv.add(vec2(tile / DIFFUSE_TILES, 0)))
+  return tile => {
+    const corner = vec2(
+      (tile % TILE_COLUMNS) / TILE_COLUMNS,
+      Math.floor(tile / TILE_COLUMNS) / TILE_ROWS
+    )
+    return table.sample(tile === 0 ? uv : uv.add(corner))
+  }
 }
 
 /**
@@ -55,7 +62,7 @@ export function diffuseLightReader(
  */
 export function diffuseMoments(
   uniforms: AtmosphereUniforms,
-  table: TextureNode,
+  table: Table,
   altitude: Float,
   cosSun: Float
 ): Moments<Vec4> {
@@ -72,10 +79,6 @@ export function diffuseMoments(
  * @param table - Diffuse-light table.
  * @param cosSun - μ_s, cosine of the sun's zenith angle.
  */
-export function groundIrradiance(
-  uniforms: AtmosphereUniforms,
-  table: TextureNode,
-  cosSun: Float
-): Vec4 {
+export function groundIrradiance(uniforms: AtmosphereUniforms, table: Table, cosSun: Float): Vec4 {
   return diffuseLightReader(uniforms, table, float(0), cosSun)(6).div(RADIANCE_SCALE)
 }

@@ -1,7 +1,7 @@
 import { Discard, Fn, If, float, int, mix, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, TextureNode } from 'three/webgpu'
 import { diffuseSunOrigin, diffuseSunSlope } from '../cpu/diffuseLight'
-import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
+import { DIFFUSE_LAYOUT, DIFFUSE_SIZE, RADIANCE_SCALE } from '../../tables/tableSizes'
 import {
   loop,
   sampleLevel0,
@@ -21,10 +21,12 @@ import {
   scattering,
   type Air
 } from '../../scattering/tsl/scattering'
+import type { Table } from '../../tables/TableAtlas'
 import { rowAndColumn } from '../../tables/tsl/texels'
 import { sine } from '../../math/tsl/trigonometry'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
+const [TILE_COLUMNS, TILE_ROWS] = DIFFUSE_LAYOUT
 
 /** Rows of the table that one pass over the rays covers. */
 export const BAKE_ROWS = 4
@@ -172,20 +174,25 @@ export function reduceRays(
 ): Vec4 {
   return Fn(() => {
     const texel = uv() as Vec2
-    const row = texel.y.mul(ROWS).floor().toConst()
+    const y = texel.y
+      .mul(ROWS * TILE_ROWS)
+      .floor()
+      .toConst()
+    const { row: tileRow, column: row } = rowAndColumn(y, ROWS)
     const rowInTarget = row.sub(float(firstRow)).toConst()
     If(rowInTarget.lessThan(0).or(rowInTarget.greaterThanEqual(BAKE_ROWS)), () => {
       Discard()
     })
     const x = texel.x
-      .mul(COLUMNS * DIFFUSE_TILES)
+      .mul(COLUMNS * TILE_COLUMNS)
       .floor()
       .toConst()
-    const { row: tile, column } = rowAndColumn(x, COLUMNS)
+    const { row: tileColumn, column } = rowAndColumn(x, COLUMNS)
+    const tile = tileRow.mul(TILE_COLUMNS).add(tileColumn).toConst()
     const { altitude, cosSun } = cell(air, row, column)
     const sinSquaredSun = cosSun.mul(cosSun).oneMinus().toConst()
     const inverseSinSun = sinSquaredSun.inverseSqrt().toConst()
-    const y = rowInTarget
+    const rayRow = rowInTarget
       .mul(COLUMNS)
       .add(column)
       .add(0.5)
@@ -221,7 +228,7 @@ export function reduceRays(
       const weight = weights.reduce(
         (chosen, value, i) => mix(chosen, value, tile.equal(i).select(1, 0)) as never
       )
-      const source = vec2(float(ray).add(0.5).div(width), y)
+      const source = vec2(float(ray).add(0.5).div(width), rayRow)
       sum.addAssign(sampleLevel0(rays, source).mul(weight).mul(solidAngle))
     })
     return sum
@@ -235,15 +242,15 @@ const LARGEST_RATIO = 0.95
  * Shader that sums the orders of scattering. Orders after the last are added as a geometric series
  * with the ratio of the last two.
  */
-export function sumOrders(orders: TextureNode[]): Vec4 {
+export function sumOrders(orders: readonly Table[]): Vec4 {
   return Fn(() => {
     const texel = uv() as Vec2
     // The ratio of the l = 0 moments of the cell, which are positive.
-    const tile = 1 / DIFFUSE_TILES
-    const first = vec2(texel.x.sub(texel.x.div(tile).floor().mul(tile)), texel.y).toConst() as Vec2
-    const [before, last] = orders.slice(-2).map(order => sampleLevel0(order, first)) as [Vec4, Vec4]
+    const tiles = vec2(TILE_COLUMNS, TILE_ROWS)
+    const first = texel.sub(texel.mul(tiles).floor().div(tiles)).toConst() as Vec2
+    const [before, last] = orders.slice(-2).map(order => order.sample(first)) as [Vec4, Vec4]
     const ratio = last.div(before.max(1e-7)).clamp(0, LARGEST_RATIO).toConst()
-    const lights = orders.map(order => sampleLevel0(order, texel))
+    const lights = orders.map(order => order.sample(texel))
     const tail = lights.at(-1)!.mul(ratio.div(ratio.oneMinus()))
     return lights.reduce((sum, light) => sum.add(light) as Vec4).add(tail)
   })()

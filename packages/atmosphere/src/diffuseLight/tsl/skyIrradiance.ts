@@ -1,6 +1,6 @@
 import { float } from 'three/tsl'
-import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
+import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import type { Float, Vec4 } from '../../tsl-types'
 import { diffuseLightReader, diffuseMoments } from './diffuseLight'
@@ -25,7 +25,7 @@ const COSINE_2 = 1 / 4
  */
 export function skyIrradiance(
   uniforms: AtmosphereUniforms,
-  table: TextureNode,
+  table: Table,
   altitude: Float,
   cosNormal: Float,
   cosSun: Float,
@@ -57,7 +57,7 @@ export function skyIrradiance(
  */
 export function horizontalIrradiance(
   uniforms: AtmosphereUniforms,
-  table: TextureNode,
+  table: Table,
   altitude: Float,
   cosSun: Float
 ): { up: Vec4; down: Vec4 } {

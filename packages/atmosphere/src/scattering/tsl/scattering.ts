@@ -1,7 +1,7 @@
 import { float, vec4 } from 'three/tsl'
-import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Float, type Int, type Vec4 } from '../../tsl-types'
+import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import { altitudeAlong } from '../../air/tsl/boundary'
 import { diffuseMoments, groundIrradiance } from '../../diffuseLight/tsl/diffuseLight'
@@ -14,9 +14,9 @@ import { sunTransmittance } from '../../transmittance/tsl/transmittance'
 export interface Air {
   uniforms: AtmosphereUniforms
   /** Optical depth to the top of the air. */
-  transmittance: TextureNode
+  transmittance: Table
   /** Diffuse-light table; without it there is no light but the sun's. */
-  diffuse: TextureNode | null
+  diffuse: Table | null
 }
 
 /** A ray in the mapped, spherical space: four numbers are all that matters by symmetry. */

@@ -9,7 +9,8 @@ import {
   type Air,
   type Ray
 } from '../../scattering/tsl/scattering'
-import { sampleAir, type Sight, type VolumeTextures } from '../../skyVolume/tsl/skyVolume'
+import { sampleAir, type Sight } from '../../skyVolume/tsl/skyVolume'
+import type { Texels } from '../../tables/TableAtlas'
 
 /** Light scattered towards the start of a segment [1/sr], and optical depth of the segment. */
 export interface ShellLight {
@@ -103,9 +104,9 @@ export function marchedShellLight(air: Air, segment: AirSegment, steps: number):
 /** Light of the air along a view ray from a sky volume, all orders of scattering. */
 export function sampledShellLight(
   uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   sight: Sight
 ): ShellLight {
-  return sampleAir(uniforms, textures, eye, sight)
+  return sampleAir(uniforms, atlas, eye, sight)
 }

@@ -1,14 +1,8 @@
 import { If, float, mix, vec2 } from 'three/tsl'
-import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
-import {
-  DEPTH_SIZE,
-  RADIANCE_SCALE,
-  VOLUME_SIZE,
-  VOLUME_SLOTS,
-  VOLUME_TILES
-} from '../../tables/tableSizes'
-import { sampleLevel0, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
+import type { Texels } from '../../tables/TableAtlas'
+import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
+import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
 import { spreadCosine, spreadSun } from '../../diffuseLight/tsl/diffuseLight'
 import type { Eye } from '../../view/tsl/eye'
 import { miePhase } from '../../air/tsl/phase'
@@ -16,21 +10,11 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 import { sine } from '../../math/tsl/trigonometry'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
-const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
-const [DEPTH_COLUMNS, DEPTH_ROWS] = DEPTH_SIZE
+const [TILE_COLUMNS] = VOLUME_TILES
+const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
 
 /** Number of the tile that holds all the air along a ray and the ground behind it. */
 export const SKY_TILE = DISTANCES
-
-/** Textures of a sky volume. */
-export interface VolumeTextures {
-  /** Light scattered by molecules, and by aerosols more than once. */
-  molecular: TextureNode
-  /** Light scattered by aerosols once, without its phase function. */
-  aerosol: TextureNode
-  /** Mean extinction along rays [1/m]. */
-  depth: TextureNode
-}
 
 /** Limits of a view ray: where it enters and leaves the air, or meets the ground. */
 export interface RayLimits {
@@ -77,21 +61,21 @@ function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool, sinView: 
   return across.div(along.add(1).max(1e-6)).mul(scale).clamp().sqrt()
 }
 
-/** Row of a position in a table with that many rows, the lower half below the horizon, in texels. */
-function elevationRow(position: Float, hitsGround: Bool, rows: number): Float {
-  const half = rows / 2
+/** Texel of a position among so many elevations, the lower half of them below the horizon. */
+function elevationTexel(position: Float, hitsGround: Bool, count: number): Float {
+  const half = count / 2
   return position.mul(half - 1).add(hitsGround.select(0.5, half + 0.5))
 }
 
-/** Cosine of the zenith angle of a row, counted in whole texels. */
-export function rowCosine(
+/** Cosine of the zenith angle of an elevation, counted in whole texels. */
+export function elevationCosine(
   eye: Eye,
-  row: Float,
-  rows: number
+  texel: Float,
+  count: number
 ): { cosView: Float; hitsGround: Bool; position: Float } {
-  const half = rows / 2
-  const hitsGround = row.lessThan(half).toConst()
-  const position = row
+  const half = count / 2
+  const hitsGround = texel.lessThan(half).toConst()
+  const position = texel
     .floor()
     .sub(hitsGround.select(0, half))
     .div(half - 1)
@@ -215,7 +199,7 @@ function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
   return part.mul(growth).add(1).log().mul(stretch).clamp()
 }
 
-/** A row of the sky volumes. */
+/** An elevation of the sky volumes. */
 export interface Elevation {
   /** True if the ray meets the ground. */
   hitsGround: Bool
@@ -223,32 +207,31 @@ export interface Elevation {
   elevation: Float
 }
 
-/** Reads a table of {@link DEPTH_SIZE} at a column, in texels. */
+/** Reads the eye's table of {@link DEPTH_SIZE} at a row, in texels. */
 function readDepth(
-  depth: TextureNode,
+  atlas: Texels,
   eye: Eye,
   { elevation, hitsGround }: Elevation,
-  column: Float
+  row: Float
 ): Vec4 {
-  const row = elevationRow(elevation, hitsGround, DEPTH_ROWS).add(eye.slot.mul(DEPTH_ROWS))
-  const size = vec2(1 / (DEPTH_COLUMNS + 1), 1 / (DEPTH_ROWS * VOLUME_SLOTS))
-  return sampleLevel0(depth, vec2(column, row).mul(size))
+  const column = elevationTexel(elevation, hitsGround, DEPTH_ELEVATIONS)
+  return atlas.at(vec2(column, row).add(eye.depthOrigin))
 }
 
 /**
  * Mean extinction from where a ray enters the air to a position among the distances
  * [1/{@link EXTINCTION_SCALE} m].
  *
- * Depth over distance varies little from row to row, even just below the horizon, where the distance
+ * Depth over distance varies little between elevations, even just below the horizon, where the distance
  * to the ground varies most.
  */
 export function meanExtinction(
-  depth: TextureNode,
+  atlas: Texels,
   eye: Eye,
   elevation: Elevation,
   position: Float
 ): Vec4 {
-  return readDepth(depth, eye, elevation, position.mul(DEPTH_COLUMNS).max(1).sub(0.5))
+  return readDepth(atlas, eye, elevation, position.mul(DEPTH_DISTANCES).max(1).sub(0.5))
 }
 
 /** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
@@ -280,22 +263,19 @@ export function aimAt(
   return { cosView, sinView, hitsGround, elevation }
 }
 
-/** Texture coordinates of a view ray in a tile of the atlas. */
+/** Texel of the atlas of a direction in a tile, of the light by molecules. */
 function tileReader(
   uniforms: AtmosphereUniforms,
   eye: Eye,
   { cosView, sinView, hitsGround, elevation }: Aim,
   cosViewSun: Float
 ): (tile: Float) => Vec2 {
-  const row = elevationRow(elevation, hitsGround, ELEVATIONS)
+  const row = elevationTexel(elevation, hitsGround, ELEVATIONS)
   const column = azimuthColumn(uniforms, eye, cosView, sinView, cosViewSun, hitsGround)
-  const atlas = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS * VOLUME_SLOTS))
-  const inSlot = row.add(eye.slot.mul(TILE_ROWS * ELEVATIONS))
-  const first = vec2(column, inSlot).mul(atlas).toConst()
+  const first = vec2(column, row).add(eye.lightOrigin).toConst()
   return tile => {
     const { row: tileRow, column: tileColumn } = rowAndColumn(tile, TILE_COLUMNS)
-    const size = vec2(1 / TILE_COLUMNS, 1 / (TILE_ROWS * VOLUME_SLOTS))
-    return vec2(tileColumn, tileRow).mul(size).add(first).toConst()
+    return vec2(tileColumn, tileRow).mul(vec2(AZIMUTHS, ELEVATIONS)).add(first).toConst()
   }
 }
 
@@ -313,7 +293,7 @@ export interface VolumePlace extends Aim {
  * @param distance - From the eye [m].
  */
 export function placeInVolume(
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   cosView: Float,
   limits: RayLimits,
@@ -323,14 +303,14 @@ export function placeInVolume(
   const aim = aimAt(eye, cosView, hitsGround)
   const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
   const position = slicePosition(eye, limits, inAir).toConst() as Float
-  const mean = meanExtinction(textures.depth, eye, aim, position)
+  const mean = meanExtinction(atlas, eye, aim, position)
   return { ...aim, position, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
 }
 
 /** Reads the light of the air between the eye and a point from the volume, for unit irradiance [1/sr]. */
 export function radianceBetween(
   uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   place: VolumePlace,
   cosViewSun: Float
@@ -349,14 +329,15 @@ export function radianceBetween(
     .toConst() as Float
   const weight = slice.sub(near).mul(grown).toConst()
   const phase = miePhase(uniforms, cosViewSun).toConst()
-  const [from, to] = [near, near.add(1)].map(tile => readTile(textures, fetch(tile), phase))
+  const [from, to] = [near, near.add(1)].map(tile => readTile(atlas, fetch(tile), phase))
   return from.mul(grown.sub(weight)).add(to.mul(weight))
 }
 
 /** Adds both parts, times the table's scale. */
-function readTile(textures: VolumeTextures, at: Vec2, phase: Vec4): Vec4 {
-  const light = sampleLevel0(textures.aerosol, at).mul(phase)
-  return light.add(sampleLevel0(textures.molecular, at))
+function readTile(atlas: Texels, texel: Vec2, phase: Vec4): Vec4 {
+  const aside = vec2(AZIMUTHS * TILE_COLUMNS, 0)
+  const aerosol = atlas.at(texel.add(aside)).mul(phase)
+  return aerosol.add(atlas.at(texel))
 }
 
 /**
@@ -369,16 +350,16 @@ function readTile(textures: VolumeTextures, at: Vec2, phase: Vec4): Vec4 {
  */
 export function sampleVolume(
   uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   cosView: Float,
   cosViewSun: Float,
   limits: RayLimits,
   distance: Float
 ): AirBetween {
-  const place = placeInVolume(textures, eye, cosView, limits, distance)
+  const place = placeInVolume(atlas, eye, cosView, limits, distance)
   return {
-    radiance: radianceBetween(uniforms, textures, eye, place, cosViewSun),
+    radiance: radianceBetween(uniforms, atlas, eye, place, cosViewSun),
     depth: place.depth
   }
 }
@@ -404,13 +385,13 @@ export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsA
  */
 export function sampleSky(
   uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   aim: Aim,
   cosViewSun: Float
 ): Vec4 {
   const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE))
-  return readTile(textures, at, miePhase(uniforms, cosViewSun)).mul(1 / RADIANCE_SCALE)
+  return readTile(atlas, at, miePhase(uniforms, cosViewSun)).mul(1 / RADIANCE_SCALE)
 }
 
 /** A line of sight from an eye that meets the air. */
@@ -430,19 +411,19 @@ export interface Sight {
 /** Reads all the air along a line of sight from the volume, without what is behind it: 3 fetches. */
 export function sampleAir(
   uniforms: AtmosphereUniforms,
-  textures: VolumeTextures,
+  atlas: Texels,
   eye: Eye,
   { cosView, sinView, cosViewSun, hitsGround, length }: Sight
 ): AirBetween {
   const aim = aimAt(eye, cosView, hitsGround, sinView)
   // The slice before the ground's ends where the air does.
   const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE - 1))
-  const mean = meanExtinction(textures.depth, eye, aim, float(1))
-  const light = readTile(textures, at, miePhase(uniforms, cosViewSun))
+  const mean = meanExtinction(atlas, eye, aim, float(1))
+  const light = readTile(atlas, at, miePhase(uniforms, cosViewSun))
   return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }
 
 /** Transmittance of all the air in a direction; 1 where there is none. */
-export function skyTransmittance(textures: VolumeTextures, eye: Eye, elevation: Elevation): Vec4 {
-  return readDepth(textures.depth, eye, elevation, float(DEPTH_COLUMNS + 0.5)).toConst()
+export function skyTransmittance(atlas: Texels, eye: Eye, elevation: Elevation): Vec4 {
+  return readDepth(atlas, eye, elevation, float(DEPTH_DISTANCES + 0.5)).toConst()
 }

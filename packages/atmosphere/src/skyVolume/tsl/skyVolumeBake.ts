@@ -1,13 +1,8 @@
-import { Discard, Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { TwoOutputs } from '../../tables/FragmentPass'
-import {
-  DEPTH_SIZE,
-  RADIANCE_SCALE,
-  VOLUME_SIZE,
-  VOLUME_SLOTS,
-  VOLUME_TILES
-} from '../../tables/tableSizes'
+import type { Texels } from '../../tables/TableAtlas'
+import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { Eye } from '../../view/tsl/eye'
 import {
@@ -24,7 +19,7 @@ import {
   columnCosine,
   meanExtinction,
   rayLimits,
-  rowCosine,
+  elevationCosine,
   sliceDistance,
   type RayLimits
 } from './skyVolume'
@@ -32,7 +27,7 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
-const [DEPTH_COLUMNS, DEPTH_ROWS] = DEPTH_SIZE
+const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
 
 /** Values for the two attachments of a target. */
 interface Parts {
@@ -67,40 +62,31 @@ export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   }
 }
 
-/** Texture coordinates within the eye's part of a target; fragments elsewhere are discarded. */
-function withinSlot(eye: Eye): Vec2 {
-  const texel = uv() as Vec2
-  const y = texel.y.mul(VOLUME_SLOTS).sub(eye.slot).toConst()
-  If(y.lessThan(0).or(y.greaterThan(1)), () => {
-    Discard()
-  })
-  return vec2(texel.x, y).toConst()
-}
-
 /**
- * Shader of the table of mean extinction: rows are elevations, columns distances; the last column has the
+ * Shader of the table of mean extinction: columns are elevations, rows distances; the last row has the
  * transmittance of all the way.
  */
 export function bakeDepth(air: Air, eye: Eye): Vec4 {
   return Fn(() => {
-    const texel = withinSlot(eye)
-    const { cosView, hitsGround } = rowCosine(eye, texel.y.mul(DEPTH_ROWS), DEPTH_ROWS)
+    const texel = uv() as Vec2
+    const column = texel.x.mul(DEPTH_ELEVATIONS)
+    const { cosView, hitsGround } = elevationCosine(eye, column, DEPTH_ELEVATIONS)
     const limits = rayLimits(eye, cosView, hitsGround)
     const { altitude, cosSun } = eye
     const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun: cosSun }, limits)
     const start = float(0).toVar()
     const depth = vec4(0).toVar()
-    const column = texel.x
-      .mul(DEPTH_COLUMNS + 1)
+    const row = texel.y
+      .mul(DEPTH_DISTANCES + 1)
       .floor()
       .toConst()
-    loop('segment', int(column.add(1).min(DEPTH_COLUMNS)), segment => {
-      const position = float(segment).add(1).div(DEPTH_COLUMNS)
+    loop('segment', int(row.add(1).min(DEPTH_DISTANCES)), segment => {
+      const position = float(segment).add(1).div(DEPTH_DISTANCES)
       const end = sliceDistance(eye, limits, position).toConst()
       depth.addAssign(segmentDepth(air, ray, start, end).depth)
       start.assign(end)
     })
-    const isLast = column.greaterThanEqual(DEPTH_COLUMNS)
+    const isLast = row.greaterThanEqual(DEPTH_DISTANCES)
     const mean = depth.div(start.max(1)).mul(EXTINCTION_SCALE)
     return isLast.select(depth.negate().exp(), mean)
   })()
@@ -129,12 +115,12 @@ function atlasPosition(texel: Vec2) {
  * Shader that fills the atlas with the light scattered between one slice and the next, as seen from
  * the eye; and the last tile with the light of the ground.
  *
- * @param depth - Table of {@link bakeDepth} for the same eye.
+ * @param atlas - Has the table of {@link bakeDepth} for the same eye.
  */
-export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs {
+export function bakeSegments(air: Air, eye: Eye, atlas: Texels): TwoOutputs {
   return twoOutputs(() => {
     const { column, row, slice } = atlasPosition(uv())
-    const { cosView, hitsGround, position } = rowCosine(eye, row, ELEVATIONS)
+    const { cosView, hitsGround, position } = elevationCosine(eye, row, ELEVATIONS)
     const limits = rayLimits(eye, cosView, hitsGround)
     const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, hitsGround)
     const { altitude, cosSun } = eye
@@ -142,7 +128,7 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
     const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
     const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES)).toConst() as Float
     const reached = slice.div(DISTANCES) as Float
-    const before = meanExtinction(depth, eye, { elevation: position, hitsGround }, reached)
+    const before = meanExtinction(atlas, eye, { elevation: position, hitsGround }, reached)
     const through = before.mul(start.div(EXTINCTION_SCALE)).negate().exp().toConst()
     const molecular = vec4(0).toVar()
     const aerosol = vec4(0).toVar()
@@ -158,19 +144,18 @@ export function bakeSegments(air: Air, eye: Eye, depth: TextureNode): TwoOutputs
   })
 }
 
-/** Shader that sums the segments up to each slice. */
-export function sumSegments(eye: Eye, molecular: TextureNode, aerosol: TextureNode): TwoOutputs {
-  return twoOutputs(() => {
-    const { column, row, slice } = atlasPosition(withinSlot(eye))
-    const sums = { molecular: vec4(0).toVar(), aerosol: vec4(0).toVar() }
+/** Shader that sums the segments up to each slice, of one of the two outputs of {@link bakeSegments}. */
+export function sumSegments(segments: TextureNode): Vec4 {
+  return Fn(() => {
+    const { column, row, slice } = atlasPosition(uv())
+    const sum = vec4(0).toVar()
     const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
     loop('before', int(slice).add(1), index => {
       const tile = rowAndColumn(float(index).toConst(), TILE_COLUMNS)
       const corner = vec2(tile.column.mul(AZIMUTHS), tile.row.mul(ELEVATIONS))
       const at = vec2(column, row).add(corner).add(0.5).mul(size).toConst() as Vec2
-      sums.molecular.addAssign(sampleLevel0(molecular, at))
-      sums.aerosol.addAssign(sampleLevel0(aerosol, at))
+      sum.addAssign(sampleLevel0(segments, at))
     })
-    return sums
-  })
+    return sum
+  })()
 }

@@ -1,8 +1,8 @@
 import { smoothstep, vec2 } from 'three/tsl'
-import type { TextureNode } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
+import type { Table } from '../../tables/TableAtlas'
 import { TRANSMITTANCE_SIZE } from '../../tables/tableSizes'
-import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../../tsl-types'
+import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import { distanceToTop } from '../../air/tsl/boundary'
 
 const [WIDTH, HEIGHT] = TRANSMITTANCE_SIZE
@@ -98,7 +98,7 @@ export function transmittanceRay(
  */
 export function sunTransmittance(
   uniforms: AtmosphereUniforms,
-  table: TextureNode,
+  table: Table,
   altitude: Float,
   cosSun: Float
 ): Vec4 {
@@ -107,5 +107,5 @@ export function sunTransmittance(
   const margin = bottomRadius.div(bottomRadius.add(altitude)).mul(sunAngularRadius).toConst()
   const visible = smoothstep(margin.negate(), margin, cosSun.sub(cosHorizon))
   const uv = transmittanceUV(uniforms, altitude, cosSun.max(cosHorizon))
-  return sampleLevel0(table, uv).negate().exp().mul(visible)
+  return table.sample(uv).negate().exp().mul(visible)
 }

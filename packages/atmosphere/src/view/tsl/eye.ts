@@ -1,4 +1,4 @@
-import type { Float } from '../../tsl-types'
+import type { Float, Vec2 } from '../../tsl-types'
 
 /**
  * What the sky volume needs to know of the place that it is seen from: scalars of the mapped,
@@ -35,7 +35,10 @@ export interface EyeScalars<T> {
   skyGrowth: T
 }
 
-/** {@link EyeScalars} as shader nodes, and the number of its volume in the atlas. */
+/** {@link EyeScalars} as shader nodes, and where its sky volume is in the atlas. */
 export interface Eye extends EyeScalars<Float> {
-  slot: Float
+  /** First texel of the volume's light. */
+  lightOrigin: Vec2
+  /** First texel of its table of mean extinction. */
+  depthOrigin: Vec2
 }
