@@ -2,7 +2,7 @@ import type { Vector3, Vector4 } from 'three'
 import { If, vec2, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { REACH } from './shadowRay'
+import { MAXIMUM_DISTANCE } from './shadowRay'
 
 /** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
 export interface CascadeNodes {
@@ -70,7 +70,7 @@ export function sampleShadows(
     const isInside = aside.x
       .max(aside.y)
       .lessThan(edge)
-      .and(above.abs().lessThan(edge.mul(2 * REACH)))
+      .and(above.abs().lessThan(edge.mul(2 * MAXIMUM_DISTANCE)))
       .and(isDrawn.greaterThan(0))
     If(isInside, () => {
       place.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))
