@@ -12,7 +12,7 @@ const _offset = new Vector3()
 
 /** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
 export class CascadeState {
-  /** Of the map's squares. */
+  /** Index of its tile in the map. */
   readonly atlasTile: number
   halfWidth = 0
   readonly anchor = new Vector3()
@@ -23,11 +23,11 @@ export class CascadeState {
   /** Measures the plane's second axis along rays of light. */
   readonly measure = new Vector3()
   readonly along = new Vector3()
-  /** Of the middle [m]. */
+  /** Coordinates of the middle [m]. */
   readonly center = { u: 0, v: 0 }
-  /** How the wind had turned the layers. */
+  /** Rotations of the layers' noise by the wind. */
   readonly rotations: readonly Quaternion[]
-  /** What else it was drawn from. */
+  /** All else that it was drawn from. */
   inputs: readonly unknown[] = []
   /** Greater than those of what was drawn before. */
   order = 0
@@ -47,14 +47,14 @@ export class CascadeState {
    *
    * @param light - Direction to the light.
    * @param anchor - The plane's origin [m].
-   * @param foot - Where the middle is wanted [m].
+   * @param wanted - Place nearest to which the middle is put [m].
    * @param halfWidth - [m].
-   * @param turns - How the wind has turned the layers.
+   * @param rotations - Rotations of the layers' noise by the wind.
    */
   place(
     light: Vector3,
     anchor: Vector3,
-    foot: Vector3,
+    wanted: Vector3,
     halfWidth: number,
     turns: readonly Quaternion[]
   ): void {
@@ -79,7 +79,7 @@ export class CascadeState {
     along.crossVectors(_normal, across)
     normal.copy(_normal).divideScalar(_normal.dot(light))
     measure.copy(along).addScaledVector(normal, -along.dot(light))
-    _offset.copy(foot).sub(anchor)
+    _offset.copy(wanted).sub(anchor)
     const { texel } = this
     center.u = Math.round(across.dot(_offset) / texel) * texel
     center.v = Math.round(measure.dot(_offset) / texel) * texel

@@ -18,11 +18,11 @@ export interface LayerSample {
   readonly emptyDistance: Float
 }
 
-/** How a layer is sampled. */
+/** Options of {@link sampleLayer}. */
 export interface SampleOptions {
-  /** Whether edges are eroded by detail; without, clouds keep their mean size. */
+  /** Detail erosion of the edges, or its mean: clouds keep their size. */
   readonly detail: boolean
-  /** What unresolved clouds stand for; by default their mean. */
+  /** Meaning of unresolved clouds; by default their mean. */
   readonly unresolved?: Unresolved
   /** Direction of the ray on which they are met, in the mapped space; left out, straight up. */
   readonly direction?: Vec3

@@ -7,11 +7,11 @@ import { subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, type SampleOptions } from './sampleLayer'
 import { weatherAt, type CloudWeather } from './weather'
 
-// The only answer to where the clouds are. `sampleLayer` (sampleLayer.ts) goes from a place and its weather to extinction and
-// empty distance; pixels, shadows, light and the cone prepass differ in which layers they ask, and in where
-// they have the weather from.
+// The only answer to where the clouds are. `sampleLayer` (sampleLayer.ts) goes from a place and its weather
+// to extinction and empty distance; pixels, shadows, light and the cone prepass differ in which layers they
+// ask, and in where they have the weather from.
 
-/** What the light march samples: no detail, and the inside of clouds, where its light is. */
+/** Options of the light march: no detail, and the inside of clouds, where its light is. */
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
 
 /**

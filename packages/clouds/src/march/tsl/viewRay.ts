@@ -11,19 +11,19 @@ import type { FrameUniforms } from '../FrameUniforms'
 import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../../tsl-types'
 import { FAR_AWAY, groundDistance } from './layerBoundaries'
 
-/** A line of sight through a pixel. */
+/** A view ray through a pixel. */
 export interface ViewRay {
   /** Normalized device coordinates of the pixel, and 1. */
   ndc: Vec3
   /** Length of `FrameUniforms.rays` times `place`, in the mapped space [m]. */
   length: Float
-  /** Unit length, in the mapped space. */
+  /** Direction in the mapped space, unit length. */
   direction: Vec3
   /** The same in view space, for each metre of the mapped space [world units/m]. */
   directionView: Vec3
 }
 
-/** How a camera's pixels are turned to lines of sight. */
+/** Inputs that turn a camera's pixels into view rays. */
 export interface ViewRayNodes {
   readonly field: CloudField
   readonly frame: FrameUniforms
@@ -32,7 +32,7 @@ export interface ViewRayNodes {
   readonly isLogarithmic: boolean
 }
 
-/** The line of sight of a place in the picture; to be called inside of a shader function. */
+/** View ray of a place in the picture; to be called inside of a shader function. */
 export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
   const ndc = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
   const ray = (frame.rays as unknown as Mat3).mul(ndc).toConst() as Vec3
@@ -43,10 +43,10 @@ export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
 }
 
 /**
- * Distance along a line of sight to what was drawn, or to the ground; `FAR_AWAY` where there is neither
+ * Distance along a view ray to what was drawn, or to the ground; `FAR_AWAY` where there is neither
  * [m]. To be called inside of a shader function.
  *
- * @param isOpen - Where it holds, the ground is known not to be in sight.
+ * @param isOpen - True where the ground is known not to be in sight.
  */
 export function viewRayEnd(
   { field, frame, depthAt, isLogarithmic }: ViewRayNodes,

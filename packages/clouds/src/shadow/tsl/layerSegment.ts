@@ -2,7 +2,7 @@ import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import type { Float } from '../../tsl-types'
 
-/** Where a ray's line stands to the planet. */
+/** A ray's line against the planet. */
 export interface RadialRay {
   /** Projection of the start on the ray, from the planet's centre [m]. */
   readonly radial: Float
@@ -17,7 +17,7 @@ export interface LayerSegment {
   readonly back: Float
 }
 
-/** Where a ray crosses the sphere at an altitude, in multiples of its direction; equal if it does not. */
+/** Crossings of a ray with the sphere at an altitude, in multiples of its direction; equal if there are none. */
 function crossings(
   field: CloudField,
   { radial, height }: RadialRay,

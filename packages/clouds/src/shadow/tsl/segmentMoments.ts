@@ -69,7 +69,7 @@ export function segmentMoments(
     sampleLayerPair(field, layer, middle, [first, second], (extinction, i) => {
       found.addAssign(i === 0 ? vec2(extinction, 0) : vec2(0, extinction))
     })
-    /** Of the two, the first in clouds, in steps; 2.5 if both are clear. */
+    /** First of the two in clouds, in steps; 2.5 if both are clear. */
     const entry = found.x.greaterThan(0).select(0.5, found.y.greaterThan(0).select(1.5, 2.5))
     const at = from.sub(step.mul(entry)).toConst() as Float
     If(isCutting, () => {

@@ -37,7 +37,7 @@ const SHARPNESS = 0.5
 
 /** A ray of light through a texel. */
 interface LightRay extends RadialRay {
-  /** Where it crosses the cascade's plane, from the camera in the mapped space [m]. */
+  /** Crossing with the cascade's plane, from the camera in the mapped space [m]. */
   readonly start: Vec3
   /** Distance to which clouds are looked for, to either side of the plane [m]. */
   readonly maximumDistance: Float
