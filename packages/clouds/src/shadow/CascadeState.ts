@@ -32,9 +32,9 @@ export class CascadeState {
   /** Greater than those of what was drawn before. */
   order = 0
 
-  constructor(square: number, turns: readonly Quaternion[]) {
-    this.atlasTile = square
-    this.rotations = turns.map(turn => turn.clone())
+  constructor(atlasTile: number, rotations: readonly Quaternion[]) {
+    this.atlasTile = atlasTile
+    this.rotations = rotations.map(rotation => rotation.clone())
   }
 
   /** [m]. */
@@ -56,13 +56,13 @@ export class CascadeState {
     anchor: Vector3,
     wanted: Vector3,
     halfWidth: number,
-    turns: readonly Quaternion[]
+    rotations: readonly Quaternion[]
   ): void {
     const { across, along, measure, normal, center } = this
     this.light.copy(light)
     this.anchor.copy(anchor)
     this.halfWidth = halfWidth
-    this.rotations.forEach((turn, i) => turn.copy(turns[i]))
+    this.rotations.forEach((rotation, i) => rotation.copy(rotations[i]))
     // Level, but leant towards a low light.
     _normal.copy(anchor).normalize()
     across.crossVectors(light, _normal)
