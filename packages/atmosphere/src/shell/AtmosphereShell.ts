@@ -109,7 +109,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly bodyRadius: number
   #sun: ShellSun
   #luminanceScale: number
-  readonly #isSingle: boolean
+  /** See {@link AtmosphereShellOptions}. */
+  readonly model: 'tables' | 'single-scattering'
   /** Atmosphere whose tables the shell shares: its sun, if it has the same parameters. */
   readonly #lender: Atmosphere | null
   /** Tables of all shells of its parameters, or the lender's; null before drawing or without tables. */
@@ -157,8 +158,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.renderOrder = 1
     this.visible = !parameters.isAirless
 
-    this.#isSingle = model === 'single-scattering'
-    const lends = !this.#isSingle && isAtmosphere(sun) && sun.parameters === parameters
+    this.model = model
+    const lends = model === 'tables' && isAtmosphere(sun) && sun.parameters === parameters
     this.#lender = lends ? sun : null
   }
 
@@ -168,9 +169,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     checkRenderer('AtmosphereShell', renderer)
     this.#release()
     this.#renderer = renderer
-    const tables = this.#isSingle
-      ? null
-      : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
+    const tables =
+      this.model === 'single-scattering'
+        ? null
+        : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
     this.#tables = tables
     if (tables !== null) this.#uniforms = tables.uniforms
     const air: Air = {

@@ -148,6 +148,16 @@ export class CloudsNode extends AtmosphereNode {
     this.#time = seconds
   }
 
+  /** Noise that clouds are made of; shared if it was given. */
+  get noise(): CloudNoise {
+    return this.field.noise
+  }
+
+  /** Cloud cover of the whole planet; shared, not owned. */
+  get worldMap(): Texture | null {
+    return this.field.worldMapTexture
+  }
+
   /** Whether there is noise to make clouds of. Before, the sky is clear; `field.bake` makes all at once. */
   get isReady(): boolean {
     return this.field.noise.isReady
