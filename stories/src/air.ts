@@ -13,10 +13,10 @@ import type { Node, WebGPURenderer } from 'three/webgpu'
 import { quickStart } from './quickStart'
 import type { QuickStart } from './quickStart'
 
-/** How the air is drawn: by the materials themselves, or over the finished picture. */
+/** Path by which the air is drawn: in the materials themselves, or over the finished picture. */
 export type AirPath = 'forward' | 'post'
 
-/** What the quick start does, with an atmosphere that is there. */
+/** The quick start for an existing atmosphere. */
 function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
   const sun = new SunDirectionalLight(atmosphere)
   const sky = new SkyLightProbe(atmosphere)

@@ -12,23 +12,23 @@ import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
 export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   preset: CloudPresetName
-  /** Which of its layers the layer's arguments are of, from 0. */
+  /** Index of the layer that the layer's arguments set. */
   layer: number
   /** The preset and the layer that they were of when they were set. */
   shown: string
   quality: CloudQualityName
-  /** What is shown instead of the clouds. */
+  /** Intermediate picture shown instead of the clouds. */
   debug: CloudsDebug | 'off'
-  /** How many times faster than the clock clouds drift. */
+  /** Speed of the wind over its real speed. */
   timeLapse: number
-  /** Whether the world's cloud cover says where clouds are. */
+  /** Takes the coverage from a map of the world. */
   world: boolean
   props: 'none' | 'cockpit' | 'balloons'
   /** [degrees] */
   longitude: number
   /** [degrees] */
   latitude: number
-  /** Of the camera above the ellipsoid [m]. */
+  /** Height of the camera above the ellipsoid [m]. */
   altitude: number
   /** Direction of view, from north, clockwise [degrees]. */
   heading: number

@@ -17,9 +17,9 @@ import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface EnvironmentArgs extends RendererArgs {
-  /** Of the sun above the horizon [degrees]. */
+  /** Elevation of the sun [degrees]. */
   elevation: number
-  /** Of the sun, clockwise from north [degrees]. The camera looks north. */
+  /** Azimuth of the sun, clockwise from north [degrees]. The camera looks north. */
   azimuth: number
   /** Mean square slope of the water, in thousandths. */
   ripples: number
@@ -67,7 +67,7 @@ function populate(scene: Scene): Mesh[] {
   return meshes
 }
 
-/** What materials mirror: the sky itself, as a scene's environment. */
+/** Environment map of the scene, for materials that mirror: the sky itself. */
 export async function createEnvironment(
   canvas: HTMLCanvasElement,
   args: EnvironmentArgs

@@ -4,7 +4,7 @@ import type { Place } from './globe/places'
 import { applyTime } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
-/** Where the camera stands and looks. */
+/** Position and direction of the camera. */
 export const VIEWS = {
   ridge: {
     label: 'Above the mist',
@@ -46,9 +46,9 @@ export interface FogValleyArgs extends RendererArgs, TimeArgs {
   density: number
   /** Altitude over which it falls to 1/e [m]. */
   falloff: number
-  /** Of its base [m]. */
+  /** Altitude of its base [m]. */
   base: number
-  /** Of fog by distance [1/km]. */
+  /** Density of the fog by distance [1/km]. */
   distance: number
 }
 

@@ -63,13 +63,13 @@ type Story = StoryObj<FogValleyArgs>
 /** The sun is 4° up, and shines through the mist. */
 export const Sunrise: Story = { tags: ['screenshot'] }
 
-/** In the middle of it. */
+/** Inside the mist. */
 export const Inside: Story = {
   args: { view: 'floor', base: 342, density: 8, falloff: 25, hour: 12.5 },
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** The same by the post effect. */
+/** The same valley by the post effect. */
 export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }
 
 /** Only ridges stand out. */

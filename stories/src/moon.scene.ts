@@ -24,19 +24,19 @@ export interface MoonArgs extends RendererArgs {
   day: number
   /** Hour of that day, UTC [h]. */
   hour: number
-  /** Whether the phase is `phase`, not that of the date. */
+  /** Takes `phase` instead of the date's phase. */
   setPhase: boolean
   /** 0 new, 0.5 full, 1 new. */
   phase: number
-  /** What the camera looks at. */
+  /** Target of the camera. */
   target: 'moon' | 'sun'
-  /** How far below that the middle of the picture is [degrees]. */
+  /** Angle from the target down to the middle of the picture [degrees]. */
   lower: number
   /** Vertical field of view [degrees]. */
   fieldOfView: number
   /** [stops], 0 for daylight. */
   exposure: number
-  /** What lights the land; none leaves the sky alone. Takes effect when the scene is made. */
+  /** Lights on the land; none draws the sky alone. Takes effect when the scene is made. */
   lights: 'sun' | 'moon' | 'both' | 'none'
   /** Width of the map of the moon's ground [texels]. */
   mapSize: number
@@ -47,7 +47,7 @@ const GROUND_RADIUS = 15_000
 /** Suffices for a small picture, and takes a sixteenth of the time [texels]. */
 const FRAME_MAP_SIZE = 256
 
-/** From what casts shadows to the light [m]. */
+/** Distance from shadow casters to the light [m]. */
 const SHADOW_DISTANCE = 150
 
 /** A meadow with trees and a hut. */

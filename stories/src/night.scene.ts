@@ -37,7 +37,7 @@ export interface NightArgs extends RendererArgs {
   exposure: number
 }
 
-/** How far from the stars its lines end, so that the stars can be seen at their ends [rad]. */
+/** Gap between a constellation's lines and its stars [rad]. */
 const GAP = 0.012
 
 const CHART_RADIUS = 500

@@ -20,7 +20,7 @@ export interface PlainArgs extends RendererArgs, TimeArgs {
   longitude: number
   /** [degrees] */
   latitude: number
-  /** Of the scene's ground above the ellipsoid [m]. */
+  /** Height of the scene's ground above the ellipsoid [m]. */
   height: number
 }
 

@@ -17,17 +17,17 @@ export type PlanetName = 'earth' | 'made-up' | 'mars' | 'titan' | 'venus' | 'moo
 
 export interface PlanetsArgs extends RendererArgs {
   planet: PlanetName
-  /** Of the camera above the ground [m]. */
+  /** Height of the camera above the ground [m]. */
   height: number
   /** [degrees] */
   longitude: number
   /** [degrees] */
   latitude: number
-  /** Of the sun above the horizon [degrees]. */
+  /** Elevation of the sun [degrees]. */
   sunElevation: number
-  /** Of the sun from where the camera looks, clockwise [degrees]. */
+  /** Azimuth of the sun from the direction of view, clockwise [degrees]. */
   sunAzimuth: number
-  /** Of the line of sight above the horizontal [degrees]. */
+  /** Direction of view above the horizontal [degrees]. */
   pitch: number
   /** Vertical field of view [degrees]. */
   fieldOfView: number

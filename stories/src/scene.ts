@@ -10,7 +10,7 @@ export interface SceneHandle<Args> {
   readonly camera: Camera
   /** Settles when everything that the current view needs is loaded. */
   readonly ready: Promise<void>
-  /** How much of that is loaded, in [0, 1]. */
+  /** Fraction that is loaded, in [0, 1]. */
   readonly progress: number
   /** Draws one frame. The same arguments and size give the same pixels once `ready`. */
   render(): void
@@ -25,13 +25,13 @@ export interface SceneHandle<Args> {
 export interface RendererArgs {
   /** Draw with WebGL 2 even where WebGPU is available. */
   forceWebGL: boolean
-  /** How the air is drawn. */
+  /** Path by which the air is drawn. */
   path: AirPath
   /** Draw one reproducible frame, with no controls, and stop. */
   frame: boolean
 }
 
-/** When a scene is seen, and how bright the picture is. */
+/** Date of a scene and exposure of its picture. */
 export interface TimeArgs {
   /** A moment of the day [ms since 1970]. */
   day: number

@@ -27,9 +27,9 @@ export interface ShellArgs extends RendererArgs {
   /** A map of a few bodies, or the view out of a cockpit. */
   view: 'map' | 'cockpit'
   model: 'tables' | 'single-scattering'
-  /** Of the sun above the cockpit's horizon, or around the map [degrees]. */
+  /** Elevation of the sun above the cockpit's horizon, or its azimuth around the map [degrees]. */
   sun: number
-  /** Of the cockpit above the ground [m]. */
+  /** Height of the cockpit above the ground [m]. */
   height: number
   /** [stops], 0 for daylight. */
   exposure: number
@@ -38,7 +38,7 @@ export interface ShellArgs extends RendererArgs {
 /** Sunlight on a plane that faces it [lx], as bright as the sky's tables have it at scale 1e-4. */
 const SUNLIGHT = 13
 
-/** How far bodies are turned, for Africa to face the map's camera [radians]. */
+/** Rotation of the bodies that turns Africa to the map's camera [rad]. */
 const LONGITUDE = -1.6
 
 /** A kilometre in the cockpit's world [world units]. */

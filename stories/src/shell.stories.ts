@@ -53,7 +53,7 @@ type Story = StoryObj<ShellArgs>
 /** Three bodies with air and one without. */
 export const Map: Story = { tags: ['screenshot'] }
 
-/** From inside: the cockpit is not hazed, the ground is. */
+/** Inside the air: the cockpit is clear, the ground is in haze. */
 export const Cockpit: Story = {
   args: { view: 'cockpit', sun: 12 },
   tags: ['screenshot', 'webgpu-only']

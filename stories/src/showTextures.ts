@@ -20,7 +20,7 @@ export interface Picture {
   region?: Region
   /** Factor before display; what is above 1 after it is white. Default 1. */
   scale?: number
-  /** How a texel becomes linear RGB; default its first three channels. */
+  /** Conversion of a texel to linear RGB; default its first three channels. */
   color?: (texel: Node<'vec4'>) => Node<'vec3'>
 }
 

@@ -14,9 +14,9 @@ export interface TablesArgs extends RendererArgs {
   ozone: number
   /** Part of the light that the ground reflects. */
   groundAlbedo: number
-  /** Of the camera that the sky volume is computed for [km]. */
+  /** Height of the camera of the sky volume [km]. */
   altitude: number
-  /** Of the sun, above the camera's level [degrees]. */
+  /** Elevation of the sun at the camera [degrees]. */
   sunElevation: number
   /** [stops], 0 suits daylight. */
   exposure: number
@@ -40,7 +40,7 @@ const signed = (texel: Texel): Node<'vec3'> => {
   )
 }
 
-/** In the order of the diffuse-light table; the factor brings a daylit tile to a mid grey. */
+/** Tiles in the order of the diffuse-light table; the factor brings a daylit tile to a mid grey. */
 const DIFFUSE = [
   { name: 'mean', factor: 4, color: light },
   { name: 'moment (1, 0)', factor: 8, color: signed },
@@ -52,7 +52,7 @@ const DIFFUSE = [
   { name: 'irradiance from below', factor: 3, color: light }
 ]
 
-/** What the tables hold for the light itself: they are scaled to suit half floats. */
+/** Scale of the light in the tables, which suits half floats. */
 const RADIANCE_SCALE = 4096
 
 /** Layout of the sky volume's atlas. */

@@ -34,7 +34,7 @@ writeFileSync(
   file,
   `/*! Star catalogue of d3-celestial, Copyright (c) 2015, Olaf Frohn, BSD-3-Clause: see src/stars/LICENSE-d3-celestial.txt */
 
-/** Made by scripts/convert-stars.ts; \`starCode.ts\` says how to read it. Base64. */
+/** Made by scripts/convert-stars.ts; \`starEncoding.ts\` says how to read it. Base64. */
 export const brightStarData =
   '${text}'
 `

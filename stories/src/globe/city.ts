@@ -131,7 +131,7 @@ function plant(
 }
 
 export interface City {
-  /** In ECEF [m]. */
+  /** Position in ECEF [m]. */
   object: Group
   dispose(): void
 }

@@ -3,7 +3,7 @@ import { randomSequence } from '../random'
 
 /** Distance between the middles of neighbouring streets, across and along the main street [m]. */
 export const BLOCK = { width: 78, depth: 96 }
-/** From front to front of the buildings [m]. */
+/** Width of a street between the buildings' fronts [m]. */
 export const STREET_WIDTH = 18
 /** Half the side of the square that is built on [m]. */
 export const CITY_EXTENT = 900

@@ -162,7 +162,7 @@ function addDetailCoordinates(geometry: PlaneGeometry, [west, south, east, north
   geometry.setAttribute('detail', new Float32BufferAttribute(coordinates, 2))
 }
 
-/** How the surface looks, made once for all tiles: a graph built for each would cost more than drawing it. */
+/** Material of the surface, shared by all tiles: a graph for each would cost more than drawing it. */
 function surfaceNodes(noise: DataTexture): { color: Node<'vec3'>; roughness: Node<'float'> } {
   const detail = attribute<'vec2'>('detail', 'vec2')
   // A texel is 20 km. Shifting the look-up by up to about one turns the blur between texels into coasts and borders.

@@ -24,9 +24,9 @@ export interface Land {
   readonly noise: DataTexture
 }
 
-/** What a story adds to the land. */
+/** Additions of a story to the land. */
 export interface LandStory<Args> {
-  /** Where its arguments put the camera: it moves when that is another object. */
+  /** Camera of the arguments; the camera moves when this is another object. */
   place(args: Args): Place
   /** Frames to draw before one counts; {@link WARM_UP_FRAMES} if left out. */
   readonly warmUpFrames?: number
@@ -37,7 +37,7 @@ export interface LandStory<Args> {
   dispose?(): void
 }
 
-/** Of the frames before one that counts, those in which the land is drawn anew. */
+/** Number of frames before a screenshot in which the land is drawn anew. */
 const LAST_FRAMES = 3
 
 /**

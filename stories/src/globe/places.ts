@@ -2,7 +2,7 @@ import { Ellipsoid } from '@welkin/geo'
 import { Matrix4, Vector3 } from 'three'
 import type { PerspectiveCamera } from 'three'
 
-/** Where the camera stands and looks. */
+/** Position and direction of the camera. */
 export interface Place {
   label: string
   /** [degrees] */

@@ -3,7 +3,7 @@ type ChartStar = readonly [name: string, ascension: number, declination: number]
 
 export interface Constellation {
   label: string
-  /** Where and when it stands high: longitude and latitude [°], and the hour of 2026 in UTC. */
+  /** Place and time at which it stands high: longitude and latitude [°], and the hour of 2026 in UTC. */
   place: { longitude: number; latitude: number }
   date: string
   stars: readonly ChartStar[]

@@ -30,7 +30,7 @@ const SCOTOPIC_LUMINANCE = 0.01
 
 /**
  * Power of luminance by which pictures darken below {@link SCOTOPIC_LUMINANCE}, found by looking: 0 makes a
- * moonless night as bright as a moonlit one, 0.6 leaves it black. Story: Day, Night.
+ * moonless night as bright as a moonlit one, larger ones leave it black. Story: Day, Night.
  */
 const SCOTOPIC_POWER = 0.3
 

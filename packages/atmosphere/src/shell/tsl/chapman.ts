@@ -46,7 +46,7 @@ export interface ProfileConstants {
   growth: Float
 }
 
-/** Growth of steps in thin air over that of density. Larger loses the limb's upper air. Story: Shell, SingleScattering. */
+/** Growth of steps in thin air over that of density. Larger coarsens steps in the limb's upper air. Story: Shell, SingleScattering. */
 const GROWTH = 0.35
 /** Optical depth to the zenith that halves {@link GROWTH}. */
 const THICK_DEPTH = 10
