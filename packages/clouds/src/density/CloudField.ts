@@ -24,15 +24,15 @@ import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types
 import { number } from '../uniforms'
 import { windRotation } from '../layers/wind'
 
-/** Part of its coverage that a layer gains in a frame after its noise was drawn over several. */
-const GROWTH = 1 / 48
+/** Share of its coverage that a layer gains in a frame after its noise was drawn over several. */
+const FADE_IN_STEP = 1 / 48
 
 const _position = new Vector3()
-const _foot = new Vector3()
+const _subpoint = new Vector3()
 const _point = new Vector3()
 const _stretch = new Vector3()
 const _matrix = new Matrix4()
-const _turn = new Quaternion()
+const _rotation = new Quaternion()
 
 /** Options of {@link CloudField}. */
 export interface CloudFieldOptions {
@@ -46,14 +46,14 @@ export interface CloudFieldOptions {
   noise?: CloudNoise
 }
 
-/** A camera's place, from the planet's centre in the mapped space [m]. */
+/** Viewpoint of a camera, from the planet's centre in the mapped space [m]. */
 export const viewpointMapped = (
   { atmosphere, up, height }: AtmosphereView,
   target: Vector3
 ): Vector3 => target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
 
 /**
- * Where the clouds are, as shaders see it: layers, weather and wind as uniforms, and noise.
+ * The field of clouds as shaders see it: layers, weather and wind as uniforms, and noise.
  *
  * ```ts
  * const field = new CloudField(atmosphere, new CloudLayers())
@@ -72,15 +72,15 @@ export class CloudField {
   readonly noise: CloudNoise
   /** Place, height and up-vector of the camera: shared with the atmosphere's nodes. */
   readonly view: ViewNodes
-  /** What lights clouds in the night. */
+  /** Light of moon and night sky on clouds. */
   readonly night = new NightLight()
   /** Radius of the sphere at altitude 0 [m]. */
   readonly radius = number()
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
   readonly pixelAngle = number(1e-3)
   /**
-   * What an optical depth counts in the light that clouds let through: `CloudLight.depthScale` where
-   * there is such a light. Clouds that are not seen one by one let the same through.
+   * Scaled optical depth over optical depth, by which clouds let light through: `CloudLight.depthScale`
+   * where there is such a light. Clouds that are not seen one by one let the same through [–].
    */
   readonly depthScale = number(1)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
@@ -91,25 +91,25 @@ export class CloudField {
   readonly array = vec4Array(this.values)
   readonly textures: Readonly<Record<NoiseName, LevelTexture<Vec3>>>
   readonly worldMap: LevelTexture<Vec2> | null
-  /** What it samples; shared, not owned. */
+  /** Texture of the same; shared, not owned. */
   readonly worldMapTexture: Texture | null
   /** Width of the world map [texels]. */
   readonly worldMapWidth: number
   /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
   readonly axialRatio: number
   readonly #ownsNoise: boolean
-  /** How each layer's noise is turned about the planet's centre: the wind's work. */
+  /** Rotation of each layer's noise about the planet's centre: the wind's work. */
   readonly rotations: readonly Quaternion[] = Array.from(
     { length: CloudLayers.maxLayers },
     (_, i) => layerRotation(i)
   )
-  /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
+  /** Displacement of each layer at the camera since the update before, in the mapped space [m]. */
   readonly drifts: readonly Vector3[] = this.rotations.map(() => new Vector3())
   #seconds: number | null = null
-  /** Part of their coverage that layers have: 0 until there is noise. */
+  /** Share of their coverage that layers have, in [0, 1]: 0 until there is noise. */
   fadeIn = 0
-  /** How much more in a frame. */
-  #growth = 1
+  /** Gain of `fadeIn` in a frame. */
+  #fadeInStep = 1
 
   /**
    * @param view - Nodes of the camera that samples are seen from.
@@ -161,11 +161,11 @@ export class CloudField {
     const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
     const elapsed = now - (this.#seconds ?? now)
     this.#seconds = now
-    this.fadeIn = this.noise.isReady ? Math.min(this.fadeIn + this.#growth, 1) : 0
+    this.fadeIn = this.noise.isReady ? Math.min(this.fadeIn + this.#fadeInStep, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
     viewpointMapped(view, _position)
-    _foot.copy(view.up).multiplyScalar(bottomRadius)
+    _subpoint.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
       if (elapsed !== 0) this.#drift(i, view.up, elapsed)
@@ -180,9 +180,9 @@ export class CloudField {
   #drift(index: number, up: Vector3, elapsed: number): void {
     const { wind, baseAltitude } = this.layers.at(index).parameters
     const radius = this.atmosphere.parameters.bottomRadius + baseAltitude
-    this.rotations[index].multiply(windRotation(wind, up, elapsed, radius, _turn)).normalize()
+    this.rotations[index].multiply(windRotation(wind, up, elapsed, radius, _rotation)).normalize()
     _point.copy(up).multiplyScalar(radius)
-    this.drifts[index].copy(_point).sub(_point.applyQuaternion(_turn))
+    this.drifts[index].copy(_point).sub(_point.applyQuaternion(_rotation))
   }
 
   /**
@@ -195,21 +195,21 @@ export class CloudField {
     const periods = layerPeriods(parameters)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
     const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
-    const turn = this.rotations[index]
-    const { elements: e } = _matrix.makeRotationFromQuaternion(turn)
+    const layerRotation = this.rotations[index]
+    const { elements: e } = _matrix.makeRotationFromQuaternion(layerRotation)
     const perStretch = 1 / stretch
     const anchor = (
       place: Vector3,
-      rotation: Quaternion,
+      lattice: Quaternion,
       length: number,
       periodsKept = 1,
       across = 1
     ): number[] =>
       _point
         .copy(place)
-        .applyQuaternion(turn)
+        .applyQuaternion(layerRotation)
         .multiply(_stretch.set(across, across, 1))
-        .applyQuaternion(rotation)
+        .applyQuaternion(lattice)
         .divideScalar(length * periodsKept)
         .toArray()
         .map(v => periodsKept * (v - Math.floor(v)))
@@ -221,12 +221,12 @@ export class CloudField {
       [e[0], e[4], e[8], steepness],
       [e[1], e[5], e[9], sharpness],
       [e[2], e[6], e[10], fibrous],
-      // The weather is the same all the way up: it is looked up at the foot point.
-      [...anchor(_foot, weather, periods.weather), 1 / periods.weather],
-      [...anchor(_foot, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
+      // The weather is the same all the way up: it is looked up at the subpoint.
+      [...anchor(_subpoint, weather, periods.weather), 1 / periods.weather],
+      [...anchor(_subpoint, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
       [...anchor(_position, shape, periods.shape, 1, perStretch), perStretch],
       [...anchor(_position, detail, DETAIL_PERIOD, CURL_PERIOD, perStretch), coarseness],
-      [...anchor(_foot, fields, periods.weather * FIELD_PERIOD), anvil],
+      [...anchor(_subpoint, fields, periods.weather * FIELD_PERIOD), anvil],
       [scales.cells, scales.regions, scales.planet, scales.cloudVariance]
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
@@ -237,7 +237,7 @@ export class CloudField {
    * at once, or grow over some frames if the noise was drawn over several.
    */
   bake(renderer: Renderer, slices = Infinity): boolean {
-    if (!this.noise.isReady) this.#growth = slices === Infinity ? 1 : GROWTH
+    if (!this.noise.isReady) this.#fadeInStep = slices === Infinity ? 1 : FADE_IN_STEP
     return this.noise.update(renderer, slices)
   }
 

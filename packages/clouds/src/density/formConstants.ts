@@ -1,7 +1,7 @@
 // Constants of the cloud field that were found by looking. Each says what one sees when it changes, and in
 // which story of stories/src/clouds.stories.ts.
 
-/** How weather becomes the strength of a column: `columnStrength` of tsl/weather.ts. */
+/** Constants of column strength and filtered coverage: tsl/weather.ts. */
 export const strengthForm = {
   /**
    * Change of the weather over which a column goes from edge to middle [–]. Greater: clouds thin out
@@ -35,7 +35,7 @@ export const strengthForm = {
   leastEdgeSoftness: 0.05
 } as const
 
-/** How tall towers spread into anvils, with an anvil of 1: tsl/profile.ts. All are seen in *Storm*. */
+/** Constants of anvils, where a layer has all of one: tsl/profile.ts. All are seen in *Storm*. */
 export const anvilForm = {
   /** Heights in the layer between which towers become anvils, in [0, 1]. Lower: thick anvils. */
   heights: [0.62, 0.8],
@@ -47,7 +47,7 @@ export const anvilForm = {
   profileMean: 0.09
 } as const
 
-/** What noise takes away: tsl/erosion.ts. */
+/** Constants of shape and detail erosion, and of edges: tsl/erosion.ts, tsl/extinction.ts. */
 export const erosionForm = {
   /**
    * Least shape erosion, per shape amount [–]: what has less in its dimensional profile is empty for sure.

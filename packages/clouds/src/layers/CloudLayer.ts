@@ -23,14 +23,14 @@ export interface CloudLayerParameters {
    * from 0 to 1: 1 is symmetric, below 1 the layer is densest low down, above 1 high up.
    */
   readonly profileExponent: number
-  /** How far the shape noise carves the layer into clouds, in [0, 1]; 0 leaves a slab. */
+  /** Amount of shape erosion, which makes clouds of the layer, in [0, 1]; 0 leaves a slab. */
   readonly shapeAmount: number
-  /** How far the detail noise frays the clouds' edges, in [0, 1]. */
+  /** Amount of detail erosion at the clouds' edges, in [0, 1]. */
   readonly detailAmount: number
   /** Weights of the weather map's four channels in this layer's local coverage, each in [0, 1]. */
   readonly weatherWeights: readonly [number, number, number, number]
   readonly wind: CloudWind
-  /** Whether the layer casts shadows. */
+  /** True for a layer that casts shadows. */
   readonly shadow: boolean
 }
 

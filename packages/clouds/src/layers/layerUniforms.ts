@@ -4,16 +4,25 @@ import { erosionForm, strengthForm } from '../density/formConstants'
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 12
 
-/** Period of the weather texture for a layer 1200 m thick [m]. */
+/**
+ * Period of the weather texture for a layer 1200 m thick [m]. Greater: larger clouds, farther apart
+ * (*Cumulus*).
+ */
 const WEATHER_PERIOD = 15_000
 
-/** Period of the shape texture for such a layer [m]. */
+/** Period of the shape texture for such a layer [m]. Greater: broader billows, smoother clouds (*Cumulus*). */
 const SHAPE_PERIOD = 2600
 
-/** Period of the same texture where it holds the systems of whole regions [m]. */
+/**
+ * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
+ * and clear zones (*World clouds from afar*, without its map).
+ */
 export const REGION_PERIOD = 2_300_000
 
-/** How far the regions shift the look-ups of the weather, in periods of these: repetitions fall out of step. */
+/**
+ * Shift of the weather's look-ups by the regions [periods of the weather]: repetitions fall out of step.
+ * 0: the same clouds every 15 km, in rows (*World clouds*, without its map).
+ */
 export const WEATHER_WARP = 0.5
 
 /**
@@ -22,13 +31,17 @@ export const WEATHER_WARP = 0.5
  */
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
-/** How far both look-ups of the weather shift those of shape and detail, in periods of the shape. */
+/**
+ * Shifts of the look-ups of shape and detail by both of the weather [periods of the shape]. 0: the same
+ * billows on many clouds (*Cockpit*); much greater: billows are drawn out.
+ */
 export const FIELD_WARP = 1.1
 export const CLOUD_WARP = 0.3
 
 /**
- * How far the fields shift the look-up of a world map of so many texels around the planet: half a texel
- * to either side, as far as fields are large enough for that [rad].
+ * Shift of a world map's look-up by the fields, for a map of so many texels around the planet: half a
+ * texel to either side, as far as fields are large enough for that [rad]. 0: the map's texels show as
+ * squares near the ground (*World clouds*).
  */
 export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
 
@@ -49,17 +62,20 @@ const PLANET_WEIGHT = 0.4
 /** Share of finer cells in the regions. */
 export const REGION_CELLS = 0.6
 
-/** How much longer than wide the noise of cirrus is. */
+/** Length over width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
 const CIRRUS_STRETCH = 9
 
-/** Layers thinner than the first have no anvils, thicker than the second large ones [m]. */
+/** Thickness of layers that begin to have anvils, and of those that have large ones [m] (*Storm*). */
 const LEAST_ANVIL = 4000
 const LARGE_ANVIL = 8000
 
-/** Period of the detail texture [m]. */
+/** Period of the detail texture [m]. Greater: coarser wisps at edges (*Inside a cloud*). */
 export const DETAIL_PERIOD = 330
 
-/** How far turbulence moves the look-up of the detail, in periods for a curl of 1. */
+/**
+ * Shift of the detail's look-up by turbulence, for a curl of 1 [periods]. 0: edges of round crumbs instead
+ * of wisps (*Inside a cloud*).
+ */
 export const CURL_AMOUNT = 0.25
 
 /** Period of the turbulence, in periods of the detail. */
@@ -80,7 +96,7 @@ export function layerPeriods({ baseAltitude, topAltitude }: CloudLayerParameters
   return { weather: WEATHER_PERIOD * scale(0.45), shape: SHAPE_PERIOD * scale(0.5) }
 }
 
-/** How much the scales of the weather count in a layer. */
+/** Weights of the weather's scales in a layer. */
 export interface WeatherScales {
   /** Factors of the channels where they are single clouds. */
   readonly clouds: readonly [number, number, number, number]
@@ -124,24 +140,24 @@ export function weatherScales(weights: readonly number[], hasMap: boolean): Weat
 const shareOf = (weights: readonly number[], index: number): number =>
   weights[index] ** 2 / (weights.reduce((sum, weight) => sum + weight ** 2, 0) || 1)
 
-/** What a layer's kind of weather makes of its clouds. */
+/** Forms that a layer's kind of weather gives its clouds. */
 export function layerForms({
   weatherWeights,
   shapeAmount,
   baseAltitude,
   topAltitude
 }: CloudLayerParameters): {
-  /** How much longer than wide the noise is that carves them. */
+  /** Length over width of the noise that erodes them. */
   stretch: number
-  /** How much of its weather is that of cirrus, in [0, 1]. */
+  /** Share of cirrus in its weather, in [0, 1]. */
   fibrous: number
-  /** Fill per change of its weather. */
+  /** Slope of column strength against the weather [–]. */
   steepness: number
-  /** Density per fullness left: how sharp edges are. */
+  /** Slope of density against what erosion leaves of the dimensional profile [–]. */
   sharpness: number
   /** Levels of detail by which its weather is coarser than others. */
   coarseness: number
-  /** How far towers spread at their tops, in [0, 1]. */
+  /** Share of anvils that its towers spread into at their tops, in [0, 1]. */
   anvil: number
 } {
   const fibrous = shareOf(weatherWeights, 3)

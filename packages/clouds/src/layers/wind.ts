@@ -6,8 +6,8 @@ const _east = new Vector3()
 const _north = new Vector3()
 
 /**
- * How far wind turns a shell of air about the planet's centre, seen from the shell: what is looked up
- * at p after a time was at `target · p` before.
+ * Rotation of a shell of air about the planet's centre by wind, seen from the shell: the noise that is
+ * looked up at p after a time was at `target · p` before.
  *
  * @param up - Zenith where the wind blows as given; at a pole, east is that of longitude 0.
  * @param seconds - Time [s].

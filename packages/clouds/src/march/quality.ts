@@ -4,7 +4,7 @@ import { checkOptions, fail } from '@welkin/geo'
 import { checkRanges, named } from '../check'
 import { number } from '../uniforms'
 
-/** How finely clouds are marched. All may be changed at any time; nothing is recompiled. */
+/** Fineness of the march. All may be changed at any time; nothing is recompiled. */
 export interface CloudQuality {
   /** Most steps of a ray, in [1, 1024]. Rays that need more end early, with too little cloud. */
   readonly steps: number

@@ -126,7 +126,7 @@ export class CloudNoise {
   #isReady = false
   #renderer: Renderer | null = null
 
-  /** Whether all texels are drawn. */
+  /** True once all texels are drawn. */
   get isReady(): boolean {
     return this.#isReady
   }

@@ -8,7 +8,7 @@ export interface NoiseTerm {
   readonly weight: number
 }
 
-/** How the sum of a channel's terms, scaled to mean 0 and variance 1, becomes a number in [0, 1]. */
+/** Map from the sum of a channel's terms, scaled to mean 0 and variance 1, to a number in [0, 1]. */
 export type NoiseEncoding =
   /** ½ + 0.18 z, cut off. */
   | 'normal'
@@ -18,7 +18,7 @@ export type NoiseEncoding =
 export interface NoiseChannel {
   readonly terms: readonly NoiseTerm[]
   readonly encoding: NoiseEncoding
-  /** How far Perlin noise of so many cells along each axis shifts the look-up, in periods. */
+  /** Shift of the look-up by Perlin noise of so many cells along each axis [periods]. */
   readonly warp?: { readonly cells: number; readonly amount: number }
 }
 
@@ -44,7 +44,7 @@ const octaves = (
 }
 
 /**
- * What the shape noise holds, 128³ texels: Perlin–Worley (heads on a wavering whole), and finer heads.
+ * Shape noise, 128³ texels: Perlin–Worley (billows on a wavering whole), and finer billows.
  */
 export const shapeChannels: readonly NoiseChannel[] = [
   {
@@ -54,7 +54,7 @@ export const shapeChannels: readonly NoiseChannel[] = [
   { terms: octaves('billow', 14, 2, 1), encoding: 'normal' }
 ]
 
-/** What the detail noise holds in its first channel, 32³ texels. Curl fills the other three. */
+/** Detail noise, 32³ texels: its first channel. Curl fills the other three. */
 export const detailChannel: NoiseChannel = {
   terms: octaves('billow', 3, 3, 1),
   encoding: 'normal'
@@ -67,7 +67,7 @@ export const CURL_CELLS = 4
 export const CURL_SCALE = 0.2
 
 /**
- * What the weather holds, 64³ texels, as many as 512²: cumulus, stratocumulus, cumulonimbus, cirrus.
+ * Weather noise, 64³ texels, as many as 512²: cumulus, stratocumulus, cumulonimbus, cirrus.
  */
 export const weatherChannels: readonly NoiseChannel[] = [
   {

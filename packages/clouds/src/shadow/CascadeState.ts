@@ -12,7 +12,7 @@ const _offset = new Vector3()
 
 /** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
 export class CascadeState {
-  /** Of the map's squares. */
+  /** Index of its tile in the map. */
   readonly atlasTile: number
   halfWidth = 0
   readonly anchor = new Vector3()
@@ -23,18 +23,18 @@ export class CascadeState {
   /** Measures the plane's second axis along rays of light. */
   readonly measure = new Vector3()
   readonly along = new Vector3()
-  /** Of the middle [m]. */
+  /** Coordinates of the middle [m]. */
   readonly center = { u: 0, v: 0 }
-  /** How the wind had turned the layers. */
+  /** Rotations of the layers' noise by the wind. */
   readonly rotations: readonly Quaternion[]
-  /** What else it was drawn from. */
+  /** All else that it was drawn from. */
   inputs: readonly unknown[] = []
   /** Greater than those of what was drawn before. */
   order = 0
 
-  constructor(square: number, turns: readonly Quaternion[]) {
-    this.atlasTile = square
-    this.rotations = turns.map(turn => turn.clone())
+  constructor(atlasTile: number, rotations: readonly Quaternion[]) {
+    this.atlasTile = atlasTile
+    this.rotations = rotations.map(rotation => rotation.clone())
   }
 
   /** [m]. */
@@ -47,22 +47,22 @@ export class CascadeState {
    *
    * @param light - Direction to the light.
    * @param anchor - The plane's origin [m].
-   * @param foot - Where the middle is wanted [m].
+   * @param wanted - Place nearest to which the middle is put [m].
    * @param halfWidth - [m].
-   * @param turns - How the wind has turned the layers.
+   * @param rotations - Rotations of the layers' noise by the wind.
    */
   place(
     light: Vector3,
     anchor: Vector3,
-    foot: Vector3,
+    wanted: Vector3,
     halfWidth: number,
-    turns: readonly Quaternion[]
+    rotations: readonly Quaternion[]
   ): void {
     const { across, along, measure, normal, center } = this
     this.light.copy(light)
     this.anchor.copy(anchor)
     this.halfWidth = halfWidth
-    this.rotations.forEach((turn, i) => turn.copy(turns[i]))
+    this.rotations.forEach((rotation, i) => rotation.copy(rotations[i]))
     // Level, but leant towards a low light.
     _normal.copy(anchor).normalize()
     across.crossVectors(light, _normal)
@@ -79,7 +79,7 @@ export class CascadeState {
     along.crossVectors(_normal, across)
     normal.copy(_normal).divideScalar(_normal.dot(light))
     measure.copy(along).addScaledVector(normal, -along.dot(light))
-    _offset.copy(foot).sub(anchor)
+    _offset.copy(wanted).sub(anchor)
     const { texel } = this
     center.u = Math.round(across.dot(_offset) / texel) * texel
     center.v = Math.round(measure.dot(_offset) / texel) * texel

@@ -31,8 +31,8 @@ const PLACE_JUMP = 0.5
 const STRIPS = 4
 
 /**
- * What a cascade is drawn anew for: moves of its middle [texels], moves of layers against each other
- * [texels], and changes of the light's direction, which move the far end of its rays by a tenth of a texel.
+ * Changes for which a cascade is drawn anew: moves of its middle [texels], moves of layers against each
+ * other [texels], and of the light's direction, which move the far end of its rays by a tenth of a texel.
  */
 const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
@@ -44,17 +44,17 @@ interface Cascade {
   state: CascadeState
 }
 
-const _foot = new Vector3()
+const _below = new Vector3()
 const _offset = new Vector3()
 const _drift = new Vector3()
-const _turn = new Quaternion()
+const _rotation = new Quaternion()
 
 /**
- * Beer shadow maps of clouds: optical depth towards the sun, or towards the moon in the night, in three
+ * Beer shadow maps of clouds: optical depth towards the light, the sun by day and the moon by night, in three
  * cascades about the camera.
  *
- * A texel is a sun ray. It is named by where it crosses a plane among the clouds, level unless the sun
- * is low, so that texels are spread over the ground whatever the sun's height. Each cascade's middle
+ * A texel is a ray of light. It is named by where it crosses a plane among the clouds, level unless the light
+ * is low, so that texels are spread over the ground whatever the light's height. Each cascade's middle
  * moves by whole texels. A cascade drifts with the clouds, and is drawn anew, a strip a frame, when it no
  * longer fits them: a sky that stands still costs nothing.
  */
@@ -63,17 +63,17 @@ export class CloudShadowMap {
   readonly target: RenderTarget
   readonly nodes: CloudShadows
   readonly #cascades: readonly Cascade[]
-  /** Whose state goes on, which strip is next, and where it is drawn: it is swapped in when it is done. */
+  /** Cascade that is drawn anew, its next strip, and the state that it gets when it is done. */
   #current: Cascade | null = null
   #strip = 0
   #spare: CascadeState
   readonly #ray: ShadowRayUniforms
   readonly #pass: FragmentPass
-  /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
+  /** Viewpoint at the last update, from the planet's centre in the mapped space [m]. */
   readonly camera = new Vector3()
   readonly #anchor = new Vector3()
   readonly #light = new Vector3()
-  /** Whose light the maps are of. */
+  /** Source of the light that the maps are of. */
   source: LightSource
   #inputs: readonly unknown[] = []
   #order = 0
@@ -114,7 +114,7 @@ export class CloudShadowMap {
     this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray))
   }
 
-  /** Whether there are maps: not before the first update, and not far away. */
+  /** True if there are maps: not before the first update, and not far away. */
   get isDrawn(): boolean {
     return this.#cascades[0].isDrawn
   }
@@ -144,16 +144,16 @@ export class CloudShadowMap {
     } else {
       this.#draw(renderer, view, radius)
     }
-    this.#follow()
+    this.#updateNodes()
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
     const { layers, noise, fadeIn, worldMapTexture } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
     this.#inputs = [noise.isReady, radius, fadeIn, worldMapTexture?.version, ...parameters]
-    _foot.copy(view.up).multiplyScalar(radius + this.#middle())
-    if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
-      this.#anchor.copy(_foot)
+    _below.copy(view.up).multiplyScalar(radius + this.#middle())
+    if (!(_below.dot(this.#anchor) > ANCHOR_COSINE * _below.length() * this.#anchor.length())) {
+      this.#anchor.copy(_below)
     }
     const scale = 2 ** Math.max(Math.ceil(Math.log2(view.height / WIDENING_HEIGHT)), 0)
     let oldest = this.#current
@@ -208,23 +208,23 @@ export class CloudShadowMap {
     return middle
   }
 
-  /** How far the wind has carried a layer, where the camera is, since a cascade was drawn [m]. */
+  /** Displacement of a layer by the wind, where the camera is, since a cascade was drawn [m]. */
   #driftOf({ rotations }: CascadeState, target: Vector3, layer = this.#thickest): Vector3 {
-    _turn.copy(rotations[layer]).invert().multiply(this.field.rotations[layer])
-    return target.copy(_foot).applyQuaternion(_turn).sub(_foot).negate()
+    _rotation.copy(rotations[layer]).invert().multiply(this.field.rotations[layer])
+    return target.copy(_below).applyQuaternion(_rotation).sub(_below).negate()
   }
 
-  /** How far the camera is from a cascade's middle, along its axes [m]. */
+  /** Distance of the camera from a cascade's middle, the greater of those along its axes [m]. */
   #distance(state: CascadeState): number {
     const { anchor, across, measure, center } = state
     this.#driftOf(state, _drift)
-    _offset.copy(_foot).sub(anchor).sub(_drift)
+    _offset.copy(_below).sub(anchor).sub(_drift)
     const u = across.dot(_offset) - center.u
     const v = measure.dot(_offset) - center.v
     return Math.max(Math.abs(u), Math.abs(v))
   }
 
-  /** Whether a cascade is of use until it is drawn anew. */
+  /** True for a cascade that is of use until it is drawn anew. */
   #fits(state: CascadeState, halfWidth: number): boolean {
     return (
       state.halfWidth === halfWidth &&
@@ -249,7 +249,7 @@ export class CloudShadowMap {
   }
 
   #place(state: CascadeState, halfWidth: number): void {
-    state.place(this.#light, this.#anchor, _foot, halfWidth, this.field.rotations)
+    state.place(this.#light, this.#anchor, _below, halfWidth, this.field.rotations)
     state.inputs = this.#inputs
     state.order = this.#order++
   }
@@ -269,8 +269,8 @@ export class CloudShadowMap {
     ray.halfWidth.value = halfWidth
   }
 
-  /** Sets what look-ups need, for the camera and the clouds where they are now. */
-  #follow(): void {
+  /** Sets the uniforms of look-ups, for the camera and the clouds where they are now. */
+  #updateNodes(): void {
     for (const { nodes, isDrawn, state } of this.#cascades) {
       nodes.isDrawn.value = isDrawn ? 1 : 0
       if (!isDrawn) continue

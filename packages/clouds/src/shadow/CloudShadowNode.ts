@@ -36,22 +36,22 @@ export class CloudShadowNode extends Node<'float'> {
     return 'CloudShadowNode'
   }
 
-  /** Whose clouds; shared, not owned. */
+  /** Clouds that cast the shadows; shared, not owned. */
   readonly clouds: CloudsNode
   /** Another shadow node, to be multiplied with. */
   shadowNode: Node | null
-  /** Whose light they take. */
+  /** Source of the light that they take. */
   readonly source: LightSource
-  /** Of the camera that renders. */
+  /** View of the camera that renders. */
   readonly #view: ViewNodes
-  /** From the clouds' camera, as their maps know it, to the one that renders [m]. */
+  /** Displacement from the clouds' camera, as their maps know it, to the one that renders [m]. */
   readonly #shift = vector3()
 
   /** 1 while the maps are of this source's light. */
   readonly #isMapped = number(1)
 
   /**
-   * @param source - Whose light they take; left out, the sun's.
+   * @param source - Source of the light that they take; left out, the sun.
    * @throws If the clouds are missing, or the source is none.
    */
   constructor(

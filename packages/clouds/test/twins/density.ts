@@ -25,7 +25,7 @@ import { NOISE_SIZE } from '../../src/noise/noiseSizes'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
 
-/** Where the clouds are: what a `CloudField` tells its shaders. */
+/** State of a field of clouds: what a `CloudField` tells its shaders. */
 export interface CloudState {
   readonly layers: readonly CloudLayerParameters[]
   /** Rotation of each layer's noise: `CloudField.rotations`. */
@@ -185,7 +185,7 @@ export function weatherAt(
   }
 }
 
-/** What erosion leaves of a dimensional profile, before its edge is sharpened: tsl/erosion.ts. */
+/** Dimensional profile less erosion, before its edge is sharpened: tsl/erosion.ts. */
 function erode(
   state: CloudState,
   noise: NoiseTextures,

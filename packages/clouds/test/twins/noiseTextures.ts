@@ -18,7 +18,7 @@ const mixed = (a: number[], b: number[], t: number): number[] =>
 export class NoiseTextures {
   readonly #texels = new Map<string, number[]>()
 
-  /** What the GPU stores in a texel of a level: bytes, as numbers in [0, 1]. */
+  /** Texel of a level as the GPU stores it: bytes, as numbers in [0, 1]. */
   texel(name: NoiseName, index: Vec3Array, level = 0): number[] {
     const size = NOISE_SIZE[name] >> level
     const place = index.map(i => ((i % size) + size) % size) as [number, number, number]

@@ -15,11 +15,11 @@ const STEEPEST_WEATHER = 0.03
 /** Distance over which strength less shape erosion changes by 1 at least [periods of the shape]. */
 const STEEPEST_SHAPE = 0.05
 
-/** What shape erosion takes from a layer for sure, whatever the noise [–]. */
+/** Shape erosion that a layer has for sure, whatever the noise [–]. */
 export const surelyEroded = (layer: LayerNodes): Float =>
   layer.shapeAmount.mul(erosionForm.leastShape)
 
-/** Whether a column may hold cloud of a layer, whatever the noise. */
+/** True for columns that may hold cloud of a layer, by their weather. */
 export const mayHoldCloud = (
   layer: LayerNodes,
   { strength, unresolvedFraction, filteredCoverage }: CloudWeather

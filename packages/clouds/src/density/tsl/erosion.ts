@@ -20,7 +20,7 @@ export interface NoisePlace {
   footprint: Float
 }
 
-/** What shape erosion does to a sample. */
+/** Shape erosion of a sample. */
 export interface Erosion {
   /** Taken from the dimensional profile [–]. */
   eroded: Float
@@ -86,7 +86,7 @@ const mostDetail = (layer: LayerNodes): Float =>
 /**
  * Detail noise, stirred by turbulence, in [0, 1].
  *
- * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2.
+ * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", on potentials of noise.
  */
 function stirredDetail(
   field: CloudField,

@@ -44,7 +44,7 @@ export interface LayerNodes {
   coarseness: Float
   anvil: Float
   /**
-   * Where the eye and its foot point lie in the periods of the noise, in [0, 1); for detail in
+   * Anchors: the camera and its subpoint in the periods of the noise, in [0, 1); for detail in
    * [0, `CURL_PERIOD`), since the turbulence has that period.
    */
   weatherAnchor: Vec3
@@ -52,7 +52,7 @@ export interface LayerNodes {
   regionAnchor: Vec3
   shapeAnchor: Vec3
   detailAnchor: Vec3
-  /** Displacements in the mapped space to the frame that drifts with the layer. */
+  /** Turns displacements in the mapped space into the frame that drifts with the layer. */
   mappedToLayer: (displacement: Vec3) => Vec3
 }
 
@@ -106,7 +106,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
 export const heightIn = (layer: LayerNodes, altitude: Float): Float =>
   altitude.sub(layer.baseAltitude).mul(layer.perThickness).toConst()
 
-/** Whether a height is within a layer that covers anything. */
+/** True for heights within a layer that covers anything. */
 export const isWithin = (layer: LayerNodes, height: Float): Bool =>
   height.greaterThan(0).and(height.lessThan(1)).and(layer.coverage.greaterThan(0))
 

@@ -3,7 +3,7 @@ import { anvilForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
 
-/** A height in a layer, and what the layer is like there. */
+/** A height in a layer, and the shape that the layer has there. */
 export interface LayerHeight {
   /** ĥ, from 0 at the base to 1 at the top. */
   height: Float
@@ -29,7 +29,7 @@ function heightProfile(layer: LayerNodes, height: Float, anvil: Float): Float {
   return anvil.mix(x.mul(x).oneMinus(), smoothstep(1, 0.9, height)).toConst()
 }
 
-/** What a layer is like at a height in it, in [0, 1]. */
+/** A layer at a height in it, in [0, 1]. */
 export function layerHeight(layer: LayerNodes, height: Float): LayerHeight {
   const anvil = anvilAt(layer, height)
   return { height, anvil, profile: heightProfile(layer, height, anvil) }

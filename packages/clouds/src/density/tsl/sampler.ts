@@ -1,85 +1,18 @@
 import { If, float, int, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import {
-  emptyDistanceByShape,
-  emptyDistanceByWeather,
-  mayHoldCloud,
-  NOWHERE,
-  surelyEroded
-} from './emptyDistance'
-import { billows, detailErosion, meanDetailErosion, noisePlace, shapeErosion } from './erosion'
-import { edgeDensity, extinctionAt } from './extinction'
+import { emptyDistanceByWeather, mayHoldCloud, NOWHERE } from './emptyDistance'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
-import { dimensionalProfile, layerHeight } from './profile'
 import { subpointOffset, type CloudSample } from './sample'
-import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
+import { sampleLayer, type SampleOptions } from './sampleLayer'
 import { weatherAt, type CloudWeather } from './weather'
 
-// The only answer to where the clouds are. `sampleLayer` goes from a place and its weather to extinction and
-// empty distance; pixels, shadows, light and the cone prepass differ in which layers they ask, and in where
-// they have the weather from.
+// The only answer to where the clouds are. `sampleLayer` (sampleLayer.ts) goes from a place and its weather
+// to extinction and empty distance; pixels, shadows, light and the cone prepass differ in which layers they
+// ask, and in where they have the weather from.
 
-/** A layer at a place. */
-export interface LayerSample {
-  /** Extinction [1/m], at least 0. */
-  readonly extinction: Float
-  /** Distance in which there is nothing of the layer, within its altitudes; 0 in clouds [m]. */
-  readonly emptyDistance: Float
-}
-
-/** How a layer is sampled. */
-export interface SampleOptions {
-  /** Whether edges are eroded by detail; without, clouds keep their mean size. */
-  readonly detail: boolean
-  /** What unresolved clouds stand for; by default their mean. */
-  readonly unresolved?: Unresolved
-  /** Direction of the ray on which they are met, in the mapped space; left out, straight up. */
-  readonly direction?: Vec3
-}
-
-/** What the light march samples: no detail, and the inside of clouds, where its light is. */
+/** Options of the light march: no detail, and the inside of clouds, where its light is. */
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
-
-/**
- * One layer at a place in a given weather: weather → dimensional profile → shape erosion → detail erosion
- * → extinction and empty distance.
- *
- * @param height - In the layer, in (0, 1).
- */
-export function sampleLayer(
-  field: CloudField,
-  layer: LayerNodes,
-  weather: CloudWeather,
-  sample: CloudSample,
-  height: Float,
-  { detail, unresolved = 'mean', direction }: SampleOptions
-): LayerSample {
-  const at = layerHeight(layer, height)
-  const profile = dimensionalProfile(layer, weather.strength, at)
-  const density = float(0).toVar()
-  const least = surelyEroded(layer).toConst() as Float
-  const emptyDistance = emptyDistanceByWeather(layer, weather).toVar() as Float
-  If(profile.greaterThan(least), () => {
-    const place = noisePlace(field, layer, sample)
-    const heads = billows(field, layer, weather.shapeWarp, place)
-    const { eroded, left } = shapeErosion(layer, profile, heads)
-    if (detail) detailErosion(field, layer, weather.detailWarp, place, height, left)
-    density.assign(edgeDensity(layer, detail ? left : left.sub(meanDetailErosion(layer))))
-    emptyDistance.assign(emptyDistanceByShape(layer, weather, eroded))
-  })
-  const { unresolvedFraction, filteredCoverage } = weather
-  If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
-    const cosine = direction?.dot(sample.up).toConst() as Float | undefined
-    const mean = unresolvedDensity(field, layer, weather, at, unresolved, cosine)
-    density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
-    emptyDistance.assign(float(0))
-  })
-  return {
-    extinction: extinctionAt(layer, density, at),
-    emptyDistance: emptyDistance.max(0).toConst()
-  }
-}
 
 /**
  * Extinction of all clouds at a place, in the weather of that very place: what the samplers below come

@@ -71,7 +71,7 @@ export function slantCoverFactor(layer: LayerNodes, cosine: Float): Float {
   return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }
 
-/** What a sample of unresolved clouds stands for: their mean over the sky, or the inside of one. */
+/** Meaning of a sample of unresolved clouds: their mean over the sky, or the inside of one. */
 export type Unresolved = 'mean' | 'inside'
 
 /**

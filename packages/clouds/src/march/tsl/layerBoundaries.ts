@@ -3,7 +3,7 @@ import type { CloudField } from '../../density/CloudField'
 import type { Float, Int } from '../../tsl-types'
 import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'
 
-/** Farther than anything [m]. */
+/** Distance farther than anything [m]. */
 export const FAR_AWAY = 1e12
 
 /** The two distances at which a ray's line crosses the sphere at an altitude; `FAR_AWAY` if none. */
@@ -35,7 +35,7 @@ export function groundDistance(field: CloudField, cosView: Float): Float {
 }
 
 /**
- * The next place after a distance where a ray enters or leaves a layer.
+ * Next layer boundary: the first place after a distance where a ray enters or leaves a layer.
  *
  * @param cosView - Ray against the zenith of the camera.
  * @returns Distance from the camera; `FAR_AWAY` if there is none [m].
@@ -70,10 +70,17 @@ export interface LayersAt {
   range: LayerRange
 }
 
-/** Coverages between which single clouds grow together to a layer. */
+/**
+ * Coverages between which isolated clouds grow together to a deck. Lower: *Cumulus* are lit like a deck,
+ * dark between their tops.
+ */
 const GROWING_TOGETHER = [0.35, 1] as const
 
-/** @param altitude - Above the sphere [m]. */
+/**
+ * Layers around an altitude.
+ *
+ * @param altitude - Above the sphere [m].
+ */
 export function layersAt(field: CloudField, altitude: Float): LayersAt {
   const base = float(FAR_AWAY).toVar()
   const top = float(-FAR_AWAY).toVar()

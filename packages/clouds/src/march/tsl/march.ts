@@ -21,7 +21,7 @@ export interface CloudRay {
   start?: Float
 }
 
-/** What a ray meets on its way. */
+/** Clouds on a ray. */
 export interface MarchedClouds extends SeenClouds {
   /** Steps that were taken. */
   steps: Float

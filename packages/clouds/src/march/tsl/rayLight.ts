@@ -12,7 +12,7 @@ import { LEAST_TRANSMITTANCE, shade } from '../../light/tsl/lighting'
  */
 const SHARED_LIGHT = 0.05
 
-/** What a ray has met so far. */
+/** Light of a ray so far. */
 export type RayLight = ReturnType<typeof rayLight>
 
 /** A ray that has met nothing yet. */
@@ -52,7 +52,7 @@ export function shadePassing(
   })
 }
 
-/** What is seen of two steps, as if their samples were all of them. */
+/** Visible parts of two steps. */
 export interface SeenPair {
   /** Transmittance of each step. */
   readonly through: Vec2
@@ -63,8 +63,8 @@ export interface SeenPair {
 }
 
 /**
- * What is seen of two steps, as if each one's sample were all of it: L += T S (1 − e^{−τ}) conserves
- * energy for steps of any length.
+ * Visible parts of two steps: energy-conserving integration, L += T S (1 − e^{−τ}) for steps of any
+ * length.
  *
  * @param depth - Scaled optical depths of both steps.
  * @see Hillaire 2016, "Physically based sky, atmosphere and cloud rendering in Frostbite" §5.6.3
@@ -105,15 +105,14 @@ export function addPair(
 export interface SeenClouds {
   /** Spectral radiance at the clouds for unit irradiance of the bare sun [1/sr]. */
   radiance: Vec4
-  /** Of the light behind, in [0, 1]. */
+  /** Share of the light behind that passes, in [0, 1]. */
   transmittance: Float
   /** Mean distance of what is seen, by what each place contributes; of the first layer if nothing is [m]. */
   distance: Float
 }
 
 /**
- * What a ray has met, when it is done. What is as good as opaque is opaque: nothing bright may shine
- * through.
+ * Clouds of a ray that is done. As good as opaque is opaque: nothing bright may shine through.
  *
  * @param nothing - Distance where it met nothing [m].
  */

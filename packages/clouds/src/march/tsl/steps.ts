@@ -18,7 +18,7 @@ const LEAST_STEPS = 4
 const THIN = 4
 const LEAST_EFFORT = 0.35
 
-/** Where a march is in its steps. */
+/** State of the step policy. */
 export interface StepState {
   /** Length of a step per distance from the camera [–]. */
   readonly growth: FloatVariable

@@ -46,7 +46,7 @@ export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
  * Distance along a view ray to what was drawn, or to the ground; `FAR_AWAY` where there is neither [m]. To
  * be called inside of a shader function.
  *
- * @param missesGround - Where it holds, the ground is known not to be in sight.
+ * @param missesGround - True where the ground is known not to be in sight.
  */
 export function viewRayEnd(
   { field, frame, depthAt, isLogarithmic }: ViewRayNodes,

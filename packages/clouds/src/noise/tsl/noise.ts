@@ -7,7 +7,7 @@ type UVec3 = Node<'uvec3'>
 /**
  * Three numbers in [0, 1) for a cell of a lattice, each a multiple of 2⁻²⁴: exact in float32.
  *
- * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", PCG3D. Twin: test/twins/noise.ts
+ * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", on PCG3D. Twin: test/twins/noise.ts
  */
 export const hashCell = /*#__PURE__*/ Fn(
   ([cell]: [UVec3]) => {
@@ -39,7 +39,7 @@ const cellAt = (corner: Vec3, cells: Vec3, seed: Float): UVec3 => {
   return uvec3(wrapped.add(vec3(0, 0, seed)).add(0.5))
 }
 
-/** Which of two in each coordinate, from a number of a corner. */
+/** Corner of a cell from its index: a digit for each coordinate. */
 const offsetOf = (index: Int, base: number): Vec3 =>
   vec3(index.mod(int(base)), index.div(int(base)).mod(int(base)), index.div(int(base * base)))
 
@@ -49,7 +49,7 @@ const offsetOf = (index: Int, base: number): Vec3 =>
  * @param p - Any place, in [−1, 2] for full precision.
  * @param cells - Cells in a period along each axis, whole.
  * @param seed - Whole, below 2¹⁶.
- * @see Perlin 2002, "Improving noise". Twin: test/twins/noise.ts
+ * @see Perlin 2002, "Improving noise", on the fade curve. Twin: test/twins/noise.ts
  */
 export const perlin = /*#__PURE__*/ Fn(
   ([p, cells, seed]: [Vec3, Vec3, Float]) => {
@@ -79,7 +79,7 @@ export const perlin = /*#__PURE__*/ Fn(
  * 1 − F₁², with F₁ the distance to the nearest of the points scattered one in each cell: round heads
  * that meet in sharp creases, as on cauliflowers. Period 1, in [0, 1]. Parameters as of `perlin`.
  *
- * @see Worley 1996, "A cellular texture basis function". Twin: test/twins/noise.ts
+ * @see Worley 1996, "A cellular texture basis function", on F₁. Twin: test/twins/noise.ts
  */
 export const billow = /*#__PURE__*/ Fn(
   ([p, cells, seed]: [Vec3, Vec3, Float]) => {

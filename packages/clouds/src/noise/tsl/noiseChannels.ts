@@ -37,10 +37,10 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
 }
 
 /**
- * Turbulence: the curl of three fields of Perlin noise, which has no sinks and no sources.
+ * Turbulence as the curl of three fields of Perlin noise, which has no sinks and no sources.
  *
  * @returns ½ + `CURL_SCALE` × curl, in [0, 1].
- * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow". Twin: test/twins/noise.ts
+ * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", on potentials of noise. Twin: test/twins/noise.ts
  */
 export function curlNoise(p: Vec3): Vec3 {
   const step = 0.02 / CURL_CELLS

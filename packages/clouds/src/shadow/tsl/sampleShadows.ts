@@ -2,16 +2,16 @@ import type { Vector3, Vector4 } from 'three'
 import { If, vec2, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { REACH } from './shadowRay'
+import { MAXIMUM_DISTANCE } from './shadowRay'
 
-/** What shaders need to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
+/** Uniforms to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
 export interface CascadeNodes {
   readonly u: UniformNode<'vec4', Vector4>
   readonly v: UniformNode<'vec4', Vector4>
   readonly w: UniformNode<'vec4', Vector4>
   /** 1 once it is drawn. */
   readonly isDrawn: UniformNode<'float', number>
-  /** Which of the map's squares it is in. */
+  /** Index of its tile in the map. */
   readonly atlasTile: UniformNode<'float', number>
 }
 
@@ -19,21 +19,21 @@ export interface CascadeNodes {
 export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
-  /** Of squares, one more than cascades. */
+  /** Number of tiles, one more than cascades. */
   readonly tileCount: number
-  /** 1 if it is of moonlight, 0 of sunlight. */
+  /** 1 for a map of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
   /** From the camera of the map to the one of the shader, if they are two [m]. */
   readonly shift?: UniformNode<'vec3', Vector3>
 }
 
-/** Optical depths on the sun ray through a place, not scaled. */
+/** Optical depths on the ray of light through a place, not scaled. */
 export interface LightDepths {
-  /** From the place to the sun. */
+  /** From the place to the light. */
   toLight: Float
-  /** Of all clouds on the ray. */
+  /** From end to end of the ray. */
   through: Float
-  /** Of all that cast shadows, from the place to the sun. */
+  /** From the place to the light, of layers that cast shadows. */
   shadow: Float
   /** 1 where the map has the place; 0 where it does not, and the depths are 0. */
   known: Float
@@ -46,7 +46,7 @@ const MARGIN = 0.02
 const FADE = 0.1
 
 /**
- * The smallest cascade that holds a place answers.
+ * Optical depths at a place, from the smallest cascade that holds it.
  *
  * @param dither - Noise in [0, 1), in which cascades meet.
  */
@@ -70,7 +70,7 @@ export function sampleShadows(
     const isInside = aside.x
       .max(aside.y)
       .lessThan(edge)
-      .and(above.abs().lessThan(edge.mul(2 * REACH)))
+      .and(above.abs().lessThan(edge.mul(2 * MAXIMUM_DISTANCE)))
       .and(isDrawn.greaterThan(0))
     If(isInside, () => {
       place.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))

@@ -1,0 +1,108 @@
+import { Break, If, bool, int, vec2, vec3 } from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import type { LayerNodes } from '../../density/tsl/layer'
+import { sampleLayerPair } from '../../density/tsl/sampler'
+import type { CloudSample } from '../../density/tsl/sample'
+import { loop, type Bool, type Float, type Int, type Vec2, type Vec3 } from '../../tsl-types'
+import type { LayerSegment } from './layerSegment'
+
+/** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun. */
+export const STEPS = 32
+
+/**
+ * Steps longer than this are cut in three to find where clouds begin [m]; how often, and on a ray. Without,
+ * shadows on tall clouds have rings as wide as steps (*Storm*).
+ */
+const SEARCH_FROM = 100
+const CUTS = 2
+const SEARCHES = 2
+
+/** The search for the edge of a cloud between a clear place and one in it. */
+interface EdgeSearch {
+  /** Distance of the last place known to be clear, and of the first in the cloud [m]. */
+  readonly clear: Float & Assignable<Float>
+  readonly cloudy: Float & Assignable<Float>
+  /** Cuts that this search still makes, and searches that the ray may still make. */
+  readonly cuts: Int & Assignable<Int>
+  readonly searches: Int & Assignable<Int>
+}
+
+interface Assignable<T> {
+  assign(value: T): void
+  subAssign(value: T): void
+}
+
+/**
+ * Optical depth of a layer on a segment, and the same times place and times its square: a march from the
+ * side of the light, in pairs of samples that share weather.
+ *
+ * @param length - Length of a step [m].
+ * @param sampleAt - The ray's sample at a distance.
+ */
+export function segmentMoments(
+  field: CloudField,
+  layer: LayerNodes,
+  { front, back }: LayerSegment,
+  length: Float,
+  sampleAt: (distance: Float) => CloudSample
+): Vec3 {
+  const sums = vec3(0).toVar() as Vec3
+  const add = (top: Float, extinction: Float): void => {
+    const width = top.sub(back).clamp(0, length).toConst() as Float
+    const middle = top.sub(width.mul(0.5)).toConst() as Float
+    const square = middle.mul(middle).add(width.mul(width).div(12))
+    sums.addAssign(vec3(1, middle, square).mul(extinction.mul(width)))
+  }
+  const place = front.toVar() as Float
+  const search = edgeSearch(front, length)
+  const wasClear = bool(true).toVar() as Bool
+  loop('shadowPair', STEPS / 2 + SEARCHES * (CUTS + 2), () => {
+    If(place.lessThanEqual(back), () => {
+      Break()
+    })
+    const isCutting = search.cuts.greaterThan(0).toConst()
+    const gap = search.clear.sub(search.cloudy)
+    const step = isCutting.select(gap.div(3), length).toConst() as Float
+    const from = isCutting.select(search.clear.sub(step.mul(0.5)), place).toConst() as Float
+    const found = vec2(0).toVar() as Vec2
+    const [middle, first, second] = [1, 0.5, 1.5].map(steps => sampleAt(from.sub(step.mul(steps))))
+    sampleLayerPair(field, layer, middle, [first, second], (extinction, i) => {
+      found.addAssign(i === 0 ? vec2(extinction, 0) : vec2(0, extinction))
+    })
+    /** First of the two in clouds, in steps; 2.5 if both are clear. */
+    const entry = found.x.greaterThan(0).select(0.5, found.y.greaterThan(0).select(1.5, 2.5))
+    const at = from.sub(step.mul(entry)).toConst() as Float
+    If(isCutting, () => {
+      narrow(search, at, step)
+      search.cuts.subAssign(int(1))
+      place.assign(at.add(step.mul(0.5)))
+    })
+      .ElseIf(wasClear.and(entry.lessThan(2)).and(search.searches.greaterThan(0)), () => {
+        narrow(search, at, step)
+        search.cuts.assign(int(CUTS))
+        search.searches.subAssign(int(1))
+        wasClear.assign(false)
+      })
+      .Else(() => {
+        add(place, found.x)
+        add(place.sub(length), found.y)
+        wasClear.assign(found.y.equal(0))
+        place.subAssign(length.mul(2))
+      })
+  })
+  return sums
+}
+
+/** No search yet: short steps need none. */
+const edgeSearch = (front: Float, length: Float): EdgeSearch => ({
+  clear: front.toVar(),
+  cloudy: front.toVar(),
+  cuts: int(0).toVar(),
+  searches: int(length.greaterThan(SEARCH_FROM).select(SEARCHES, 0)).toVar()
+})
+
+/** Puts the edge between a place in the cloud and a step before it. */
+function narrow({ clear, cloudy }: EdgeSearch, at: Float, step: Float): void {
+  cloudy.assign(at)
+  clear.assign(at.add(step))
+}
