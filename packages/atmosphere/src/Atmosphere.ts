@@ -25,6 +25,7 @@ import { AtmosphereView } from './view/AtmosphereView'
 import { checkCamera, checkRange } from './check'
 import { LightSource } from './view/LightSource'
 import { checkLayer, type SkyLayer } from './view/SkyLayer'
+import { checkRenderer } from './view/renderers'
 import { AtmosphereQuery } from './AtmosphereQuery'
 import { SphericalSpace } from './view/cpu/spherical'
 import type { Triple } from './air/cpu/color'
@@ -352,9 +353,11 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /**
    * Bakes all tables now and reads back what {@link skyIlluminanceAt} and `skyLuminanceAt` need.
    *
-   * @param renderer - Initialised.
+   * @param renderer - Is initialised first if it is not yet.
    */
   async bake(renderer: Renderer): Promise<void> {
+    checkRenderer('Atmosphere', renderer)
+    await renderer.init()
     this.tables.update(renderer, this.parameters, this.luminanceScale, Infinity)
     await this.tables.read()
   }
