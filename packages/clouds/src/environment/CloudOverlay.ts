@@ -12,7 +12,7 @@ import type { Quaternion, RenderTarget } from 'three'
 import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
-import { CloudField, eyePosition } from '../density/CloudField'
+import { CloudField, viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import { nightGain } from '../light/NightLight'
 import {
@@ -21,10 +21,10 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from '../march/quality'
-import { withAirBefore } from '../march/tsl/airBefore'
+import { withAerialPerspective } from '../march/tsl/aerialPerspective'
 import { marchClouds } from '../march/tsl/march'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
-import { groundDistance } from '../march/tsl/shells'
+import { groundDistance } from '../march/tsl/layerBoundaries'
 import type { LevelTexture, Mat3, Mat4, Vec2, Vec3 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3 } from '../uniforms'
 
@@ -140,12 +140,12 @@ export class CloudOverlay implements SkyOverlay {
     return {
       things: [
         light.texture.version,
-        field.grown === 1,
+        field.fadeIn === 1,
         shadows.isDrawn,
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
-      turns: field.turns.map(turn => turn.clone()),
+      turns: field.rotations.map(turn => turn.clone()),
       moonlight: direction.value.clone().multiplyScalar(irradiance.value.y)
     }
   }
@@ -171,7 +171,7 @@ export class CloudOverlay implements SkyOverlay {
     if (strip < 0) return
     if (strip === 0) this.#begin(view, field)
     this.#gain.value = this.#raised / atmosphere.luminanceScale
-    eyePosition(view, this.#shift.value).sub(shadows.camera)
+    viewpointMapped(view, this.#shift.value).sub(shadows.camera)
     const { width: size } = this.#target
     const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
@@ -180,10 +180,10 @@ export class CloudOverlay implements SkyOverlay {
 
   /** Takes clouds, sun and place as they are for all steps. */
   #begin(view: AtmosphereView, field: CloudField): void {
-    const { turns, night, depthScale } = this.clouds.field
+    const { rotations, night, depthScale } = this.clouds.field
     if (!this.#isAsDrawn()) this.#version++
     this.#drawn = this.#state()
-    turns.forEach((turn, i) => field.turns[i].copy(turn))
+    rotations.forEach((turn, i) => field.rotations[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width
     field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance
@@ -215,7 +215,7 @@ export class CloudOverlay implements SkyOverlay {
         ray
       )
       const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
-      return withAirBefore(view, marched, directionView, this.#gain)
+      return withAerialPerspective(view, marched, directionView, this.#gain)
     })
     this.#pass?.dispose()
     this.#pass = new FragmentPass('Welkin.CloudOverlay', picture())

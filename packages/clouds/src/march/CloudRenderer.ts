@@ -5,19 +5,19 @@ import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/lighting'
 import type { FrameUniforms } from './FrameUniforms'
-import { withAirBefore } from './tsl/airBefore'
-import { approachClouds, TILE } from './tsl/approach'
+import { withAerialPerspective } from './tsl/aerialPerspective'
+import { conePrepass, TILE } from './tsl/conePrepass'
 import { marchClouds } from './tsl/march'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
 import { encodeDistance, type CloudPictures } from '../temporal/tsl/pictures'
-import { sightAt, sightEnd, type SightNodes } from './tsl/sight'
+import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
 import { upscale } from '../temporal/tsl/upscale'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
 
 /** What the pictures of clouds are made from. */
 export interface CloudScene extends ShadingContext {
-  readonly sights: SightNodes
+  readonly viewRays: ViewRayNodes
 }
 
 /** @param isPacked - Whether places are bytes. */
@@ -34,8 +34,8 @@ function picturesOf({ textures }: RenderTarget): CloudPictures {
 
 /** Marches one pixel of each block: light with the air in front of it, and where it is. */
 function marchPixels(scene: CloudScene, clear: LevelTexture<Vec2>): TwoOutputs {
-  const { field, sights } = scene
-  const { frame } = sights
+  const { field, viewRays } = scene
+  const { frame } = viewRays
   return twoOutputs(([color, place]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
@@ -43,16 +43,16 @@ function marchPixels(scene: CloudScene, clear: LevelTexture<Vec2>): TwoOutputs {
       const tile = block.add(0.5).div(tiles).toConst() as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
       const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
-      const sight = sightAt(sights, at)
+      const sight = viewRayAt(viewRays, at)
       const { direction, directionView } = sight
-      const end = sightEnd(sights, at, sight)
+      const end = viewRayEnd(viewRays, at, sight)
       const marched = marchClouds(scene, {
         direction,
         end,
         jitter: interleavedNoise(block, frame.noiseShift),
         start: frame.isAmong.greaterThan(0).select(clear.sample(tile).level(0).x, 0)
       })
-      color.assign(withAirBefore(field.view, marched, directionView, frame.gain))
+      color.assign(withAerialPerspective(field.view, marched, directionView, frame.gain))
       const distance = encodeDistance(marched.distance)
       place.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
       return vec4(0)
@@ -83,19 +83,19 @@ export class CloudRenderer {
   current = 0
 
   constructor(scene: CloudScene) {
-    this.#frame = scene.sights.frame
+    this.#frame = scene.viewRays.frame
     const clear = texture(this.#approached.texture) as unknown as LevelTexture<Vec2>
-    this.#approach = new FragmentPass('Welkin.CloudsApproach', approachClouds(scene.sights))
+    this.#approach = new FragmentPass('Welkin.CloudsApproach', conePrepass(scene.viewRays))
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, clear))
     const { marched } = this
     this.#gather = new FragmentPass(
       'Welkin.CloudsGather',
-      gatherCells(scene.field, scene.sights, marched)
+      gatherCells(scene.field, scene.viewRays, marched)
     )
     const cells = picturesOf(this.#cells)
     this.#upscale = this.#accumulated.map((_, i) => {
       const history = picturesOf(this.#accumulated[1 - i])
-      const output = upscale(scene.sights, marched, cells, history)
+      const output = upscale(scene.viewRays, marched, cells, history)
       return new FragmentPass('Welkin.CloudsUpscale', output)
     })
   }

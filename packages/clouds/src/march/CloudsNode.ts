@@ -242,7 +242,7 @@ export class CloudsNode extends AtmosphereNode {
       light: this.light.nodes,
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
-      sights: {
+      viewRays: {
         field: this.field,
         frame: this.#frame,
         isLogarithmic,

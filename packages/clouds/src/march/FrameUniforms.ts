@@ -1,7 +1,7 @@
 import { Matrix4, Vector3, Vector4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import type { AtmosphereView } from '@welkin/atmosphere'
-import { eyePosition, type CloudField } from '../density/CloudField'
+import { viewpointMapped, type CloudField } from '../density/CloudField'
 import { CloudLayers } from '../layers/CloudLayers'
 import { LAYER_STRIDE } from '../layers/layerUniforms'
 import { nightGain } from '../light/NightLight'
@@ -143,7 +143,7 @@ export class FrameUniforms {
     this.gainChange.value = gain / this.gain.value
     this.gain.value = gain
 
-    eyePosition(view, _position)
+    viewpointMapped(view, _position)
     const last = this.#camera
     const reach = Math.max(CUT_HEIGHTS * Math.abs(view.height), CUT_METRES)
     const isCut =

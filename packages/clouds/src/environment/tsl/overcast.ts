@@ -5,9 +5,9 @@ import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
 import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { columnFill } from '../../density/tsl/density'
+import { meanColumnDensity } from '../../density/tsl/unresolved'
 import { forLayers, layerAt } from '../../density/tsl/layer'
-import { footOffset } from '../../density/tsl/sample'
+import { subpointOffset } from '../../density/tsl/sample'
 import { weatherAt } from '../../density/tsl/weather'
 
 /** What light does to clouds one above the other: parts of unit flux. Twin: cpu/overcast.ts */
@@ -72,16 +72,16 @@ export function sheetsAbout(
       const footprint = rise.mul(REACH_HEIGHTS).max(LEAST_REACH)
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
-      const foot = footOffset(field, sample).toConst()
-      const weather = weatherAt(field, layer, foot, sample)
-      const { cover } = weather
+      const subpoint = subpointOffset(field, sample).toConst()
+      const weather = weatherAt(field, layer, subpoint, sample)
+      const { filteredCoverage } = weather
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
       const depth = layer.density
-        .mul(columnFill(layer, weather))
+        .mul(meanColumnDensity(layer, weather))
         .mul(light.depthScale)
         .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
-      const passing = (part: Float): Float => cover.mul(part.sub(1)).add(1)
+      const passing = (part: Float): Float => filteredCoverage.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {
         const through = eddington(depth.mul(length), mu, light.diffusing)
         const series = passing(through.diffuse).reciprocal().sub(1).toConst() as Float

@@ -5,11 +5,11 @@ import type { CloudLight } from '../CloudLightTable'
 import type { QualityUniforms } from '../../march/quality'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
-import { extinctionNearby, type KeptWeather } from '../../density/tsl/density'
+import { extinctionNearby, type WeatherCache } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
-import { isSunk, nightShare } from './night'
+import { isNight, nightShare } from './night'
 import { sampleShadows, type CloudShadows } from '../../shadow/tsl/sampleShadows'
-import type { Surroundings } from '../../march/tsl/shells'
+import type { LayersAt } from '../../march/tsl/layerBoundaries'
 
 /** A sun lower than this does not make its rays any longer. */
 const LOWEST_COSINE = 0.12
@@ -42,7 +42,7 @@ export interface ShadingContext {
 /** A place in the clouds that is to be shaded. */
 export interface ShadedSample {
   readonly sample: CloudSample
-  readonly weather: KeptWeather
+  readonly weather: WeatherCache
   /** Direction of the ray on which it is seen, unit length, in the mapped space. */
   readonly direction: Vec3
   /** Transmittance of the clouds between it and the camera, in [0, 1]. */
@@ -50,7 +50,7 @@ export interface ShadedSample {
   /** Noise in [0, 1), in which cascades of the shadow map meet. */
   readonly dither: Float
   /** The layers around it. */
-  readonly layers: Pick<Surroundings, 'base' | 'top' | 'layered'>
+  readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered'>
 }
 
 /** The light that clouds are shaded for: sun or moon. */
@@ -122,7 +122,7 @@ function depthsAbout(
   // Where no map is: as near, thinning out towards the top.
   const density = found.y.div(reach).toConst()
   const guess = density.mul(toTop.sub(reach)).toConst()
-  const toSun = found.y.add(known.mix(guess, far.toSun)).toConst() as Float
+  const toSun = found.y.add(known.mix(guess, far.toLight)).toConst() as Float
   const behind = cosSun.greaterThan(0).select(fall, rise).mul(slant).mul(density)
   const through = known.mix(toSun.add(behind), far.through.max(toSun)).toConst() as Float
   const above = rise.mul(found.x.mul(UPWARDS / 2).add(found.z.mul(0.5)))
@@ -143,9 +143,9 @@ export function sourceAt(context: ShadingContext, place: ShadedSample): CloudSha
   const { field, light, shadows } = context
   const { sample, direction, transmittance } = place
   const { view } = field
-  const isNight = isSunk(field, sample.up.dot(view.sunDirection)).toConst()
-  const toLight = isNight.select(field.night.direction, view.sunDirection).toConst() as Vec3
-  const isMapped = isNight.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
+  const isDark = isNight(field, sample.up.dot(view.sunDirection)).toConst()
+  const toLight = isDark.select(field.night.direction, view.sunDirection).toConst() as Vec3
+  const isMapped = isDark.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
   const cosSun = sample.up.dot(toLight).clamp(-1, 1).toConst() as Float
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewSun = direction.dot(toLight).clamp(-1, 1).toConst() as Float
@@ -178,7 +178,7 @@ export function sourceAt(context: ShadingContext, place: ShadedSample): CloudSha
  *
  * @param shares - Sums of `CloudShares`.
  */
-export function lightUp(field: CloudField, { altitude, up }: CloudSample, shares: Vec3): Vec4 {
+export function shade(field: CloudField, { altitude, up }: CloudSample, shares: Vec3): Vec4 {
   const { view } = field
   const { uniforms, transmittance, diffuse } = view.air
   const { night } = field
@@ -192,7 +192,7 @@ export function lightUp(field: CloudField, { altitude, up }: CloudSample, shares
   }
   const sun = litFrom(view.sunDirection)
   const light = sun.light.mul(view.source.irradiance).toVar() as Vec4
-  If(isSunk(field, sun.cosine), () => {
+  If(isNight(field, sun.cosine), () => {
     const moonlight = litFrom(night.direction).light.mul(night.irradiance)
     const sky = night.radiance.mul(uniforms.groundAlbedo.mul(shares.z).add(shares.y))
     light.addAssign(moonlight.add(sky).mul(nightShare(field, sun.cosine)))

@@ -11,7 +11,7 @@ import {
 } from '../../tsl-types'
 import { forLayers, layerAt } from '../../density/tsl/layer'
 import { brightness, CLEAR, FARTHEST, SAME, type CloudPictures } from './pictures'
-import { sightAt, type SightNodes } from '../../march/tsl/sight'
+import { viewRayAt, type ViewRayNodes } from '../../march/tsl/viewRay'
 
 /** Of a cell none of whose corners sees a cloud, and the most of others: half floats tell them apart. */
 const ALL_CLEAR = 1
@@ -70,7 +70,7 @@ function layerNear(field: CloudField, altitude: Float): Float {
 /** Draws {@link Cell}s: one more along each edge than there are marched pixels. */
 export function gatherCells(
   field: CloudField,
-  sights: SightNodes,
+  sights: ViewRayNodes,
   marched: CloudPictures
 ): TwoOutputs {
   const { frame } = sights
@@ -105,7 +105,7 @@ export function gatherCells(
       const transmittance = least.greaterThan(CLEAR).select(ALL_CLEAR, mean.y.min(NOT_CLEAR))
       light.assign(vec4(mean.x, transmittance, deviation))
       const middle = corner.add(0.5).mul(frame.block).add(frame.jitter).add(0.5).div(frame.size)
-      const { direction } = sightAt(sights, middle.toConst())
+      const { direction } = viewRayAt(sights, middle.toConst())
       const { altitude } = field.view.place(direction.mul(distance.exp2()))
       place.assign(
         vec4(

@@ -2,7 +2,7 @@ import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import { fitsCell, type Cell } from './cells'
 import { brightness, fits, LOOK_PARTS, type CloudPictures } from './pictures'
-import type { SightNodes } from '../../march/tsl/sight'
+import type { ViewRayNodes } from '../../march/tsl/viewRay'
 
 /** Sharpness of the kernel that spreads marched pixels, per marched pixels squared. */
 const SPREADING = 7
@@ -35,7 +35,7 @@ export interface CellPlace {
 }
 
 /** The cell that a pixel is in. */
-export function cellPlace({ frame }: SightNodes, pixel: Vec2): CellPlace {
+export function cellPlace({ frame }: ViewRayNodes, pixel: Vec2): CellPlace {
   const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst() as Vec2
   const corner = at.floor().toConst() as Vec2
   return { corner, part: at.sub(corner).toConst() }
@@ -46,7 +46,7 @@ export function cellPlace({ frame }: SightNodes, pixel: Vec2): CellPlace {
  * takes a single look-up, or else of those that fit.
  */
 export function estimate(
-  { frame }: SightNodes,
+  { frame }: ViewRayNodes,
   marched: CloudPictures,
   { corner, part }: CellPlace,
   cell: Cell,

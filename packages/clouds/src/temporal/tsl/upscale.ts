@@ -25,7 +25,7 @@ import {
   unpack,
   type CloudPictures
 } from './pictures'
-import { sightAt, sightEnd, type Sight, type SightNodes } from '../../march/tsl/sight'
+import { viewRayAt, viewRayEnd, type ViewRay, type ViewRayNodes } from '../../march/tsl/viewRay'
 
 /** Looks of pixels that were marched themselves. */
 const OWN_LOOK = 0.5
@@ -73,17 +73,17 @@ function toHalf(value: Vec4, noise: Float): Vec4 {
  * nothing moved, neither the clouds nor what was drawn, or less, to 0.
  */
 function remembered(
-  { frame }: SightNodes,
+  { frame }: ViewRayNodes,
   history: CloudPictures,
   pixel: Vec2,
-  { place, length }: Sight,
+  { ndc, length }: ViewRay,
   end: Float,
   distance: Float,
   origin: Vec3
 ): { light: Vec4; weight: Float; sameness: Float } {
   const raysBefore = frame.raysBefore as unknown as Mat3
   const clipped = raysBefore
-    .mul(place)
+    .mul(ndc)
     .add(origin.mul(length.div(exp2(distance))))
     .toConst() as Vec3
   const spot = clipped.xy.div(clipped.z.max(1e-9)).mul(vec2(0.5, -0.5)).add(0.5)
@@ -138,7 +138,7 @@ function clip(light: Vec4, { mean, around }: Estimate, deviations: Float, slack:
  * @see Karis 2014, "High quality temporal supersampling"; Salvi 2016 on variance clipping
  */
 export function upscale(
-  sights: SightNodes,
+  sights: ViewRayNodes,
   marched: CloudPictures,
   cells: CloudPictures,
   history: CloudPictures
@@ -164,9 +164,9 @@ export function upscale(
           light: cellLight,
           place: cells.place.sample(cellAt).level(0).toConst()
         }
-        const sight = sightAt(sights, middle)
+        const sight = viewRayAt(sights, middle)
         const isOpen = cell.place.z.greaterThanEqual(FARTHEST)
-        const end = encodeDistance(sightEnd(sights, middle, sight, isOpen)).toConst() as Float
+        const end = encodeDistance(viewRayEnd(sights, middle, sight, isOpen)).toConst() as Float
         const now = estimate(sights, marched, where, cell, end)
         const result = now.light.toVar() as Vec4
         const weight = now.look.toVar()

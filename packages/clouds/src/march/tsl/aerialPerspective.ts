@@ -10,7 +10,7 @@ import type { MarchedClouds } from './march'
  *
  * @param directionView - In view space, for each metre of the mapped space [world units/m].
  */
-export function withAirBefore(
+export function withAerialPerspective(
   view: ViewNodes,
   { radiance, transmittance, distance }: MarchedClouds,
   directionView: Vec3,

@@ -9,12 +9,12 @@ import {
 import type { CloudField } from '../../density/CloudField'
 import type { FrameUniforms } from '../FrameUniforms'
 import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../../tsl-types'
-import { FAR_AWAY, groundDistance } from './shells'
+import { FAR_AWAY, groundDistance } from './layerBoundaries'
 
 /** A line of sight through a pixel. */
-export interface Sight {
+export interface ViewRay {
   /** Normalized device coordinates of the pixel, and 1. */
-  place: Vec3
+  ndc: Vec3
   /** Length of `FrameUniforms.rays` times `place`, in the mapped space [m]. */
   length: Float
   /** Unit length, in the mapped space. */
@@ -24,7 +24,7 @@ export interface Sight {
 }
 
 /** How a camera's pixels are turned to lines of sight. */
-export interface SightNodes {
+export interface ViewRayNodes {
   readonly field: CloudField
   readonly frame: FrameUniforms
   /** Depth as the renderer writes it. */
@@ -33,13 +33,13 @@ export interface SightNodes {
 }
 
 /** The line of sight of a place in the picture; to be called inside of a shader function. */
-export function sightAt({ field, frame }: SightNodes, uv: Vec2): Sight {
-  const place = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
-  const ray = (frame.rays as unknown as Mat3).mul(place).toConst() as Vec3
+export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
+  const ndc = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
+  const ray = (frame.rays as unknown as Mat3).mul(ndc).toConst() as Vec3
   const mapped = field.view.toMapped(ray).toConst() as Vec3
   const length = mapped.length().toConst() as Float
   const direction = mapped.div(length).toConst() as Vec3
-  return { place, length, direction, directionView: ray.div(length).toConst() }
+  return { ndc, length, direction, directionView: ray.div(length).toConst() }
 }
 
 /**
@@ -48,10 +48,10 @@ export function sightAt({ field, frame }: SightNodes, uv: Vec2): Sight {
  *
  * @param isOpen - Where it holds, the ground is known not to be in sight.
  */
-export function sightEnd(
-  { field, frame, depthAt, isLogarithmic }: SightNodes,
+export function viewRayEnd(
+  { field, frame, depthAt, isLogarithmic }: ViewRayNodes,
   uv: Vec2,
-  { direction, directionView }: Sight,
+  { direction, directionView }: ViewRay,
   isOpen?: Bool
 ): Float {
   const depth = depthAt(uv).toConst() as Float
