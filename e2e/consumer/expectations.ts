@@ -58,8 +58,6 @@ function checkClouds(png: PNG): string[] {
 export const expectations: Record<string, (png: PNG) => string[]> = {
   index: checkQuickStart,
   clouds: checkClouds,
-  fiber: checkQuickStart,
-  webpack: checkQuickStart,
   geo: png => [
     ...difference(png, 'the globe', 160, 90, [0x22, 0x55, 0xaa]),
     ...difference(png, 'space', 5, 5, [0, 0, 0])
