@@ -12,6 +12,7 @@ import {
   Ellipsoid,
   fail,
   Geodetic,
+  setOptions,
   sunDirectionECEF
 } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
@@ -34,16 +35,47 @@ import type { Triple } from './air/cpu/color'
 export interface AtmosphereOptions {
   /** Composition of the air; by default the Earth's. Shared, not copied. */
   parameters?: AtmosphereParameters
-  /** The planet's figure; by default WGS84. */
+  /** The planet's figure; by default that of the parameters. */
   ellipsoid?: Ellipsoid
   /** See {@link Atmosphere.flat}; by default false. */
   flat?: boolean
+  /** See {@link Atmosphere.frame}; by default `'local'`. */
+  frame?: AtmosphereFrame
+  /** See {@link Atmosphere.metersPerUnit}; by default 1. */
+  metersPerUnit?: number
+  /** See {@link Atmosphere.luminanceScale}; by default 1e-4. */
+  luminanceScale?: number
+  /** See {@link Atmosphere.bakeStepsPerFrame}; by default infinity. */
+  bakeStepsPerFrame?: number
+  /** See {@link Atmosphere.date}; by default null. */
+  date?: Date | null
 }
+
+/** Options that may change later. */
+const SETTINGS = [
+  'flat',
+  'frame',
+  'metersPerUnit',
+  'luminanceScale',
+  'bakeStepsPerFrame',
+  'date'
+] as const
 
 /** Lie of the scene's world space on the planet. */
 export type AtmosphereFrame = 'local' | 'ecef'
 
 const FULL: Spectrum = [1, 1, 1, 1]
+
+/** The parameters' own figure, WGS84 where they are of the Earth's size, or a sphere. */
+function ellipsoidOf(parameters: AtmosphereParameters): Ellipsoid {
+  checkParameters('Atmosphere', parameters)
+  const { bottomRadius, ellipsoid } = parameters
+  if (ellipsoid !== null) return ellipsoid
+  return isNear(bottomRadius, Ellipsoid.WGS84) ? Ellipsoid.WGS84 : new Ellipsoid(bottomRadius)
+}
+
+const isNear = (radius: number, { radii }: Ellipsoid): boolean =>
+  Math.abs(radius / radii.x - 1) <= 0.02
 
 const _position = new Vector3()
 const _rotation = new Matrix4()
@@ -98,24 +130,33 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     }
     const {
       parameters = new AtmosphereParameters(),
-      ellipsoid = Ellipsoid.WGS84,
-      flat = false
-    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', 'flat')
+      ellipsoid = ellipsoidOf(parameters),
+      ...settings
+    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
     checkParameters('Atmosphere', parameters)
     checkEllipsoid('Atmosphere', ellipsoid)
     const { bottomRadius } = parameters
-    if (Math.abs(bottomRadius / ellipsoid.radii.x - 1) > 0.02) {
+    if (!isNear(bottomRadius, ellipsoid)) {
       fail('Atmosphere', 'bottomRadius must be near that of the ellipsoid', bottomRadius)
     }
     this.parameters = parameters
     this.ellipsoid = ellipsoid
-    this.flat = flat
+    this.set(settings)
     this.sun.irradianceAt = position =>
       this.#layers.reduce<Spectrum>((light, layer) => {
         const left = layer.eclipse?.(position)
         return left ? (light.map((value, i) => value * left[i]) as unknown as Spectrum) : light
       }, FULL)
     this.#updateFrame()
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or refused; then nothing has changed.
+   */
+  set(settings: Pick<AtmosphereOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('Atmosphere', this, settings, ...SETTINGS)
   }
 
   /**
@@ -317,18 +358,16 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * yours around background or fog when its own is.
    *
    * @returns This atmosphere.
-   * @throws If something is no layer, made for another atmosphere, or there already; then nothing is added.
+   * @throws If something is no layer, another atmosphere's, or there already; then nothing is added.
    */
   add(...layers: SkyLayer[]): this {
     for (const layer of layers) {
       checkLayer('Atmosphere.add', layer)
-      if ((layer.atmosphere ?? this) !== this) {
-        fail('Atmosphere.add', 'layer must be made for this atmosphere', layer)
-      }
     }
     const all = [...this.#layers, ...layers]
     const twice = all.find((layer, i) => all.indexOf(layer) < i)
     if (twice) fail('Atmosphere.add', 'layer must not be in the sky already', twice)
+    for (const layer of layers) layer.attach?.(this)
     this.#layers.push(...layers)
     this.#layersVersion++
     return this

@@ -4,7 +4,7 @@ import { Node } from 'three/webgpu'
 import type { NodeBuilder } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 
-/** Options of {@link skyEnvironment}. */
+/** Options of {@link ImageEnvironmentNode} and `SkyEnvironmentNode`. */
 export interface EnvironmentOptions {
   /**
    * Lights matte surfaces too, besides being mirrored. By default it does, unless a
@@ -13,7 +13,13 @@ export interface EnvironmentOptions {
   diffuse?: boolean
 }
 
-/** A picture of a sky in place of the sky: see {@link skyEnvironment}. */
+/**
+ * A picture of a sky as what materials mirror, in place of an atmosphere's.
+ *
+ * ```ts
+ * scene.environmentNode = imageEnvironment(await new HDRLoader().loadAsync('sky.hdr'))
+ * ```
+ */
 export class ImageEnvironmentNode extends Node<'vec3'> {
   static get type(): string {
     return 'ImageEnvironmentNode'
@@ -55,3 +61,9 @@ export function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | nul
   const hasProbe = lights.some(light => 'isLightProbe' in light && 'atmosphere' in light)
   return (diffuse ?? !hasProbe) ? map : vec3(0)
 }
+
+/** A picture of a sky as what materials mirror: see {@link ImageEnvironmentNode}. */
+export const imageEnvironment = (
+  image: Texture,
+  options?: EnvironmentOptions
+): ImageEnvironmentNode => new ImageEnvironmentNode(image, options)

@@ -58,8 +58,8 @@ export interface Veil {
 export interface SkyLayer {
   /** Whether {@link beyond} only adds light and hides nothing. */
   readonly isAdditive?: boolean
-  /** The only atmosphere that it can be added to; absent if any will do. */
-  readonly atmosphere?: ViewedAtmosphere
+  /** Called before it is added. @throws If it cannot be added to this atmosphere. */
+  attach?(atmosphere: ViewedAtmosphere): void
   /** The light that it sends to the planet, if it lights more than its own picture. */
   readonly source?: LightSource
   /** Part of the sun's light that it leaves at a position in world space. */

@@ -134,10 +134,10 @@ export class CloudShadowMap {
     const radius = this.field.radius.value
     viewpointMapped(view, this.camera)
     const { night, atmosphere } = this.field
-    const isMoonlit = night.rulesAt(view)
+    const isMoonlit = night.isMoonlitAt(view)
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
     this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
-    this.#light.copy(isMoonlit ? night.direction.value : view.sunDirection)
+    this.#light.copy(isMoonlit ? night.moonDirection.value : view.sunDirection)
     if (view.height > HIGHEST) {
       for (const cascade of this.#cascades) cascade.isDrawn = false
       this.#current = null

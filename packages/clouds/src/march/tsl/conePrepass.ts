@@ -3,47 +3,52 @@ import { loop, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-typ
 import { emptyDistanceAt } from '../../density/tsl/sampler'
 import { viewRayAt, type ViewRayNodes } from './viewRay'
 
-/** Marched pixels along an edge of the tiles that look for clouds together. */
+/** Marched pixels along an edge of the tiles that share a cone. */
 export const TILE = 8
 
-/** Most steps of a tile, and its shortest: per distance, at least [m]. */
+/** Most steps of a cone. */
 const STEPS = 48
-const GROWTH = 0.004
-const LEAST = 10
 
-/** Farthest that tiles look, within the range of half floats, and what their precision leaves of it [m]. */
-const REACH = 60_000
+/** Shortest step that goes on: per distance, and at least [m]. */
+const STEP_GROWTH = 0.004
+const SHORTEST_STEP = 10
+
+/** Greatest distance of a cone, within the range of half floats; and what their precision leaves of it [m]. */
+const MAX_DISTANCE = 60_000
 const PRECISION = 0.999
 
 /**
- * How far all rays of a tile are sure to be clear: a cone around them goes from ball to ball of clear air.
- * Among clouds most of a ray leads through such air, which each would have to find by itself.
+ * Cone prepass: distance that all rays of a tile are sure to cross without a cloud. The cone around them
+ * goes from sphere to sphere of empty air. Among clouds most of a ray leads through such air, which each
+ * pixel would otherwise have to cross by itself.
  *
- * @returns [m], at most `REACH`.
+ * @returns Distance in red, at most `MAX_DISTANCE` [m].
+ * @see Hart 1996, "Sphere tracing", §2.3: steps of the size of an empty sphere
  */
-export function conePrepass(sights: ViewRayNodes): Vec4 {
-  const { field, frame } = sights
+export function conePrepass(inputs: ViewRayNodes): Vec4 {
+  const { field, frame } = inputs
   return Fn(() => {
     const edge = frame.block.mul(TILE).div(frame.size).toConst() as unknown as Vec2
     const tile = uv().mul(frame.marchedSize.div(TILE).ceil()).floor().toConst() as unknown as Vec2
-    const toward = (part: number): Vec3 => viewRayAt(sights, tile.add(part).mul(edge)).direction
+    const toward = (part: number): Vec3 => viewRayAt(inputs, tile.add(part).mul(edge)).direction
     const direction = toward(0.5)
     // To its corners, of which some are farther off than this one.
     const spread = toward(0).sub(direction).length().mul(1.1).toConst() as Float
     const position = float(0).toVar()
     loop('approach', STEPS, () => {
       const offset = direction.mul(position).toConst() as Vec3
-      const clear = emptyDistanceAt(field, {
+      const empty = emptyDistanceAt(field, {
         offset,
         ...field.view.place(offset),
         distance: position
       })
-      const step = clear.sub(position.mul(spread)).div(spread.add(1)).toConst() as Float
-      If(step.lessThan(position.mul(GROWTH).add(LEAST)).or(position.greaterThan(REACH)), () => {
+      const step = empty.sub(position.mul(spread)).div(spread.add(1)).toConst() as Float
+      const isBlocked = step.lessThan(position.mul(STEP_GROWTH).add(SHORTEST_STEP))
+      If(isBlocked.or(position.greaterThan(MAX_DISTANCE)), () => {
         Break()
       })
       position.addAssign(step)
     })
-    return vec4(position.mul(PRECISION).min(REACH), 0, 0, 1)
+    return vec4(position.mul(PRECISION).min(MAX_DISTANCE), 0, 0, 1)
   })()
 }

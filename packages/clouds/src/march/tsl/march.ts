@@ -3,7 +3,8 @@ import type { CloudField } from '../../density/CloudField'
 import { loop, type Float, type Int, type Vec2, type Vec3 } from '../../tsl-types'
 import { samplePair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
-import { OPAQUE, sourceAt, type ShadingContext } from '../../light/tsl/lighting'
+import { LEAST_TRANSMITTANCE, sourceAt } from '../../light/tsl/lighting'
+import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { addPair, rayLight, seenClouds, seenOf, shadePassing, type SeenClouds } from './rayLight'
 import { advanceInClear, enterSteps, nextSteps, stepState } from './steps'
@@ -85,7 +86,7 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
   const entry = float(0).toVar()
 
   loop('cloudPair', quality.pairs, () => {
-    If(position.greaterThanEqual(end).or(sum.transmittance.lessThan(OPAQUE)), () => {
+    If(position.greaterThanEqual(end).or(sum.transmittance.lessThan(LEAST_TRANSMITTANCE)), () => {
       Break()
     })
     steps.addAssign(2)
@@ -117,8 +118,8 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
           const { weather } = clouds
           const { transmittance } = sum
           const lit = { sample, weather, direction, transmittance, dither: jitter, layers: segment }
-          const { sun, sky, ground } = sourceAt(context, lit)
-          return vec3(sun, sky, ground)
+          const { direct, sky, ground } = sourceAt(context, lit)
+          return vec3(direct, sky, ground)
         })
         position.addAssign(length.mul(2))
       }).Else(() => {

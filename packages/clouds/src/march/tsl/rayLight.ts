@@ -2,7 +2,7 @@ import { If, float, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { OPAQUE, shade } from '../../light/tsl/lighting'
+import { LEAST_TRANSMITTANCE, shade } from '../../light/tsl/lighting'
 
 // The light of a ray, summed from the camera outwards.
 
@@ -123,9 +123,9 @@ export function seenClouds(
 ): SeenClouds {
   const opacity = transmittance.oneMinus().toConst()
   const passed = transmittance
-    .sub(OPAQUE)
+    .sub(LEAST_TRANSMITTANCE)
     .max(0)
-    .div(1 - OPAQUE)
+    .div(1 - LEAST_TRANSMITTANCE)
     .toConst() as Float
   return {
     radiance: radiance.mul(passed.oneMinus().div(opacity.max(1e-6))).toConst(),
