@@ -9,13 +9,13 @@ import {
   Scene
 } from 'three'
 import { float } from 'three/tsl'
-import * as twin from '../../../packages/atmosphere/src/fog/cpu/heightFog'
+import * as twin from '../../../packages/atmosphere/test/twins/fog/heightFog'
 import {
   airMass,
-  erfcx,
   fogDepth,
   multipleScattering
 } from '../../../packages/atmosphere/src/fog/tsl/heightFog'
+import { erfcx } from '../../../packages/atmosphere/src/fog/tsl/erfcx'
 import {
   drawForward,
   expectLight,

@@ -20,8 +20,8 @@ import {
   groundDiscriminant
 } from '../../../packages/atmosphere/src/air/tsl/boundary'
 import type { Air } from '../../../packages/atmosphere/src/scattering/tsl/scattering'
-import type { ShellRay } from '../../../packages/atmosphere/src/shell/tsl/shellMarch'
-import { singleScatteringShell } from '../../../packages/atmosphere/src/shell/tsl/singleScattering'
+import type { AirSegment } from '../../../packages/atmosphere/src/shell/tsl/shellMarch'
+import { singleScatteringLight } from '../../../packages/atmosphere/src/shell/tsl/singleScattering'
 import { random } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -71,7 +71,7 @@ gpuTest('knows how much air is between a point and the sun without a table', asy
 })
 
 /** The way of a ray of altitude, μ, μ_s and ν, from within the air. */
-function wayOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'>): ShellRay {
+function wayOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'>): AirSegment {
   const { x: altitude, y: cosView, z: cosSun, w: cosViewSun } = ray
   const radius = bottomRadius.add(altitude).toConst()
   const discriminant = groundDiscriminant(altitude, cosView, bottomRadius).toConst()
@@ -80,10 +80,10 @@ function wayOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'
   return {
     altitude,
     radius,
-    radial: radius.mul(cosView).toConst(),
-    sunward: radius.mul(cosSun).toConst(),
+    radiusCosView: radius.mul(cosView).toConst(),
+    radiusCosSun: radius.mul(cosSun).toConst(),
     cosViewSun,
-    lowest: meetsGround.select(0, cosView.lessThan(0).select(nearest, altitude)).toConst(),
+    lowestAltitude: meetsGround.select(0, cosView.lessThan(0).select(nearest, altitude)).toConst(),
     hitsGround: meetsGround,
     length: meetsGround
       .select(
@@ -119,7 +119,7 @@ gpuTest('scatters once as float64 has it, with few points', async t => {
     })
     const results = await t.evaluate(rays, input => {
       const ray = input.toVar()
-      return singleScatteringShell({ uniforms } as Air, constants, wayOf(uniforms, ray)).radiance
+      return singleScatteringLight({ uniforms } as Air, constants, wayOf(uniforms, ray)).radiance
     })
     const errors: number[] = []
     rays.forEach(([altitude, cosView, cosSun, cosViewSun], i) => {

@@ -236,7 +236,7 @@ gpuTest('names what is wrong with its arguments', () => {
     ],
     [
       () => new AtmosphereShell(null as never, 1),
-      /parameters must be AtmosphereParameters, got object/
+      /parameters must be AtmosphereParameters, got null/
     ],
     [
       () => new AtmosphereShell(parameters, 1, { model: 'none' as never }),

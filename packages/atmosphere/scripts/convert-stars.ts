@@ -10,7 +10,7 @@ interface Feature {
   geometry: { coordinates: [longitude: number, latitude: number] }
 }
 
-/** Of the two stars of the catalogue with no colour index, which are white as most are [mag]. */
+/** Colour index for the two stars of the catalogue that have none: white, as most are [mag]. */
 const USUAL_COLOR_INDEX = 0.3
 
 const input = process.argv[2]

@@ -14,16 +14,16 @@ import { solveDiffuseLight } from '../src/diffuseLight/cpu/solveDiffuseLight'
 import { sunTransmittance } from '../src/transmittance/cpu/transmittance'
 import { earthAt, spectrumToXYZ, sunlight, wavelengths } from './spectra'
 
-/** Of each kind of sunlight, against a sky's 1: there are few of them, and they must not be off. */
+/** Weight of a sample of sunlight over that of a sky: there are few of them, and they must be right. */
 const SUNLIGHT_WEIGHT = 16
 
 const FOUR = new AtmosphereParameters().wavelengths
 
-/** Light of some kind: at the four wavelengths, and what it should look like. */
+/** Sample of light: at the four wavelengths, and its true colour. */
 interface Sample {
   four: number[]
   xyz: Triple
-  /** Y of what counts as white beside it. */
+  /** Y of the white beside it. */
   white: number
   weight: number
 }

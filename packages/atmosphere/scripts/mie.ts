@@ -65,7 +65,7 @@ function sphere(
 }
 
 /**
- * The same for many spheres: number of radius r ∝ r^((1 − 3v)/v) e^{−r/(av)}.
+ * Efficiencies of a gamma distribution of spheres: number of radius r ∝ r^((1 − 3v)/v) e^{−r/(av)}.
  *
  * @param wavelength - [µm].
  * @param radius - a, the effective radius [µm].

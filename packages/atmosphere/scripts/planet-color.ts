@@ -16,7 +16,7 @@ import { marsParameters, titanParameters, venusParameters } from '../src/paramet
 import { standardEarthParameters } from '../src/parameters/standardEarth'
 import { spectrumToXYZ, standardAt, sunlight, wavelengths } from './spectra'
 
-/** A value at any wavelength from those at four: straight lines, carried on beyond the ends. */
+/** Linear interpolation of a spectrum at any wavelength, extrapolated beyond the ends. */
 function between(from: Spectrum, values: Spectrum, nm: number): number {
   const i = Math.min(Math.max(from.findIndex(x => x >= nm) - 1, 0), 2)
   const last = nm > from[3] ? 2 : i
@@ -24,7 +24,7 @@ function between(from: Spectrum, values: Spectrum, nm: number): number {
   return values[last] + part * (values[last + 1] - values[last])
 }
 
-/** The same planet at four other wavelengths. */
+/** Parameters of a planet at four other wavelengths. */
 function at(planet: AtmosphereParameters, nm: readonly number[]): AtmosphereParameters {
   const spread = (values: number | Spectrum, min = 0, max = Infinity): Spectrum =>
     nm.map(x =>

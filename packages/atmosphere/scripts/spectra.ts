@@ -31,7 +31,7 @@ const lookUp = (values: number[], grid: number[], nm: number): number => {
 const solarIrradiance = (nm: number): number =>
   lookUp(spectra.solar_irradiance_W_m2_nm, spectra.wavelengths_nm, nm)
 
-/** The sun above the air, at {@link wavelengths} [W/m²/nm]. */
+/** Sunlight above the air at {@link wavelengths} [W/m²/nm]. */
 export const sunlight: number[] = wavelengths.map(solarIrradiance)
 
 const weights: Triple[] = wavelengths.map((nm, i) => {
@@ -53,7 +53,7 @@ const ozone = (nm: number): number =>
 const spectrumAt = (nm: readonly number[], f: (nm: number) => number): Spectrum =>
   nm.map(f) as unknown as Spectrum
 
-/** The Earth's default air at four of {@link wavelengths}. */
+/** Earth's default air at four of {@link wavelengths}. */
 export function earthAt(nm: readonly number[], groundAlbedo = 0.1): AtmosphereParameters {
   const earth = new AtmosphereParameters()
   const spectrum = (f: (nm: number) => number): Spectrum => spectrumAt(nm, f)

@@ -1,5 +1,6 @@
 export { Atmosphere } from './Atmosphere'
-export type { AtmosphereFrame, AtmosphereOptions } from './Atmosphere'
+export type { AtmosphereOptions } from './Atmosphere'
+export type { AtmosphereFrame } from './ScenePlanet'
 export { AtmosphereParameters } from './parameters/AtmosphereParameters'
 export type {
   AtmosphereParametersFields,
@@ -42,7 +43,8 @@ export { MoonDirectionalLight } from './moon/MoonDirectionalLight'
 export { PlanetGround, planetGround } from './ground/PlanetGround'
 export type { PlanetGroundOptions } from './ground/PlanetGround'
 export { AtmosphereShell } from './shell/AtmosphereShell'
-export type { AtmosphereShellOptions, ShellSun } from './shell/AtmosphereShell'
+export type { AtmosphereShellOptions } from './shell/AtmosphereShell'
+export type { ShellSun } from './shell/ShellSun'
 export {
   airlessParameters,
   marsParameters,

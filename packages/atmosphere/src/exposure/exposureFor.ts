@@ -13,22 +13,25 @@ import { checkAtmosphere } from '../view/ViewNodes'
 
 /** Options of {@link exposureFor}. */
 export interface ExposureOptions {
-  /** Sources of light besides the sun, such as a moon's. */
+  /** Light sources besides the sun, such as a moon's. */
   sources?: readonly LightSource[]
-  /** Illuminance that is always there: the night sky's, a city's; > 0 [lx]. */
+  /** Illuminance that is always present, of the night sky or a city; > 0 [lx]. */
   floor?: number
 }
 
-/** Reflectance of what is looked at. */
-const REFLECTANCE = 0.2
+/** Mean reflectance of a scene. */
+const SCENE_REFLECTANCE = 0.2
 
-/** Illuminance that exposure 1 is for: full daylight [lx]. */
-const DAYLIGHT = 1e5
+/** Illuminance of exposure 1: full daylight [lx]. */
+const DAYLIGHT_ILLUMINANCE = 1e5
 
-/** Luminance under which the eye sees with its rods, and ever less [cd/m²]. */
-const SCOTOPIC = 0.01
+/** Luminance below which only rods see [cd/m²]. */
+const SCOTOPIC_LUMINANCE = 0.01
 
-/** Power of luminance by which pictures darken there. */
+/**
+ * Power of luminance by which pictures darken below {@link SCOTOPIC_LUMINANCE}, found by looking: 0 makes a
+ * moonless night as bright as a moonlit one, 0.6 leaves it black. Story: Day, Night.
+ */
 const SCOTOPIC_POWER = 0.3
 
 /** Illuminance by the bare sun above the Earth's air [lx]. */
@@ -37,31 +40,31 @@ const SUN_ILLUMINANCE = 132_000
 const _direction = new Vector3()
 
 /**
- * How bright a picture of a scene of some luminance should be: what the eye makes of it, once used to it.
+ * Key value of a scene: brightness of its picture for the luminance that the eye has adapted to.
  *
  * @see Krawczyk, Myszkowski & Seidel 2005, "Lightness perception in tone reproduction", eq. 11: the key
  *   falls from 0.7 in daylight to 0.03 where only rods see. Below 0.01 cd/m² the power of 0.3 is ours:
  *   a moonless night stays darker than one with a moon.
  */
-function keyOf(luminance: number): number {
+function keyValue(luminance: number): number {
   const key = 1.03 - 2 / (2 + Math.log10(luminance + 1))
-  return key * (luminance / (luminance + SCOTOPIC)) ** SCOTOPIC_POWER
+  return key * (luminance / (luminance + SCOTOPIC_LUMINANCE)) ** SCOTOPIC_POWER
 }
 
 /**
- * Exposure that suits an illuminance, falling steadily with it: 1 in full daylight (100 klx), 17,000 in
- * the light of a full moon, 1.1 million in a moonless night.
+ * Exposure for an illuminance, falling steadily with it: 1 in full daylight (100 klx), 17,000 by the light
+ * of a full moon, 1.1 million on a moonless night.
  *
- * @param illuminance - Of level ground, ≥ 0 [lx].
+ * @param illuminance - Illuminance of level ground, ≥ 0 [lx].
  * @throws If it is out of range.
  */
 export function exposureOfIlluminance(illuminance: number): number {
   checkNonNegative('exposureOfIlluminance', 'illuminance', illuminance)
   const exposure = (lux: number): number => {
-    const luminance = (lux * REFLECTANCE) / Math.PI
-    return keyOf(luminance) / luminance
+    const luminance = (lux * SCENE_REFLECTANCE) / Math.PI
+    return keyValue(luminance) / luminance
   }
-  return exposure(Math.max(illuminance, 1e-9)) / exposure(DAYLIGHT)
+  return exposure(Math.max(illuminance, 1e-9)) / exposure(DAYLIGHT_ILLUMINANCE)
 }
 
 /** @throws If an option is of the wrong kind or out of range. */
@@ -77,39 +80,39 @@ export function checkExposure(where: string, options: ExposureOptions = {}): Exp
   return options
 }
 
-/** Illuminance of level ground by a source at a zenith angle [lx]. */
+/** Illuminance of level ground by a light source [lx]. */
 function groundIlluminance(
   atmosphere: Atmosphere,
   source: LightSource,
   position: Vector3,
-  cosSun: number
+  cosLight: number
 ): number {
   const { parameters, tables } = atmosphere
   const irradiance = source.irradianceAt(position)
   if (tables.data === null) {
-    const elevation = Math.asin(clampCosine(cosSun)) * (180 / Math.PI)
+    const elevation = Math.asin(clampCosine(cosLight)) * (180 / Math.PI)
     const bySun = almanacIlluminance(elevation) - almanacIlluminance(-90)
     return bySun * (luminanceOf(parameters, irradiance) / SUN_ILLUMINANCE)
   }
-  const direct = sunTransmittance(parameters, parameters.bottomRadius, cosSun)
-  const diffuse = sampleDiffuseLight(tables.data, 0, cosSun)[6]
+  const direct = sunTransmittance(parameters, parameters.bottomRadius, cosLight)
+  const diffuse = sampleDiffuseLight(tables.data, 0, cosLight)[6]
   const values = irradiance.map(
-    (value, i) => value * (direct[i] * Math.max(cosSun, 0) + Math.max(diffuse[i], 0))
+    (value, i) => value * (direct[i] * Math.max(cosLight, 0) + Math.max(diffuse[i], 0))
   )
   return Math.max(luminanceOf(parameters, values), 0)
 }
 
 /**
- * Exposure for what a camera sees, day and night: a factor on daylight's that follows sun, moon and the
- * camera's place without a jump.
+ * Exposure for a camera, day and night: a factor on that of daylight, which follows sun, moon and the
+ * camera's position continuously.
  *
  * ```ts
  * atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera)
  * ```
  *
  * Put it into `luminanceScale` rather than `toneMappingExposure`: a night's luminance times 1e-4 is too
- * small a number for the half-float buffers that pictures are drawn to. What else shines in the scene
- * (emissive materials, lamps) must follow `luminanceScale` too.
+ * small for the half-float buffers that pictures are drawn to. Emissive materials and lamps in the scene
+ * must follow `luminanceScale` too.
  *
  * From the illuminance E of level ground, the scene's luminance L = 0.2 E/π gives the exposure key(L)/L.
  * It does not bring all scenes to one brightness: dusk is darker than day, and a moonless night darker
@@ -134,12 +137,12 @@ export function exposureFor(
   const up = space.position(position, new Vector3())
   const radius = Math.max(up.length(), parameters.bottomRadius)
   up.normalize()
-  const reach = Math.acos(parameters.bottomRadius / radius) / 2
+  const halfHorizon = Math.acos(parameters.bottomRadius / radius) / 2
   const illuminances = [atmosphere.sun, ...sources].map(source => {
     const direction = space.direction(source.direction(_direction, position), new Vector3())
     const zenithAngle = Math.acos(clampCosine(up.dot(direction)))
-    const cosSun = Math.cos(Math.max(zenithAngle - reach, 0))
-    return groundIlluminance(atmosphere, source, position, cosSun)
+    const cosLight = Math.cos(Math.max(zenithAngle - halfHorizon, 0))
+    return groundIlluminance(atmosphere, source, position, cosLight)
   })
   return exposureOfIlluminance(illuminances.reduce((sum, value) => sum + value, floor))
 }

@@ -8,16 +8,16 @@ import type { Bool, Float } from '../tsl-types'
 
 /** Options of {@link DistanceFog}. */
 export interface DistanceFogOptions {
-  /** Of three's `FogExp2`: what is at 1/density has e⁻¹ of its light left, ≥ 0 [1/m]. */
+  /** Density as in three's `FogExp2`: at distance 1/density e⁻¹ of the light is left; in [0, 100] [1/m]. */
   density?: number
   /** Altitudes of the camera between which the fog fades away, rising [m]. */
   fade?: readonly [number, number]
 }
 
 /**
- * Fog by distance alone, exp(−(density × distance)²) as three's `FogExp2`, in the light of the sky: what is
- * far away takes the colour that the sky has behind it at the horizon, and so vanishes into it at any time
- * of the day. It hides where a scene ends. The sky itself stays clear.
+ * Fog by distance alone, exp(−(density × distance)²) as three's `FogExp2`, in the colour of the sky: far
+ * objects take the colour of the horizon behind them and vanish into it at any time of day. It hides the
+ * end of a scene. The sky itself stays clear.
  *
  * ```ts
  * atmosphere.add(distanceFog({ density: 1 / 4000 }))
@@ -84,13 +84,13 @@ export class DistanceFog implements SkyLayer {
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = view.air
       const { eye, source } = view
-      // The same azimuth, a little above the horizon where the way leads lower.
-      const cosRaised = cosView.max(eye.cosHorizon.add(CLEARANCE)).min(1).toConst() as Float
+      // The same azimuth, raised to just above the horizon if the ray is lower.
+      const cosRaised = cosView.max(eye.cosHorizon.add(HORIZON_MARGIN)).min(1).toConst() as Float
       const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
-      const turned = sine(cosRaised).div(sine(cosView).max(1e-4))
+      const scale = sine(cosRaised).div(sine(cosView).max(1e-4))
       const cosRaisedSun = cosRaised
         .mul(eye.cosSun)
-        .add(cosViewSun.sub(cosView.mul(eye.cosSun)).mul(turned))
+        .add(cosViewSun.sub(cosView.mul(eye.cosSun)).mul(scale))
         .clamp(-1, 1)
         .toConst() as Float
       const isGround = float(0).greaterThan(1) as Bool
@@ -112,8 +112,8 @@ export class DistanceFog implements SkyLayer {
   }
 }
 
-/** Sine of an angle above the horizon, about that of a pixel. */
-const CLEARANCE = 1e-3
+/** Sine of an angle above the horizon, about a pixel. */
+const HORIZON_MARGIN = 1e-3
 
 /** Fog by distance alone: see {@link DistanceFog}. */
 export const distanceFog = (options?: DistanceFogOptions): DistanceFog => new DistanceFog(options)

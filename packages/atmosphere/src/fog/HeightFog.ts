@@ -17,17 +17,17 @@ import type { Float, Vec4 } from '../tsl-types'
 
 /** Options of {@link HeightFog}. */
 export interface HeightFogOptions {
-  /** Extinction at the base, ≥ 0 [1/m]. 4 over it is about how far one sees. */
+  /** Extinction at the base, ≥ 0 [1/m]. Visibility is about 4/density. */
   density?: number
   /** Altitude over which the density falls to 1/e, in [0.1, 1e5] [m]. */
   falloff?: number
   /** Altitude at which the fog has its density: the valley's floor [m]. */
   base?: number
-  /** Part of the light that droplets scatter rather than absorb, at the four wavelengths, in [0, 1]. */
+  /** Single-scattering albedo of the droplets at the four wavelengths, in [0, 1]. */
   albedo?: Spectrum
-  /** g of the droplets' phase function, in [0, 0.95]. */
+  /** Asymmetry g of the droplets' phase function, in [0, 0.95]. */
   asymmetry?: number
-  /** What lights it besides the sun: the moon's `source`. */
+  /** Light sources besides the sun, such as the moon's `source`. */
   sources?: readonly LightSource[]
   /** Altitudes of the camera between which the fog fades away, rising [m]. */
   fade?: readonly [number, number]
@@ -37,19 +37,19 @@ export interface HeightFogOptions {
 const SETTINGS = ['density', 'falloff', 'base', 'albedo', 'asymmetry', 'fade'] as const
 
 /**
- * Ground fog: mist whose density falls off exponentially with altitude, over and in the haze, in front of
+ * Height fog: mist with a density that falls off exponentially with altitude, in the haze and in front of
  * the sky too.
  *
  * ```ts
  * atmosphere.add(heightFog({ base: 280, falloff: 40, density: 0.01 }))
  * ```
  *
- * Its optical depth has a closed form on the round planet, so nothing is marched and there are no bands.
- * The same sun and sky light it: the sun dimmed by the air and by the fog above, once by the droplets' phase
- * function and again by Eddington's solution for what is scattered more often; and the diffuse light of
- * the tables. It casts no shadow on what is in it: light on surfaces stays as it was.
+ * Its optical depth has a closed form on the round planet: nothing is marched, and there are no bands. Sun
+ * and sky light it: sunlight dimmed by the air and the fog above, scattered once by the droplets' phase
+ * function and more often by Eddington's solution; and the diffuse light of the tables. It does not dim
+ * the light on surfaces.
  *
- * The fog is everywhere on the planet, so that it fades out as the camera climbs.
+ * The fog covers the whole planet, and fades out as the camera climbs.
  */
 export class HeightFog implements SkyLayer {
   declare density: number
@@ -63,7 +63,7 @@ export class HeightFog implements SkyLayer {
   readonly #height = number(0)
   readonly #asymmetry = number(0)
   readonly #albedo = uniform(new Vector4()).setGroup(renderGroup)
-  readonly #lamps: readonly Lamp[]
+  readonly #lights: readonly FogLight[]
   #options: Required<HeightFogOptions>
   #version = 0
 
@@ -83,9 +83,9 @@ export class HeightFog implements SkyLayer {
   /** @throws If an option is out of range. */
   constructor(options: HeightFogOptions = {}) {
     this.#options = checked(DEFAULTS, options)
-    this.#lamps = this.#options.sources.map(source => ({
+    this.#lights = this.#options.sources.map(source => ({
       source,
-      direction: uniform(new Vector3()).setGroup(renderGroup),
+      directionMapped: uniform(new Vector3()).setGroup(renderGroup),
       irradiance: uniform(new Vector4()).setGroup(renderGroup)
     }))
   }
@@ -101,7 +101,7 @@ export class HeightFog implements SkyLayer {
   }
 
   /**
-   * Changes some settings, of which `sources` are fixed; nothing is compiled.
+   * Changes settings other than `sources`; no shader is compiled.
    *
    * @throws If one is unknown or out of range; then nothing has changed.
    */
@@ -120,14 +120,14 @@ export class HeightFog implements SkyLayer {
     const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
     this.#density.value = density * (1 - x * x * (3 - 2 * x))
     this.#falloff.value = falloff
-    // In float64: in a shader a camera high above sea level has no millimetres.
+    // In float64: float32 of a camera high above sea level has no millimetres.
     this.#height.value = view.height - base
     this.#asymmetry.value = asymmetry
     this.#albedo.value.set(...albedo)
     _position.setFromMatrixPosition(view.camera.matrixWorld)
-    for (const { source, direction, irradiance } of this.#lamps) {
+    for (const { source, directionMapped, irradiance } of this.#lights) {
       source.direction(_direction, _position)
-      view.atmosphere.space.direction(_direction, direction.value)
+      view.atmosphere.space.direction(_direction, directionMapped.value)
       irradiance.value.set(...source.irradianceAt(_position))
     }
   }
@@ -145,73 +145,80 @@ export class HeightFog implements SkyLayer {
       const fog = fogDepth(layer, this.#height, radius, line.cosView, distance)
       const through = exp(fog.depth.negate()).toConst()
 
-      // Where half of what shows of the fog is passed, for an altitude that changes evenly.
-      const shown = fog.depth.min(1).mul(0.5)
-      const near = fog.start.min(HIGH).toConst()
+      // Point behind half of the fog's visible depth, as if altitude changed linearly along the ray.
+      const visible = fog.depth.min(1).mul(0.5)
+      const near = fog.start.min(MAX_ALTITUDE).toConst()
       const here = this.#density.mul(near.negate().exp()).max(1e-30).toConst()
-      const growth = shown.mul(fog.fall).div(here).clamp(-0.99, 1e20).toConst()
-      const isEven = growth.abs().lessThan(1e-3)
-      const factor = isEven.select(growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
-      const inFog = shown.div(here).mul(factor).toConst()
+      const growth = visible.mul(fog.fall).div(here).clamp(-0.99, 1e20).toConst()
+      const isLevel = growth.abs().lessThan(1e-3)
+      const factor = isLevel.select(growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
+      const inFog = visible.div(here).mul(factor).toConst()
       const above = fog.start.sub(near).div(fog.fall.max(1e-7))
-      const reach = inFog.add(above).clamp(0, distance).toConst() as Float
-      const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, HIGH).toConst() as Float
+      const middleDistance = inFog.add(above).clamp(0, distance).toConst() as Float
+      const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, MAX_ALTITUDE).toConst() as Float
 
-      // The air in front of that and its light; fog dims the rest.
+      // The light of the air in front of that point stays; fog dims the rest.
       const { volume } = line.view
       const { cosView, cosViewSun } = line
-      const ahead = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, reach)
+      const ahead = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, middleDistance)
       const front = ahead.radiance.mul(source.irradiance).min(air.light).toConst()
-      const place = { line, radius, middle }
-      let own = this.#light(place, eye.cosSun, cosViewSun).mul(source.irradiance)
-      for (const { direction, irradiance } of this.#lamps) {
-        const cosLamp = line.view.up.dot(direction).clamp(-1, 1).toConst() as Float
-        const cosViewLamp = line.direction.dot(direction).clamp(-1, 1).toConst() as Float
-        own = own.add(this.#light(place, cosLamp, cosViewLamp).mul(irradiance))
+      const sample = { line, radius, middle }
+      let inScatter = this.#light(sample, eye.cosSun, cosViewSun).mul(source.irradiance)
+      for (const { directionMapped, irradiance } of this.#lights) {
+        const cosLight = line.view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
+        const cosViewLight = line.direction.dot(directionMapped).clamp(-1, 1).toConst() as Float
+        inScatter = inScatter.add(this.#light(sample, cosLight, cosViewLight).mul(irradiance))
       }
-      own = own.mul(this.#albedo).mul(through.oneMinus()).mul(ahead.depth.negate().exp())
-      light.assign(air.light.sub(front).mul(through).add(front).add(own))
+      inScatter = inScatter
+        .mul(this.#albedo)
+        .mul(through.oneMinus())
+        .mul(ahead.depth.negate().exp())
+      light.assign(air.light.sub(front).mul(through).add(front).add(inScatter))
       depth.addAssign(fog.depth)
     })
     return { depth: depth, light: light }
   }
 
-  /** Sunlight that fog scatters towards the eye, for all of it at one altitude [1/sr]. */
-  #light({ line, radius, middle }: FogPlace, cosSun: Float, cosViewSun: Float): Vec4 {
+  /** Light of a source that fog scatters to the camera, as if all of it were at one point [1/sr]. */
+  #light({ line, radius, middle }: FogSample, cosLight: Float, cosViewLight: Float): Vec4 {
     const { view, cosView } = line
     const { air } = view
     const { uniforms } = air
     const rise = middle.mul(this.#falloff).sub(this.#height)
     const altitude = view.height.add(rise).clamp(0, uniforms.thickness).toConst() as Float
-    // Depths by similarity: light that droplets deflect a little counts as not scattered.
+    // Similarity: forward-scattered light counts as not scattered.
     const vertical = this.#density.mul(this.#falloff).mul(this.#asymmetry.oneMinus()).toConst()
     const above = vertical.mul(middle.negate().exp()).toConst() as Float
-    const whole = above.max(vertical).toConst() as Float
-    const slant = airMass(radius.div(this.#falloff), cosSun.max(0))
+    const total = above.max(vertical).toConst() as Float
+    const slant = airMass(radius.div(this.#falloff), cosLight.max(0))
     const cosSlant = slant.reciprocal().toConst() as Float
-    const once = henyeyGreenstein(cosViewSun, this.#asymmetry).mul(above.mul(slant).negate().exp())
-    const often = multipleScattering(above, whole, cosSlant)
-    const sun = sunTransmittance(uniforms, air.transmittance, altitude, cosSun).mul(once.add(often))
-    const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosSun)
-    const basis = momentBasis(cosView, cosSun, cosViewSun)
+    const once = henyeyGreenstein(cosViewLight, this.#asymmetry).mul(
+      above.mul(slant).negate().exp()
+    )
+    const often = multipleScattering(above, total, cosSlant)
+    const sun = sunTransmittance(uniforms, air.transmittance, altitude, cosLight).mul(
+      once.add(often)
+    )
+    const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
+    const basis = momentBasis(cosView, cosLight, cosViewLight)
     const asymmetry = vec4(this.#asymmetry)
     const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry))
     return sun.add(sky.max(0).div(RADIANCE_SCALE))
   }
 }
 
-/** A source besides the sun, as seen from the camera. */
-interface Lamp {
+/** Light source besides the sun, for the camera that renders. */
+interface FogLight {
   source: LightSource
-  /** In the mapped space. */
-  direction: UniformNode<'vec3', Vector3>
+  /** Direction to the source, mapped space, unit length. */
+  directionMapped: UniformNode<'vec3', Vector3>
   irradiance: UniformNode<'vec4', Vector4>
 }
 
-/** Where on a line fog is lit. */
-interface FogPlace {
+/** Point that stands for all fog on a view ray. */
+interface FogSample {
   line: Sightline
-  /** Planet's centre to the eye [m]. */
+  /** Planet's centre to the camera [m]. */
   radius: Float
   /** Altitude above the base, in falloff heights. */
   middle: Float
@@ -227,15 +234,15 @@ const DEFAULTS: Required<HeightFogOptions> = {
   fade: [5000, 15_000]
 }
 
-/** Altitude in falloff heights above which there is as good as no fog. */
-const HIGH = 40
+/** Altitude above which fog is negligible, in falloff heights. */
+const MAX_ALTITUDE = 40
 
 const _position = new Vector3()
 const _direction = new Vector3()
 
 const number = (value: number) => uniform(value).setGroup(renderGroup)
 
-/** Options with defaults; those that are undefined stay as they are. */
+/** Checked options; undefined ones stay as they were. */
 function checked(
   before: Required<HeightFogOptions>,
   given: HeightFogOptions
@@ -252,5 +259,5 @@ function checked(
   return { ...options, albedo: [...albedo], sources: [...sources], fade: [...fade] }
 }
 
-/** Ground fog: see {@link HeightFog}. */
+/** Height fog: see {@link HeightFog}. */
 export const heightFog = (options?: HeightFogOptions): HeightFog => new HeightFog(options)

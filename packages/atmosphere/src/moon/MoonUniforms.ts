@@ -29,9 +29,9 @@ export interface MoonState {
   directionWorld: Vector3
   /** [rad] */
   angularRadius: number
-  /** Of the moon [m]. */
+  /** Radius of the moon [m]. */
   radius: number
-  /** Factor on its light. */
+  /** Factor on the moon's light. */
   strength: number
   /** Irradiance at the camera above the air, over that of the bare sun. */
   irradiance: Spectrum

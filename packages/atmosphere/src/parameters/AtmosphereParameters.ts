@@ -11,11 +11,11 @@ export type SpectralMatrix = readonly [Spectrum, Spectrum, Spectrum]
 export type ScaleHeightLayers = readonly (readonly [baseAltitude: number, scaleHeight: number])[]
 
 /**
- * What an atmosphere is made of, as plain numbers in SI units; spectra have four values.
+ * Composition of an atmosphere as plain numbers in SI units; spectra have four values.
  *
- * Molecules and aerosols thin out exponentially (molecules layer by layer, if there are
- * {@link AtmosphereParametersInit.rayleighLayers}), an absorber (on Earth ozone) has the profile of a
- * tent, the ground is Lambertian.
+ * The density of molecules and aerosols falls off exponentially (that of molecules layer by layer, with
+ * {@link AtmosphereParametersInit.rayleighLayers}); the absorber, ozone on Earth, has a tent-shaped
+ * profile; the ground is Lambertian.
  */
 export interface AtmosphereParametersFields {
   /** The four wavelengths [nm]. */
@@ -24,7 +24,7 @@ export interface AtmosphereParametersFields {
   solarIrradiance?: Spectrum
   /** Angular radius of the sun's disc, in (0, 0.2] [rad]. */
   sunAngularRadius?: number
-  /** Darkening u of the sun's limb, I(ρ) ∝ 1 − u (1 − √(1 − ρ²)), in [0, 1]. */
+  /** Limb darkening u of the sun, I(ρ) ∝ 1 − u (1 − √(1 − ρ²)), in [0, 1]. */
   limbDarkening?: Spectrum
   /** Planet's centre to the ground: radius of the sphere that the ellipsoid is mapped to [m]. */
   bottomRadius?: number
@@ -37,11 +37,11 @@ export interface AtmosphereParametersFields {
   topRadius?: number
   /** Scattering by molecules at the ground [1/m]. */
   rayleighScattering?: Spectrum
-  /** Height over which molecules thin out by a factor e; in the lowest layer, if there are more [m]. */
+  /** Scale height of molecules, in the lowest layer if there are more [m]. */
   rayleighScaleHeight?: number
   /**
-   * Layers above the lowest, in which molecules thin out by a factor e over other heights: at most
-   * three, from the ground up; base altitudes and scale heights in [1, 1e6] [m]. By default none.
+   * Layers above the lowest with other scale heights of molecules: at most three, from the ground up; base
+   * altitudes and scale heights in [1, 1e6] [m]. By default none.
    *
    * `standardEarthParameters()` has those of the U.S. Standard Atmosphere 1976.
    */
@@ -50,20 +50,20 @@ export interface AtmosphereParametersFields {
   mieScattering?: Spectrum
   /** Extinction (scattering and absorption) by aerosols at the ground [1/m]. */
   mieExtinction?: Spectrum
-  /** Height over which aerosols thin out by a factor e [m]. */
+  /** Scale height of aerosols [m]. */
   mieScaleHeight?: number
   /** Asymmetry g of the aerosols' Cornette–Shanks phase function, in (−1, 1); one, or per wavelength. */
   mieAsymmetry?: number | Spectrum
-  /** Absorption by the tent-shaped layer where it is densest [1/m]. */
+  /** Absorption coefficient in the middle of the tent-shaped layer [1/m]. */
   absorptionExtinction?: Spectrum
-  /** Altitude at which that layer is densest [m]. */
+  /** Altitude of that layer's middle [m]. */
   absorptionAltitude?: number
-  /** Distance above and below over which it thins out linearly to nothing [m]. */
+  /** Half width of that layer, over which density falls linearly to 0 above and below [m]. */
   absorptionHalfWidth?: number
-  /** Part of the light that the ground reflects, in [0, 1]. */
+  /** Albedo of the ground, in [0, 1]. */
   groundAlbedo?: Spectrum
   /**
-   * Turns spectral radiance at the four wavelengths into CIE 1931 XYZ
+   * Matrix from spectral radiance at the four wavelengths to CIE 1931 XYZ
    * [683⁻¹ cd/m² per W/m²/sr/nm].
    *
    * Fitted by `packages/atmosphere/scripts/fit-color.ts` to a solution at 35 wavelengths. Skies that
@@ -87,21 +87,21 @@ export interface AtmosphereParametersInit extends AtmosphereParametersFields {
 
 type Fields = Required<AtmosphereParametersFields>
 
-/** Air at sea level scatters this over λ⁴, λ in µm [µm⁴/m]. Bruneton 2017, after Penndorf 1957. */
+/** Rayleigh scattering of air at sea level times λ⁴ [µm⁴/m]. @see Bruneton 2017, after Penndorf 1957 */
 const RAYLEIGH_COEFFICIENT = 1.24062e-6
 
 /** Molecules in a column of one Dobson unit [1/m²]. */
 const DOBSON_UNIT = 2.687e20
 
-/** Cross-section of ozone at 440, 520, 560, 630 nm; 233 K, averaged over 10 nm [m²]. IUP Bremen. */
+/** Cross-section of ozone at 440, 520, 560, 630 nm; 233 K, averaged over 10 nm [m²]. @see IUP Bremen */
 const OZONE_CROSS_SECTION: Spectrum = [1.582e-26, 2.139e-25, 4.266e-25, 3.215e-25]
 
-/** Extinction by the clear air's aerosols at the ground [1/m]: optical depth 5.328e-3 to the zenith. */
+/** Extinction by the aerosols of clear air at the ground [1/m]: optical depth 5.328e-3 to the zenith. */
 const CLEAR_AEROSOL_EXTINCTION = 5.328e-3 / 1200
 
 const all = (value: number): Spectrum => [value, value, value, value]
 
-/** Four numbers from one that stands for all, or from four. */
+/** Spectrum of a constant, or the spectrum itself. */
 export const spectrumOf = (value: number | Spectrum): Spectrum =>
   typeof value === 'number' ? all(value) : value
 
@@ -118,7 +118,7 @@ const OZONE_HALF_WIDTH = 15_000
 const earthOzone = (dobsonUnits: number): Spectrum =>
   map(OZONE_CROSS_SECTION, area => (area * dobsonUnits * DOBSON_UNIT) / OZONE_HALF_WIDTH)
 
-/** The Earth's value of every field, and the least and most that its numbers may be. */
+/** Default of every field, the Earth's, and the range of its numbers. */
 const FIELDS: {
   readonly [Name in keyof Fields]: readonly [earth: Fields[Name], least: number, most: number]
 } = {
@@ -188,7 +188,7 @@ function check(name: string, value: unknown, min: number, max: number): void {
   }
 }
 
-/** A checked copy of a field's value, which must have the shape of the Earth's. */
+/** Checked copy of a field's value, which must have the shape of the Earth's. */
 function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: number): T {
   if (!Array.isArray(earth)) {
     check(name, value, least, most)
@@ -201,8 +201,8 @@ function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: n
 }
 
 /**
- * What an atmosphere is made of. Fields are read only; {@link set} replaces some and counts `version` up,
- * so that tables made from them know that they are stale.
+ * Composition of an atmosphere. Fields are immutable; {@link set} replaces some and counts `version` up, so
+ * that tables made from them are known to be stale.
  *
  * ```ts
  * const parameters = new AtmosphereParameters({ turbidity: 4, ozone: 280 })
@@ -242,12 +242,12 @@ export class AtmosphereParameters {
     this.#version = 0
   }
 
-  /** Counts the calls of {@link set}. */
+  /** Number of calls of {@link set}. */
   get version(): number {
     return this.#version
   }
 
-  /** Whether there is no air: nothing that scatters or absorbs light. */
+  /** True if nothing scatters or absorbs light. */
   get isAirless(): boolean {
     const { rayleighScattering, mieExtinction, absorptionExtinction } = this
     return [rayleighScattering, mieExtinction, absorptionExtinction].every(spectrum =>
@@ -256,7 +256,7 @@ export class AtmosphereParameters {
   }
 
   /**
-   * Replaces fields. Whoever holds tables made from these parameters re-bakes them.
+   * Replaces fields. Tables made from these parameters are baked again.
    *
    * @param init - The fields to replace; arrays are copied, undefined changes nothing.
    * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
@@ -302,7 +302,7 @@ export class AtmosphereParameters {
     return this
   }
 
-  /** A copy that shares nothing with this one. */
+  /** Independent copy. */
   clone(): AtmosphereParameters {
     return new AtmosphereParameters(this)
   }

@@ -5,7 +5,11 @@ import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 const map = (values: Spectrum, f: (value: number, i: number) => number): Spectrum =>
   values.map(f) as unknown as Spectrum
 
-/** The Earth's numbers that other planets share: wavelengths, and the sun at one astronomical unit. */
+/**
+ * Wavelengths and sunlight at a distance from the sun.
+ *
+ * @param distance - [astronomical units].
+ */
 function sunAt(distance: number) {
   const { wavelengths, solarIrradiance, sunAngularRadius, limbDarkening } =
     new AtmosphereParameters()
@@ -20,10 +24,10 @@ function sunAt(distance: number) {
 /**
  * Rayleigh scattering of a gas [1/m].
  *
- * @param density - Molecules at the ground [1/m³].
- * @param crossSection - Of a molecule at 532.2 nm [m²].
+ * @param density - Number density of molecules at the ground [1/m³].
+ * @param crossSection - Cross-section of a molecule at 532.2 nm [m²], taken as λ⁻⁴ at other wavelengths.
  * @see Sneep & Ubachs 2005, "Direct measurement of the Rayleigh scattering cross section in various
- * gases", JQSRT 92: CO₂ 12.4e-31, N₂ 5.10e-31 m². Taken as λ⁻⁴ about it.
+ * gases", JQSRT 92: CO₂ 12.4e-31, N₂ 5.10e-31 m²
  */
 const rayleigh = (wavelengths: Spectrum, density: number, crossSection: number): Spectrum =>
   map(wavelengths, nm => density * crossSection * (532.2 / nm) ** 4)
@@ -51,14 +55,14 @@ const MARS_DUST = {
 }
 
 /**
- * Mars: thin carbon dioxide, full of dust that absorbs blue light and throws what it scatters of it
- * closer to the sun than red. So the sky is butterscotch by day and blue around the setting sun.
+ * Mars: thin carbon dioxide full of dust, which absorbs blue light and scatters it closer to the sun than
+ * red. The sky is butterscotch by day and blue around the setting sun.
  *
  * Gas: 610 Pa at 210 K (2.1e23 molecules/m³), scale height 11.1 km, in which the dust is mixed evenly
  * (Conrath 1975 near the ground). Ground: mean of bright and dark regions after Bell et al. 1997
  * (JGR 102, "Mars surface mineralogy from HST").
  *
- * @param options - `dust`: its optical depth to the zenith at 630 nm, in [0, 10]: 0.3 to 0.6 on clear
+ * @param options - `dust`: optical depth of dust to the zenith at 630 nm, in [0, 10]: 0.3 to 0.6 on clear
  *   days (default 0.5), several in a dust storm.
  * @throws If it is out of its range.
  */
@@ -86,8 +90,8 @@ export function marsParameters(options: { dust?: number } = {}): AtmosphereParam
 }
 
 /**
- * Venus above its clouds: the ground is the cloud deck at 65 km, which is what is seen of the planet
- * from outside; what lies beneath is not modelled.
+ * Venus above its clouds: the ground is the cloud deck at 65 km, the planet's visible surface; the air
+ * beneath is not modelled.
  *
  * Gas at 65 km: 97.7 hPa, 243 K, scale height 5.2 km (VIRA, Seiff et al. 1985). Haze of sulphuric acid
  * droplets: scale height 4 km and optical depth 3 above the deck (Ignatiev et al. 2009, JGR 114:
@@ -119,8 +123,8 @@ export function venusParameters(): AtmosphereParameters {
  * Haze: optical depth to the zenith from the sum of the three layers of Tomasko et al. 2008 ("A model
  * of Titan's aerosols based on measurements made inside the atmosphere", PSS 56), in one layer of scale
  * height 80 km; single-scattering albedo and asymmetry near theirs. Gas: 1467 hPa at 93.7 K (Fulchignoni
- * et al. 2005), scale height 20 km. So thick a haze scatters light more often than the tables follow;
- * beyond five times they extrapolate.
+ * et al. 2005), scale height 20 km. Light is scattered more than the five times that the tables solve
+ * for; they extrapolate the rest.
  */
 export function titanParameters(): AtmosphereParameters {
   const sun = sunAt(9.58)
@@ -143,8 +147,8 @@ export function titanParameters(): AtmosphereParameters {
 }
 
 /**
- * A body without air: black sky, sunlight as it comes. By default the Moon, whose normal albedo is
- * after Velikodsky et al. 2011 (Icarus 214).
+ * Body without air: a black sky and unfiltered sunlight. By default the Moon, with the normal albedo of
+ * Velikodsky et al. 2011 (Icarus 214).
  *
  * @param options - `radius` [m]; `groundAlbedo`; `distance` to the sun [astronomical units].
  * @throws If a number is out of its range.

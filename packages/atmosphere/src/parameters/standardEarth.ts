@@ -5,12 +5,13 @@ import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 const map = (values: Spectrum, f: (value: number) => number): Spectrum =>
   values.map(f) as unknown as Spectrum
 
-/** Molecules in air of 288.15 K and 1013.25 hPa [1/m³]. U.S. Standard Atmosphere 1976. */
+/** Number density of air at 288.15 K and 1013.25 hPa [1/m³]. @see U.S. Standard Atmosphere 1976 */
 const MOLECULES_AT_SEA_LEVEL = 2.5469e25
 
 /**
- * Cross-section of a molecule of air with 360 ppm CO₂, wavelength in nm [m²].
+ * Rayleigh cross-section of a molecule of air with 360 ppm CO₂ [m²].
  *
+ * @param nanometres - Wavelength [nm].
  * @see Bodhaine et al. 1999, "On Rayleigh optical depth calculations", J. Atmos. Oceanic Technol. 16,
  *   eq. 29: within 0.01 % of their theory from 250 to 850 nm
  */
@@ -20,13 +21,13 @@ export function rayleighCrossSection(nanometres: number): number {
   return (1e-32 * above) / (1 + 0.0027059889 / square - 85.968563 * square)
 }
 
-/** Ångström exponent: optical depth of aerosols goes as λ^−1.3. Ångström 1964, Tellus 16. */
+/** Ångström exponent: optical depth of aerosols is proportional to λ^−1.3. @see Ångström 1964, Tellus 16 */
 export const ANGSTROM_EXPONENT = 1.3
 
 /**
- * The Earth's air as it is on a usual clear day: what twilight takes, whose light comes from high up.
+ * Earth's air on an average clear day, for realistic brightness in daylight and twilight.
  *
- * Molecules thin out as in the U.S. Standard Atmosphere 1976, in four layers whose density is within
+ * The density of molecules is that of the U.S. Standard Atmosphere 1976, in four layers within
  * 3.5 % of its tables up to 60 km, 7 % to 90 km and 20 % at the top, 100 km; their optical depth is
  * 0.0969 at 550 nm (Bodhaine et al. 1999: 0.0971), where the default's is 0.1085. Aerosols have the
  * single-scattering albedo 0.925 and mean cosine of scattering 0.703 of average continental ones at
@@ -35,8 +36,8 @@ export const ANGSTROM_EXPONENT = 1.3
  * 25 %, wherever the sun stands from the zenith to 12° below the horizon, the night sky's light added;
  * with 0.05 it is up to 33 % brighter.
  *
- * @param options - `aerosolOpticalDepth`: of aerosols, to the zenith at 550 nm, in [0, 5]; by default
- *   0.12, the world's mean (Kinne et al. 2006, Atmos. Chem. Phys. 6: models 0.11 to 0.14); 0.05 is very
+ * @param options - `aerosolOpticalDepth`: optical depth of aerosols to the zenith at 550 nm, in [0, 5]; by
+ *   default 0.12, the global mean (Kinne et al. 2006, Atmos. Chem. Phys. 6: models 0.11 to 0.14); 0.05 is very
  *   clear, 0.4 hazy. `ozone` in [0, 1000] [Dobson units], default 300.
  * @throws If a number is out of its range.
  */
@@ -59,7 +60,7 @@ export function standardEarthParameters(
   return new AtmosphereParameters({
     topRadius: bottomRadius + 100_000,
     rayleighScattering: map(wavelengths, nm => MOLECULES_AT_SEA_LEVEL * rayleighCrossSection(nm)),
-    // Troposphere; stratosphere; its warm upper part and what is above; the cold top.
+    // Troposphere, stratosphere, stratopause and above, mesopause.
     rayleighScaleHeight: 9570,
     rayleighLayers: [
       [9800, 6420],

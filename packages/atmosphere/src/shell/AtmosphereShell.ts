@@ -1,17 +1,5 @@
-import {
-  BackSide,
-  CustomBlending,
-  IcosahedronGeometry,
-  Matrix3,
-  Matrix4,
-  Mesh,
-  OneFactor,
-  OneMinusSrcAlphaFactor,
-  Plane,
-  Vector2,
-  Vector3
-} from 'three'
-import type { Camera, DirectionalLight, Light, PointLight, BufferGeometry } from 'three'
+import { BackSide, CustomBlending, Mesh, OneFactor, OneMinusSrcAlphaFactor, Vector3 } from 'three'
+import type { BufferGeometry, Camera } from 'three'
 import {
   If,
   cameraProjectionMatrix,
@@ -21,7 +9,7 @@ import {
   uniform,
   vec4
 } from 'three/tsl'
-import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
+import { NodeMaterial } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
 import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
@@ -29,110 +17,68 @@ import { checkParameters, type AtmosphereParameters } from '../parameters/Atmosp
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
-import { sunWhite } from '../ground/cpu/reflectance'
 import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
+import { circumscribedSphere } from './circumscribedSphere'
+import { ShellNode } from './ShellNode'
+import { isAtmosphere, isShellSun, SHELL_SCALE, sunlightAt, type ShellSun } from './ShellSun'
+import { isOrthographic, ShellUniforms } from './ShellUniforms'
 import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from '../scattering/tsl/scattering'
-import { shellFragment, type ShellPlace, type Way } from './tsl/shell'
-import { tableShell, volumeShell, type Shell } from './tsl/shellMarch'
-import { singleScatteringShell } from './tsl/singleScattering'
-import type { Bool, Vec4 } from '../tsl-types'
-
-/** Where a shell's light comes from. */
-export type ShellSun = Atmosphere | DirectionalLight | PointLight | Vector3
+import { shellFragment } from './tsl/shell'
+import { marchedShellLight, sampledShellLight, type ShellLight } from './tsl/shellMarch'
+import { singleScatteringLight } from './tsl/singleScattering'
+import type { ViewSegment } from './tsl/viewSegment'
+import type { Bool } from '../tsl-types'
 
 /** Options of {@link AtmosphereShell}. */
 export interface AtmosphereShellOptions {
   /**
-   * The sun. An atmosphere's; or a light, whose colour and intensity then are those of the sun above the
-   * air; or a direction in world space, which may be changed in place. Default: (1, √2, 1).
+   * The sun: an atmosphere's; or a light, with the colour and intensity of sunlight above the air; or a
+   * direction in world space, which may be changed in place. Default: (1, √2, 1).
    */
   sun?: ShellSun
   /**
-   * `'tables'`, the default: all orders of scattering, from tables that are baked on first use, once for
-   * all shells of the same `parameters` object.
-   * `'single-scattering'`: sunlight scattered once, without any texture; skies are darker and bluer, and
-   * dark soon after sunset.
+   * Scattering model. `'tables'`, the default: all orders of scattering, from tables baked on first use,
+   * once for all shells of the same `parameters` object. `'single-scattering'`: sunlight scattered once,
+   * without any texture; skies are darker and bluer, and dark soon after sunset.
    */
   model?: 'tables' | 'single-scattering'
   /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
   luminanceScale?: number
 }
 
-/** Segments of the march on the tables, two points each. */
+/** Steps of the march on the tables, two points each. */
 const TABLE_STEPS = 8
 
 /**
- * Radii from which on the air is marched instead of read from a volume: a body that far off has few
- * pixels, and float32 no elevations for them in a volume.
+ * Height in radii of the body above which its air is marched instead of read from a volume: it covers few
+ * pixels, and float32 cannot tell a volume's elevations apart.
  */
-const FAR = 20
+const FAR_HEIGHT = 20
 
-/** Scale that the colour matrix is computed with; `tint` makes it any other. */
-const SCALE = 1e-4
+const _body = new Vector3()
+const _sunDirection = new Vector3()
 
-const _inverse = new Matrix4()
-const _point = new Vector3()
-const _other = new Vector3()
-const _size = new Vector2()
-
-/** A ball of triangles around the unit sphere: none of them cuts it. */
-function ballAround(radius: number): BufferGeometry {
-  const ball = new IcosahedronGeometry(1, 6)
-  const position = ball.getAttribute('position')
-  const plane = new Plane()
-  const corners = [new Vector3(), new Vector3(), new Vector3()] as const
-  let inner = 1
-  for (let i = 0; i < position.count; i += 3) {
-    corners.forEach((corner, k) => corner.fromBufferAttribute(position, i + k))
-    inner = Math.min(inner, Math.abs(plane.setFromCoplanarPoints(...corners).constant))
-  }
-  ball.deleteAttribute('normal')
-  ball.deleteAttribute('uv')
-  ball.scale(radius / inner, radius / inner, radius / inner)
-  return ball
-}
-
-const isAtmosphere = (sun: ShellSun): sun is Atmosphere => 'isAtmosphere' in sun
-const isLight = (sun: ShellSun): sun is DirectionalLight | PointLight =>
-  'isDirectionalLight' in sun || 'isPointLight' in sun
-
-/** Also of what only claims to be one. */
-function isSun(sun: ShellSun | null): boolean {
-  if (typeof sun !== 'object' || sun === null) return false
-  if (isAtmosphere(sun) || isLight(sun)) return true
-  if (!('isVector3' in sun)) return false
-  const length = sun.manhattanLength()
-  return length > 0 && length < Infinity
-}
-
-/** Follows body, camera and sun, and has tables and volumes baked, whenever its shell is drawn. */
-class ShellNode extends Node<'vec4'> {
-  static get type(): string {
-    return 'AtmosphereShellNode'
-  }
-
-  readonly #shell: AtmosphereShell
-  readonly #output: Vec4
-
-  constructor(shell: AtmosphereShell, output: Vec4) {
-    super('vec4')
-    this.#shell = shell
-    this.#output = output
-    this.updateBeforeType = NodeUpdateType.OBJECT
-  }
-
-  override updateBefore({ renderer, camera }: NodeFrame): undefined {
-    if (renderer === null) return
-    this.#shell.bake(renderer)
-    if (camera !== null) this.#shell.see(renderer, camera)
-  }
-
-  override setup(): Node {
-    return this.#output
-  }
+/** Material of a shell: premultiplied, transparent, back faces only. */
+function shellMaterial(): NodeMaterial {
+  const material = new NodeMaterial()
+  material.name = 'Welkin.AtmosphereShell'
+  material.side = BackSide
+  material.transparent = true
+  material.depthWrite = false
+  material.blending = CustomBlending
+  material.blendSrc = material.blendSrcAlpha = OneFactor
+  material.blendDst = material.blendDstAlpha = OneMinusSrcAlphaFactor
+  // The colour is premultiplied already: three would do it again.
+  material.premultipliedAlpha = false
+  material.fog = false
+  material.lights = false
+  // Fragments write the depth: neither plane of the frustum may clip the mesh.
+  const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
+  material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
+  return material
 }
 
 /**
@@ -143,51 +89,46 @@ class ShellNode extends Node<'vec4'> {
  * globe.add(new AtmosphereShell(new AtmosphereParameters(), 1, { sun: light }))
  * ```
  *
- * Seen from space it hazes the body and rims it, on the night side too; seen from inside it is the sky.
- * It follows its body, wherever that goes and however large it is, the camera and the sun by itself.
- * Works for perspective and orthographic cameras and every kind of depth buffer.
+ * Seen from space it is haze over the body and a rim of light around it, on the night side too; seen from
+ * inside it is the sky. It follows the body (of any size), the camera and the sun by itself, for
+ * perspective and orthographic cameras and every kind of depth buffer.
  *
- * The way through the air ends at the body's sphere, not at the scene's depth: what stands in front of
- * the middle of the way through the air (from outside, of the way to the ground or the lowest point), a
- * ship or a cockpit, is drawn without haze, and what is behind it with all of it; multisampling bares no
- * ground. One alpha dims all colours of what is behind alike.
+ * View rays end at the body's sphere, not at the scene's depth. Objects in front of the middle of a ray's
+ * part in the air, such as a ship or a cockpit, are drawn without haze, objects behind it with all of it.
+ * One alpha dims all colours of the background alike. Eclipses of its sun do not dim it.
  *
- * An eclipse of its sun does not dim it. That of a body without air is not `visible`, and draws nothing.
+ * A shell of a body without air is not `visible`, and draws nothing.
  *
- * It draws transparent, back faces only, premultiplied, writes no depth, and has `renderOrder` 1, after
- * a body's own transparent tiles. It casts no shadow and no ray hits it.
+ * The mesh is transparent and premultiplied, draws back faces only, writes no depth, and has `renderOrder`
+ * 1, after a body's own transparent tiles. It casts no shadow and raycasts miss it.
  */
 export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
-  /** What the air is made of; shared. Change it with `parameters.set(…)`. */
+  /** Parameters of the air, shared. Change them with `parameters.set(…)`. */
   readonly parameters: AtmosphereParameters
-  /** Of the body, in its own units. */
+  /** Radius of the body in its own units. */
   readonly bodyRadius: number
   #sun: ShellSun
   #luminanceScale: number
-  readonly #isSingle: boolean
-  /** An atmosphere that is its sun and of the same air: its tables serve the shell, too. */
+  /** See {@link AtmosphereShellOptions}. */
+  readonly model: 'tables' | 'single-scattering'
+  /** Atmosphere whose tables the shell shares: its sun, if it has the same parameters. */
   readonly #lender: Atmosphere | null
-  /** Those of all shells of its parameters, or the lender's; null before it is drawn, or if single. */
+  /** Tables of all shells of its parameters, or the lender's; null before drawing or without tables. */
   #tables: AtmosphereTables | null = null
-  /** Its own, of a few slots, whoever the tables are of: seen from its body the eye is elsewhere. */
+  /** Sky volumes of its own: relative to its body the camera is elsewhere than in the lender's. */
   #volumes: SkyVolumes | null = null
   #uniforms = new AtmosphereUniforms()
-  /** What the tables are taken for. */
+  /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
   readonly #eye = new EyeUniforms()
   readonly #isMarched = uniform(1)
   readonly #profile = new ProfileUniforms()
   #version = -1
-  readonly #height = uniform(0)
-  readonly #up = uniform(new Vector3())
-  readonly #sunDirection = uniform(new Vector3())
-  readonly #viewToMapped = uniform(new Matrix3())
-  readonly #tint = uniform(new Vector3(1, 1, 1))
-  readonly #pixel = uniform(new Vector2())
+  readonly #view = new ShellUniforms()
 
   /**
-   * @param parameters - What the air is made of. `bottomRadius` in metres is what `bodyRadius` stands for.
-   * @param bodyRadius - Of the body, in units of the object that the shell is added to.
+   * @param parameters - Parameters of the air, whose `bottomRadius` [m] corresponds to `bodyRadius`.
+   * @param bodyRadius - Radius of the body, in units of the object that the shell is added to.
    * @throws If an argument is missing or out of its range.
    */
   constructor(
@@ -202,12 +143,12 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const {
       sun = new Vector3(1, Math.SQRT2, 1),
       model = 'tables',
-      luminanceScale = SCALE
+      luminanceScale = SHELL_SCALE
     } = options
     checkChoice(where, 'model', model, ['tables', 'single-scattering'])
     super(
-      ballAround((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
-      new NodeMaterial()
+      circumscribedSphere((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
+      shellMaterial()
     )
     this.parameters = parameters
     this.bodyRadius = bodyRadius
@@ -217,35 +158,21 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.renderOrder = 1
     this.visible = !parameters.isAirless
 
-    this.#isSingle = model === 'single-scattering'
-    const lends = !this.#isSingle && isAtmosphere(sun) && sun.parameters === parameters
+    this.model = model
+    const lends = model === 'tables' && isAtmosphere(sun) && sun.parameters === parameters
     this.#lender = lends ? sun : null
-    const { material } = this
-    material.name = 'Welkin.AtmosphereShell'
-    material.side = BackSide
-    material.transparent = true
-    material.depthWrite = false
-    material.blending = CustomBlending
-    material.blendSrc = material.blendSrcAlpha = OneFactor
-    material.blendDst = material.blendDstAlpha = OneMinusSrcAlphaFactor
-    // The colour is premultiplied already: three would do it again.
-    material.premultipliedAlpha = false
-    material.fog = false
-    material.lights = false
-    // Its depth is written by the fragments: let neither plane of the frustum clip it.
-    const clip = cameraProjectionMatrix.mul(modelViewMatrix).mul(vec4(positionLocal, 1)).toVar()
-    material.vertexNode = vec4(clip.xy, clip.w.mul(0.5), clip.w)
   }
 
-  /** Draws with what a renderer has from now on. */
-  #take(renderer: Renderer): void {
+  /** Acquires tables and volumes of a renderer, and builds the material from them. */
+  #acquire(renderer: Renderer): void {
     if (renderer === this.#renderer) return
     checkRenderer('AtmosphereShell', renderer)
-    this.#giveBack()
+    this.#release()
     this.#renderer = renderer
-    const tables = this.#isSingle
-      ? null
-      : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
+    const tables =
+      this.model === 'single-scattering'
+        ? null
+        : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
     this.#tables = tables
     if (tables !== null) this.#uniforms = tables.uniforms
     const air: Air = {
@@ -253,14 +180,6 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       transmittance: (tables &&
         texture(tables.transmittance.target.texture)) as Air['transmittance'],
       diffuse: tables && texture(tables.diffuseLight.target.texture)
-    }
-    const place: ShellPlace = {
-      height: this.#height,
-      up: this.#up,
-      sunDirection: this.#sunDirection,
-      viewToMapped: this.#viewToMapped,
-      tint: this.#tint,
-      pixel: this.#pixel
     }
     this.#volumes =
       tables &&
@@ -270,13 +189,13 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         tables.diffuseLight.target,
         tables.volumes.segments
       )
-    const { color, depth } = shellFragment(air, place, this.#light(air, this.#volumes))
+    const { color, depth } = shellFragment(air, this.#view, this.#light(air, this.#volumes))
     this.material.fragmentNode = new ShellNode(this, color)
     this.material.depthNode = depth
     this.material.needsUpdate = true
   }
 
-  #giveBack(): void {
+  #release(): void {
     this.#volumes?.dispose()
     this.#volumes = null
     if (this.#renderer === null || this.#tables === null) return
@@ -284,39 +203,40 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#tables = null
   }
 
-  /** Comes before what its material is compiled from is looked at. */
+  /** Acquires tables before three looks at the material. */
   override onBeforeRender(renderer: unknown): void {
-    this.#take(renderer as Renderer)
+    this.#acquire(renderer as Renderer)
   }
 
-  #light(air: Air, volumes: SkyVolumes | null): (way: Way) => Shell {
-    if (volumes === null) return way => singleScatteringShell(air, this.#profile, way)
+  /** Light of a segment: from the sky volume, marched on the tables, or scattered once. */
+  #light(air: Air, volumes: SkyVolumes | null): (segment: ViewSegment) => ShellLight {
+    if (volumes === null) return segment => singleScatteringLight(air, this.#profile, segment)
     const [molecular, aerosol] = volumes.light.textures.map(part => texture(part))
     const textures = { molecular, aerosol, depth: texture(volumes.depth.texture) }
     const isMarched = this.#isMarched.greaterThan(0) as Bool
-    return way => {
+    return segment => {
       const radiance = vec4(0).toVar()
       const depth = vec4(0).toVar()
       If(isMarched, () => {
-        const shell = tableShell(air, way, TABLE_STEPS)
-        radiance.assign(shell.radiance)
-        depth.assign(shell.depth)
+        const light = marchedShellLight(air, segment, TABLE_STEPS)
+        radiance.assign(light.radiance)
+        depth.assign(light.depth)
       }).Else(() => {
-        const shell = volumeShell(air.uniforms, textures, this.#eye, way.sight)
-        radiance.assign(shell.radiance)
-        depth.assign(shell.depth)
+        const light = sampledShellLight(air.uniforms, textures, this.#eye, segment.fromCamera)
+        radiance.assign(light.radiance)
+        depth.assign(light.depth)
       })
       return { radiance, depth }
     }
   }
 
-  /** Where the light comes from. Throws if set to anything else, or to a direction without one. */
+  /** Source of light. @throws If set to anything else, or to a direction of length 0. */
   get sun(): ShellSun {
     return this.#sun
   }
 
   set sun(value: ShellSun) {
-    if (!isSun(value)) {
+    if (!isShellSun(value)) {
       const rule =
         'sun must be an Atmosphere, a DirectionalLight, a PointLight or a finite direction'
       fail('AtmosphereShell', rule, value)
@@ -334,100 +254,68 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#luminanceScale = value
   }
 
-  /** No ray hits air. */
+  /** Raycasts miss air. */
   override raycast(): void {}
 
   /** Bakes the tables if they are stale. Drawing does this by itself. */
   bake(renderer: NonNullable<NodeFrame['renderer']>): void {
     const { parameters } = this
-    this.#take(renderer)
+    this.#acquire(renderer)
     if (this.#lender !== null) {
       const { luminanceScale, bakeStepsPerFrame, tables } = this.#lender
       tables.update(renderer, parameters, luminanceScale, bakeStepsPerFrame)
     } else if (this.#tables !== null) {
-      this.#tables.update(renderer, parameters, SCALE, Infinity)
+      this.#tables.update(renderer, parameters, SHELL_SCALE, Infinity)
     } else if (this.#version !== parameters.version) {
-      this.#uniforms.update(parameters, SCALE)
+      this.#uniforms.update(parameters, SHELL_SCALE)
       this.#profile.update(parameters)
       this.#version = parameters.version
     }
   }
 
-  /** Sees where camera, body and sun are. Drawing does this by itself. */
-  follow(camera: Camera): void {
+  /** Updates uniforms and sky volume for a camera. Drawing does this by itself, after {@link bake}. */
+  update(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
     const { bottomRadius } = this.parameters
-    _inverse.copy(this.matrixWorld).invert()
     const scale = bottomRadius / this.bodyRadius
-    const up = this.#up.value.setFromMatrixPosition(camera.matrixWorld)
-    up.applyMatrix4(_inverse).multiplyScalar(scale)
-    const radius = up.length()
-    this.#height.value = radius - bottomRadius
-    if (radius > 0) up.divideScalar(radius)
-    else up.set(0, 0, 1)
-    this.#viewToMapped.value.setFromMatrix4(_inverse.clone().multiply(camera.matrixWorld))
-    this.#viewToMapped.value.multiplyScalar(scale)
-    this.#followSun()
+    this.#view.setCamera(renderer, camera, this.matrixWorld, bottomRadius, scale)
+    this.#updateSun()
+    if (this.#volumes !== null && this.#tables !== null) {
+      this.#updateVolume(renderer, camera, this.#volumes, this.#tables.version)
+    }
   }
 
-  /**
-   * Sees that there is a sky volume for a camera, and follows it. Drawing does this by itself, after
-   * {@link bake}.
-   */
-  see(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
-    this.follow(camera)
-    // Rays of an orthographic camera do not start where it is.
-    const isOrthographic = camera.projectionMatrixInverse.elements[11] === 0
-    const rows = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(_size).y
-    const pixel = Math.SQRT2 / (camera.projectionMatrix.elements[5] * rows)
-    const [x, y, z] = this.#viewToMapped.value.elements
-    if (isOrthographic) this.#pixel.value.set(0, pixel * Math.hypot(x, y, z))
-    else this.#pixel.value.set(pixel, 0)
-    if (this.#volumes === null || this.#tables === null) return
+  #updateSun(): void {
+    const { sun, parameters, luminanceScale } = this
+    const tint = this.#view.tint.value
+    _body.setFromMatrixPosition(this.matrixWorld)
+    sunlightAt(sun, parameters, _body, luminanceScale, _sunDirection, tint)
+    // The lender's tables have its scale already.
+    if (sun === this.#lender) tint.setScalar(1)
+    this.#view.setSun(_sunDirection, this.matrixWorld)
+  }
+
+  #updateVolume(
+    renderer: NonNullable<NodeFrame['renderer']>,
+    camera: Camera,
+    volumes: SkyVolumes,
+    tablesVersion: number
+  ): void {
     const { parameters } = this
-    const { version } = this.#tables
-    const height = this.#height.value
-    const isFar = height > FAR * parameters.bottomRadius
-    const isMarched = isOrthographic || isFar || version === 0
+    const height = this.#view.height.value
+    const isFar = height > FAR_HEIGHT * parameters.bottomRadius
+    const isMarched = isOrthographic(camera) || isFar || tablesVersion === 0
     this.#isMarched.value = isMarched ? 1 : 0
     if (isMarched) return
-    const cosSun = Math.min(Math.max(this.#up.value.dot(this.#sunDirection.value), -1), 1)
-    const eye = eyeScalars(parameters, height, cosSun)
-    this.#eye.set(eye, this.#volumes.volumeFor(renderer, eye, version).slot)
+    const cosSun = this.#view.up.value.dot(this.#view.sunDirectionMapped.value)
+    const eye = eyeScalars(parameters, height, Math.min(Math.max(cosSun, -1), 1))
+    this.#eye.set(eye, volumes.volumeFor(renderer, eye, tablesVersion).slot)
   }
 
-  #followSun(): void {
-    const { sun } = this
-    const direction = this.#sunDirection.value
-    const tint = this.#tint.value.setScalar(1)
-    _point.setFromMatrixPosition(this.matrixWorld)
-    if (isAtmosphere(sun)) {
-      direction.copy(sun.sunDirection)
-      if (this.#lender !== sun) tint.setScalar(sun.luminanceScale / SCALE)
-    } else if (isLight(sun)) {
-      direction.setFromMatrixPosition(sun.matrixWorld)
-      const { color, intensity } = sun as Light
-      const white = sunWhite(this.parameters)
-      tint.set(color.r / white[0], color.g / white[1], color.b / white[2])
-      tint.multiplyScalar(intensity / SCALE)
-      if ('target' in sun) direction.sub(_other.setFromMatrixPosition(sun.target.matrixWorld))
-      else {
-        direction.sub(_point)
-        tint.divideScalar(direction.lengthSq() || 1)
-      }
-    } else {
-      direction.copy(sun)
-      tint.setScalar(this.luminanceScale / SCALE)
-    }
-    // The inverse of a matrix takes directions back; normals are not meant.
-    direction.transformDirection(_inverse)
-    if (!(direction.lengthSq() > 0)) direction.set(0, 1, 0)
-  }
-
-  /** Frees its geometry, material and volumes, and its tables if no other shell uses them. */
+  /** Frees geometry, material and volumes, and the tables if no other shell uses them. */
   override dispose(): void {
     this.geometry.dispose()
     this.material.dispose()
-    this.#giveBack()
+    this.#release()
     this.#renderer = null
   }
 }

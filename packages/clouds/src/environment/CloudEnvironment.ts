@@ -83,6 +83,8 @@ export class CloudEnvironment implements SkyOverlay {
   #drift = 200
   readonly #target: RenderTarget
   readonly #map: LevelTexture<Vec2>
+  /** How finely clouds are marched. */
+  readonly quality: CloudQuality
   readonly #quality = new QualityUniforms()
   /** Axes of the map, east, north and zenith at its place, to those of the mapped space. */
   readonly #axes = matrix4()
@@ -109,7 +111,8 @@ export class CloudEnvironment implements SkyOverlay {
     }
     this.clouds = clouds
     this.drift = drift
-    this.#quality.set(resolveQuality('CloudEnvironment', quality))
+    this.quality = resolveQuality('CloudEnvironment', quality)
+    this.#quality.set(this.quality)
     this.#target = tableTarget('Welkin.CloudEnvironment', size, size)
     this.#target.scissorTest = true
     this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
@@ -123,6 +126,11 @@ export class CloudEnvironment implements SkyOverlay {
   set drift(value: number) {
     checkPositive('CloudEnvironment', 'drift', value)
     this.#drift = value
+  }
+
+  /** Pixels along an edge of the picture. */
+  get size(): number {
+    return this.#target.width
   }
 
   /** Size on the GPU [bytes]. */

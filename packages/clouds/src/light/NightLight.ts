@@ -9,7 +9,8 @@ const HIGHEST = 30_000
 /**
  * Depression of the sun at which moonlight sets in, where the sun's own light reaches no cloud any more, and
  * how much deeper it is when all of the moonlight counts: before, twilight outshines it [rad]. Earlier: a
- * full moon shows at dusk; later: clouds are black for a while. See the story "Clouds by moonlight".
+ * full moon shows at dusk; later: clouds are black for a while. See the stories "Moon" and
+ * "Clouds" with the sun below the horizon.
  */
 const NIGHTFALL = MathUtils.degToRad(6)
 const DUSK = MathUtils.degToRad(2)

@@ -148,6 +148,16 @@ export class CloudsNode extends AtmosphereNode {
     this.#time = seconds
   }
 
+  /** Noise that clouds are made of; shared if it was given. */
+  get noise(): CloudNoise {
+    return this.field.noise
+  }
+
+  /** Cloud cover of the whole planet; shared, not owned. */
+  get worldMap(): Texture | null {
+    return this.field.worldMapTexture
+  }
+
   /**
    * Makes all that air and clouds need now: the atmosphere's tables, noise and the light table. Shaders are
    * compiled with the first frame.

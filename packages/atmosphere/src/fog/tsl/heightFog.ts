@@ -1,32 +1,20 @@
-import { float } from 'three/tsl'
-import { ERFCX_COEFFICIENTS, ERFCX_SCALE } from '../cpu/heightFog'
 import type { Bool, Float } from '../../tsl-types'
+import { erfcx } from './erfcx'
 
-/** Fog whose density falls off exponentially with altitude, as nodes: see `FogLayer` of cpu/heightFog.ts. */
+/** Fog with a density that falls off exponentially with altitude, as shader nodes. */
 export interface FogLayerNodes {
   /** Extinction at the base [1/m]. */
   density: Float
-  /** Altitude over which it falls to 1/e [m]. */
+  /** Altitude over which the density falls to 1/e [m]. */
   falloff: Float
 }
 
-/** Exponents that float32 still holds, with room for a chord's length. */
-const MOST = 60
-const LEAST = -30
-
-/** e^{x²} erfc x for x ≥ 0, within 7e-6: a polynomial in 1/(1 + cx), exact at 0, with its slope, and at ∞. */
-export function erfcx(x: Float): Float {
-  const t = x.mul(ERFCX_SCALE).add(1).reciprocal().toConst()
-  const polynomial = ERFCX_COEFFICIENTS.reduceRight<Float>(
-    (sum, coefficient) => sum.mul(t).add(coefficient),
-    float(0)
-  )
-  return polynomial.mul(t)
-}
+/** Range of exponents that float32 holds, with room for a chord's length. */
+const MAX_EXPONENT = 60
+const MIN_EXPONENT = -30
 
 /**
- * Air mass of an exponential layer, in falloff heights: what a ray out of the planet crosses, over what
- * a vertical one does.
+ * Air mass of an exponential layer: column along an outward ray over that along the vertical.
  *
  * @param scale - Distance to the planet's centre, in falloff heights.
  * @param cosView - |μ|, against the zenith.
@@ -37,28 +25,28 @@ export function airMass(scale: Float, cosView: Float): Float {
   return half.mul(Math.sqrt(Math.PI)).mul(erfcx(half.mul(cosView)))
 }
 
-/** Fog along a straight way. */
+/** Fog along a segment of a ray. */
 export interface FogDepth {
   /** Optical depth. */
   depth: Float
   /** Altitude of the start above the base, in falloff heights. */
   start: Float
-  /** How fast the ray sinks on its way into the fog, in falloff heights per metre; negative if it rises. */
+  /** Slope of the ray into the fog, in falloff heights per metre; negative if it rises. */
   fall: Float
 }
 
 /**
- * Optical depth of fog between two points of a ray, in closed form.
+ * Optical depth of fog along a segment, in closed form.
  *
- * Each end has the fog of the ray from there outwards, σH e^{−y} Ch: their difference is what lies
- * between. A ray that sinks first and then rises has its lowest point, and the fog of both halves.
- * Density along a ray is least at an end: that bounds the result, where the difference cancels.
+ * It is the difference of the depths from both ends outwards, σH e^{−y} Ch. A ray that sinks first and then
+ * rises is split at its lowest point. Density along a ray is least at an end: that bounds the result where
+ * the difference cancels.
  *
- * @param height - Of the ray's start above the fog's base [m].
- * @param radius - Planet's centre to there [m].
+ * @param height - Height of the ray's start above the fog's base [m].
+ * @param radius - Planet's centre to the ray's start [m].
  * @param cosView - μ at the start.
  * @param distance - Length of the ray [m].
- * @see Twin: cpu/heightFog.ts
+ * @see Twin: test/twins/fog/heightFog.ts
  */
 export function fogDepth(
   { density, falloff }: FogLayerNodes,
@@ -67,7 +55,8 @@ export function fogDepth(
   cosView: Float,
   distance: Float
 ): FogDepth {
-  const exponent = (above: Float): Float => above.div(falloff).clamp(LEAST, MOST).toConst()
+  const exponent = (above: Float): Float =>
+    above.div(falloff).clamp(MIN_EXPONENT, MAX_EXPONENT).toConst()
   const along = radius.mul(cosView).toConst()
   const rise = along.mul(2).add(distance).mul(distance).toConst()
   const radiusThere = radius.mul(radius).add(rise).max(1).sqrt().toConst()
@@ -107,34 +96,34 @@ export function fogDepth(
 }
 
 /**
- * Mean radiance of sunlight that fog has scattered more than once, for unit irradiance [1/sr].
+ * Mean radiance of light that fog has scattered more than once, for unit irradiance [1/sr].
  *
- * Eddington's solution of a plane layer that absorbs nothing, over black ground, in depths that
- * similarity has scaled by 1 − g.
+ * Eddington's solution of a plane layer without absorption over black ground, in optical depths scaled by
+ * 1 − g (similarity).
  *
- * @param above - Vertical depth above the point.
- * @param whole - Vertical depth of the layer.
- * @param cosSun - Cosine of the sun's zenith angle that gives the slant depth, > 0.
+ * @param above - Vertical optical depth above the point.
+ * @param total - Vertical optical depth of the layer.
+ * @param cosLight - Cosine of the light's zenith angle that gives the slant depth, > 0.
  * @see Shettle & Weinman 1970, "The transfer of solar irradiance through inhomogeneous turbid
- *   atmospheres evaluated by Eddington's approximation". Twin: cpu/heightFog.ts
+ *   atmospheres evaluated by Eddington's approximation". Twin: test/twins/fog/heightFog.ts
  */
-export function multipleScattering(above: Float, whole: Float, cosSun: Float): Float {
-  const top = cosSun.mul(3).add(2).toConst()
-  const bottom = cosSun.mul(-3).add(2).mul(whole.div(cosSun).negate().exp())
-  const direct = cosSun.mul(3).mul(above.div(cosSun).negate().exp())
-  const slope = top.add(bottom).div(whole.add(4 / 3))
+export function multipleScattering(above: Float, total: Float, cosLight: Float): Float {
+  const top = cosLight.mul(3).add(2).toConst()
+  const bottom = cosLight.mul(-3).add(2).mul(total.div(cosLight).negate().exp())
+  const direct = cosLight.mul(3).mul(above.div(cosLight).negate().exp())
+  const slope = top.add(bottom).div(total.add(4 / 3))
   return top
     .sub(direct)
     .sub(slope.mul(above.add(2 / 3)))
-    .mul(cosSun)
+    .mul(cosLight)
     .mul(1 / (4 * Math.PI))
     .max(0)
 }
 
-/** Phase function of droplets: Henyey & Greenstein 1941 [1/sr]. */
-export function henyeyGreenstein(cosViewSun: Float, asymmetry: Float): Float {
+/** Henyey–Greenstein phase function, of droplets [1/sr]. @see Henyey & Greenstein 1941, eq. 2 */
+export function henyeyGreenstein(cosViewLight: Float, asymmetry: Float): Float {
   const square = asymmetry.mul(asymmetry).toConst()
-  const chord = square.add(1).sub(asymmetry.mul(cosViewSun).mul(2)).max(1e-4).toConst()
+  const chord = square.add(1).sub(asymmetry.mul(cosViewLight).mul(2)).max(1e-4).toConst()
   return square
     .oneMinus()
     .div(chord.mul(chord.sqrt()))

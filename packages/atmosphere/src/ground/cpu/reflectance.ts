@@ -9,7 +9,7 @@ const cross = (a: Triple, b: Triple): Triple => [
 const dot = (a: readonly number[], b: readonly number[]): number =>
   a.reduce((sum, value, i) => sum + value * b[i], 0)
 
-/** The spectrum with no change in what a 3×4 matrix of columns makes of it: its null vector. */
+/** Null vector of a 3×4 matrix of columns: a spectrum that adds no colour. */
 function nullVector(columns: Triple[]): number[] {
   return columns.map((_, skip) => {
     const [a, b, c] = columns.filter((_other, i) => i !== skip) as [Triple, Triple, Triple]
@@ -17,21 +17,21 @@ function nullVector(columns: Triple[]): number[] {
   })
 }
 
-/** Differences between neighbouring wavelengths. */
+/** Differences between neighbouring wavelengths: the less, the smoother. */
 const slopes = (spectrum: readonly number[]): number[] =>
   spectrum.slice(1).map((value, i) => value - spectrum[i])
 
 /**
- * Columns (red, green, blue) of the matrix from a linear-sRGB reflectance to one at the four
- * wavelengths: the smoothest that looks so in the light of the sun above the air. White is 1 at all of
- * them; saturated colours may need less than 0 or more than 1 at some.
+ * Columns (red, green, blue) of the matrix from linear-sRGB reflectance to that at the four wavelengths: the
+ * smoothest spectrum of that colour in sunlight above the air. White is 1 at all wavelengths; saturated
+ * colours may need less than 0 or more than 1 at some.
  */
 export function reflectanceColumns(
   parameters: AtmosphereParameters
 ): [Spectrum, Spectrum, Spectrum] {
   const columns = whiteBalancedColumns(parameters)
   const free = nullVector(columns)
-  // The wavelength that matters least is solved for by the free vector alone.
+  // The wavelength where the null vector is largest follows from that vector alone.
   const skip = free.reduce(
     (most, value, i) => (Math.abs(value) > Math.abs(free[most]) ? i : most),
     0
@@ -48,7 +48,7 @@ export function reflectanceColumns(
   }) as unknown as [Spectrum, Spectrum, Spectrum]
 }
 
-/** Linear sRGB of unit irradiance of the sun above the air [lx]. */
+/** Linear sRGB of sunlight above the air [lx]. */
 export function sunWhite(parameters: AtmosphereParameters): Triple {
   const columns = linearSRGBColumns(parameters, 1)
   return [0, 1, 2].map(row => columns.reduce((sum, column) => sum + column[row], 0)) as Triple

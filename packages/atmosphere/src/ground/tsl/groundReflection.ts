@@ -1,17 +1,17 @@
 import type { Float } from '../../tsl-types'
 
-/** Cosines between a patch of ground, the sun and the eye. */
+/** Cosines between the ground's normal, the sun and the camera. */
 export interface GroundAngles {
-  /** Sun against the normal. */
+  /** Sun and normal. */
   cosSun: Float
-  /** Eye against the normal, in (0, 1]. */
+  /** Camera and normal, in (0, 1]. */
   cosEye: Float
-  /** Sun against eye. */
+  /** Sun and camera. */
   cosSunEye: Float
 }
 
 /**
- * Reflectance of rough ground over that of smooth, Lambertian ground.
+ * Oren–Nayar reflectance of rough ground, over that of Lambertian ground.
  *
  * @param roughness - σ, standard deviation of the facets' slope angles [rad].
  * @see Oren & Nayar 1994, qualitative model; in the form of Fujii, "A tiny improvement of Oren–Nayar
@@ -30,7 +30,7 @@ export function orenNayar(angles: GroundAngles, roughness: Float): Float {
 /** Reflectance of water at normal incidence, refractive index 1.34. */
 const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
 
-/** Part of the light that water reflects. @see Schlick 1994 */
+/** Fresnel reflectance of water. @see Schlick 1994 */
 export function waterFresnel(cosine: Float): Float {
   const rest = cosine.oneMinus().clamp().toConst()
   const square = rest.mul(rest)
@@ -41,8 +41,8 @@ export function waterFresnel(cosine: Float): Float {
     .add(WATER_FRESNEL)
 }
 
-/** Λ of Smith's shadowing for a Gaussian of slopes. @see Walter et al. 2007, equation 15 */
-function shadowing(cosine: Float, slope: Float): Float {
+/** Λ of Smith's shadowing for Gaussian slopes. @see Walter et al. 2007, eq. 15 */
+function smithLambda(cosine: Float, slope: Float): Float {
   const sine = cosine.mul(cosine).oneMinus().max(1e-6).sqrt()
   const a = cosine.max(0).div(sine.mul(slope)).min(1.6).toConst()
   const square = a.mul(a)
@@ -78,17 +78,17 @@ export function sunGlint(angles: GroundAngles, variance: Float): Float {
   const slopes = square.reciprocal().sub(1).div(variance).negate().exp()
   const distribution = slopes.div(variance.mul(Math.PI).mul(square).mul(square))
   const slope = variance.sqrt().toConst()
-  // Shadowing keeps this from 0 where the eye's cosine is.
-  const visible = shadowing(cosSun, slope).add(shadowing(cosEye, slope)).add(1).mul(cosEye)
+  // Shadowing keeps this positive where the camera's cosine is 0.
+  const visible = smithLambda(cosSun, slope).add(smithLambda(cosEye, slope)).add(1).mul(cosEye)
   const glint = waterFresnel(length.mul(0.5)).mul(distribution).div(visible.mul(4))
   return cosSun.greaterThan(0).select(glint, 0)
 }
 
 /**
- * Part of diffuse light from the sky that the sea reflects to the eye: Fresnel's at a mean slope.
+ * Reflectance of the sea for diffuse skylight: Fresnel's at a mean slope.
  *
  * @param variance - {@link seaSlopeVariance}.
  */
-export function skyGlint(cosEye: Float, variance: Float): Float {
+export function skyReflectance(cosEye: Float, variance: Float): Float {
   return waterFresnel(cosEye.mul(cosEye).add(variance).sqrt().min(1))
 }

@@ -1,22 +1,22 @@
 import { float, mix, mx_noise_float, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 
-/** What a patch of ground looks like. */
+/** Surface of the ground. */
 export interface GroundSurface {
-  /** Reflectance of what is not water, linear sRGB. */
+  /** Reflectance of land, linear sRGB. */
   color: Vec3
-  /** Part that is open water, in [0, 1]. */
+  /** Fraction of open water, in [0, 1]. */
   water: Float
 }
 
 const noise = mx_noise_float as unknown as (position: Vec3) => Float
 
-/** A rotation, so that the lattices of the octaves do not lie on each other. */
-const turn = (p: Vec3): Vec3 =>
+/** Rotation between octaves, so that their lattices do not coincide. */
+const rotateLattice = (p: Vec3): Vec3 =>
   vec3(p.dot(vec3(0, 0.8, 0.6)), p.dot(vec3(-0.8, 0.36, -0.48)), p.dot(vec3(-0.6, -0.48, 0.64)))
 
-/** Octaves of noise, each left out where it is finer than a pixel. */
-function relief(position: Vec3, octaves: number, footprint: Float): Float {
+/** Fractal noise without octaves finer than a pixel. */
+function bandLimitedNoise(position: Vec3, octaves: number, footprint: Float): Float {
   let sum: Float = float(0)
   let at = position
   for (let octave = 0; octave < octaves; octave++) {
@@ -27,27 +27,30 @@ function relief(position: Vec3, octaves: number, footprint: Float): Float {
         .mul(visible)
         .mul(0.55 ** octave)
     )
-    at = turn(at).mul(2.03).toConst()
+    at = rotateLattice(at).mul(2.03).toConst()
   }
   return sum
 }
 
 /**
- * Land, sea and ice of no particular planet.
+ * Procedural land, sea and ice.
  *
- * @param normal - Unit length; z towards the north pole.
- * @param footprint - Size of a pixel [rad].
- * @param seed - Another number, other continents.
+ * Colours and thresholds were found by looking: a higher sea level (0.06) drowns the continents, a larger
+ * share of moisture (1.8) breaks up the belt of deserts. Story: Planets, MadeUp.
+ *
+ * @param normal - Unit length, z to the north pole.
+ * @param footprint - Size of a pixel, in units of the radius.
+ * @param seed - Another number gives other continents.
  */
 export function proceduralGround(normal: Vec3, footprint: Float, seed: number): GroundSurface {
   const at = normal
     .mul(1.6)
     .add(vec3(seed * 7.31, seed * 3.17, seed * 5.73))
     .toConst() as Vec3
-  const height = relief(at, 9, footprint.mul(1.6)).sub(0.06).toConst()
+  const height = bandLimitedNoise(at, 9, footprint.mul(1.6)).sub(0.06).toConst()
   const shore = footprint.mul(0.7).add(0.008).toConst()
   const land = smoothstep(shore.negate(), shore, height).toConst()
-  const moisture = relief(at.mul(1.9).add(11.5), 4, footprint.mul(3)).toConst()
+  const moisture = bandLimitedNoise(at.mul(1.9).add(11.5), 4, footprint.mul(3)).toConst()
   const sine = normal.z.abs().toConst()
   // Wet tropics, dry belts about 25°, temperate, then cold.
   const belt = smoothstep(0.1, 0.35, sine).mul(smoothstep(0.45, 0.75, sine).oneMinus())

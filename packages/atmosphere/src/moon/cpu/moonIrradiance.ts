@@ -33,7 +33,7 @@ const EARTH_ALBEDO = 0.367
  *
  * @param angle - Phase angle, in [0, π] [rad].
  * @param distance - Observer to moon [m].
- * @param radius - Of the moon [m].
+ * @param radius - Radius of the moon [m].
  */
 export function moonIrradiance(
   angle: number,

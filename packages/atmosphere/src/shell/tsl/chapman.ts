@@ -6,8 +6,8 @@ import { homogeneousHeight } from '../../air/cpu/medium'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
 
 /**
- * e^{z²} erfc(z) for z ≥ 0 as (1 + a z)/(1 + b z + c z²), within 1.2 %: it has value and slope at 0
- * and the limit z → ∞, which leave one number free; c makes it exact at 1.
+ * Coefficients of e^{z²} erfc(z) ≈ (1 + a z)/(1 + b z + c z²) for z ≥ 0, within 1.2 %: exact in value and
+ * slope at 0, in the limit z → ∞, and at z = 1.
  */
 const C = 0.8597
 const A = C / Math.sqrt(Math.PI)
@@ -19,14 +19,14 @@ function scaledErfc(z: Vec2): Vec2 {
   return z.mul(A).add(1).mul(divisor.yx).mul(divisor.x.mul(divisor.y).reciprocal())
 }
 
-/** d/w of a point on the middle of the absorber's layer along its horizon, (3/8)²: see {@link absorberColumn}. */
-const WITHIN = 9 / 64
+/** d/w of {@link absorberLength} for a horizontal ray in the middle of the absorber's layer, (3/8)². */
+const HORIZON_WEIGHT = 9 / 64
 
 /**
- * Divisors and factors of an atmosphere that every point on a ray needs.
+ * Constants of an atmosphere's density profiles, shared by all points of a ray.
  *
- * Molecules in layers are taken for a single one of as many: at 50 km of the standard atmosphere that is
- * 3.1 times their density; overhead of the ground they are as many.
+ * Several layers of molecules become one exponential with the same vertical column: at 50 km of the
+ * standard atmosphere it has 3.1 times their density.
  */
 export interface ProfileConstants {
   /** log₂ e/H of molecules and aerosols [1/m]. */
@@ -40,16 +40,16 @@ export interface ProfileConstants {
   /** √(π r_bottom H/2), column along the horizon over density [m]. */
   horizon: Vec2
   /**
-   * How the logarithm of a march's steps grows with altitude [1/m]: slower than density falls, slower
-   * still in thick air, which light leaves from high up.
+   * Growth of the logarithm of a march's steps with altitude [1/m]: slower than density falls, and slower
+   * still in thick air, where the visible light comes from high up.
    */
   growth: Float
 }
 
-/** Growth of steps that suits thin air, over that of density. */
+/** Growth of steps in thin air over that of density. Larger loses the limb's upper air. Story: Shell, SingleScattering. */
 const GROWTH = 0.35
-/** Optical depth to the zenith that halves it. */
-const THICK = 10
+/** Optical depth to the zenith that halves {@link GROWTH}. */
+const THICK_DEPTH = 10
 
 /** {@link ProfileConstants} as uniforms. */
 export class ProfileUniforms implements ProfileConstants {
@@ -75,7 +75,7 @@ export class ProfileUniforms implements ProfileConstants {
         parameters.mieExtinction[i] * mieScaleHeight +
         parameters.absorptionExtinction[i] * absorptionHalfWidth
     )
-    this.growth.value = GROWTH / (1 + Math.max(...depths) / THICK) / Math.max(...heights)
+    this.growth.value = GROWTH / (1 + Math.max(...depths) / THICK_DEPTH) / Math.max(...heights)
     this.absorberSlope.value = 1 / absorptionHalfWidth
     this.absorberWidth.value = (2 * absorptionHalfWidth) / bottomRadius
   }
@@ -86,7 +86,7 @@ const map = ([a, b]: readonly [number, number], f: (value: number) => number): [
   f(b)
 ]
 
-/** Densities at an altitude, as `densities` has them, and where in the absorber's layer that is. */
+/** Densities at an altitude, and the position in the absorber's layer. */
 export interface Profile {
   density: Vec3
   /** y, −1 at the layer's lower edge, 0 in its middle. */
@@ -107,7 +107,7 @@ export function profileAt(
   }
 }
 
-/** Column of the absorber straight up, over half the width of its layer, at y of the {@link Profile}. */
+/** Vertical column of the absorber above a point at y of the {@link Profile}, over half its layer's width. */
 export function absorberAbove(inLayer: Float): Float {
   const rest = inLayer.abs().oneMinus().max(0).toConst() as Float
   const half = rest.mul(rest).mul(0.5).toConst() as Float
@@ -129,8 +129,8 @@ function absorberLength(
   inLayer: Float,
   square: Float
 ): Float {
-  const below = inLayer.mul(-0.68).add(WITHIN).max(inLayer.add(0.18).negate())
-  const d = below.max(inLayer.mul(-WITHIN).add(WITHIN)).max(1e-3)
+  const below = inLayer.mul(-0.68).add(HORIZON_WEIGHT).max(inLayer.add(0.18).negate())
+  const d = below.max(inLayer.mul(-HORIZON_WEIGHT).add(HORIZON_WEIGHT)).max(1e-3)
   return absorptionHalfWidth.mul(d.mul(absorberWidth).add(square).inverseSqrt())
 }
 
@@ -153,11 +153,11 @@ export function lengthsToSpace(
 }
 
 /**
- * Columns of molecules, aerosols and absorber from a point to space, in closed form: lengths of way
- * through air of density 1 [m].
+ * Columns of molecules, aerosols and absorber from a point to space, in closed form: equivalent lengths
+ * of air of density 1 [m].
  *
- * With an exponential density that of a ray that ascends is n √(π r H/2) e^{z²} erfc z, z = μ √(r/2H);
- * one that descends to an altitude h_t has twice the horizontal one there less that backwards.
+ * In exponential air the column of an ascending ray is n √(π r H/2) e^{z²} erfc z, z = μ √(r/2H). That of a
+ * ray descending to an altitude h_t is twice the horizontal column there less the column backwards.
  * Molecules and aerosols are within 1.5 % of exponentials, air above `topRadius` included; the absorber is within 5 %
  * from below its layer, and within 30 % along the horizon from within it.
  *

@@ -11,49 +11,50 @@ import {
 } from '../../scattering/tsl/scattering'
 import { sampleAir, type Sight, type VolumeTextures } from '../../skyVolume/tsl/skyVolume'
 
-/** Light scattered towards the start of a ray [1/sr], and optical depth of the way. */
-export interface Shell {
+/** Light scattered towards the start of a segment [1/sr], and optical depth of the segment. */
+export interface ShellLight {
   radiance: Vec4
   depth: Vec4
 }
 
-/** A way through the air, from where it starts to the ground or out of the air. */
-export interface ShellRay {
+/** Segment of a ray in the air, to the ground or out of the air. */
+export interface AirSegment {
   /** h at its start [m]. */
   altitude: Float
   /** r at its start [m]. */
   radius: Float
-  /** r μ at its start: how far behind it is the point of the ray's line nearest to the centre [m]. */
-  radial: Float
+  /** r μ at its start: distance along the ray from the point nearest to the planet's centre [m]. */
+  radiusCosView: Float
   /** r μ_s at its start [m]. */
-  sunward: Float
+  radiusCosSun: Float
   /** ν, against the sun. */
   cosViewSun: Float
   /** h of its lowest point [m]. */
-  lowest: Float
+  lowestAltitude: Float
   hitsGround: Bool
   /** [m] */
   length: Float
 }
 
 /**
- * Divides a way through the air at its lowest point, and both parts into segments that are short there,
- * where the air is dense: a march of few steps hits a thin limb as well as the ground.
+ * Steps along a segment, shortest at its lowest point, where the air is dense: few of them resolve a thin
+ * limb as well as the ground.
  *
- * @param exponentOf - κ by the altitudes that a part spans [m], > 0.
+ * @param exponentOf - κ by the range of altitudes of a half [m], > 0.
+ * @param visit - Called with both ends of a step [m].
  */
 export function marchFromLowest(
   uniforms: AtmosphereUniforms,
-  { altitude, radial, lowest: floor, hitsGround, length }: ShellRay,
+  { altitude, radiusCosView, lowestAltitude: floor, hitsGround, length }: AirSegment,
   steps: number | Int,
   exponentOf: (rise: Float) => Float,
   visit: (start: Float, end: Float) => void
 ): void {
-  const lowest = radial.negate().clamp(0, length).toConst() as Float
+  const lowest = radiusCosView.negate().clamp(0, length).toConst() as Float
   const ceiling = hitsGround.select(0, uniforms.thickness)
   const falling = exponentOf(altitude.sub(floor).max(0)).toConst()
   const rising = exponentOf(ceiling.sub(floor).max(0)).toConst()
-  // Distance from the lowest point at a part y of the steps: (e^{κy} − 1)/(e^κ − 1) of the way.
+  // Distance from the lowest point after a fraction y of the steps: (e^{κy} − 1)/(e^κ − 1) of the half.
   const descent = lowest.negate().div(falling.exp().sub(1)).toConst()
   const ascent = length.sub(lowest).div(rising.exp().sub(1)).toConst()
   const count = float(steps as number).toConst() as Float
@@ -72,39 +73,39 @@ export function marchFromLowest(
 }
 
 /**
- * Light of the air along a way from the tables, all orders of scattering.
+ * Light of the air along a segment from the tables, all orders of scattering.
  *
- * @param steps - Two evaluations each.
+ * @param steps - Number of steps, two evaluations each.
  */
-export function tableShell(air: Air, way: ShellRay, steps: number): Shell {
-  const { altitude, radius, radial, sunward, cosViewSun } = way
+export function marchedShellLight(air: Air, segment: AirSegment, steps: number): ShellLight {
+  const { altitude, radius, radiusCosView, radiusCosSun, cosViewSun } = segment
   const ray: Ray = {
     altitude,
-    cosView: radial.div(radius).clamp(-1, 1).toConst(),
-    cosSun: sunward.div(radius).clamp(-1, 1).toConst(),
+    cosView: radiusCosView.div(radius).clamp(-1, 1).toConst(),
+    cosSun: radiusCosSun.div(radius).clamp(-1, 1).toConst(),
     cosViewSun
   }
   const molecular = vec4(0).toVar()
   const aerosol = vec4(0).toVar()
   const depth = vec4(0).toVar()
   const exponentOf = (rise: Float): Float => stepExponent(air.uniforms, rise)
-  marchFromLowest(air.uniforms, way, steps, exponentOf, (start, end) => {
-    const segment = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
-    const through = depth.negate().exp().toConst()
-    molecular.addAssign(segment.molecular.mul(through))
-    aerosol.addAssign(segment.aerosol.mul(through))
-    depth.addAssign(segment.depth)
+  marchFromLowest(air.uniforms, segment, steps, exponentOf, (start, end) => {
+    const step = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
+    const transmittance = depth.negate().exp().toConst()
+    molecular.addAssign(step.molecular.mul(transmittance))
+    aerosol.addAssign(step.aerosol.mul(transmittance))
+    depth.addAssign(step.depth)
   })
   const scattered = { molecular: molecular as unknown as Vec4, aerosol: aerosol as unknown as Vec4 }
   return { radiance: scatteredRadiance(air.uniforms, scattered, cosViewSun), depth: depth }
 }
 
-/** Light of the air along a line of sight from a sky volume, all orders of scattering. */
-export function volumeShell(
+/** Light of the air along a view ray from a sky volume, all orders of scattering. */
+export function sampledShellLight(
   uniforms: AtmosphereUniforms,
   textures: VolumeTextures,
   eye: Eye,
   sight: Sight
-): Shell {
+): ShellLight {
   return sampleAir(uniforms, textures, eye, sight)
 }

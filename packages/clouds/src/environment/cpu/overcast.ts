@@ -25,7 +25,7 @@ export const LOWEST_COSINE = 0.05
  * @param thickness - Scaled optical thickness.
  * @param cosLight - μ_s, in (0, 1].
  * @param oneMinusAsymmetry - 1 − g′.
- * @see King & Harshvardhan 1986, "Comparative accuracy of selected multiple scattering approximations", §2
+ * @see King & Harshvardhan 1986, "Comparative accuracy of selected multiple scattering approximations"
  */
 export function eddingtonTransmittance(
   thickness: number,

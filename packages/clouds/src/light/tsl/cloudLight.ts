@@ -30,7 +30,7 @@ export interface CloudSourceNodes extends LeakNodes {
  * Twin: cpu/cloudLight.ts
  *
  * @see Nakajima & Tanaka 1988, "Algorithms for radiative intensity calculations in moderately thick
- *   atmospheres using a truncation approximation", §3 (TMS)
+ *   atmospheres using a truncation approximation" (TMS)
  */
 export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float {
   const { depthToLight, depthThrough, depthToEye, layered, cosViewLight } = sample

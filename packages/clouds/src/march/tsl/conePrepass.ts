@@ -23,7 +23,7 @@ const PRECISION = 0.999
  * pixel would otherwise have to cross by itself.
  *
  * @returns Distance in red, at most `MAX_DISTANCE` [m].
- * @see Hart 1996, "Sphere tracing", §2.3: steps of the size of an empty sphere
+ * @see Hart 1996, "Sphere tracing": steps of the size of an empty sphere
  */
 export function conePrepass(inputs: ViewRayNodes): Vec4 {
   const { field, frame } = inputs

@@ -122,7 +122,7 @@ function gatherCorners(
  * where the pixel passes its depth test; or else from those corners that it passes alone.
  *
  * @param end - log₂ of the distance at which the pixel ends.
- * @see Kopf et al. 2007, "Joint bilateral upsampling", §3: weights by distance in the image and by depth
+ * @see Kopf et al. 2007, "Joint bilateral upsampling": weights by distance in the image and by depth
  */
 export function estimate(
   viewRays: ViewRayNodes,

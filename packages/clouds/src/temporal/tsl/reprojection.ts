@@ -7,8 +7,8 @@ import type { CloudTargets } from './renderTargets'
 
 /**
  * Motion below which history is read at the pixel's own texel, so that filtering does not blur a picture
- * that stands still [pixels]. Greater: slow drifts stutter; 0: still clouds lose their detail. See the story
- * "Fair weather".
+ * that stands still [pixels]. Greater: slow clouds lag behind; 0: still ones blur. See the story
+ * "Cumulus from the ground" with "Time lapse".
  */
 const STILL_MOTION = 0.02
 

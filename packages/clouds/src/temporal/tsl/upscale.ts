@@ -16,7 +16,8 @@ const OWN_SAMPLE = 0.5
 /**
  * Extra clip tolerance of history, in units of brightness and of transmittance: of stationary pixels and of
  * all others. Details smaller than a block are not marched in every frame; without tolerance they flicker in
- * a still picture, with more of it clouds leave trails when they move. See the story "Drift".
+ * a still picture, with more of it clouds leave trails when they move. See the story "Cumulus
+ * from the ground" with "Time lapse".
  */
 const STATIONARY_SLACK = 1
 const LEAST_SLACK = 0.01

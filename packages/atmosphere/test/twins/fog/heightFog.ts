@@ -1,25 +1,12 @@
-/** Fog whose density falls off exponentially with altitude. */
+/** Fog with a density that falls off exponentially with altitude. */
 export interface FogLayer {
   /** Extinction at the base [1/m]. */
   density: number
-  /** Altitude over which it falls to 1/e [m]. */
+  /** Altitude over which the density falls to 1/e [m]. */
   falloff: number
   /** Altitude of the base above the ground [m]. */
   base: number
 }
-
-/** c of the variable t = 1/(1 + cx) in which e^{x²} erfc x is a polynomial. */
-export const ERFCX_SCALE = 0.54
-
-/**
- * Coefficients of t, t², …, t⁷, fitted for the least relative error on [0, ∞). The first is c/√π, which
- * makes the polynomial exact at infinity; their sum is 1 and Σ k aₖ is 2/(c√π), which makes value and slope
- * exact at 0, where rays that rise and sink meet.
- */
-export const ERFCX_COEFFICIENTS = [
-  0.3046623751157883, 0.30451707395498484, 0.26423785324400206, 0.1361602041360286,
-  0.19538177866143291, -0.29634625335349657, 0.0913869682412588
-]
 
 /** e^{x²} erfc x for x ≥ 0: the continued fraction, and near 0 a Taylor series of erf. */
 export function erfcx(x: number): number {
