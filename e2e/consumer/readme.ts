@@ -1,9 +1,10 @@
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs'
 import { join } from 'node:path'
 
-/** The TypeScript blocks of a Markdown text, in order. */
-export function codeBlocks(markdown: string): string[] {
-  return [...markdown.matchAll(/^```ts\n([^]*?)^```$/gm)].map(([, code]) => code)
+/** The blocks of a Markdown text in a language, in order. */
+export function codeBlocks(markdown: string, language = 'ts'): string[] {
+  const blocks = markdown.matchAll(/^```(\w+)\n([^]*?)^```$/gm)
+  return [...blocks].flatMap(([, name, code]) => (name === language ? [code] : []))
 }
 
 const documents = [
@@ -16,6 +17,9 @@ const pages: Record<string, string | undefined> = {
   'README.md': 'main.ts',
   'packages/clouds/README.md': 'clouds.ts'
 }
+
+/** The document whose block of TSX is the module of the app's page with React. */
+const fiberDocument = 'packages/atmosphere/README.md'
 
 /** Names of the quick starts that the later blocks of their documents go on with. */
 const given = `import type { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
@@ -52,7 +56,8 @@ export function writeReadmeModules(root: string, app: string): number {
   writeFileSync(join(folder, 'given.d.ts'), given)
   let count = 0
   for (const document of documents) {
-    const blocks = codeBlocks(readFileSync(join(root, document), 'utf8'))
+    const markdown = readFileSync(join(root, document), 'utf8')
+    const blocks = codeBlocks(markdown)
     if (blocks.length === 0) throw new Error(`${document} has no block of TypeScript`)
     const page = pages[document]
     if (page !== undefined) writeFileSync(join(app, 'src', page), blocks[0])
@@ -61,6 +66,14 @@ export function writeReadmeModules(root: string, app: string): number {
       writeFileSync(join(folder, name), `${code}\nexport {}\n`)
     })
     count += blocks.length
+    if (document === fiberDocument) {
+      const [fiber] = codeBlocks(markdown, 'tsx')
+      if (fiber === undefined) throw new Error(`${document} has no block of TSX`)
+      writeFileSync(join(app, 'src', 'fiber.tsx'), fiber)
+      // The quick start has no types of its own: to a bundler it is JavaScript.
+      writeFileSync(join(app, 'webpack-entry.js'), blocks[0])
+      count++
+    }
   }
   return count
 }

@@ -49,6 +49,16 @@ const devDependencies = (folder: string): Record<string, string> =>
 
 const workspace = { ...devDependencies('.'), ...devDependencies('stories') }
 
+/** What only users have: React Three Fiber, and another bundler. */
+const foreign = {
+  '@react-three/fiber': '9.8.2',
+  '@types/react': '19.3.0',
+  '@types/react-dom': '19.3.0',
+  react: '19.3.0',
+  'react-dom': '19.3.0',
+  webpack: '5.112.2'
+}
+
 /** Installs the packed packages as a user would: from files, with the versions of the workspace. */
 function install(app: string): string {
   const packed = ['geo', 'atmosphere', 'clouds'].map(name => {
@@ -63,7 +73,8 @@ function install(app: string): string {
   const tools = ['three', '@types/three', 'typescript', 'vite', '3d-tiles-renderer'].map(
     name => `${name}@${workspace[name]}`
   )
-  execute('npm', ['install', '--no-audit', '--no-fund', ...packed, ...tools], app)
+  const others = Object.entries(foreign).map(([name, version]) => `${name}@${version}`)
+  execute('npm', ['install', '--no-audit', '--no-fund', ...packed, ...tools, ...others], app)
   return packed.map(file => file.replace('./', '')).join(', ')
 }
 
@@ -121,6 +132,16 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
   else report.fail(label, errors.join('\n'))
 }
 
+/** What the packages answer to a CommonJS module, checked. */
+function requireAll(app: string): string {
+  const output = execute('node', ['require.cjs'], app)
+  const { sunHeight, sunDeclination, layers } = JSON.parse(output) as Record<string, number>
+  // At noon of the solstice, on the tropic: the sun is overhead.
+  const isRight = sunHeight > 0.999 && Math.abs(sunDeclination - 0.409) < 1e-3 && layers === 3
+  if (!isRight) throw new Error(`the packages answer ${output}`)
+  return 'three packages'
+}
+
 async function lookAtAll(folder: string): Promise<void> {
   const server = await serveStatic([{ path: '/', folder }])
   const browser = await launchChromium()
@@ -144,7 +165,9 @@ try {
     ['npm install of the packed packages', () => install(app)],
     ['the code of the READMEs', () => `${writeReadmeModules(root, app)} blocks`],
     ['strict types, skipLibCheck off', () => execute('npx', ['--no-install', 'tsc'], app)],
-    ['vite build', () => execute('npx', ['--no-install', 'vite', 'build', '--logLevel=warn'], app)]
+    ['vite build', () => execute('npx', ['--no-install', 'vite', 'build', '--logLevel=warn'], app)],
+    ['webpack build', () => execute('node', ['webpack.mjs'], app)],
+    ['require() in CommonJS', () => requireAll(app)]
   ]
   if (steps.every(([name, work]) => attempt(name, work))) await lookAtAll(join(app, 'dist'))
 } finally {

@@ -19,6 +19,7 @@ import { AtmosphereView } from './view/AtmosphereView'
 import { checkCamera } from './check'
 import { LightSource } from './view/LightSource'
 import { checkLayer, type SkyLayer } from './view/SkyLayer'
+import { checkRenderer } from './view/renderers'
 import { AtmosphereQuery } from './AtmosphereQuery'
 import { ScenePlanet, type AtmosphereFrame } from './ScenePlanet'
 import { SphericalSpace } from './view/cpu/spherical'
@@ -241,9 +242,11 @@ export class Atmosphere extends ScenePlanet {
   /**
    * Bakes all tables now and reads back what {@link skyIlluminanceAt} and `skyLuminanceAt` need.
    *
-   * @param renderer - Initialised.
+   * @param renderer - Is initialised first if it is not yet.
    */
   async bake(renderer: Renderer): Promise<void> {
+    checkRenderer('Atmosphere', renderer)
+    await renderer.init()
     this.tables.update(renderer, this.parameters, this.luminanceScale, Infinity)
     await this.tables.read()
   }

@@ -5,9 +5,7 @@ import { fail } from '@welkin/geo'
 /** @throws If it cannot draw nodes, as three's `WebGLRenderer` can't. */
 export function checkRenderer(where: string, renderer: Renderer): void {
   if (renderer?.isRenderer) return
-  const rule =
-    "renderer must be a WebGPURenderer, from 'three/webgpu', which uses WebGL2 where there is no WebGPU"
-  fail(where, rule, renderer)
+  fail(where, 'renderer must be a WebGPURenderer of three/webgpu, for WebGL2 too', renderer)
 }
 
 /**
@@ -21,8 +19,11 @@ export function checkOwner(where: string, owner: Renderer | null, renderer: Rend
   checkRenderer(where, renderer)
   // Disposed renderers have no textures, and those in use have at least these.
   if (owner === null || owner.info.memory.textures === 0) return
-  const rule = `renderer must be the first: one ${where} serves one renderer at a time, until either is disposed of`
-  fail(where, rule, renderer)
+  fail(
+    where,
+    'renderer must be the first: it serves one at a time, until either is disposed of',
+    renderer
+  )
 }
 
 type OnBeforeRender = (this: Scene, renderer: unknown, ...rest: unknown[]) => void

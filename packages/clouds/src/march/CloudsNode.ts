@@ -158,7 +158,19 @@ export class CloudsNode extends AtmosphereNode {
     return this.field.worldMapTexture
   }
 
-  /** Whether there is noise to make clouds of. Before, the sky is clear; `field.bake` makes all at once. */
+  /**
+   * Makes all that air and clouds need now: the atmosphere's tables, noise and the light table. Shaders are
+   * compiled with the first frame.
+   *
+   * @param renderer - Is initialised first if it is not yet.
+   */
+  async bake(renderer: Renderer): Promise<void> {
+    await this.atmosphere.bake(renderer)
+    this.field.bake(renderer)
+    this.light.bake()
+  }
+
+  /** Whether there is noise to make clouds of. Before, the sky is clear; {@link bake} makes all at once. */
   get isReady(): boolean {
     return this.field.noise.isReady
   }

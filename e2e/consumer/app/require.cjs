@@ -1,0 +1,14 @@
+// CommonJS, as older tools and servers have it. Prints what three of the packages answer.
+const { Atmosphere } = require('@welkin/atmosphere')
+const { cloudPreset } = require('@welkin/clouds')
+const { sunDirectionECEF } = require('@welkin/geo')
+
+const date = new Date('2026-06-21T12:00:00Z')
+const atmosphere = new Atmosphere().place({ longitude: 0, latitude: 23.4 })
+atmosphere.date = date
+const answers = {
+  sunHeight: atmosphere.sunDirection.y,
+  sunDeclination: Math.asin(sunDirectionECEF(date).z),
+  layers: cloudPreset('mixed').length
+}
+console.log(JSON.stringify(answers))
