@@ -23,10 +23,14 @@ import {
 } from 'three'
 import { float, pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { glowGain } from '../../../packages/atmosphere/test/twins/airglow'
+import { vanRhijnFactor } from '../../../packages/atmosphere/test/twins/night/airglow'
 import { starDirection } from '../../../packages/atmosphere/src/stars/starCells'
-import { luminanceOf, starIrradiance } from '../../../packages/atmosphere/src/stars/starColor'
-import { glowGains, overheadGain } from '../../../packages/atmosphere/src/night/tsl/airglow'
+import { luminanceOf } from '../../../packages/atmosphere/src/parameters/photometry'
+import { starIrradiance } from '../../../packages/atmosphere/src/stars/starBrightness'
+import {
+  vanRhijnFactors,
+  thinLayerVanRhijnFactor
+} from '../../../packages/atmosphere/src/night/tsl/airglow'
 import { milkyWayMap } from '../../../packages/atmosphere/src/night/tsl/milkyWay'
 import { drawToFloat, expectLight, relativeDifferences } from '../harness/atmosphere'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -219,7 +223,7 @@ gpuTest('has airglow as bright as its layer is long', async t => {
     cases.map(({ height, cosView }) => [height, cosView, 0, 0]),
     input => {
       const nodes = { altitude: float(altitude), width: float(width) }
-      const gains = glowGains(nodes, input.x, input.y, float(bottomRadius), null)
+      const gains = vanRhijnFactors(nodes, input.x, input.y, float(bottomRadius), null)
       return gains.down.add(gains.up)
     }
   )
@@ -227,7 +231,7 @@ gpuTest('has airglow as bright as its layer is long', async t => {
   cases.forEach(({ name, height, cosView }, i) => {
     const radius = bottomRadius + height
     const away = 2 * Math.abs(radius * cosView) + 2e6
-    const exact = glowGain(layer, radius, cosView, bottomRadius, away)
+    const exact = vanRhijnFactor(layer, radius, cosView, bottomRadius, away)
     const off = Math.abs(gpu[4 * i] - exact) / Math.max(exact, 0.5)
     worst = Math.max(worst, off)
     const label = `${name}, ${height} m, cos ${cosView}`
@@ -238,11 +242,11 @@ gpuTest('has airglow as bright as its layer is long', async t => {
     below.map(({ height, cosView }) => [height, cosView, 0, 0]),
     input => {
       const nodes = { altitude: float(altitude), width: float(width) }
-      return overheadGain(nodes, input.x, input.y, float(bottomRadius))
+      return thinLayerVanRhijnFactor(nodes, input.x, input.y, float(bottomRadius))
     }
   )
   below.forEach(({ height, cosView }, i) => {
-    const exact = glowGain(layer, bottomRadius + height, cosView, bottomRadius, 3e6)
+    const exact = vanRhijnFactor(layer, bottomRadius + height, cosView, bottomRadius, 3e6)
     const off = Math.abs(thin[4 * i] / exact - 1)
     worst = Math.max(worst, off)
     expectTrue(off < 0.01, `shell, ${height} m, cos ${cosView}: ${thin[4 * i]}, not ${exact}`)

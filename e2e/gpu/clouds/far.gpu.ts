@@ -25,7 +25,7 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
   light.bake()
   field.depthScale.value = light.nodes.depthScale.value
   const quality = new QualityUniforms()
-  quality.set(resolveQuality('high'))
+  quality.set(resolveQuality('test', 'high'))
   const update = (): void => {
     const view = atmosphere.update(renderer, camera)
     field.view.update({ renderer, camera } as unknown as NodeFrame)

@@ -10,6 +10,7 @@ export interface RendererOptions {
   width?: number
   height?: number
   antialias?: boolean
+  alpha?: boolean
   reversedDepthBuffer?: boolean
   logarithmicDepthBuffer?: boolean
 }

@@ -3,7 +3,7 @@
 //   && npx tsx packages/atmosphere/scripts/convert-stars.ts package/data/stars.6.json
 import { readFileSync, writeFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
-import { BYTES_PER_STAR, encodeStar } from '../src/stars/starCode'
+import { BYTES_PER_STAR, encodeStar } from '../src/stars/starEncoding'
 
 interface Feature {
   properties: { mag: number; bv: string }

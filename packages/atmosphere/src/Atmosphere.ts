@@ -2,7 +2,12 @@ import { EventDispatcher, MathUtils, Matrix4, Vector3 } from 'three'
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
 import {
+  checkBoolean,
+  checkChoice,
   checkDirection,
+  checkEllipsoid,
+  checkOptions,
+  checkPlace,
   checkPositive,
   Ellipsoid,
   fail,
@@ -10,12 +15,16 @@ import {
   sunDirectionECEF
 } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
-import { AtmosphereParameters, type Spectrum } from './parameters/AtmosphereParameters'
+import {
+  AtmosphereParameters,
+  checkParameters,
+  type Spectrum
+} from './parameters/AtmosphereParameters'
 import { AtmosphereTables } from './tables/AtmosphereTables'
 import { AtmosphereView } from './view/AtmosphereView'
-import { checkOptions, checkRange } from './check'
+import { checkCamera, checkRange } from './check'
 import { LightSource } from './view/LightSource'
-import type { SkyLayer } from './view/SkyLayer'
+import { checkLayer, type SkyLayer } from './view/SkyLayer'
 import { AtmosphereQuery } from './AtmosphereQuery'
 import { SphericalSpace } from './view/cpu/spherical'
 import type { Triple } from './air/cpu/color'
@@ -83,17 +92,16 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** @throws If an option is of the wrong kind. */
   constructor(options: AtmosphereOptions = {}) {
     super()
+    if (options instanceof AtmosphereParameters) {
+      fail('Atmosphere', 'options must be an object: write new Atmosphere({ parameters })', options)
+    }
     const {
       parameters = new AtmosphereParameters(),
       ellipsoid = Ellipsoid.WGS84,
       flat = false
-    } = checkOptions('Atmosphere', options)
-    if (!(parameters instanceof AtmosphereParameters)) {
-      fail('Atmosphere', 'parameters must be AtmosphereParameters', parameters)
-    }
-    if (!(ellipsoid instanceof Ellipsoid)) {
-      fail('Atmosphere', 'ellipsoid must be an Ellipsoid', ellipsoid)
-    }
+    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', 'flat')
+    checkParameters('Atmosphere', parameters)
+    checkEllipsoid('Atmosphere', ellipsoid)
     const { bottomRadius } = parameters
     if (Math.abs(bottomRadius / ellipsoid.radii.x - 1) > 0.02) {
       fail('Atmosphere', 'bottomRadius must be near that of the ellipsoid', bottomRadius)
@@ -122,7 +130,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   set flat(value: boolean) {
-    if (typeof value !== 'boolean') fail('Atmosphere', 'flat must be true or false', value)
+    checkBoolean('Atmosphere', 'flat', value)
     if (value && this.#frame === 'ecef') {
       fail('Atmosphere', "flat must be false in the frame 'ecef'", value)
     }
@@ -162,9 +170,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @throws If a coordinate is missing, not finite or out of range.
    */
   place(geodetic: GeodeticLike): this {
-    if (typeof geodetic !== 'object' || geodetic === null) {
-      fail('Atmosphere', 'place must be a longitude and latitude', geodetic)
-    }
+    checkPlace('Atmosphere.place', 'geodetic', geodetic)
     this.#place.copy(geodetic)
     this.#frame = 'local'
     this.#updateFrame()
@@ -177,9 +183,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   set frame(value: AtmosphereFrame) {
-    if (value !== 'local' && value !== 'ecef') {
-      fail('Atmosphere', "frame must be 'local' or 'ecef'", value)
-    }
+    checkChoice('Atmosphere', 'frame', value, ['local', 'ecef'])
     if (value === 'ecef' && this.flat) {
       fail('Atmosphere', "frame must be 'local' where the world is flat", value)
     }
@@ -246,8 +250,9 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
    */
   setSunAngles(elevation: number, azimuth: number): this {
-    checkRange('Atmosphere', 'elevation', elevation, -90, 90)
-    if (!Number.isFinite(azimuth)) fail('Atmosphere', 'azimuth must be finite', azimuth)
+    checkRange('Atmosphere.setSunAngles', 'elevation', elevation, -90, 90)
+    if (!Number.isFinite(azimuth))
+      fail('Atmosphere.setSunAngles', 'azimuth must be finite', azimuth)
     const origin = _position.setFromMatrixPosition(this.worldToECEF)
     if (origin.length() < this.ellipsoid.radii.x / 2) {
       this.ellipsoid.geodeticToECEF(this.#place, origin)
@@ -281,7 +286,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     if (views === undefined) this.#views.set(source, (views = new WeakMap()))
     let view = views.get(camera)
     if (view === undefined) {
-      if (!camera?.isCamera) fail('Atmosphere', 'camera must be a Camera', camera)
+      checkCamera('Atmosphere.update', camera)
       views.set(camera, (view = new AtmosphereView(this, camera, source)))
     }
     view.update(renderer)
@@ -304,27 +309,26 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   /**
-   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near; what is
-   * there already becomes the nearest.
+   * Shows something more in the sky: moon, stars, airglow. Add what is far before what is near.
    *
    * Background and fog show it from the next frame on, after compiling their shaders anew. A
    * `RenderPipeline` that has rendered does so when its `needsUpdate` is set to true, and a node of
    * yours around background or fog when its own is.
    *
    * @returns This atmosphere.
-   * @throws If something is no layer, or made for another atmosphere; then nothing is added.
+   * @throws If something is no layer, made for another atmosphere, or there already; then nothing is added.
    */
   add(...layers: SkyLayer[]): this {
     for (const layer of layers) {
-      if (typeof layer !== 'object' || layer === null || Array.isArray(layer)) {
-        fail('Atmosphere', 'layer must be a SkyLayer', layer)
-      }
+      checkLayer('Atmosphere.add', layer)
       if ((layer.atmosphere ?? this) !== this) {
-        fail('Atmosphere', 'layer must be made for this atmosphere', layer)
+        fail('Atmosphere.add', 'layer must be made for this atmosphere', layer)
       }
     }
-    this.remove(...layers)
-    this.#layers.push(...new Set(layers))
+    const all = [...this.#layers, ...layers]
+    const twice = all.find((layer, i) => all.indexOf(layer) < i)
+    if (twice) fail('Atmosphere.add', 'layer must not be in the sky already', twice)
+    this.#layers.push(...layers)
     this.#layersVersion++
     return this
   }

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three'
-import { checkDirection, checkVector } from '@welkin/geo'
+import { checkDirection, checkVector, fail } from '@welkin/geo'
 import type { AtmosphereParameters, Spectrum } from './parameters/AtmosphereParameters'
 import { spectralToLinearSRGB, type Triple } from './air/cpu/color'
 import type { DiffuseLightData } from './diffuseLight/cpu/diffuseLight'
@@ -52,9 +52,7 @@ export class AtmosphereQuery {
   /** The diffuse-light table, for a method that needs it. */
   table(method: string): DiffuseLightData {
     if (this.#data === null) {
-      throw new Error(
-        `Atmosphere: ${method} needs baked tables: await atmosphere.bake(renderer) first`
-      )
+      fail(method, 'there are no tables yet: await atmosphere.bake(renderer) first')
     }
     return this.#data
   }
@@ -72,7 +70,7 @@ export class AtmosphereQuery {
   }
 
   skyIlluminance(position: Vector3, normal: Vector3): Triple {
-    const data = this.table('skyIlluminanceAt')
+    const data = this.table('Atmosphere.skyIlluminanceAt')
     const { up, radius, cosSun } = this.place(position)
     const n = this.direction('normal', normal)
     const altitude = radius - this.parameters.bottomRadius

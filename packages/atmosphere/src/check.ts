@@ -1,24 +1,12 @@
 import { Matrix4 } from 'three'
-import { fail } from '@welkin/geo'
-
-/**
- * @param names - Of all options that there are; without any, others are let pass.
- * @returns The options.
- * @throws If they are no object, or have another option.
- */
-export function checkOptions<T extends object>(where: string, options: T, ...names: string[]): T {
-  if (typeof options !== 'object' || options === null) {
-    fail(where, 'options must be an object', options)
-  }
-  for (const name of names.length > 0 ? Object.keys(options) : []) {
-    if (!names.includes(name)) fail(where, `options must be ${names.join(', ')}`, name)
-  }
-  return options
-}
+import type { Camera } from 'three'
+import type { Node } from 'three/webgpu'
+import { checkOptions, fail } from '@welkin/geo'
 
 /** Defaults, and the options that are not undefined in place of them. */
 export function withDefaults<T extends object>(where: string, defaults: T, options: object): T {
-  const given = Object.entries(checkOptions(where, options)).filter(
+  const names = Object.keys(defaults) as never[]
+  const given = Object.entries(checkOptions(where, options, ...names)).filter(
     ([, value]) => value !== undefined
   )
   return { ...defaults, ...Object.fromEntries(given) }
@@ -64,4 +52,16 @@ export function checkOrientation(where: string, value: Matrix4 | null): void {
   if (value !== null && !(value instanceof Matrix4 && value.elements.every(Number.isFinite))) {
     fail(where, 'orientation must be a Matrix4 or null', value)
   }
+}
+
+/** @throws If it is no camera. */
+export function checkCamera(where: string, camera: Camera): void {
+  if (!camera?.isCamera) fail(where, 'camera must be a Camera', camera)
+}
+
+/** What every post effect takes. @throws If it is of another kind. */
+export function checkPostEffect(where: string, color: Node, depth: Node, camera: Camera): void {
+  if (!color?.isNode) fail(where, 'colorNode must be a node', color)
+  if (!depth?.isNode) fail(where, 'depthNode must be a node', depth)
+  checkCamera(where, camera)
 }

@@ -32,7 +32,9 @@ describe('Atmosphere', () => {
     const one = key()
     expect(one).not.toBe(bare)
     expect(key()).toBe(one)
-    atmosphere.add(far, near, far)
+    expect(() => atmosphere.add(far, near)).toThrow('in the sky already, got a HeightFog')
+    expect(() => atmosphere.add(far, far)).toThrow('in the sky already, got a DistanceFog')
+    atmosphere.remove(near).add(far, near)
     expect(atmosphere.layers).toEqual([far, near])
     expect(atmosphere.remove(far).layers).toEqual([near])
     const { layersVersion } = atmosphere
@@ -47,11 +49,11 @@ describe('Atmosphere', () => {
     const atmosphere = new Atmosphere()
     for (const wrong of [null, undefined, 'abc', 3, heightFog, [heightFog()]]) {
       expect(() => atmosphere.add(heightFog(), wrong as never)).toThrow(
-        'Atmosphere: layer must be a SkyLayer, got '
+        'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got '
       )
     }
     expect(() => atmosphere.add(sunFlare(new Atmosphere()))).toThrow(
-      'Atmosphere: layer must be made for this atmosphere, got SunFlare'
+      'Atmosphere.add: layer must be made for this atmosphere, got a SunFlare'
     )
     expect(atmosphere.layers).toEqual([])
   })
@@ -214,22 +216,22 @@ describe('Atmosphere', () => {
       [() => (atmosphere.metersPerUnit = 0), /Atmosphere: metersPerUnit .*0/],
       [() => (atmosphere.metersPerUnit = NaN), /Atmosphere: metersPerUnit .*NaN/],
       [() => (atmosphere.sunDirection = new Vector3()), /Atmosphere: sunDirection .*\(0, 0, 0\)/],
-      [() => atmosphere.setSunAngles(91, 0), /Atmosphere: elevation .*91/],
-      [() => atmosphere.setSunAngles(0, Infinity), /Atmosphere: azimuth .*Infinity/],
+      [() => atmosphere.setSunAngles(91, 0), /Atmosphere.setSunAngles: elevation .*91/],
+      [() => atmosphere.setSunAngles(0, Infinity), /Atmosphere.setSunAngles: azimuth .*Infinity/],
       [() => atmosphere.place({ longitude: 0, latitude: 91 }), /latitude .*91/],
       [() => atmosphere.place({ longitude: NaN, latitude: 0 }), /longitude .*NaN/],
       [() => atmosphere.sunIlluminanceAt(new Vector3(NaN, 0, 0)), /Atmosphere: position .*NaN/],
       [
         () => atmosphere.skyIlluminanceAt(new Vector3(), new Vector3(0, 1, 0)),
-        /Atmosphere: skyIlluminanceAt .*bake/
+        /Atmosphere.skyIlluminanceAt: there are no tables.*bake/
       ],
       [
         () => skyLuminanceAt(atmosphere, new Vector3(), new Vector3(0, 1, 0)),
-        /skyLuminanceAt .*bake/
+        /skyLuminanceAt: there are no tables.*bake/
       ],
       [
         () => new Atmosphere({ parameters: {} as AtmosphereParameters }),
-        /Atmosphere: parameters must be AtmosphereParameters, got Object/
+        /Atmosphere: parameters must be AtmosphereParameters, got \{\}/
       ],
       [
         () => new Atmosphere({ ellipsoid: new Vector3() as unknown as Ellipsoid }),
@@ -243,14 +245,14 @@ describe('Atmosphere', () => {
       [() => (atmosphere.sunDirection = missing), /Atmosphere: sunDirection .*undefined/],
       [() => (atmosphere.date = missing), /Atmosphere: date .*undefined/],
       [() => (atmosphere.metersPerUnit = missing), /Atmosphere: metersPerUnit .*undefined/],
-      [() => atmosphere.place(missing), /Atmosphere: place .*undefined/],
+      [() => atmosphere.place(missing), /Atmosphere.place: geodetic .*undefined/],
       [() => atmosphere.place({ longitude: 3 } as GeodeticLike), /latitude .*undefined/],
       [() => atmosphere.sunIlluminanceAt(missing), /Atmosphere: position .*undefined/],
       [() => atmosphere.update(missing, new Camera()), /Atmosphere: renderer .*undefined/],
       [() => new SunDirectionalLight(missing), /SunDirectionalLight: atmosphere .*undefined/],
       [() => new SunDirectionalLight(atmosphere, NaN), /SunDirectionalLight: distance .*NaN/],
       [() => (light.distance = -1), /SunDirectionalLight: distance .*-1/],
-      [() => new SkyLightProbe({} as Atmosphere), /SkyLightProbe: atmosphere .*got Object/],
+      [() => new SkyLightProbe({} as Atmosphere), /SkyLightProbe: atmosphere .*got \{\}/],
       [() => skyBackground(missing), /SkyBackgroundNode: atmosphere .*undefined/]
     ]
     const before = [...atmosphere.worldToECEF.elements, ...atmosphere.sunDirection.toArray()]

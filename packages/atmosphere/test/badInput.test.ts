@@ -1,10 +1,13 @@
-import { Matrix4, PerspectiveCamera, Texture, Vector3 } from 'three'
+import { Matrix4, Mesh, PerspectiveCamera, Scene, Texture, Vector3 } from 'three'
+import { vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
+  aerialPerspective,
   airglow,
   airlessBody,
   Atmosphere,
   AtmosphereParameters,
+  AtmosphereShell,
   DayCycle,
   distanceFog,
   exposureFor,
@@ -17,9 +20,14 @@ import {
   NightLightProbe,
   planetGround,
   proceduralStars,
+  skyBackground,
+  skyEnvironment,
   SkyLightProbe,
+  skyLuminanceAt,
   standardAtmosphere,
   Stars,
+  stars,
+  starsOverlay,
   SunDirectionalLight,
   sunFlare
 } from '@welkin/atmosphere'
@@ -35,11 +43,12 @@ const flat = new Matrix4().set(
   ...(Array.from({ length: 16 }).fill(NaN) as Parameters<Matrix4['set']>)
 )
 const parameters = new AtmosphereParameters()
+const zero = new Vector3()
 
 /** What the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
-const source = "must be a LightSource, such as a moon's source, got Moon"
+const source = "must be a LightSource, such as a moon's source, got a Moon"
 const noOptions = 'options must be an object, got null'
 
 const cases: [message: string, call: () => unknown][] = [
@@ -60,7 +69,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => new SunDirectionalLight(atmosphere, 1, wrong(luna))
   ],
   [
-    'SunDirectionalLight: source must be a LightSource',
+    'MoonDirectionalLight: moon must be a Moon, got { source: 1 }',
     () => new MoonDirectionalLight(atmosphere, wrong({ source: 1 }))
   ],
 
@@ -81,7 +90,7 @@ const cases: [message: string, call: () => unknown][] = [
 
   // Textures and rotations.
   [
-    'PlanetGround: surface must be a Texture or null, got earth.jpg',
+    "PlanetGround: surface must be a Texture or null, got 'earth.jpg'",
     () => planetGround({ surface: wrong('earth.jpg') })
   ],
   ['PlanetGround: water must be a Texture', () => planetGround({ water: wrong({}) })],
@@ -104,7 +113,7 @@ const cases: [message: string, call: () => unknown][] = [
   ['DayCycle: time must be a date in milliseconds, got null', () => (cycle.time = wrong(null))],
   ['DayCycle: hour must be in [0, 24), got null', () => (cycle.hour = wrong(null))],
   ['DayCycle: latitude must be in [-90, 90], got NaN', () => (cycle.latitude = NaN)],
-  ['DayCycle: daylight must be in (0, 1), got 0.5', () => (cycle.daylight = wrong('0.5'))],
+  ["DayCycle: daylight must be in (0, 1), got '0.5'", () => (cycle.daylight = wrong('0.5'))],
 
   // Null and [] are no numbers.
   ['HeightFog: density must be in [0, 100], got null', () => heightFog({ density: wrong(null) })],
@@ -120,7 +129,7 @@ const cases: [message: string, call: () => unknown][] = [
   ['Moon: strength must be finite', () => (luna.strength = wrong(null))],
   ['Moon: phase must be in [0, 1], got []', () => moon(atmosphere, { phase: wrong([]) })],
   ['SunFlare: innerStrength must be', () => sunFlare(atmosphere, { innerStrength: wrong(null) })],
-  ['Atmosphere: elevation must be in', () => atmosphere.setSunAngles(wrong(null), 0)],
+  ['Atmosphere.setSunAngles: elevation must be in', () => atmosphere.setSunAngles(wrong(null), 0)],
   [
     'standardAtmosphere: aerosolOpticalDepth must',
     () => standardAtmosphere({ aerosolOpticalDepth: wrong(null) })
@@ -132,7 +141,7 @@ const cases: [message: string, call: () => unknown][] = [
   ['airlessBody: distance must be in', () => airlessBody({ distance: wrong([]) })],
   ['proceduralStars: faintest must be in', () => proceduralStars({ faintest: wrong(null) })],
   [
-    'Atmosphere: sunDirection must have finite components',
+    'Atmosphere: sunDirection must have finite components, got (null, 1, 0)',
     () => (atmosphere.sunDirection = new Vector3(wrong(null), 1, 0))
   ],
 
@@ -140,7 +149,7 @@ const cases: [message: string, call: () => unknown][] = [
   ['Moon: direction must be a Vector3', () => moon(atmosphere, { direction: wrong([0, 1, 0]) })],
   ['Moon: direction must be a Vector3', () => (luna.direction = wrong(undefined))],
   [
-    'DayCycle: date must be a Date, got 2026',
+    "DayCycle: date must be a valid Date, got '2026'",
     () => new DayCycle(atmosphere, { date: wrong('2026') })
   ],
   ['Stars: catalogue must be an array of stars, got undefined', () => new Stars(wrong(undefined))],
@@ -162,22 +171,156 @@ const cases: [message: string, call: () => unknown][] = [
 
   // No such option.
   [
-    'SunFlare: options must be innerPower, innerStrength, outerPower, outerStrength, got typo',
+    "SunFlare: unknown option 'typo', there are innerPower, innerStrength, outerPower, outerStrength",
     () => sunFlare(atmosphere, wrong({ typo: 1 }))
   ],
   [
-    'Moon: options must be innerPower, innerStrength, outerPower, outerStrength, got inerPower',
+    "Moon: unknown option 'inerPower', did you mean 'innerPower'?",
     () => moon(atmosphere, { flare: wrong({ inerPower: 3 }) })
   ],
   [
-    'AtmosphereParameters: options must be turbidity, ozone, got tubidity',
+    "AtmosphereParameters: unknown option 'tubidity', did you mean 'turbidity'?",
     () => AtmosphereParameters.earth(wrong({ tubidity: 3 }))
   ],
   [
-    'standardAtmosphere: options must be aerosolOpticalDepth, ozone, got ozon',
+    "standardAtmosphere: unknown option 'ozon', did you mean 'ozone'?",
     () => standardAtmosphere(wrong({ ozon: 300 }))
   ],
-  ['marsAtmosphere: options must be dust, got dist', () => marsAtmosphere(wrong({ dist: 1 }))],
+  [
+    "marsAtmosphere: unknown option 'dist', did you mean 'dust'?",
+    () => marsAtmosphere(wrong({ dist: 1 }))
+  ],
+
+  ...(
+    [
+      ['Atmosphere', 'paramaters', 'parameters', o => new Atmosphere(o)],
+      ['AtmosphereParameters', 'mieScatering', 'mieScattering', o => new AtmosphereParameters(o)],
+      ['AtmosphereParameters', 'groundAlbdo', 'groundAlbedo', o => parameters.set(o)],
+      ['AtmosphereParameters', 'ozon', 'ozone', o => parameters.setEarth(o)],
+      ['airlessBody', 'raduis', 'radius', o => airlessBody(o)],
+      ['DayCycle', 'rat', 'rate', o => new DayCycle(atmosphere, o)],
+      ['DayCycle', 'flor', 'floor', o => new DayCycle(atmosphere, { exposure: o })],
+      ['exposureFor', 'source', 'sources', o => exposureFor(atmosphere, camera, o)],
+      ['HeightFog', 'densty', 'density', o => heightFog(o)],
+      ['HeightFog', 'densty', 'density', o => heightFog().set(o)],
+      ['DistanceFog', 'Density', 'density', o => distanceFog(o)],
+      ['PlanetGround', 'surfce', 'surface', o => planetGround(o)],
+      ['Stars', 'overlays', 'overlay', o => new Stars([], o)],
+      ['Stars', 'orientatoin', 'orientation', o => stars(o)],
+      ['proceduralStars', 'cuont', 'count', o => proceduralStars(o)],
+      ['MilkyWay', 'orientaton', 'orientation', o => milkyWay(o)],
+      ['Airglow', 'luminence', 'luminance', o => airglow(o)],
+      ['Moon', 'fase', 'phase', o => moon(atmosphere, o)],
+      ['SkyEnvironmentNode', 'sise', 'size', o => skyEnvironment(atmosphere, o)],
+      ['ImageEnvironmentNode', 'difuse', 'diffuse', o => skyEnvironment(new Texture(), o)],
+      ['AtmosphereShell', 'modle', 'model', o => new AtmosphereShell(parameters, 1, o)]
+    ] satisfies [string, string, string, (options: never) => unknown][]
+  ).map(
+    ([where, misspelt, right, call]) =>
+      [
+        `${where}: unknown ${/Scat|Alb/.test(misspelt) ? 'parameter' : 'option'} '${misspelt}', did you mean '${right}'?`,
+        () => call(wrong({ [misspelt]: 1 }))
+      ] as [string, () => unknown]
+  ),
+  [
+    "Atmosphere: unknown option 'sky', there are parameters, ellipsoid, flat",
+    () => new Atmosphere(wrong({ sky: 1 }))
+  ],
+
+  // One thing for another.
+  [
+    'Atmosphere: options must be an object: write new Atmosphere({ parameters }), got an AtmosphereParameters',
+    () => new Atmosphere(wrong(marsAtmosphere()))
+  ],
+  [
+    'Atmosphere: parameters must be AtmosphereParameters, got { dust: 1 }',
+    () => new Atmosphere({ parameters: wrong({ dust: 1 }) })
+  ],
+  [
+    'Atmosphere: ellipsoid must be an Ellipsoid, got 6378137',
+    () => new Atmosphere({ ellipsoid: wrong(6_378_137) })
+  ],
+  [
+    "Atmosphere: flat must be true or false, got 'yes'",
+    () => new Atmosphere({ flat: wrong('yes') })
+  ],
+  [
+    "Atmosphere: frame must be 'local' or 'ecef', got 'ECEF'",
+    () => (atmosphere.frame = wrong('ECEF'))
+  ],
+  [
+    "Atmosphere.place: geodetic must be { longitude, latitude, height } [degrees, metres], got '35'",
+    () => atmosphere.place(wrong('35'))
+  ],
+  [
+    "Atmosphere.place: longitude must be a finite number, got '139'",
+    () => atmosphere.place(wrong({ longitude: '139', latitude: 35 }))
+  ],
+  [
+    "Atmosphere.place: unknown option 'lattitude', did you mean 'latitude'?",
+    () => atmosphere.place(wrong({ longitude: 139, lattitude: 35 }))
+  ],
+  [
+    'Atmosphere: sunDirection must be a Vector3, got [0, 1, 0]',
+    () => (atmosphere.sunDirection = wrong([0, 1, 0]))
+  ],
+  [
+    'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got a Mesh',
+    () => atmosphere.add(wrong(new Mesh()))
+  ],
+  [
+    'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got [undefined]',
+    () => atmosphere.add(wrong([undefined]))
+  ],
+  [
+    'Atmosphere.add: layer must not be in the sky already, got a MilkyWay',
+    () => new Atmosphere().add(night.way, night.way)
+  ],
+  [
+    'Atmosphere.add: layer must not be in the sky already, got an Airglow',
+    () => new Atmosphere().add(night.glow).add(night.way, night.glow)
+  ],
+  [
+    'skyEnvironment: source must be an Atmosphere or a Texture, got a Scene',
+    () => skyEnvironment(wrong(new Scene()))
+  ],
+  [
+    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudOverlay(), or null, got a Mesh',
+    () => skyEnvironment(atmosphere, { overlay: wrong(new Mesh()) })
+  ],
+  [
+    'SkyEnvironmentNode: angle must be positive and finite, got 0',
+    () => (skyEnvironment(atmosphere).angle = 0)
+  ],
+  [
+    'AerialPerspectiveNode: colorNode must be a node, got a Scene',
+    () => aerialPerspective(wrong(new Scene()), vec4(1), camera, atmosphere)
+  ],
+  [
+    'StarsOverlayNode: depthNode must be a node, got a PerspectiveCamera',
+    () => starsOverlay(vec4(1), wrong(camera), camera, atmosphere)
+  ],
+  [
+    'AerialPerspectiveNode: atmosphere must be an Atmosphere, got a PerspectiveCamera',
+    () => aerialPerspective(vec4(1), vec4(1), wrong(atmosphere), wrong(camera))
+  ],
+  [
+    'SkyBackgroundNode: atmosphere must be an Atmosphere, got a Scene',
+    () => skyBackground(wrong(new Scene()))
+  ],
+  [
+    'AtmosphereShell: parameters must be AtmosphereParameters, got an Atmosphere',
+    () => new AtmosphereShell(wrong(atmosphere), 1)
+  ],
+  [
+    "AtmosphereShell: model must be 'tables' or 'single-scattering', got 'single'",
+    () => new AtmosphereShell(parameters, 1, { model: wrong('single') })
+  ],
+  [
+    'AtmosphereShell: bodyRadius must be positive and finite, got { radius: 1 }',
+    () => new AtmosphereShell(parameters, wrong({ radius: 1 }))
+  ],
+  ['skyLuminanceAt: there are no tables yet', () => skyLuminanceAt(atmosphere, zero, zero)],
 
   // Null is no options.
   [`Atmosphere: ${noOptions}`, () => new Atmosphere(wrong(null))],

@@ -1,17 +1,12 @@
-import { checkOptions, checkRange } from '@welkin/atmosphere'
-import { fail } from '@welkin/geo'
+import { checkRange } from '@welkin/atmosphere'
+import { checkChoice, fail } from '@welkin/geo'
 
-/**
- * @param others - Names of values that have no range.
- * @throws If there is a value of another name, or one is not a number from the least to the greatest of its.
- */
+/** @throws If a value is not a number from the least to the greatest of its range. */
 export function checkRanges<K extends string>(
   where: string,
   values: Readonly<Record<NoInfer<K>, number>>,
-  ranges: Readonly<Record<K, readonly [number, number]>>,
-  ...others: string[]
+  ranges: Readonly<Record<K, readonly [number, number]>>
 ): void {
-  checkOptions(where, values, ...Object.keys(ranges), ...others)
   for (const name in ranges) {
     checkRange(where, name, values[name], ...(ranges[name] as [number, number]))
   }
@@ -24,9 +19,7 @@ export function named<T extends object>(
   values: T,
   name: unknown
 ): T[keyof T] {
-  if (!Object.hasOwn(values, name as PropertyKey)) {
-    fail(where, `${what} must be one of ${Object.keys(values).join(', ')}`, name)
-  }
+  checkChoice<unknown>(where, what, name, Object.keys(values))
   return values[name as keyof T]
 }
 

@@ -1,7 +1,7 @@
 import { Matrix4, Sphere, Vector3 } from 'three'
-import { checkDirection, checkFinite, checkPositive, checkVector, fail } from './check'
+import { checkDirection, checkFinite, checkPlace, checkPositive, checkVector, fail } from './check'
 import { footPointNormal } from './footPoint'
-import { checkGeodetic, Geodetic } from './Geodetic'
+import { Geodetic } from './Geodetic'
 import type { GeodeticLike } from './Geodetic'
 
 const degrees = Math.PI / 180
@@ -91,8 +91,8 @@ export class Ellipsoid {
    * @throws Error if a value is not finite or the latitude is outside [−90, 90].
    */
   geodeticToECEF(geodetic: GeodeticLike, target: Vector3 = new Vector3()): Vector3 {
+    checkPlace('Ellipsoid.geodeticToECEF', 'geodetic', geodetic)
     const { longitude, latitude, height = 0 } = geodetic
-    checkGeodetic('Ellipsoid.geodeticToECEF', longitude, latitude, height)
     const { x, y, z } = this.radii
     const cosLatitude = Math.cos(latitude * degrees)
     const nx = cosLatitude * Math.cos(longitude * degrees)
@@ -335,3 +335,8 @@ const scratchNorth = /*#__PURE__*/ new Vector3()
 const scratchOrigin = /*#__PURE__*/ new Vector3()
 const scratchDirection = /*#__PURE__*/ new Vector3()
 const scratchGeodetic = /*#__PURE__*/ new Geodetic()
+
+/** @throws If it is no ellipsoid. */
+export function checkEllipsoid(where: string, value: Ellipsoid): void {
+  if (!(value instanceof Ellipsoid)) fail(where, 'ellipsoid must be an Ellipsoid', value)
+}

@@ -1,6 +1,6 @@
 import { EventDispatcher, Matrix4, Vector3 } from 'three'
 import type { Object3D } from 'three'
-import { checkPositive, checkVector, fail } from './check'
+import { checkMatrix, checkOptions, checkPositive, checkVector, fail } from './check'
 
 export interface FloatingOriginOptions {
   /** World units to ECEF in metres at the start; identity (the world is ECEF) if left out. Copied. */
@@ -38,11 +38,9 @@ export interface FloatingOriginEventMap {
 export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
   /** World units to ECEF in metres; kept up to date by rebasing. */
   readonly worldToECEF: Matrix4
-  /** Distance of the camera from the world's origin at which `update` rebases [world units]. */
-  threshold: number
-
   private readonly roots: readonly Object3D[]
   private readonly camera: Object3D
+  #threshold = 10_000
 
   /**
    * @param roots - Objects that together hold the scene; none inside another.
@@ -52,19 +50,35 @@ export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
   constructor(
     roots: Object3D | readonly Object3D[],
     camera: Object3D,
-    { worldToECEF = new Matrix4(), threshold = 10_000 }: FloatingOriginOptions = {}
+    options: FloatingOriginOptions = {}
   ) {
     super()
-    checkPositive('FloatingOrigin', 'threshold', threshold)
-    this.roots = 'isObject3D' in roots ? [roots] : [...roots]
+    checkOptions('FloatingOrigin', options, 'worldToECEF', 'threshold')
+    const { worldToECEF = new Matrix4(), threshold = 10_000 } = options
+    this.threshold = threshold
+    this.roots = Array.isArray(roots) ? [...roots] : [roots as Object3D]
     for (const root of this.roots) {
+      if (!root?.isObject3D) {
+        fail('FloatingOrigin', 'roots must be an Object3D or an array of such', roots)
+      }
       if (this.roots.some(other => other !== root && isInside(root, other))) {
-        fail('FloatingOrigin', 'roots must not be inside one another', root.name || root.type)
+        fail('FloatingOrigin', 'roots must not be inside one another', root)
       }
     }
+    if (!camera?.isObject3D) fail('FloatingOrigin', 'camera must be an Object3D', camera)
     this.camera = camera
+    checkMatrix('FloatingOrigin', 'worldToECEF', worldToECEF)
     this.worldToECEF = worldToECEF.clone()
-    this.threshold = threshold
+  }
+
+  /** Distance of the camera from the world's origin at which `update` rebases, > 0 [world units]. */
+  get threshold(): number {
+    return this.#threshold
+  }
+
+  set threshold(value: number) {
+    checkPositive('FloatingOrigin', 'threshold', value)
+    this.#threshold = value
   }
 
   /**

@@ -1,4 +1,4 @@
-import { checkFinite, checkLatitude } from './check'
+import { checkPlace } from './check'
 
 /** A place by longitude [degrees], latitude [degrees] and height [m]; `height` is 0 if left out. */
 export interface GeodeticLike {
@@ -30,7 +30,7 @@ export class Geodetic implements GeodeticLike {
    * @throws Error if a value is not finite or the latitude is out of range.
    */
   constructor(longitude = 0, latitude = 0, height = 0) {
-    checkGeodetic('Geodetic', longitude, latitude, height)
+    checkPlace('Geodetic', 'place', { longitude, latitude, height })
     this.longitude = longitude
     this.latitude = latitude
     this.height = height
@@ -38,7 +38,7 @@ export class Geodetic implements GeodeticLike {
 
   /** Sets all three values; the same ranges and errors as the constructor. */
   set(longitude: number, latitude: number, height = 0): this {
-    checkGeodetic('Geodetic.set', longitude, latitude, height)
+    checkPlace('Geodetic.set', 'place', { longitude, latitude, height })
     this.longitude = longitude
     this.latitude = latitude
     this.height = height
@@ -46,22 +46,12 @@ export class Geodetic implements GeodeticLike {
   }
 
   /** Copies another place; the same ranges and errors as the constructor. */
-  copy({ longitude, latitude, height = 0 }: GeodeticLike): this {
-    return this.set(longitude, latitude, height)
+  copy(place: GeodeticLike): this {
+    checkPlace('Geodetic.copy', 'place', place)
+    return this.set(place.longitude, place.latitude, place.height)
   }
 
   clone(): Geodetic {
     return new Geodetic(this.longitude, this.latitude, this.height)
   }
-}
-
-export function checkGeodetic(
-  where: string,
-  longitude: number,
-  latitude: number,
-  height: number
-): void {
-  checkFinite(where, 'longitude', longitude)
-  checkLatitude(where, latitude)
-  checkFinite(where, 'height', height)
 }

@@ -1,6 +1,6 @@
 /**
- * Preconditions of public functions. `where` is the class or function and, for a method, its name:
- * every message reads `where: name must be …, got value`.
+ * Preconditions of public functions. `where` is the class or function that the user called and, for a
+ * method, its name: every message reads `where: name must be …, got value`.
  */
 interface XYZ {
   readonly x: number
@@ -8,8 +8,15 @@ interface XYZ {
   readonly z: number
 }
 
-export function fail(where: string, rule: string, value: unknown): never {
-  throw new Error(`${where}: ${rule}, got ${describe(value)}`)
+/**
+ * Every error of these packages.
+ *
+ * @param value - What was given, if that is the matter: strings are quoted, arrays and plain objects
+ *   shown short, other objects by their class.
+ */
+export function fail(where: string, rule: string, ...value: [unknown?]): never {
+  const got = value.length > 0 ? `, got ${describe(value[0])}` : ''
+  throw new Error(`${where}: ${rule}${got}`)
 }
 
 export function checkFinite(where: string, name: string, value: number): void {
@@ -28,16 +35,43 @@ export function checkNonNegative(where: string, name: string, value: number): vo
   }
 }
 
+export function checkBoolean(where: string, name: string, value: boolean): void {
+  if (typeof value !== 'boolean') fail(where, `${name} must be true or false`, value)
+}
+
+/** @throws If it is none of the choices; the message lists them. */
+export function checkChoice<T>(where: string, name: string, value: T, choices: readonly T[]): void {
+  if (choices.includes(value)) return
+  const texts = choices.map(choice => describe(choice))
+  fail(where, `${name} must be ${texts.slice(0, -1).join(', ')} or ${texts.at(-1)}`, value)
+}
+
 export function checkLatitude(where: string, latitude: number): void {
   if (!(Number.isFinite(latitude) && Math.abs(latitude) <= 90)) {
     fail(where, 'latitude must be in [−90, 90]', latitude)
   }
 }
 
+/** @throws If it is no place, or a coordinate is missing or out of its range. */
+export function checkPlace(
+  where: string,
+  name: string,
+  place: { readonly longitude: number; readonly latitude: number; readonly height?: number }
+): void {
+  if (typeof place !== 'object' || place === null || Array.isArray(place)) {
+    fail(where, `${name} must be { longitude, latitude, height } [degrees, metres]`, place)
+  }
+  if (isPlain(place)) checkOptions(where, place, 'longitude', 'latitude', 'height')
+  checkFinite(where, 'longitude', place.longitude)
+  checkLatitude(where, place.latitude)
+  checkFinite(where, 'height', place.height ?? 0)
+}
+
 export function checkVector(where: string, name: string, vector: XYZ): void {
-  const isFinite =
-    Number.isFinite(vector?.x) && Number.isFinite(vector?.y) && Number.isFinite(vector?.z)
-  if (!isFinite) {
+  if (typeof vector !== 'object' || vector === null || !('x' in vector)) {
+    fail(where, `${name} must be a Vector3`, vector)
+  }
+  if (!(Number.isFinite(vector.x) && Number.isFinite(vector.y) && Number.isFinite(vector.z))) {
     fail(where, `${name} must have finite components`, vector)
   }
 }
@@ -55,10 +89,140 @@ export function checkDate(where: string, date: Date): void {
   }
 }
 
-function describe(value: unknown): string {
-  if (value instanceof Date || typeof value !== 'object' || value === null) return String(value)
-  if ('x' in value && 'y' in value && 'z' in value) {
-    return `(${String(value.x)}, ${String(value.y)}, ${String(value.z)})`
+/** @throws If it is no matrix of finite elements. */
+export function checkMatrix(
+  where: string,
+  name: string,
+  matrix: { readonly elements: readonly number[] }
+): void {
+  if (!matrix || !('isMatrix4' in matrix)) fail(where, `${name} must be a Matrix4`, matrix)
+  if (!matrix.elements.every(Number.isFinite)) {
+    fail(where, `${name} must have finite elements`, matrix.elements)
   }
-  return Array.isArray(value) ? `[${value.join(', ')}]` : (value.constructor?.name ?? 'object')
+}
+
+/**
+ * @param names - All options that there are.
+ * @returns The options.
+ * @throws If they are no plain object, or have an option of another name; the message has the nearest.
+ */
+export function checkOptions<T extends object>(
+  where: string,
+  options: T,
+  ...names: readonly (keyof T & string)[]
+): T {
+  if (!isPlain(options)) fail(where, 'options must be an object', options)
+  for (const name of Object.keys(options)) {
+    if (!(names as readonly string[]).includes(name)) failUnknown(where, 'option', name, names)
+  }
+  return options
+}
+
+/** Says that a name is unknown, and which one was meant or what there are. */
+export function failUnknown(
+  where: string,
+  kind: string,
+  name: string,
+  names: readonly string[]
+): never {
+  const edits = names.map(other => editsBetween(name.toLowerCase(), other.toLowerCase()))
+  const least = Math.min(...edits)
+  const isNear = least <= Math.max(2, name.length / 3)
+  const hint = isNear
+    ? `did you mean '${names[edits.indexOf(least)]}'?`
+    : `there are ${names.join(', ')}`
+  fail(where, `unknown ${kind} '${name}', ${hint}`)
+}
+
+/**
+ * Assigns options to the properties of the same names, or none if a name is unknown or a property
+ * refuses its value. Undefined leaves a property as it is.
+ */
+export function setOptions<T extends object, O extends object>(
+  where: string,
+  target: T,
+  options: O,
+  ...names: readonly (keyof T & keyof O & string)[]
+): T {
+  checkOptions(where, options, ...names)
+  const properties = target as Record<string, unknown>
+  const before: Record<string, unknown> = {}
+  try {
+    for (const [name, value] of Object.entries(options)) {
+      if (value === undefined) continue
+      before[name] = properties[name]
+      properties[name] = value
+    }
+  } catch (error) {
+    Object.assign(properties, before)
+    throw error
+  }
+  return target
+}
+
+/** Levenshtein distance: letters added, left out or replaced between two words. */
+function editsBetween(a: string, b: string): number {
+  let row = Array.from({ length: b.length + 1 }, (_, j) => j)
+  for (let i = 0; i < a.length; i++) {
+    const next = [i + 1]
+    for (let j = 0; j < b.length; j++) {
+      const replaced = row[j] + (a[i] === b[j] ? 0 : 1)
+      next.push(Math.min(replaced, row[j + 1] + 1, next[j] + 1))
+    }
+    row = next
+  }
+  return row[b.length]
+}
+
+/** Whether it is an object that no class has made. */
+function isPlain(value: unknown): value is object {
+  if (typeof value !== 'object' || value === null) return false
+  const prototype: unknown = Object.getPrototypeOf(value)
+  return prototype === null || Object.getPrototypeOf(prototype) === null
+}
+
+/** Parts of an array or object that are shown. */
+const SHOWN = 4
+
+/** Letters of a string that are shown. */
+const LETTERS = 60
+
+function describe(value: unknown, isPart = false): string {
+  if (typeof value === 'string') {
+    return `'${value.length > LETTERS ? `${value.slice(0, LETTERS)}…` : value}'`
+  }
+  if (typeof value === 'function') return `the function ${value.name}`
+  if (value instanceof Date || typeof value !== 'object' || value === null) return String(value)
+  if (Array.isArray(value)) {
+    return shown(
+      '[',
+      value.map(part => (): string => describe(part, true)),
+      ']',
+      isPart
+    )
+  }
+  if (isPlain(value)) {
+    const parts = Object.entries(value).map(
+      ([name, part]) =>
+        (): string =>
+          `${name}: ${describe(part, true)}`
+    )
+    return shown('{ ', parts, ' }', isPart)
+  }
+  if ('isVector3' in value) {
+    const { x, y, z } = value as unknown as XYZ
+    return `(${x}, ${y}, ${z})`
+  }
+  // Minifiers shorten the names of classes, but not three's own names for types.
+  const { name } = (value as object).constructor
+  const type = name.length > 2 ? name : (value as { type?: unknown }).type
+  if (typeof type !== 'string') return 'an object'
+  return `${/^[AEIO]/.test(type) ? 'an' : 'a'} ${type}`
+}
+
+function shown(open: string, parts: (() => string)[], close: string, isPart: boolean): string {
+  if (parts.length === 0) return (open + close).replaceAll(' ', '')
+  if (isPart) return `${open}…${close}`
+  const texts = parts.slice(0, SHOWN).map(part => part())
+  return open + [...texts, ...(parts.length > SHOWN ? ['…'] : [])].join(', ') + close
 }

@@ -1,6 +1,15 @@
 import { Matrix4, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
-import { checkFinite, checkNonNegative, checkPositive, checkVector, fail } from './check'
-import { Ellipsoid } from './Ellipsoid'
+import {
+  checkChoice,
+  checkFinite,
+  checkMatrix,
+  checkNonNegative,
+  checkOptions,
+  checkPositive,
+  checkVector,
+  fail
+} from './check'
+import { checkEllipsoid, Ellipsoid } from './Ellipsoid'
 import { visibleDistance } from './horizon'
 
 /** How the depth buffer is written: the renderer's `reversedDepthBuffer`, `logarithmicDepthBuffer` or neither. */
@@ -121,7 +130,7 @@ function resolve(
 ): Settings {
   const where = 'fitGlobeCamera'
   if (!(camera instanceof PerspectiveCamera || camera instanceof OrthographicCamera)) {
-    fail(where, 'camera must be perspective or orthographic', camera)
+    fail(where, 'camera must be a PerspectiveCamera or an OrthographicCamera', camera)
   }
   const {
     ellipsoid = Ellipsoid.WGS84,
@@ -131,7 +140,19 @@ function resolve(
     maximumHeight = 9000,
     clearance,
     minimumNear = depth === 'standard' ? 0.5 : 0.1
-  } = options
+  } = checkOptions(
+    where,
+    options,
+    'ellipsoid',
+    'worldToECEF',
+    'depth',
+    'minimumHeight',
+    'maximumHeight',
+    'clearance',
+    'minimumNear'
+  )
+  checkEllipsoid(where, ellipsoid)
+  checkMatrix(where, 'worldToECEF', worldToECEF)
   checkFinite(where, 'minimumHeight', minimumHeight)
   checkFinite(where, 'maximumHeight', maximumHeight)
   if (minimumHeight > maximumHeight) {
@@ -139,8 +160,6 @@ function resolve(
   }
   if (clearance !== undefined) checkNonNegative(where, 'clearance', clearance)
   checkPositive(where, 'minimumNear', minimumNear)
-  if (!['standard', 'reversed', 'logarithmic'].includes(depth)) {
-    fail(where, "depth must be 'standard', 'reversed' or 'logarithmic'", depth)
-  }
+  checkChoice(where, 'depth', depth, ['standard', 'reversed', 'logarithmic'])
   return { ellipsoid, worldToECEF, minimumHeight, maximumHeight, clearance, minimumNear }
 }

@@ -1,7 +1,7 @@
 import geographiclib from 'geographiclib-geodesic'
-import { checkFinite, fail } from './check'
-import { Ellipsoid } from './Ellipsoid'
-import { checkGeodetic, Geodetic } from './Geodetic'
+import { checkFinite, checkPlace, fail } from './check'
+import { checkEllipsoid, Ellipsoid } from './Ellipsoid'
+import { Geodetic } from './Geodetic'
 import type { GeodeticLike } from './Geodetic'
 
 type Solver = InstanceType<typeof geographiclib.Geodesic.Geodesic>
@@ -67,8 +67,8 @@ export function geodesicDestination(
   ellipsoid: Ellipsoid = Ellipsoid.WGS84,
   target: Geodetic = new Geodetic()
 ): Geodetic {
+  checkPlace('geodesicDestination', 'from', from)
   const { longitude, latitude, height = 0 } = from
-  checkGeodetic('geodesicDestination', longitude, latitude, height)
   checkFinite('geodesicDestination', 'azimuthDegrees', azimuthDegrees)
   checkFinite('geodesicDestination', 'distance', distance)
   const solver = solverOf('geodesicDestination', ellipsoid)
@@ -82,8 +82,8 @@ function solveInverse(
   to: GeodeticLike,
   ellipsoid: Ellipsoid
 ): GeodesicPath {
-  checkGeodetic(where, from.longitude, from.latitude, from.height ?? 0)
-  checkGeodetic(where, to.longitude, to.latitude, to.height ?? 0)
+  checkPlace(where, 'from', from)
+  checkPlace(where, 'to', to)
   const { s12, azi1, azi2 } = solverOf(where, ellipsoid).Inverse(
     from.latitude,
     from.longitude,
@@ -99,6 +99,7 @@ const solvers = /*#__PURE__*/ new WeakMap<Ellipsoid, Solver>()
 function solverOf(where: string, ellipsoid: Ellipsoid): Solver {
   const known = solvers.get(ellipsoid)
   if (known !== undefined) return known
+  checkEllipsoid(where, ellipsoid)
   const { x, y } = ellipsoid.radii
   if (x !== y) fail(where, 'ellipsoid must have equal radii x and y', ellipsoid.radii)
   const solver = new geographiclib.Geodesic.Geodesic(x, (x - ellipsoid.b) / x)

@@ -1,7 +1,7 @@
 import { Vector3 } from 'three'
 import type { Matrix4 } from 'three'
-import { checkFinite, checkVector, fail } from './check'
-import { Ellipsoid } from './Ellipsoid'
+import { checkFinite, checkOptions, checkVector, fail } from './check'
+import { checkEllipsoid, Ellipsoid } from './Ellipsoid'
 
 /** What is looked at, and which way. */
 export interface HorizonOptions {
@@ -101,8 +101,11 @@ function tangentRay(
   where: string,
   positionECEF: Vector3,
   height: number,
-  { ellipsoid = Ellipsoid.WGS84, azimuthDegrees = 0 }: HorizonOptions
+  options: HorizonOptions
 ): TangentRay {
+  checkOptions(where, options, 'ellipsoid', 'azimuthDegrees')
+  const { ellipsoid = Ellipsoid.WGS84, azimuthDegrees = 0 } = options
+  checkEllipsoid(where, ellipsoid)
   checkVector(where, 'positionECEF', positionECEF)
   checkFinite(where, 'azimuthDegrees', azimuthDegrees)
   const surface = height === 0 ? ellipsoid : ellipsoid.grown(height)

@@ -19,4 +19,20 @@ export { ellipsoidToSphere } from './tsl/ellipsoidToSphere'
 export { offsetHeight } from './tsl/offsetHeight'
 export { rayEllipsoid, raySphere } from './tsl/rayEllipsoid'
 // Preconditions that Welkin's packages share; not for use elsewhere.
-export { checkDirection, checkNonNegative, checkPositive, checkVector, fail } from './check'
+export {
+  checkBoolean,
+  checkChoice,
+  checkDate,
+  checkDirection,
+  checkFinite,
+  checkMatrix,
+  checkNonNegative,
+  checkOptions,
+  checkPlace,
+  checkPositive,
+  checkVector,
+  fail,
+  failUnknown,
+  setOptions
+} from './check'
+export { checkEllipsoid } from './Ellipsoid'

@@ -17,6 +17,7 @@ import { fail } from './check'
  * @throws Error if the group's matrix has no inverse (a scale of 0).
  */
 export function ecefFromTilesGroup(group: Object3D, target: Matrix4 = new Matrix4()): Matrix4 {
+  if (!group?.isObject3D) fail('ecefFromTilesGroup', 'group must be an Object3D', group)
   group.updateWorldMatrix(true, false)
   const determinant = group.matrixWorld.determinant()
   if (!Number.isFinite(determinant) || determinant === 0) {

@@ -1,8 +1,9 @@
-import { Camera, Group, Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import { Camera, Group, Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import {
   ecefFromTilesGroup,
   eciToECEF,
+  fail,
   Ellipsoid,
   fitGlobeCamera,
   FloatingOrigin,
@@ -14,6 +15,7 @@ import {
   moonDirectionECEF,
   moonOrientation,
   moonPositionECEF,
+  setOptions,
   siderealAngle,
   sphereEye,
   sunDirectionECEF,
@@ -28,6 +30,14 @@ const here = new Vector3(7e6, 0, 0)
 const zero = new Vector3()
 const place = { longitude: 0, latitude: 0 }
 const never = new Date('never')
+
+/** A class as a minifier leaves it. */
+class e {
+  x = 1
+}
+
+/** What the compiler would not let pass. */
+const wrong = (value: unknown): never => value as never
 
 const cases: [message: string, call: () => unknown][] = [
   ['Ellipsoid: radius x must be positive and finite, got -1', () => new Ellipsoid(-1)],
@@ -47,7 +57,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => new Geodetic().set(0, 0, Infinity)
   ],
   [
-    'Geodetic.set: latitude must be in [−90, 90], got NaN',
+    'Geodetic.copy: latitude must be in [−90, 90], got NaN',
     () => new Geodetic().copy({ longitude: 0, latitude: NaN })
   ],
   [
@@ -117,7 +127,7 @@ const cases: [message: string, call: () => unknown][] = [
   ],
   ['sphereEye: positionECEF must have finite components', () => sphereEye(earth, nan)],
   [
-    'fitGlobeCamera: camera must be perspective or orthographic',
+    'fitGlobeCamera: camera must be a PerspectiveCamera or an OrthographicCamera, got a Camera',
     () => fitGlobeCamera(new Camera() as PerspectiveCamera)
   ],
   [
@@ -133,22 +143,30 @@ const cases: [message: string, call: () => unknown][] = [
     () => fitGlobeCamera(new PerspectiveCamera(), { minimumHeight: 9001 })
   ],
   [
-    "fitGlobeCamera: depth must be 'standard', 'reversed' or 'logarithmic', got none",
+    "fitGlobeCamera: depth must be 'standard', 'reversed' or 'logarithmic', got 'none'",
     () => fitGlobeCamera(new PerspectiveCamera(), { depth: 'none' as 'standard' })
   ],
   [
-    'fitGlobeCamera: camera position in ECEF must have finite components',
+    'fitGlobeCamera: worldToECEF must have finite elements, got [1, 0, 0, 0, …]',
     () =>
       fitGlobeCamera(new PerspectiveCamera(), {
         worldToECEF: new Matrix4().makeTranslation(NaN, 0, 0)
       })
   ],
   [
+    'fitGlobeCamera: camera position in ECEF must have finite components, got (NaN, NaN, NaN)',
+    () => {
+      const lost = new PerspectiveCamera()
+      lost.position.x = NaN
+      return fitGlobeCamera(lost)
+    }
+  ],
+  [
     'FloatingOrigin: threshold must be positive and finite, got -1',
     () => new FloatingOrigin(new Group(), new Camera(), { threshold: -1 })
   ],
   [
-    'FloatingOrigin: roots must not be inside one another, got Group',
+    'FloatingOrigin: roots must not be inside one another, got a Group',
     () => {
       const a = new Group()
       const b = new Group()
@@ -172,13 +190,140 @@ const cases: [message: string, call: () => unknown][] = [
   ['eciToECEF: date must be a valid Date', () => eciToECEF(never)],
   ['sunPositionECEF: date must be a valid Date', () => sunPositionECEF(never)],
   [
-    'sunDirectionECEF: date must be a valid Date, got 2026-06-21',
+    "sunDirectionECEF: date must be a valid Date, got '2026-06-21'",
     () => sunDirectionECEF('2026-06-21' as unknown as Date)
   ],
   ['moonPositionECEF: date must be a valid Date', () => moonPositionECEF(never)],
   ['moonDirectionECEF: date must be a valid Date', () => moonDirectionECEF(never)],
-  ['moonOrientation: date must be a valid Date', () => moonOrientation(never)]
+  ['moonOrientation: date must be a valid Date', () => moonOrientation(never)],
+
+  // Of another kind.
+  [
+    "Ellipsoid.geodeticToECEF: geodetic must be { longitude, latitude, height } [degrees, metres], got '35'",
+    () => earth.geodeticToECEF(wrong('35'))
+  ],
+  [
+    'geodesicDistance: to must be { longitude, latitude, height } [degrees, metres], got [1, 2]',
+    () => geodesicDistance(place, wrong([1, 2]))
+  ],
+  [
+    'geodesicDistance: ellipsoid must be an Ellipsoid, got { a: 1 }',
+    () => geodesicDistance(place, place, wrong({ a: 1 }))
+  ],
+  [
+    'horizonDip: ellipsoid must be an Ellipsoid, got null',
+    () => horizonDip(here, { ellipsoid: wrong(null) })
+  ],
+  [
+    'horizonDistance: positionECEF must be a Vector3, got [1, 2, 3]',
+    () => horizonDistance(wrong([1, 2, 3]))
+  ],
+  [
+    'FloatingOrigin: roots must be an Object3D or an array of such, got [undefined]',
+    () => new FloatingOrigin(wrong([undefined]), new Camera())
+  ],
+  [
+    'FloatingOrigin: camera must be an Object3D, got a Matrix4',
+    () => new FloatingOrigin(new Group(), wrong(new Matrix4()))
+  ],
+  [
+    'FloatingOrigin: worldToECEF must be a Matrix4, got a Group',
+    () => new FloatingOrigin(new Group(), new Camera(), { worldToECEF: wrong(new Group()) })
+  ],
+  [
+    'FloatingOrigin: threshold must be positive and finite, got NaN',
+    () => (new FloatingOrigin(new Group(), new Camera()).threshold = NaN)
+  ],
+  [
+    'ecefFromTilesGroup: group must be an Object3D, got undefined',
+    () => ecefFromTilesGroup(wrong(undefined))
+  ],
+
+  // No such option.
+  [
+    "fitGlobeCamera: unknown option 'minimumNaer', did you mean 'minimumNear'?",
+    () => fitGlobeCamera(new PerspectiveCamera(), wrong({ minimumNaer: 1 }))
+  ],
+  [
+    "fitGlobeCamera: unknown option 'near', there are ellipsoid, worldToECEF",
+    () => fitGlobeCamera(new PerspectiveCamera(), wrong({ near: 1 }))
+  ],
+  [
+    "FloatingOrigin: unknown option 'treshold', did you mean 'threshold'?",
+    () => new FloatingOrigin(new Group(), new Camera(), wrong({ treshold: 1 }))
+  ],
+  [
+    "horizonDip: unknown option 'azimuthDegree', did you mean 'azimuthDegrees'?",
+    () => horizonDip(here, wrong({ azimuthDegree: 1 }))
+  ],
+  [
+    "visibleDistance: unknown option 'elipsoid', did you mean 'ellipsoid'?",
+    () => visibleDistance(here, 0, 0, wrong({ elipsoid: earth }))
+  ],
+  [
+    "geodesicDestination: unknown option 'heigth', did you mean 'height'?",
+    () => geodesicDestination(wrong({ ...place, heigth: 3 }), 0, 1)
+  ],
+  [
+    'fitGlobeCamera: options must be an object, got an Ellipsoid',
+    () => fitGlobeCamera(new PerspectiveCamera(), wrong(earth))
+  ]
 ]
+
+describe('errors show what was given', () => {
+  const shown: [text: string, value: unknown][] = [
+    ["'35'", '35'],
+    [`'${'a'.repeat(60)}…'`, 'a'.repeat(61)],
+    ['35', 35],
+    ['null', null],
+    ['[]', []],
+    ['[0, 1, 0]', [0, 1, 0]],
+    ["['a', […], { … }, {}, …]", ['a', [1], { b: 2 }, {}, 5]],
+    ['{}', {}],
+    ["{ a: 1, b: 'c' }", { a: 1, b: 'c' }],
+    ['(0, NaN, 0)', nan],
+    ['a Scene', new Scene()],
+    ['an Ellipsoid', earth],
+    ['a Mesh', Object.assign(new e(), { type: 'Mesh' })],
+    ['an object', new e()],
+    ['the function Ellipsoid', Ellipsoid]
+  ]
+  it.each(shown)('%s', (text, value) => {
+    expect(() => fail('Class', 'name must be right', value)).toThrow(
+      new Error(`Class: name must be right, got ${text}`)
+    )
+  })
+
+  it('shows nothing where there is nothing to show', () => {
+    expect(() => fail('Class', 'is not ready')).toThrow(new Error('Class: is not ready'))
+  })
+})
+
+describe('setOptions', () => {
+  const settings = {
+    even: 0,
+    other: 1,
+    get checked() {
+      return this.even
+    },
+    set checked(value: number) {
+      if (value % 2 === 1) fail('Settings', 'checked must be even', value)
+      this.even = value
+    }
+  }
+
+  it('assigns all or none, and leaves what is undefined', () => {
+    setOptions('Settings', settings, { checked: 4, other: undefined }, 'checked', 'other')
+    expect([settings.checked, settings.other]).toEqual([4, 1])
+    expect(() =>
+      setOptions('Settings', settings, { other: 5, checked: 3 }, 'checked', 'other')
+    ).toThrow('Settings: checked must be even, got 3')
+    expect(() =>
+      setOptions('Settings', settings, { other: 5, cheked: 2 } as { other: number }, 'other')
+    ).toThrow("Settings: unknown option 'cheked', there are other")
+    expect([settings.checked, settings.other]).toEqual([4, 1])
+  })
+})
 
 describe('wrong use throws with name and value', () => {
   it.each(cases)('%s', (message, call) => {

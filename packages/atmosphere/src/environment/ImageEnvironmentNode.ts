@@ -2,6 +2,7 @@ import type { Texture } from 'three'
 import { normalWorld, pmremTexture, vec3 } from 'three/tsl'
 import { Node } from 'three/webgpu'
 import type { NodeBuilder } from 'three/webgpu'
+import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 
 /** Options of {@link skyEnvironment}. */
 export interface EnvironmentOptions {
@@ -23,8 +24,12 @@ export class ImageEnvironmentNode extends Node<'vec3'> {
   /** See {@link EnvironmentOptions}; null for what suits the scene's lights. */
   readonly diffuse: boolean | null
 
-  constructor(image: Texture, { diffuse }: EnvironmentOptions = {}) {
+  /** @throws If it is no texture, or an option is of the wrong kind. */
+  constructor(image: Texture, options: EnvironmentOptions = {}) {
     super('vec3')
+    if (!image?.isTexture) fail('ImageEnvironmentNode', 'image must be a Texture', image)
+    const { diffuse } = checkOptions('ImageEnvironmentNode', options, 'diffuse')
+    if (diffuse !== undefined) checkBoolean('ImageEnvironmentNode', 'diffuse', diffuse)
     this.image = image
     this.diffuse = diffuse ?? null
   }

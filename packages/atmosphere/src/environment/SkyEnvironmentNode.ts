@@ -2,12 +2,13 @@ import type { Camera, Texture } from 'three'
 import { vec3 } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import { checkBoolean, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { DrawnSky } from './DrawnSky'
 import { ImageEnvironmentNode, mirrored, type EnvironmentOptions } from './ImageEnvironmentNode'
 import { SkyCube } from './SkyCube'
 import type { SkyOverlay } from './SkyOverlay'
-import { viewNodes, type ViewNodes } from '../view/ViewNodes'
+import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 
 /** Options of {@link SkyEnvironmentNode}. */
 export interface SkyEnvironmentOptions extends EnvironmentOptions {
@@ -47,10 +48,6 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly atmosphere: Atmosphere
   /** See {@link EnvironmentOptions}; null for what suits the scene's lights. */
   readonly diffuse: boolean | null
-  /** See {@link SkyEnvironmentOptions} [°]. */
-  angle: number
-  /** See {@link SkyEnvironmentOptions}. */
-  climb: number
   /** See {@link SkyEnvironmentOptions}. */
   readonly overlay: SkyOverlay | null
   /** Draws all of it before the next frame, whatever has changed. */
@@ -63,26 +60,24 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   #overlayVersion = 0
   #frame = -1
   #camera: Camera | null = null
+  #renderer: Renderer | null = null
+  #angle = 0.1
+  #climb = 0.1
   readonly #release = (): void => this.#free()
 
   /** @throws If the atmosphere is missing or an option out of range. */
-  constructor(
-    atmosphere: Atmosphere,
-    { diffuse, size = 256, angle = 0.1, climb = 0.1, overlay = null }: SkyEnvironmentOptions = {}
-  ) {
+  constructor(atmosphere: Atmosphere, options: SkyEnvironmentOptions = {}) {
     super('vec3')
-    if (!atmosphere?.isAtmosphere) {
-      throw new Error(
-        `SkyEnvironmentNode: atmosphere must be an Atmosphere, got ${typeof atmosphere}`
-      )
-    }
+    const where = 'SkyEnvironmentNode'
+    checkAtmosphere(where, atmosphere)
+    checkOptions(where, options, 'diffuse', 'size', 'angle', 'climb', 'overlay')
+    const { diffuse, size = 256, angle = 0.1, climb = 0.1, overlay = null } = options
     if (!(size >= 256 && size <= 2048 && Number.isInteger(Math.log2(size)))) {
-      throw new Error(`SkyEnvironmentNode: size must be a power of two in [256, 2048], got ${size}`)
+      fail(where, 'size must be a power of two in [256, 2048]', size)
     }
-    for (const [name, value] of Object.entries({ angle, climb })) {
-      if (!(value > 0)) {
-        throw new Error(`SkyEnvironmentNode: ${name} must be positive, got ${value}`)
-      }
+    if (diffuse !== undefined) checkBoolean(where, 'diffuse', diffuse)
+    if (overlay !== null && typeof overlay?.over !== 'function') {
+      fail(where, 'overlay must be a SkyOverlay, such as cloudOverlay(), or null', overlay)
     }
     this.atmosphere = atmosphere
     this.diffuse = diffuse ?? null
@@ -95,6 +90,26 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     this.#drawn = new DrawnSky(atmosphere)
     this.#cube = new SkyCube(atmosphere, size, overlay)
     atmosphere.addEventListener('dispose', this.#release)
+  }
+
+  /** See {@link SkyEnvironmentOptions}, > 0 [°]. */
+  get angle(): number {
+    return this.#angle
+  }
+
+  set angle(value: number) {
+    checkPositive('SkyEnvironmentNode', 'angle', value)
+    this.#angle = value
+  }
+
+  /** See {@link SkyEnvironmentOptions}, > 0. */
+  get climb(): number {
+    return this.#climb
+  }
+
+  set climb(value: number) {
+    checkPositive('SkyEnvironmentNode', 'climb', value)
+    this.#climb = value
   }
 
   override updateBefore(frame: NodeFrame): undefined {
@@ -120,6 +135,9 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     if (isLed && this.redraws > 0) return
     this.#frame = frameId
     this.#camera = camera
+    // What another renderer drew went with it.
+    if (renderer !== this.#renderer) this.needsRedraw = true
+    this.#renderer = renderer
     const cube = this.#cube
     const version = this.overlay?.version ?? 0
     const isSame = (): boolean =>
@@ -181,8 +199,8 @@ export function skyEnvironment(
   options?: SkyEnvironmentOptions
 ): SkyEnvironmentNode | ImageEnvironmentNode {
   if ('isTexture' in Object(source)) return new ImageEnvironmentNode(source as Texture, options)
-  if ('isAtmosphere' in Object(source)) {
-    return new SkyEnvironmentNode(source as Atmosphere, options)
+  if (!('isAtmosphere' in Object(source))) {
+    fail('skyEnvironment', 'source must be an Atmosphere or a Texture', source)
   }
-  throw new Error(`skyEnvironment: source must be an Atmosphere or a Texture, got ${typeof source}`)
+  return new SkyEnvironmentNode(source as Atmosphere, options)
 }

@@ -1,8 +1,8 @@
 import type { Camera } from 'three'
 import { Matrix4, Vector3 } from 'three'
-import { checkNonNegative, fail, Geodetic } from '@welkin/geo'
+import { checkDate, checkNonNegative, checkOptions, fail, Geodetic } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { checkOptions, checkRange } from '../check'
+import { checkRange } from '../check'
 import { checkExposure, exposureFor, type ExposureOptions } from './exposureFor'
 import { checkAtmosphere } from '../view/ViewNodes'
 
@@ -85,11 +85,15 @@ export class DayCycle {
     checkAtmosphere('DayCycle', atmosphere)
     const { date, rate, daylight, adaptation, holdDay, exposure } = checkOptions(
       'DayCycle',
-      options
+      options,
+      'date',
+      'rate',
+      'daylight',
+      'holdDay',
+      'adaptation',
+      'exposure'
     )
-    if (date !== undefined && !(date instanceof Date)) {
-      fail('DayCycle', 'date must be a Date', date)
-    }
+    if (date !== undefined) checkDate('DayCycle', date)
     this.atmosphere = atmosphere
     this.exposureOptions = checkExposure('DayCycle', exposure)
     this.holdDay = holdDay ?? false
@@ -243,7 +247,7 @@ export class DayCycle {
    */
   update(deltaSeconds: number, camera?: Camera): void {
     if (!Number.isFinite(deltaSeconds)) {
-      fail('DayCycle', 'deltaSeconds must be finite', deltaSeconds)
+      fail('DayCycle.update', 'deltaSeconds must be finite', deltaSeconds)
     }
     if (!this.paused) this.#moveTo(this.#time + this.#advance(deltaSeconds * this.#rate * 1000))
     if (camera !== undefined) this.#adapt(deltaSeconds, camera)

@@ -1,14 +1,14 @@
 import type { Camera } from 'three'
 import { Vector3 } from 'three'
-import { checkNonNegative, checkPositive, fail } from '@welkin/geo'
+import { checkNonNegative, checkOptions, checkPositive } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { checkOptions } from '../check'
+import { checkCamera } from '../check'
 import { clampCosine } from '../AtmosphereQuery'
 import { sampleDiffuseLight } from '../diffuseLight/cpu/diffuseLight'
 import { sunTransmittance } from '../transmittance/cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../night/cpu/twilight'
 import { checkSources, type LightSource } from '../view/LightSource'
-import { luminanceOf } from '../stars/starColor'
+import { luminanceOf } from '../parameters/photometry'
 import { checkAtmosphere } from '../view/ViewNodes'
 
 /** Options of {@link exposureFor}. */
@@ -66,7 +66,12 @@ export function exposureOfIlluminance(illuminance: number): number {
 
 /** @throws If an option is of the wrong kind or out of range. */
 export function checkExposure(where: string, options: ExposureOptions = {}): ExposureOptions {
-  const { sources = [], floor = NIGHT_ILLUMINANCE } = checkOptions(where, options)
+  const { sources = [], floor = NIGHT_ILLUMINANCE } = checkOptions(
+    where,
+    options,
+    'sources',
+    'floor'
+  )
   checkSources(where, sources)
   checkPositive(where, 'floor', floor)
   return options
@@ -122,7 +127,7 @@ export function exposureFor(
   options: ExposureOptions = {}
 ): number {
   checkAtmosphere('exposureFor', atmosphere)
-  if (!camera?.isCamera) fail('exposureFor', 'camera must be a Camera', camera)
+  checkCamera('exposureFor', camera)
   const { sources = [], floor = NIGHT_ILLUMINANCE } = checkExposure('exposureFor', options)
   const { space, parameters } = atmosphere
   const position = new Vector3().setFromMatrixPosition(camera.matrixWorld)

@@ -1,6 +1,7 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import { checkOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkFade, checkOptions, checkRange } from '../check'
+import { checkFade, checkRange } from '../check'
 import type { Sightline, SkyLayer, Veil } from '../view/SkyLayer'
 import { aimAt, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Bool, Float } from '../tsl-types'
@@ -31,7 +32,12 @@ export class DistanceFog implements SkyLayer {
 
   /** @throws If an option is out of range. */
   constructor(options: DistanceFogOptions = {}) {
-    const { density = 1e-4, fade = [5000, 15_000] } = checkOptions('DistanceFog', options)
+    const { density = 1e-4, fade = [5000, 15_000] } = checkOptions(
+      'DistanceFog',
+      options,
+      'density',
+      'fade'
+    )
     checkFade('DistanceFog', fade)
     this.density = density
     this.fade = [...fade]

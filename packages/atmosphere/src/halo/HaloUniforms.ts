@@ -1,34 +1,33 @@
 import { renderGroup, uniform } from 'three/tsl'
-import { checkNonNegative, checkPositive } from '@welkin/geo'
-import { checkOptions } from '../check'
+import { checkNonNegative, checkOptions, checkPositive } from '@welkin/geo'
 
-/** Light that an eye or a lens spreads around something bright, in two lobes. */
+/** Halo that an eye or a lens makes around a bright source, in two lobes. */
 export interface FlareOptions {
-  /** Power of the tight inner lobe, cosⁿ of the angle: the larger, the tighter; > 0. */
+  /** Power n of the tight inner lobe, cosⁿ of the angle: larger is tighter; > 0. */
   innerPower?: number
-  /** Part of the light that the inner lobe gets, ≥ 0. */
+  /** Fraction of the source's light in the inner lobe, ≥ 0. */
   innerStrength?: number
   /** Power of the broad outer lobe, > 0. */
   outerPower?: number
-  /** Part of the light that the outer lobe gets, ≥ 0. */
+  /** Fraction of the source's light in the outer lobe, ≥ 0. */
   outerStrength?: number
 }
 
-/** Radiance at which a lobe ends, for unit irradiance by what is in its middle [1/sr]. */
-const FAINTEST = 1e-8
+/** Radiance at which a lobe is cut off, for unit irradiance by its source [1/sr]. */
+const MIN_RADIANCE = 1e-8
 
-const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength']
+const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength'] as const
 
 const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 
-/** A halo's figures as shader uniforms; they may be changed at any time. */
+/** Lobes of a halo as shader uniforms, which may be changed at any time. */
 export class HaloUniforms {
   readonly innerPower = scalar(0)
   readonly innerStrength = scalar(0)
   readonly outerPower = scalar(0)
   readonly outerStrength = scalar(0)
-  /** Cosine of the angle from its middle where a halo ends; above 1 for none. */
-  readonly cosReach = scalar(2)
+  /** Cosine of the angle from the source at which the halo ends; above 1 for no halo. */
+  readonly cosMaxAngle = scalar(2)
 
   /** @param owner - Names the class in errors. */
   constructor(
@@ -51,14 +50,15 @@ export class HaloUniforms {
     for (const [name, value] of entries) if (value !== undefined) this[name].value = value
   }
 
-  /** @param isSeen - Whether there is light to spread. */
-  update(isSeen: boolean): void {
+  /** @param isVisible - The source is above the horizon and shines. */
+  update(isVisible: boolean): void {
+    // Square of the angle at which a lobe falls to MIN_RADIANCE.
     const square = (power: number, strength: number): number =>
-      (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * FAINTEST))
+      (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * MIN_RADIANCE))
     const widest = Math.max(
       square(this.innerPower.value, this.innerStrength.value),
       square(this.outerPower.value, this.outerStrength.value)
     )
-    this.cosReach.value = isSeen && widest > 0 ? 1 - Math.min(widest, 4) / 2 : 2
+    this.cosMaxAngle.value = isVisible && widest > 0 ? 1 - Math.min(widest, 4) / 2 : 2
   }
 }

@@ -10,6 +10,7 @@ import { skyIrradiance } from '../diffuseLight/tsl/skyIrradiance'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 /** A small plane in the light of sky and ground, as shader nodes. */
 export interface SkyLitPlane {
@@ -55,6 +56,11 @@ export class SkyLightProbe extends LightProbe {
     checkSource('SkyLightProbe', 'source', source)
     this.atmosphere = atmosphere
     this.source = source
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    watchScene('SkyLightProbe', this)
+    super.updateMatrixWorld(force)
   }
 
   override clone(): this {

@@ -11,6 +11,7 @@ import { sunTransmittance } from '../transmittance/tsl/transmittance'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 const _direction = new Vector3()
 
@@ -69,6 +70,7 @@ export class SunDirectionalLight extends DirectionalLight {
 
   override updateMatrixWorld(force?: boolean): void {
     this.follow()
+    watchScene('SunDirectionalLight', this)
     super.updateMatrixWorld(force)
   }
 }

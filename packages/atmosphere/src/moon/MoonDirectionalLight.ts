@@ -1,11 +1,13 @@
+import { checkAtmosphere } from '../view/ViewNodes'
+import { LightSource } from '../view/LightSource'
 import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Moon } from './Moon'
 import { SunDirectionalLight } from '../lights/SunDirectionalLight'
 
 /**
- * Moonlight: a directional light that comes from the moon, by its phase and distance, reddened by the air
- * above each fragment and blocked by the planet. The full moon gives about a quarter of a lux.
+ * Moonlight: a directional light from the moon. Its phase and distance set its brightness; the air above
+ * each fragment reddens it, the planet blocks it. The full moon gives about a quarter of a lux.
  *
  * Everything else is as with {@link SunDirectionalLight}, shadows included.
  */
@@ -14,12 +16,13 @@ export class MoonDirectionalLight extends SunDirectionalLight {
   readonly moon: Moon
 
   /**
-   * @param distance - From the target to the light [world units].
-   * @throws If the moon is none, or made for another atmosphere.
+   * @param distance - Distance from the target to the light [world units].
+   * @throws If `moon` is no {@link Moon}, or made for another atmosphere.
    */
   constructor(atmosphere: Atmosphere, moon: Moon, distance = 1) {
-    if (moon?.source === undefined) {
-      throw new Error(`MoonDirectionalLight: moon must be a Moon, got ${typeof moon}`)
+    checkAtmosphere('MoonDirectionalLight', atmosphere)
+    if (!(moon?.source instanceof LightSource)) {
+      fail('MoonDirectionalLight', 'moon must be a Moon', moon)
     }
     super(atmosphere, distance, moon.source)
     if (moon.atmosphere !== atmosphere) {

@@ -4,52 +4,54 @@ import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
-import type { MoonVolumes } from './MoonVolumes'
+import type { MoonSkyVolumes } from './MoonSkyVolumes'
 import type { HazeLine, SkyRay } from '../view/SkyLayer'
 import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
 import { viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { ViewUniforms } from '../view/ViewUniforms'
 
-/** With the sun above this, or the moon below that, moonlight in the air is not seen. cos of zenith angles. */
-const SUN_DROWNS = 0
-const MOON_IS_DOWN = -0.31
+/** Cosine of the sun's zenith angle above which its light in the air masks the moon's: the horizon. */
+const MAX_COS_SUN = 0
+
+/** Cosine of the moon's zenith angle below which its light reaches no air that is seen: 18° down. */
+const MIN_COS_MOON = -0.31
 
 const _position = new Vector3()
 const _direction = new Vector3()
 
-/** The air in the light of the moon, from its own sky volumes, which are computed while that can be seen. */
+/** Moonlit air: in-scatter of moonlight, from sky volumes of its own. */
 export class MoonlitAir {
-  /** 1 while moonlight in the air can be seen. */
-  readonly #glows = uniform(0).setGroup(renderGroup)
+  /** 1 while moonlit air can be seen, else 0. */
+  readonly #isVisible = uniform(0).setGroup(renderGroup)
   readonly #views = new Map<ViewUniforms, ViewNodes>()
   #renderer: Renderer | null = null
 
-  /** @param volumes - The source's. */
+  /** @param volumes - Sky volumes of the source. */
   constructor(
     readonly atmosphere: Atmosphere,
     readonly source: LightSource,
-    readonly volumes: MoonVolumes
+    readonly volumes: MoonSkyVolumes
   ) {}
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     if (renderer !== this.#renderer) this.volumes.invalidate()
     this.#renderer = renderer
-    this.volumes.isNeeded = this.#isSeen(view)
+    this.volumes.isNeeded = this.#canBeSeen(view)
     if (this.volumes.isNeeded) this.atmosphere.update(renderer, view.camera, this.source)
   }
 
-  #isSeen(view: AtmosphereView): boolean {
+  #canBeSeen(view: AtmosphereView): boolean {
     const { parameters, space } = this.atmosphere
     if (view.height > parameters.topRadius - parameters.bottomRadius) return true
-    if (view.up.dot(view.sunDirection) > SUN_DROWNS) return false
+    if (view.up.dot(view.sunDirection) > MAX_COS_SUN) return false
     _position.setFromMatrixPosition(view.camera.matrixWorld)
     this.source.direction(_direction, _position)
-    return view.up.dot(space.direction(_direction, _position)) > MOON_IS_DOWN
+    return view.up.dot(space.direction(_direction, _position)) > MIN_COS_MOON
   }
 
   update(view: AtmosphereView): void {
-    this.#glows.value = this.volumes.isNeeded ? 1 : 0
+    this.#isVisible.value = this.volumes.isNeeded ? 1 : 0
     for (const nodes of this.#views.values()) {
       if (nodes.camera === null || nodes.camera === view.camera) nodes.update(view)
     }
@@ -57,9 +59,9 @@ export class MoonlitAir {
 
   glow(ray: SkyRay, without: Vec4): Vec4 {
     const light = without.toVar()
-    const { air, volume, eye, sunDirection } = this.#nodes(ray.view)
-    If(this.#glows.greaterThan(0).and(ray.meetsAir), () => {
-      const cosViewMoon = ray.direction.dot(sunDirection).toConst() as Float
+    const { air, volume, eye, sunDirection: moonDirection } = this.#nodes(ray.view)
+    If(this.#isVisible.greaterThan(0).and(ray.meetsAir), () => {
+      const cosViewMoon = ray.direction.dot(moonDirection).toConst() as Float
       const sky = sampleSky(air.uniforms, volume, eye, ray, cosViewMoon)
       light.addAssign(sky.mul(this.source.irradiance))
     })
@@ -68,16 +70,16 @@ export class MoonlitAir {
 
   haze({ view, direction, place }: HazeLine, without: Vec4): Vec4 {
     const light = without.toVar()
-    const { air, volume, eye, sunDirection } = this.#nodes(view)
-    If(this.#glows.greaterThan(0), () => {
-      const cosViewMoon = direction.dot(sunDirection).toConst() as Float
+    const { air, volume, eye, sunDirection: moonDirection } = this.#nodes(view)
+    If(this.#isVisible.greaterThan(0), () => {
+      const cosViewMoon = direction.dot(moonDirection).toConst() as Float
       const between = radianceBetween(air.uniforms, volume, eye, place, cosViewMoon)
       light.addAssign(between.mul(this.source.irradiance))
     })
     return light
   }
 
-  /** The nodes of a view in the light of the moon. */
+  /** Nodes of the same view, lit by the moon instead of the sun. */
   #nodes(view: ViewUniforms): ViewNodes {
     let nodes = this.#views.get(view)
     if (nodes === undefined) {

@@ -1,183 +1,146 @@
 import { Matrix4, Quaternion, Vector3 } from 'three'
-import { eciToECEF, moonOrientation, moonPositionECEF, sunPositionECEF } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { MOON_DISTANCE } from './cpu/moonlight'
+import { MOON_DISTANCE } from './cpu/moonIrradiance'
+import type { SunMoonEphemeris } from './sunMoonEphemeris'
 
-/** What is set by hand; null follows the date and the geometry. */
+/** Settings that override the date; null follows the date and the geometry. */
 export interface MoonSettings {
+  /** World, unit length. */
   readonly direction: Vector3 | null
+  /** 0 new, 0.5 full, in [0, 1]. */
   readonly phase: number | null
+  /** [m] */
   readonly distance: number | null
 }
 
-/** Where the moon is and how it is lit, from somewhere. All vectors are in ECEF, of unit length. */
+/** Position and lighting of the moon for one observer. Vectors are of unit length. */
 export interface MoonGeometry {
-  /** To the moon. */
-  direction: Vector3
-  /** [m] */
+  /** Observer to moon. */
+  directionECEF: Vector3
+  /** Observer to the moon's centre [m]. */
   distance: number
-  /** Factor for its size, to eclipse a sun that is shown a little too large or small. */
+  /** Factor on the moon's radius: as much as the sun's disc is drawn too large, see {@link discScale}. */
   scale: number
-  /** From the moon to the sun. */
-  light: Vector3
-  /** Between sun and observer, as seen from the moon, in [0, π] [rad]. */
+  /** Moon to sun. */
+  sunDirectionECEF: Vector3
+  /** Angle between sun and observer as seen from the moon, in [0, π] [rad]. */
   phaseAngle: number
-  /** Moon-fixed axes. */
+  /** Moon-fixed axes to ECEF. */
   axes: Quaternion
 }
 
-const POLE = /*#__PURE__*/ new Vector3(0, 0, 1)
+const NORTH_ECEF = /*#__PURE__*/ new Vector3(0, 0, 1)
 
-/** The part of a vector across a unit vector, made a unit vector; another one across if there is none. */
-function across(vector: Vector3, axis: Vector3): Vector3 {
+/** Part of a vector perpendicular to a unit vector, normalised; an arbitrary perpendicular if there is none. */
+function perpendicularTo(vector: Vector3, axis: Vector3): Vector3 {
   const part = vector.clone().addScaledVector(axis, -vector.dot(axis))
   if (part.lengthSq() > 1e-12) return part.normalize()
   const other = Math.abs(axis.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0)
   return part.crossVectors(axis, other).normalize()
 }
 
-/**
- * Terms of the sun's longitude that `sunPositionECEF` leaves out, (A, B, C) of A cos(B + C τ) with A in
- * 1e-8 rad and τ in thousands of Julian years from J2000: 8″ matter to an eclipse.
- *
- * @see Meeus, Astronomical Algorithms, 2nd ed., appendix III
- */
-const LONGITUDE_REST: readonly (readonly [number, number, number])[] = [
-  [990, 5.233, 5884.927],
-  [902, 2.045, 26.298],
-  [857, 3.508, 398.149],
-  [780, 1.179, 5223.694],
-  [753, 2.533, 5507.553],
-  [505, 4.583, 18849.228],
-  [492, 4.205, 775.523],
-  [357, 2.92, 0.067],
-  [317, 5.849, 11790.629],
-  [284, 1.899, 796.298],
-  [271, 0.315, 10977.079],
-  [243, 0.345, 5486.778],
-  [206, 4.806, 2544.314],
-  [205, 1.869, 5573.143],
-  [202, 2.458, 6069.777],
-  [156, 0.833, 213.299],
-  [132, 3.411, 2942.463],
-  [126, 1.083, 20.775],
-  [115, 0.645, 0.98],
-  [103, 0.636, 4694.003],
-  [102, 0.976, 15720.839],
-  [102, 4.267, 7.114],
-  [99, 6.21, 2146.17],
-  [98, 0.68, 155.42],
-  [86, 5.98, 161000.69],
-  [85, 1.3, 6275.96],
-  [85, 3.67, 71430.7],
-  [80, 1.81, 17260.15]
-]
-
-const J2000 = /*#__PURE__*/ Date.UTC(2000, 0, 1, 12)
-const MILLISECONDS_PER_MILLENNIUM = 365_250 * 86_400_000
-
-/** Where the sun is, better than {@link sunPositionECEF} has it [m]. */
-function exactSunECEF(date: Date, target: Vector3): Vector3 {
-  const millennia = (date.getTime() - J2000) / MILLISECONDS_PER_MILLENNIUM
-  const rest = LONGITUDE_REST.reduce((sum, [a, b, c]) => sum + a * Math.cos(b + c * millennia), 0)
-  const obliquity = (23.44 * Math.PI) / 180
-  const pole = new Vector3(0, -Math.sin(obliquity), Math.cos(obliquity))
-  pole.transformDirection(eciToECEF(date))
-  return sunPositionECEF(date, target).applyAxisAngle(pole, rest * 1e-8)
-}
-
-/** Sun and moon at a moment, from the Earth's centre. */
-class Ephemeris {
-  #time = NaN
-  readonly sun = new Vector3()
-  readonly moon = new Vector3()
-  readonly axes = new Quaternion()
-
-  at(date: Date): this {
-    if (date.getTime() === this.#time) return this
-    this.#time = date.getTime()
-    exactSunECEF(date, this.sun)
-    moonPositionECEF(date, this.moon)
-    moonOrientation(date, this.axes)
-    return this
-  }
-}
-
 const _toECEF = new Matrix4()
 
-/** Finds {@link MoonGeometry} for observers. */
-export class MoonPlace {
-  readonly #ephemeris = new Ephemeris()
+/**
+ * Geometry of the moon for one observer: from the date, from the settings, or from both.
+ *
+ * @param observerWorld - Position of the observer.
+ */
+export function moonGeometryFrom(
+  ephemeris: SunMoonEphemeris,
+  atmosphere: Atmosphere,
+  settings: MoonSettings,
+  observerWorld: Vector3
+): MoonGeometry {
+  const toECEF = _toECEF.copy(atmosphere.worldToECEF)
+  const sunDirectionECEF = atmosphere.sunDirection.transformDirection(toECEF)
+  const { date } = atmosphere
+  const { sunAngularRadius } = atmosphere.parameters
+  const geometry =
+    date !== null && settings.direction === null
+      ? geometryOfDate(
+          ephemeris.at(date),
+          observerWorld.clone().applyMatrix4(toECEF),
+          sunDirectionECEF,
+          sunAngularRadius
+        )
+      : geometryOfSettings(settings, sunDirectionECEF, toECEF)
+  if (settings.distance !== null) geometry.distance = settings.distance
+  if (settings.phase !== null) applyPhase(geometry, settings.phase, sunDirectionECEF)
+  const toObserver = geometry.directionECEF.clone().negate()
+  geometry.phaseAngle = geometry.sunDirectionECEF.angleTo(toObserver)
+  return geometry
+}
 
-  /** @param from - Observer, world. */
-  seenFrom(atmosphere: Atmosphere, settings: MoonSettings, from: Vector3): MoonGeometry {
-    const toECEF = _toECEF.copy(atmosphere.worldToECEF)
-    const sun = atmosphere.sunDirection.transformDirection(toECEF)
-    const { date } = atmosphere
-    const { sunAngularRadius } = atmosphere.parameters
-    const followsDate = date !== null && settings.direction === null
-    const geometry = followsDate
-      ? this.#byDate(date, from.clone().applyMatrix4(toECEF), sun, sunAngularRadius)
-      : byHand(settings, sun, toECEF)
-    if (settings.distance !== null) geometry.distance = settings.distance
-    if (settings.phase !== null) lightByPhase(geometry, settings.phase, sun)
-    geometry.phaseAngle = geometry.light.angleTo(geometry.direction.clone().negate())
-    return geometry
-  }
-
-  #byDate(
-    date: Date,
-    observer: Vector3,
-    shownSun: Vector3,
-    sunAngularRadius: number
-  ): MoonGeometry {
-    const { sun, moon, axes } = this.#ephemeris.at(date)
-    const direction = moon.clone().sub(observer)
-    const distance = direction.length()
-    const light = sun.clone().sub(moon).normalize()
-    // The sun is shown up to 20″ from where it is: the moon moves along, so that eclipses are right.
-    const sunFromHere = sun.clone().sub(observer).normalize()
-    direction.divideScalar(distance).add(shownSun).sub(sunFromHere).normalize()
-    const scale = sizeScale(direction.angleTo(shownSun), sun, sunAngularRadius)
-    return { direction, distance, scale, light, phaseAngle: 0, axes: axes.clone() }
-  }
+/** @param drawnSunECEF - Direction to the sun as the atmosphere draws it, up to 20″ from where it is. */
+function geometryOfDate(
+  { sunECEF, moonECEF, moonAxes }: SunMoonEphemeris,
+  observerECEF: Vector3,
+  drawnSunECEF: Vector3,
+  sunAngularRadius: number
+): MoonGeometry {
+  const directionECEF = moonECEF.clone().sub(observerECEF)
+  const distance = directionECEF.length()
+  const sunDirectionECEF = sunECEF.clone().sub(moonECEF).normalize()
+  // The moon is shifted as the drawn sun is, so that eclipses are right.
+  const exactSunECEF = sunECEF.clone().sub(observerECEF).normalize()
+  directionECEF.divideScalar(distance).add(drawnSunECEF).sub(exactSunECEF).normalize()
+  const scale = discScale(directionECEF.angleTo(drawnSunECEF), sunECEF, sunAngularRadius)
+  return { directionECEF, distance, scale, sunDirectionECEF, phaseAngle: 0, axes: moonAxes.clone() }
 }
 
 /** Radius of the sun [m]: 959.63″ at an astronomical unit. */
 const SUN_RADIUS = 6.96e8
 
 /**
- * How much larger than it is the sun is shown, where the moon may eclipse it. The sun is shown at the
- * same size all year; a moon 2 % off is total where it should be annular.
+ * Ratio of the sun's drawn to its true angular radius near an eclipse, else 1. The sun is drawn at one
+ * size all year: without this factor on the moon, an annular eclipse could come out total.
  */
-function sizeScale(separation: number, sun: Vector3, sunAngularRadius: number): number {
-  const scale = (sunAngularRadius * sun.length()) / SUN_RADIUS
+function discScale(separation: number, sunECEF: Vector3, sunAngularRadius: number): number {
+  const scale = (sunAngularRadius * sunECEF.length()) / SUN_RADIUS
   const isNear = separation < (2 * Math.PI) / 180
   return isNear && Math.abs(scale - 1) < 0.03 ? scale : 1
 }
 
-/** A moon that turns its near side to the observer, north up. */
-function byHand(settings: MoonSettings, sun: Vector3, toECEF: Matrix4): MoonGeometry {
-  const direction =
+/** Geometry without a date: the near side faces the observer, north up. */
+function geometryOfSettings(
+  settings: MoonSettings,
+  sunDirectionECEF: Vector3,
+  toECEF: Matrix4
+): MoonGeometry {
+  const directionECEF =
     settings.direction?.clone().transformDirection(toECEF) ??
-    // East of the sun by as much as the phase says; full is opposite the sun.
-    sun.clone().applyAxisAngle(across(POLE, sun), 2 * Math.PI * (settings.phase ?? 0.5))
-  const near = direction.clone().negate()
-  const north = across(POLE, near)
+    // Elongation 2πp east of the sun; a full moon is opposite it.
+    sunDirectionECEF
+      .clone()
+      .applyAxisAngle(
+        perpendicularTo(NORTH_ECEF, sunDirectionECEF),
+        2 * Math.PI * (settings.phase ?? 0.5)
+      )
+  const near = directionECEF.clone().negate()
+  const north = perpendicularTo(NORTH_ECEF, near)
   const east = new Vector3().crossVectors(north, near)
-  const axes = new Quaternion().setFromRotationMatrix(new Matrix4().makeBasis(near, east, north))
-  const distance = MOON_DISTANCE
-  return { direction, distance, scale: 1, light: sun.clone(), phaseAngle: 0, axes }
+  return {
+    directionECEF,
+    distance: MOON_DISTANCE,
+    scale: 1,
+    sunDirectionECEF: sunDirectionECEF.clone(),
+    phaseAngle: 0,
+    axes: new Quaternion().setFromRotationMatrix(new Matrix4().makeBasis(near, east, north))
+  }
 }
 
-/** Lights the moon as a phase says, from the side that is west while it waxes, along the line to the sun. */
-function lightByPhase(geometry: MoonGeometry, phase: number, sun: Vector3): void {
-  const { direction, light } = geometry
-  const east = new Vector3().crossVectors(POLE, direction)
-  const side = across(sun, direction)
+/** Lights the moon by its phase: from the west while it waxes, along the great circle to the sun. */
+function applyPhase(geometry: MoonGeometry, phase: number, drawnSunECEF: Vector3): void {
+  const { directionECEF, sunDirectionECEF } = geometry
+  const east = new Vector3().crossVectors(NORTH_ECEF, directionECEF)
+  const side = perpendicularTo(drawnSunECEF, directionECEF)
   const isWest = side.dot(east) <= 0
-  const turn = 2 * Math.PI * phase
   if (!isWest) side.negate()
-  // Elongation 2πp to the east of the sun: from the moon, the sun is that far from the observer's far side.
-  light.copy(direction).multiplyScalar(Math.cos(turn)).addScaledVector(side, Math.sin(turn))
+  // As seen from the moon, the sun is the elongation 2πp away from the direction opposite the observer.
+  const elongation = 2 * Math.PI * phase
+  sunDirectionECEF
+    .copy(directionECEF)
+    .multiplyScalar(Math.cos(elongation))
+    .addScaledVector(side, Math.sin(elongation))
 }

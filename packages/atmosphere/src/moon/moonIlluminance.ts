@@ -5,7 +5,7 @@ import type { Moon } from './Moon'
 /**
  * Illuminance by the moon on a plane that faces it, reddened by the air and blocked by the planet.
  *
- * @param position - World.
+ * @param position - Position of the plane, world.
  * @returns Linear sRGB [lx].
  */
 export function moonIlluminanceAt(moon: Moon, position: Vector3): Triple {
@@ -15,8 +15,8 @@ export function moonIlluminanceAt(moon: Moon, position: Vector3): Triple {
 /**
  * Illuminance by moonlit sky and ground on a plane.
  *
- * @param position - World.
- * @param normal - World, unit length: where the plane faces.
+ * @param position - Position of the plane, world.
+ * @param normal - Normal of the plane, world, unit length.
  * @returns Linear sRGB [lx].
  * @throws Before the tables were baked and read back: await `atmosphere.bake(renderer)` first.
  */

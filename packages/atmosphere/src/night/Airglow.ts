@@ -1,71 +1,70 @@
 import { Vector4 } from 'three'
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
-import { checkNonNegative } from '@welkin/geo'
+import { checkNonNegative, checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkRange, checkSpectrum } from '../check'
+import { checkRange, checkSpectrum } from '../check'
 import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from '../view/SkyLayer'
-import { ofLuminance } from '../stars/starColor'
-import { glowGains, overheadGain } from './tsl/airglow'
+import { scaleToLuminance } from '../parameters/photometry'
+import { vanRhijnFactors, thinLayerVanRhijnFactor } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
 import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** Options of {@link Airglow}. */
 export interface AirglowOptions {
-  /** Luminance straight through the layer, ≥ 0 [cd/m²]. */
+  /** Luminance of the layer seen perpendicularly, in [0, 1e9] [cd/m²]. */
   luminance?: number
   /** Altitude of the layer's middle, in [1, 1e7] [m]. */
   altitude?: number
   /** Standard deviation of its emission over altitude, in [1, 1e6] [m]. */
   width?: number
-  /** Spectral radiance at the four wavelengths, of which only the ratios count. */
+  /** Spectral radiance at the four wavelengths; only the ratios count. */
   spectrum?: Spectrum
 }
 
-/** The green line of oxygen at 557.7 nm, the sodium lines at 589 nm, and a continuum. */
+/** Spectrum of the green line of oxygen at 557.7 nm, the sodium lines at 589 nm, and a continuum. */
 const GREENISH: Spectrum = [0.76, 1.06, 1.05, 0.68]
 
 /**
- * Irradiance of a level plane over π times the radiance straight through the layer, with no air:
- * 2 (1 − √(1 − a))/a, a = (R/(R + 96 km))² of the Earth.
+ * Irradiance of a level plane without air, over π times the zenith radiance of the layer:
+ * 2 (1 − √(1 − a))/a with a = (R/(R + 96 km))² of the Earth.
  */
-const DOME = 1.71
+const DOME_IRRADIANCE = 1.71
 
 /**
- * Radiance in the air of light that it scattered from the layer, over that straight through the layer:
- * the mean over all directions of a dome that is {@link DOME} times as bright, and of dark ground.
+ * Radiance of airglow scattered by opaque air, over the zenith radiance of the layer: the mean over all
+ * directions of a dome of {@link DOME_IRRADIANCE} above and dark ground below.
  */
-const SCATTERED = DOME / 2
+const SCATTERED_RADIANCE = DOME_IRRADIANCE / 2
 
-/** Standard deviations below its middle from where the layer is as thin as a shell, within 0.4 %. */
-const MARGIN = 10
+/** Standard deviations below the layer from where a thin shell stands for it, within 0.4 %. */
+const THIN_LAYER_SIGMAS = 10
 
 /**
- * Airglow: the upper air's own light. From the ground a faint even light that brightens towards the
- * horizon; from orbit a thin greenish line above the limb.
+ * Airglow, the upper atmosphere's own light: from the ground a faint even glow that brightens towards the
+ * horizon, from orbit a thin greenish line above the limb.
  *
  * ```ts
  * atmosphere.add(milkyWay(), stars(), airglow())
  * ```
  *
- * A Gaussian layer at 96 km with a standard deviation of 4 km. By default 1e-4 cd/m² at the zenith
- * (22.6 magnitudes per square second of arc), as in years of a quiet sun; together with stars and the
- * Milky Way's faint light a moonless sky has about 22. The air below dims the layer and scatters its
- * light, by an estimate that takes light from all of the sky for even. Add it last: it is nearer than
- * anything else in the sky.
+ * The layer is a Gaussian in altitude, at 96 km with a standard deviation of 4 km. Its default luminance
+ * of 1e-4 cd/m² at the zenith (22.6 magnitudes per square arc second) is that of years of a quiet sun;
+ * with stars and Milky Way a moonless sky has about 22. The air below dims the layer and scatters its
+ * light, estimated as if the sky were evenly bright. Add it last: it is nearer than all else in the sky.
  */
 export class Airglow implements SkyLayer {
   readonly isAdditive = true
-  /** Luminance straight through the layer [cd/m²]. */
+  /** Luminance of the layer seen perpendicularly [cd/m²]. */
   readonly luminance: number
   readonly #spectrum: Spectrum
   readonly #layer
-  /** Radiance straight through the layer, over `solarIrradiance`. */
+  /** Radiance of the layer seen perpendicularly, over `solarIrradiance` [1/sr]. */
   readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
-  /** Green light of the air that hides it. */
-  readonly #drowns = uniform(0).setGroup(renderGroup)
-  /** 0 where all of the layer is far above the eye, else 1. */
-  readonly #isAround = uniform(0).setGroup(renderGroup)
+  /** Radiance of the air in the green that masks the layer [1/sr]. */
+  readonly #maskingRadiance = uniform(0).setGroup(renderGroup)
+  /** 0 where the camera is far below the layer, else 1. */
+  readonly #isClose = uniform(0).setGroup(renderGroup)
   #intensity = 1
   #version = 0
 
@@ -76,7 +75,7 @@ export class Airglow implements SkyLayer {
       altitude = 96_000,
       width = 4000,
       spectrum = GREENISH
-    } = checkOptions('Airglow', options)
+    } = checkOptions('Airglow', options, 'luminance', 'altitude', 'width', 'spectrum')
     checkRange('Airglow', 'luminance', luminance, 0, 1e9)
     checkRange('Airglow', 'altitude', altitude, 1, 1e7)
     checkRange('Airglow', 'width', width, 1, 1e6)
@@ -89,7 +88,7 @@ export class Airglow implements SkyLayer {
     }
   }
 
-  /** Multiplies the physical brightness, finite, ≥ 0. */
+  /** Factor on the physical brightness, finite, ≥ 0. */
   get intensity(): number {
     return this.#intensity
   }
@@ -108,69 +107,75 @@ export class Airglow implements SkyLayer {
   update({ atmosphere: { parameters }, height }: AtmosphereView): void {
     const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
     const luminance = this.luminance * this.intensity
-    this.#radiance.value.fromArray(ofLuminance(parameters, values, luminance))
-    this.#drowns.value = this.#radiance.value.y * DROWNS
+    this.#radiance.value.fromArray(scaleToLuminance(parameters, values, luminance))
+    this.#maskingRadiance.value = this.#radiance.value.y * DROWNS
     const { altitude, width } = this.#layer
-    this.#isAround.value = height < altitude.value - MARGIN * width.value ? 0 : 1
+    this.#isClose.value = height < altitude.value - THIN_LAYER_SIGMAS * width.value ? 0 : 1
   }
 
-  #gains(view: ViewUniforms, cosView: Float, distance: Float | null): { down: Float; up: Float } {
+  #vanRhijnFactors(
+    view: ViewUniforms,
+    cosView: Float,
+    distance: Float | null
+  ): { down: Float; up: Float } {
     const { bottomRadius } = view.air.uniforms
-    return glowGains(this.#layer, view.height, cosView, bottomRadius, distance)
+    return vanRhijnFactors(this.#layer, view.height, cosView, bottomRadius, distance)
   }
 
-  /** By day it is less than a thousandth of the sky. */
-  #isSeen(airlight: Vec4): Bool {
-    return airlight.y.lessThan(this.#drowns)
+  /** False by day, when the sky masks the layer. */
+  #isVisible(airlight: Vec4): Bool {
+    return airlight.y.lessThan(this.#maskingRadiance)
   }
 
-  /** The layer beyond the air below it. */
+  /** Light of the layer where the ray leaves it upwards, beyond the air below it. */
   beyond({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
     const light = farther.toVar()
-    If(this.#isSeen(airlight), () => {
+    If(this.#isVisible(airlight), () => {
       const gain = float(0).toVar()
-      If(this.#isAround.equal(0), () => {
+      If(this.#isClose.equal(0), () => {
         const { bottomRadius } = view.air.uniforms
-        gain.assign(overheadGain(this.#layer, view.height, cosView, bottomRadius))
+        gain.assign(thinLayerVanRhijnFactor(this.#layer, view.height, cosView, bottomRadius))
       }).Else(() => {
-        gain.assign(this.#gains(view, cosView, null).up)
+        gain.assign(this.#vanRhijnFactors(view, cosView, null).up)
       })
       light.addAssign(this.#radiance.mul(gain))
     })
     return light
   }
 
-  /** The layer in front of that air, from above. */
+  /** Light of the layer in front of the air, where the ray enters it from above. */
   glow({ view, cosView, airlight }: SkyRay, without: Vec4): Vec4 {
     const light = without.toVar()
-    If(this.#isAround.greaterThan(0).and(this.#isSeen(airlight)), () => {
-      light.addAssign(this.#radiance.mul(this.#gains(view, cosView, null).down))
+    If(this.#isClose.greaterThan(0).and(this.#isVisible(airlight)), () => {
+      light.addAssign(this.#radiance.mul(this.#vanRhijnFactors(view, cosView, null).down))
     })
     return light
   }
 
-  /** Its light scattered in the air, and the ground in it. */
+  /** Airglow scattered by the air and reflected by the ground. */
   below({ view, hitsGround, airlight }: SkyRay): ReturnType<NonNullable<SkyLayer['below']>> {
     return {
-      isSeen: this.#isSeen(airlight),
-      // The ground's through the air, and the air's.
+      isSeen: this.#isVisible(airlight),
       light: through => {
-        const ground = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME, 0))
-        return vec4(ground.sub(SCATTERED).mul(through).add(SCATTERED).mul(this.#radiance))
+        // Ground × transmittance + scattered × (1 − transmittance).
+        const ground = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME_IRRADIANCE, 0))
+        return vec4(
+          ground.sub(SCATTERED_RADIANCE).mul(through).add(SCATTERED_RADIANCE).mul(this.#radiance)
+        )
       }
     }
   }
 
   haze({ view, cosView, distance }: HazeLine, without: Vec4): Vec4 {
     const light = without.toVar()
-    // From below there is none of it in front of anything.
-    If(this.#isAround.greaterThan(0), () => {
-      const { down, up } = this.#gains(view, cosView, distance)
+    // Seen from below, the layer is behind everything.
+    If(this.#isClose.greaterThan(0), () => {
+      const { down, up } = this.#vanRhijnFactors(view, cosView, distance)
       light.addAssign(this.#radiance.mul(down.add(up)))
     })
     return light
   }
 }
 
-/** The upper air's own light: see {@link Airglow}. */
+/** Airglow, the upper atmosphere's own light: see {@link Airglow}. */
 export const airglow = (options?: AirglowOptions): Airglow => new Airglow(options)

@@ -7,18 +7,18 @@ import type { Mat3, Vec3 } from '../tsl-types'
 const _matrix = new Matrix4()
 const _scale = new Matrix4()
 
-/** Turns lines of sight into the frame of the stars: mean equator and equinox of J2000. */
+/** Rotation of view directions into the stars' frame: mean equator and equinox of J2000. */
 export class CelestialFrame {
   /**
-   * Rotation from the frame of the stars to ECEF; null to follow the atmosphere's date. With no date
-   * either, the two frames are one.
+   * Rotation from the stars' frame to ECEF; null follows the atmosphere's date. Without a date the two
+   * frames are one.
    */
   orientation: Matrix4 | null = null
   readonly #mappedToAxes = uniform(new Matrix3()).setGroup(renderGroup)
   readonly #rotation = new Matrix4()
   #time = NaN
 
-  /** @param axes - Rotation from the frame of the stars to the axes that are wanted, if not the same. */
+  /** @param axes - Rotation from the stars' frame to other axes, if those are wanted. */
   constructor(readonly axes: Matrix3 | null = null) {}
 
   /** Follows the date. */
@@ -40,8 +40,8 @@ export class CelestialFrame {
     if (this.axes !== null) this.#mappedToAxes.value.premultiply(this.axes)
   }
 
-  /** A direction of the mapped space among the stars, about as long. */
-  turn(direction: Vec3): Vec3 {
-    return (this.#mappedToAxes as unknown as Mat3).mul(direction)
+  /** Direction in the stars' frame (or {@link axes}), of about the same length. */
+  fromMapped(directionMapped: Vec3): Vec3 {
+    return (this.#mappedToAxes as unknown as Mat3).mul(directionMapped)
   }
 }

@@ -2,66 +2,67 @@ import { Matrix3, Vector4 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
 import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { checkNonNegative } from '@welkin/geo'
+import { checkNonNegative, checkOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkOrientation } from '../check'
+import { checkOrientation } from '../check'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { checkOwner } from '../view/renderers'
 import { DROWNS, type SkyLayer, type SkyRay } from '../view/SkyLayer'
-import { starIrradiance } from '../stars/starColor'
+import { starIrradiance } from '../stars/starBrightness'
 import { CELESTIAL_TO_GALACTIC, milkyWayMap } from './tsl/milkyWay'
 import { octahedralPoint } from '../math/tsl/octahedron'
 import { sampleLevel0, type Vec4 } from '../tsl-types'
 
 /** Options of {@link MilkyWay}. */
 export interface MilkyWayOptions {
-  /** Rotation from the stars' frame to ECEF; by default what the atmosphere's date makes it. */
+  /** Rotation from the stars' frame (J2000) to ECEF; by default it follows the atmosphere's date. */
   orientation?: Matrix4 | null
 }
 
-/** Texels along an edge of the map: a sixth to a third of a degree each. */
-const SIZE = 512
+/** Width of the map [texels], each a sixth to a third of a degree. */
+const MAP_SIZE = 512
 
-/** The map ends in the middle of its outermost texels: folded along its edges, it has no seam. */
-const EDGE = SIZE / (SIZE - 1)
+/** Scale of the map: it ends in the centres of its outermost texels, so that its folded edges have no seam. */
+const MAP_SCALE = MAP_SIZE / (MAP_SIZE - 1)
 
-/** B − V of the band where there is no dust [mag]. */
+/** Colour index B − V of the band where there is no dust [mag]. */
 const COLOR_INDEX = 0.7
 
-/** Luminance of 1 in the map [cd/m²]. */
-const UNIT = 1e-4
+/** Luminance of a map value of 1 [cd/m²]. */
+const MAP_LUMINANCE = 1e-4
 
 /**
- * The Milky Way: a faint band along the galactic equator, brightest towards Sagittarius, split by the
- * dark rift; and the light of faint stars everywhere else.
+ * The Milky Way: a faint band along the galactic equator, brightest towards Sagittarius and split by the
+ * Great Rift; and the unresolved starlight of the rest of the sky.
  *
  * ```ts
  * atmosphere.add(milkyWay(), stars())
  * ```
  *
- * Photometric: 20.5 magnitudes per square second of arc at its brightest, 21.5 in the band, 24 at the
- * galactic poles. Its large shapes, the brightest clouds and the rift are where they are in the sky;
- * the rest is noise. Nothing is fetched: the map (2 MB) is drawn once, on the GPU.
+ * Brightness is photometric: 20.5 magnitudes per square arc second at its brightest, 21.5 in the band, 24
+ * at the galactic poles. The large shapes, the brightest star clouds and the rift are in their places; the
+ * rest is noise. Nothing is fetched: the map (2 MB) is drawn once on the GPU.
  */
 export class MilkyWay implements SkyLayer {
   readonly isAdditive = true
   #intensity = 1
   readonly #frame = new CelestialFrame(new Matrix3().set(...CELESTIAL_TO_GALACTIC))
-  readonly #target: RenderTarget = tableTarget('MilkyWay', SIZE, SIZE)
+  readonly #target: RenderTarget = tableTarget('MilkyWay', MAP_SIZE, MAP_SIZE)
   readonly #color = uniform(new Vector4()).setGroup(renderGroup)
-  /** Green light of the air that hides it. */
-  readonly #drowns = uniform(0).setGroup(renderGroup)
+  /** Radiance of the air in the green that masks it [1/sr]. */
+  readonly #maskingRadiance = uniform(0).setGroup(renderGroup)
   readonly #map
   #pass: FragmentPass | null = null
   #renderer: Renderer | null = null
 
   /** @throws If an option is of the wrong kind. */
   constructor(options: MilkyWayOptions = {}) {
-    this.orientation = checkOptions('MilkyWay', options).orientation ?? null
+    this.orientation = checkOptions('MilkyWay', options, 'orientation').orientation ?? null
     this.#map = texture(this.#target.texture)
   }
 
-  /** Multiplies the physical brightness, finite, ≥ 0. */
+  /** Factor on the physical brightness, finite, ≥ 0. */
   get intensity(): number {
     return this.#intensity
   }
@@ -83,6 +84,7 @@ export class MilkyWay implements SkyLayer {
 
   prepare(renderer: Renderer): void {
     if (renderer === this.#renderer) return
+    checkOwner('MilkyWay', this.#renderer, renderer)
     this.#renderer = renderer
     this.#pass ??= new FragmentPass(
       'Welkin.MilkyWay',
@@ -90,7 +92,7 @@ export class MilkyWay implements SkyLayer {
         milkyWayMap(
           uv()
             .sub(0.5)
-            .mul(2 * EDGE)
+            .mul(2 * MAP_SCALE)
         )
       )()
     )
@@ -99,24 +101,24 @@ export class MilkyWay implements SkyLayer {
 
   update(view: AtmosphereView): void {
     this.#frame.update(view)
-    const luminance = UNIT * this.intensity
+    const luminance = MAP_LUMINANCE * this.intensity
     const color = starIrradiance(view.atmosphere.parameters, COLOR_INDEX, luminance)
     this.#color.value.fromArray(color)
-    this.#drowns.value = this.#color.value.y * DROWNS
+    this.#maskingRadiance.value = this.#color.value.y * DROWNS
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
     const sum = farther.toVar()
-    // By day it is less than a thousandth of the sky.
-    If(ray.airlight.y.lessThan(this.#drowns), () => {
-      const point = octahedralPoint(this.#frame.turn(ray.direction).toConst())
-      const light = sampleLevel0(this.#map, point.mul(0.5 / EDGE).add(0.5))
+    // By day the sky masks it.
+    If(ray.airlight.y.lessThan(this.#maskingRadiance), () => {
+      const point = octahedralPoint(this.#frame.fromMapped(ray.direction).toConst())
+      const light = sampleLevel0(this.#map, point.mul(0.5 / MAP_SCALE).add(0.5))
       sum.addAssign(vec4(light.mul(this.#color)))
     })
     return sum
   }
 
-  /** Frees the map. It is drawn again when it is needed. */
+  /** Frees the map, which is drawn again when needed. */
   dispose(): void {
     this.#target.dispose()
     this.#pass?.dispose()

@@ -5,28 +5,28 @@ import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import { checkNonNegative } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { NIGHT_ILLUMINANCE } from './cpu/twilight'
-import { ofLuminance } from '../stars/starColor'
+import { scaleToLuminance } from '../parameters/photometry'
 import { linearSRGB } from '../air/tsl/color'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
+import { watchScene } from '../view/renderers'
 
 /**
- * Light of the night sky on surfaces: what is left when sun and moon are down, so that nights are dark
- * but not black.
+ * Light of the night sky on surfaces, so that nights without a moon are dark but not black.
  *
- * A dome of even light from above, and what the ground reflects of it from below. It is there by day
- * too, a hundred million times weaker than daylight. `color` and `intensity` multiply the physical
- * illuminance; the probe's `sh` is not used.
+ * The sky is an even dome, and the ground reflects it from below. By day the light stays on, a hundred
+ * million times weaker than daylight. `color` and `intensity` multiply the physical illuminance; the
+ * probe's `sh` is not used.
  */
 export class NightLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
-  /** Of level ground [lx]. */
+  /** Illuminance of level ground [lx]. */
   readonly illuminance: number
 
   /**
-   * @param illuminance - Of level ground, finite, ≥ 0 [lx].
+   * @param illuminance - Illuminance of level ground, finite, ≥ 0 [lx].
    * @throws If an argument is of the wrong kind or out of range.
    */
   constructor(atmosphere: Atmosphere, illuminance = NIGHT_ILLUMINANCE) {
@@ -35,6 +35,11 @@ export class NightLightProbe extends LightProbe {
     checkNonNegative('NightLightProbe', 'illuminance', illuminance)
     this.atmosphere = atmosphere
     this.illuminance = illuminance
+  }
+
+  override updateMatrixWorld(force?: boolean): void {
+    watchScene('NightLightProbe', this)
+    super.updateMatrixWorld(force)
   }
 
   override clone(): this {
@@ -69,8 +74,8 @@ export class NightLightProbeNode extends AnalyticLightNode<NightLightProbe> {
     this.#view.update(frame)
     const { atmosphere, illuminance } = this.#light
     const { parameters } = atmosphere
-    // As much at each wavelength as the eye's daylight white has over sunlight's: a neutral light.
-    const values = ofLuminance(parameters, [1, 1, 1, 1], illuminance)
+    // The spectrum of sunlight: a neutral light.
+    const values = scaleToLuminance(parameters, [1, 1, 1, 1], illuminance)
     this.#irradiance.value.fromArray(values)
   }
 

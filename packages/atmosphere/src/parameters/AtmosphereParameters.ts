@@ -1,5 +1,4 @@
-import { fail } from '@welkin/geo'
-import { checkOptions } from '../check'
+import { checkOptions, fail, failUnknown } from '@welkin/geo'
 
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
@@ -244,9 +243,12 @@ export class AtmosphereParameters {
    */
   set(init: AtmosphereParametersInit): this {
     const next: AtmosphereParametersInit = {}
-    for (const [name, value] of Object.entries(checkOptions(CLASS, init))) {
+    if (typeof init !== 'object' || init === null || Array.isArray(init)) {
+      fail(CLASS, 'options must be an object', init)
+    }
+    for (const [name, value] of Object.entries(init)) {
+      if (!Object.hasOwn(FIELDS, name)) failUnknown(CLASS, 'parameter', name, Object.keys(FIELDS))
       if (value === undefined) continue
-      if (!Object.hasOwn(FIELDS, name)) fail(CLASS, 'fields must be parameters', name)
       const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
       const [earth, least, most] = field
       // The fields of more than one shape.
@@ -275,5 +277,12 @@ export class AtmosphereParameters {
   /** A copy that shares nothing with this one. */
   clone(): AtmosphereParameters {
     return new AtmosphereParameters(this)
+  }
+}
+
+/** @throws If they are no parameters. */
+export function checkParameters(where: string, value: AtmosphereParameters): void {
+  if (!(value instanceof AtmosphereParameters)) {
+    fail(where, 'parameters must be AtmosphereParameters', value)
   }
 }

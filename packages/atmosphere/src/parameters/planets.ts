@@ -1,4 +1,5 @@
-import { checkOptions, checkRange } from '../check'
+import { checkOptions } from '@welkin/geo'
+import { checkRange } from '../check'
 import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 
 const map = (values: Spectrum, f: (value: number, i: number) => number): Spectrum =>

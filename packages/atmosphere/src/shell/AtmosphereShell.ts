@@ -23,14 +23,15 @@ import {
 } from 'three/tsl'
 import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
-import { checkPositive, fail } from '@welkin/geo'
+import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { AtmosphereParameters } from '../parameters/AtmosphereParameters'
+import { AtmosphereParameters, checkParameters } from '../parameters/AtmosphereParameters'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
 import { sunWhite } from '../ground/cpu/reflectance'
 import { isAirless } from '../parameters/planets'
+import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
 import { ProfileUniforms } from './tsl/chapman'
@@ -194,27 +195,18 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   constructor(
     parameters: AtmosphereParameters,
     bodyRadius: number,
-    {
+    options: AtmosphereShellOptions = {}
+  ) {
+    const where = 'AtmosphereShell'
+    checkParameters(where, parameters)
+    checkPositive(where, 'bodyRadius', bodyRadius)
+    checkOptions(where, options, 'sun', 'model', 'luminanceScale')
+    const {
       sun = new Vector3(1, Math.SQRT2, 1),
       model = 'tables',
       luminanceScale = SCALE
-    }: AtmosphereShellOptions = {}
-  ) {
-    if (!(bodyRadius > 0 && bodyRadius < Infinity)) {
-      throw new Error(
-        `AtmosphereShell: bodyRadius must be positive and finite, got ${String(bodyRadius)}`
-      )
-    }
-    if (!(parameters instanceof AtmosphereParameters)) {
-      throw new Error(
-        `AtmosphereShell: parameters must be AtmosphereParameters, got ${typeof parameters}`
-      )
-    }
-    if (model !== 'tables' && model !== 'single-scattering') {
-      throw new Error(
-        `AtmosphereShell: model must be 'tables' or 'single-scattering', got ${String(model)}`
-      )
-    }
+    } = options
+    checkChoice(where, 'model', model, ['tables', 'single-scattering'])
     super(
       ballAround((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
       new NodeMaterial()
@@ -249,6 +241,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Draws with what a renderer has from now on. */
   #take(renderer: Renderer): void {
     if (renderer === this.#renderer) return
+    checkRenderer('AtmosphereShell', renderer)
     this.#giveBack()
     this.#renderer = renderer
     const tables = this.#isSingle

@@ -6,17 +6,21 @@ import {
   isBackgroundDepth,
   logarithmicDepthToViewZ,
   getViewPosition,
+  select,
   uniform,
   uv,
   vec3,
   vec4
 } from 'three/tsl'
-import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeBuilder, NodeFrame, PassNode, Renderer } from 'three/webgpu'
+import { checkPostEffect } from '../check'
 import type { Atmosphere } from '../Atmosphere'
 import { AtmosphereNode } from '../view/AtmosphereNode'
+import { Backdrop, passOf } from './Backdrop'
+import { foregroundOf } from './tsl/foreground'
 import { pixelAngle, skyColor } from './tsl/sky'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 
 /**
  * Aerial perspective and sky as a post effect: dims what was drawn, adds the light scattered in front
@@ -29,7 +33,12 @@ import type { Float, Vec3, Vec4 } from '../tsl-types'
  * )
  * ```
  *
- * Leave `scene.background` and `scene.fogNode` empty, and draw without multisampling: a pixel has one
+ * The sky is where nothing wrote depth, whatever the colour's alpha or the scene's background there; what
+ * is transparent is laid over it. Of an opaque backdrop (`scene.background`, `setClearColor`,
+ * `WebGPURenderer({ alpha: false })`) the effect knows when colour or depth is the texture of a pass.
+ * Without one, only alpha below 1 can tell what wrote no depth.
+ *
+ * Leave `scene.backgroundNode` and `scene.fogNode` empty, and draw without multisampling: a pixel has one
  * depth, which is wrong for most of its samples at silhouettes and, from space, everywhere (smooth
  * edges afterwards, or use the fog node). What is transparent and writes no depth gets the
  * air of what is behind it; the fog node has no such limit. Knows standard, reversed and logarithmic
@@ -53,15 +62,12 @@ export class AerialPerspectiveNode extends AtmosphereNode {
   readonly #projectionInverse
   readonly #near = uniform(0.1)
   readonly #far = uniform(1000)
+  readonly #backdrop = new Backdrop()
 
   /** @throws If an argument is missing. */
   constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
     super(atmosphere, camera)
-    for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
-      if (value === undefined || value === null) {
-        throw new Error(`AerialPerspectiveNode: ${name} is missing, got ${value}`)
-      }
-    }
+    checkPostEffect('AerialPerspectiveNode', colorNode, depthNode, camera)
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera
@@ -77,6 +83,20 @@ export class AerialPerspectiveNode extends AtmosphereNode {
     const { near, far } = this.camera as OrthographicCamera
     this.#near.value = near
     this.#far.value = far
+    if (frame.renderer !== null) this.#backdrop.update(frame.renderer, this.#pass)
+  }
+
+  get #pass(): PassNode | null {
+    return passOf(this.colorNode) ?? passOf(this.depthNode)
+  }
+
+  /** What was drawn, with the alpha that the pass left where effects in between have made it 1. */
+  #color(): Vec4 {
+    const color = vec4(this.colorNode as Vec4).toConst() as Vec4
+    const pass = this.#pass
+    if (!this.showSky || pass === null || passOf(this.colorNode) === pass) return color
+    const { a } = (pass.getTextureNode() as unknown as Vec4).toConst() as Vec4
+    return vec4(color.rgb, select(color.a.lessThan(1), color.a, a)).toConst()
   }
 
   override setup(builder: NodeBuilder): Node {
@@ -88,12 +108,15 @@ export class AerialPerspectiveNode extends AtmosphereNode {
     const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this.#projectionInverse)
 
     return Fn(() => {
-      const color = vec4(this.colorNode as Vec4).toConst()
+      const drawn = this.#color()
       const depth = float((this.depthNode as Vec4).r).toConst() as Float
       // Any depth that is neither near nor far gives the direction.
       const middle = position(float(0.5)).toConst() as Vec3
-      const result = color.rgb.toVar()
-      const isSky = isBackgroundDepth(depth).toConst()
+      const isSky = isBackgroundDepth(depth).toConst() as Bool
+      const { light, coverage } = this.showSky
+        ? foregroundOf(drawn, isSky, this.#backdrop)
+        : { light: drawn.rgb, coverage: float(1) }
+      const result = light.toVar()
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
@@ -102,18 +125,17 @@ export class AerialPerspectiveNode extends AtmosphereNode {
           ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
           : position(depth)
         const air = aerialPerspectiveTo(this.view, at)
-        const gained = this.showSky ? air.inScatter.mul(color.a) : air.inScatter
-        result.assign(color.rgb.mul(air.transmittance).add(gained))
+        result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
-        // Silhouettes (with multisampling) and transparent things leave their coverage in alpha.
-        If(isSky.or(color.a.lessThan(1)), () => {
+        // Silhouettes (with multisampling) and transparent things cover a part of the pixel.
+        If(coverage.lessThan(1), () => {
           const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
           const sky = skyColor(this.view, direction, this.showSun ? pixel : null)
-          result.addAssign(sky.mul(color.a.oneMinus()))
+          result.addAssign(sky.mul(coverage.oneMinus()))
         })
       }
-      return vec4(result, this.showSky ? float(1) : color.a)
+      return vec4(result, this.showSky ? float(1) : drawn.a)
     })()
   }
 }

@@ -1,59 +1,67 @@
 import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
-import { checkNonNegative, fail } from '@welkin/geo'
+import { checkBoolean, checkNonNegative, checkOptions, fail } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkOptions, checkOrientation } from '../check'
+import { checkOrientation } from '../check'
 import { CelestialFrame } from '../night/CelestialFrame'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { COLOR_STEPS, ENTRY_COLUMNS, STAR_LEVELS, starCells } from './starCells'
-import type { Star } from './starCode'
-import { MAGNITUDE_ZERO_ILLUMINANCE, starIrradiance } from './starColor'
+import type { Star } from './starEncoding'
+import { starIlluminance, starIrradiance } from './starBrightness'
 import { starField, type StarTextures } from './tsl/starField'
 import type { Vec4 } from '../tsl-types'
 import { vec4Array } from '../tsl-types'
 import { If, renderGroup, uniform } from 'three/tsl'
 
+/** Light of the sky over that of the brightest star from which on no star is drawn. */
+const MASKING_RATIO = 100
+
 /** Options of {@link Stars}. */
 export interface StarsOptions {
   /** Leaves the drawing to `starsOverlay`, after post-processing. Default false. */
   overlay?: boolean
-  /** Rotation from the stars' frame to ECEF; by default what the atmosphere's date makes it. */
+  /** Rotation from the stars' frame (J2000) to ECEF; by default it follows the atmosphere's date. */
   orientation?: Matrix4 | null
 }
 
 /**
- * Fixed stars: points of light that are as bright as their magnitudes say, dimmed and reddened by the
- * air that they are seen through.
+ * Fixed stars: points of light with the brightness of their magnitudes, dimmed and reddened by the air in
+ * front of them.
  *
  * ```ts
  * atmosphere.add(stars())
  * ```
  *
- * A star covers about a pixel whatever the picture's size, and its pixels add up to its illuminance: the
- * finer the picture, the brighter the star against the sky, as in a telescope. By day it is there, but
- * the sky is a thousand times as bright. Places are those of J2000 turned by precession, nutation and
- * the Earth's rotation; proper motion, aberration (20″) and refraction (34′ at the horizon, nothing
- * else of the sky has it) are left out.
+ * A star covers about one pixel at any resolution, and its pixels add up to its illuminance: the finer
+ * the picture, the brighter the star against the sky, as in a telescope. Positions are those of J2000,
+ * rotated by precession, nutation and the Earth's rotation. Proper motion, aberration (20″) and refraction
+ * (34′ at the horizon; nothing else in the sky has it) are left out.
  */
 export class Stars implements SkyLayer {
   /** For type testing. */
   readonly isStars = true
   readonly isAdditive = true
-  /** What is drawn. */
+  /** Stars that are drawn. */
   readonly catalogue: readonly Star[]
-  /** Whether `starsOverlay` draws them and the sky does not. */
+  /** `starsOverlay` draws them, instead of the sky. */
   readonly overlay: boolean
   #intensity = 1
   readonly #frame = new CelestialFrame()
   readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
   readonly #textures: StarTextures
-  /** A hundred times the irradiance of the brightest star, over `solarIrradiance`. */
-  readonly #brightest = uniform(0).setGroup(renderGroup)
-  #paletteOf = ''
+  /** Light of the sky in one pixel that masks even the brightest star, over `solarIrradiance`. */
+  readonly #maskingIrradiance = uniform(0).setGroup(renderGroup)
+  #paletteKey = ''
 
   /** @throws If a star lacks a finite number, or an option is of the wrong kind. */
   constructor(catalogue: readonly Star[], options: StarsOptions = {}) {
-    const { overlay = false, orientation } = checkOptions('Stars', options)
+    const { overlay = false, orientation } = checkOptions(
+      'Stars',
+      options,
+      'overlay',
+      'orientation'
+    )
+    checkBoolean('Stars', 'overlay', overlay)
     if (!Array.isArray(catalogue)) fail('Stars', 'catalogue must be an array of stars', catalogue)
     catalogue.forEach((star, i) => {
       for (const name of ['ascension', 'declination', 'magnitude', 'colorIndex'] as const) {
@@ -71,7 +79,7 @@ export class Stars implements SkyLayer {
     }
   }
 
-  /** Multiplies the physical brightness, finite, ≥ 0. */
+  /** Factor on the physical brightness, finite, ≥ 0. */
   get intensity(): number {
     return this.#intensity
   }
@@ -99,30 +107,30 @@ export class Stars implements SkyLayer {
   #updatePalette({ parameters }: AtmosphereView['atmosphere']): void {
     const { wavelengths, solarIrradiance, spectralToXYZ } = parameters
     const state = [this.intensity, wavelengths, solarIrradiance, spectralToXYZ].join(' ')
-    if (state === this.#paletteOf) return
-    this.#paletteOf = state
-    const illuminance = MAGNITUDE_ZERO_ILLUMINANCE * this.intensity
-    const magnitude = this.catalogue.reduce((least, star) => Math.min(least, star.magnitude), 9)
-    const [, green] = starIrradiance(parameters, 0, illuminance * 10 ** (-0.4 * magnitude))
-    this.#brightest.value = 100 * green
+    if (state === this.#paletteKey) return
+    this.#paletteKey = state
+    const brightest = this.catalogue.reduce((least, star) => Math.min(least, star.magnitude), 9)
+    const illuminance = (magnitude: number): number => this.intensity * starIlluminance(magnitude)
+    const [, green] = starIrradiance(parameters, 0, illuminance(brightest))
+    this.#maskingIrradiance.value = MASKING_RATIO * green
     this.#palette.array.forEach((color, step) => {
       const colorIndex = COLOR_STEPS.min + step * COLOR_STEPS.step
-      color.fromArray(starIrradiance(parameters, colorIndex, illuminance))
+      color.fromArray(starIrradiance(parameters, colorIndex, illuminance(0)))
     })
   }
 
-  /** Light of the stars in a direction, above the air [1/sr]. */
+  /** Radiance of the stars above the air [1/sr]. */
   light(ray: SkyRay): Vec4 {
-    const direction = this.#frame.turn(ray.direction).toConst()
+    const direction = this.#frame.fromMapped(ray.direction).toConst()
     return starField(this.#textures, this.#palette, direction, ray.pixel)
   }
 
   beyond(ray: SkyRay, farther: Vec4): Vec4 {
     if (this.overlay) return farther
     const light = farther.toVar()
-    // By day even the brightest star is less than a hundredth of the sky.
-    const drowns = ray.pixel.mul(ray.pixel).mul(ray.airlight.y)
-    If(drowns.lessThan(this.#brightest), () => {
+    // By day the loop over stars is skipped.
+    const skyInPixel = ray.pixel.mul(ray.pixel).mul(ray.airlight.y)
+    If(skyInPixel.lessThan(this.#maskingIrradiance), () => {
       light.addAssign(this.light(ray))
     })
     return light
@@ -134,6 +142,7 @@ export class Stars implements SkyLayer {
   }
 }
 
+/** Float texture without filtering. */
 function dataTexture(
   name: string,
   texels: Float32Array<ArrayBuffer>,
@@ -141,9 +150,9 @@ function dataTexture(
   format: typeof RGFormat | typeof RGBAFormat
 ): DataTexture {
   const rows = texels.length / width / (format === RGFormat ? 2 : 4)
-  const made = new DataTexture(texels, width, rows, format, FloatType)
-  made.name = name
-  made.minFilter = made.magFilter = NearestFilter
-  made.needsUpdate = true
-  return made
+  const result = new DataTexture(texels, width, rows, format, FloatType)
+  result.name = name
+  result.minFilter = result.magFilter = NearestFilter
+  result.needsUpdate = true
+  return result
 }

@@ -11,6 +11,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
+import { checkPostEffect } from '../check'
 import type { Atmosphere } from '../Atmosphere'
 import { AtmosphereNode } from '../view/AtmosphereNode'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
@@ -24,8 +25,8 @@ const isOverlay = (layer: SkyLayer): layer is Stars =>
   (layer as Partial<Stars>).isStars === true && (layer as Stars).overlay
 
 /**
- * Adds the stars after post-processing, so that depth of field, bloom and temporal anti-aliasing leave
- * them the points that they are.
+ * Draws the stars after post-processing, so that depth of field, bloom and temporal anti-aliasing leave
+ * them points.
  *
  * ```ts
  * atmosphere.add(milkyWay(), stars({ overlay: true }))
@@ -33,33 +34,29 @@ const isOverlay = (layer: SkyLayer): layer is Stars =>
  * pipeline.outputNode = starsOverlay(finished, scenePass.getTextureNode('depth'), camera, atmosphere)
  * ```
  *
- * Draws the layers that were made with `overlay: true`, which the sky leaves out, where the depth says
- * that nothing was drawn; layers that were added after them, such as a moon, hide them. It is in the
- * pipeline's output that stars are as crisp as its pixels are, whatever the scene's own resolution. The
- * colour must be linear: tone mapping comes after. Does not jitter with temporal anti-aliasing as long
- * as that takes its offset off the camera again, as three's does.
+ * Layers made with `overlay: true`, which the sky leaves out, are drawn where the depth is that of the
+ * background. Layers added after them, such as a moon, hide them. Put it into the pipeline's output: stars
+ * are then as crisp as its pixels, whatever the scene's own resolution. The colour must be linear; tone
+ * mapping comes after. Stars do not jitter with temporal anti-aliasing, as long as that takes its offset
+ * off the camera again, as three's does.
  */
 export class StarsOverlayNode extends AtmosphereNode {
   static get type(): string {
     return 'StarsOverlayNode'
   }
 
-  /** The finished picture: linear colour. */
+  /** Linear colour of the finished picture. */
   colorNode: Node
-  /** The scene's depth, as the renderer writes it. */
+  /** Depth of the scene, as the renderer writes it. */
   depthNode: Node
-  /** The camera that drew the scene. */
+  /** Camera that drew the scene. */
   readonly camera: Camera
   readonly #projectionInverse
 
   /** @throws If an argument is missing. */
   constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
     super(atmosphere, camera)
-    for (const [name, value] of Object.entries({ colorNode, depthNode, camera })) {
-      if (value === undefined || value === null) {
-        throw new Error(`StarsOverlayNode: ${name} is missing, got ${value}`)
-      }
-    }
+    checkPostEffect('StarsOverlayNode', colorNode, depthNode, camera)
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera
@@ -67,7 +64,7 @@ export class StarsOverlayNode extends AtmosphereNode {
   }
 
   override setup(_builder: NodeBuilder): Node {
-    // Parallel lines of sight all end at one point of the sky: there is no field of stars.
+    // Parallel view rays all end at one point of the sky: there is no field of stars.
     if ((this.camera as OrthographicCamera).isOrthographicCamera)
       return vec4(this.colorNode as Vec4)
     return Fn(() => {
@@ -83,7 +80,7 @@ export class StarsOverlayNode extends AtmosphereNode {
         const cosView = direction.dot(this.view.up).clamp(-1, 1).toConst() as Float
         const cosViewSun = direction.dot(this.view.sunDirection).clamp(-1, 1).toConst() as Float
         const { hitsGround, meetsAir } = rayTargets(eye, cosView)
-        // What is overlaid is asked for its light itself, which no air hides.
+        // `airlight` 0: overlaid layers are never masked by the sky here.
         const airlight = vec4(0) as Vec4
         const aim = aimAt(eye, cosView, hitsGround)
         const angles = { direction, cosViewSun, meetsAir, ...aim }
@@ -97,21 +94,22 @@ export class StarsOverlayNode extends AtmosphereNode {
     })()
   }
 
-  /** Light of the stars that nothing nearer hides. */
+  /** Radiance of the stars that no nearer layer hides [1/sr]. */
   #light(ray: SkyRay): Vec4 {
-    let [light, without] = [vec4(0) as Vec4, vec4(0) as Vec4]
+    // The difference of two skies, with and without stars, holds what nearer layers leave of them.
+    let [withStars, without] = [vec4(0) as Vec4, vec4(0) as Vec4]
     for (const layer of this.atmosphere.layers) {
       if (isOverlay(layer)) {
-        light = light.add(layer.light(ray)).toConst()
+        withStars = withStars.add(layer.light(ray)).toConst()
       } else if (layer.isAdditive !== true && layer.beyond !== undefined) {
-        ;[light, without] = [layer.beyond(ray, light), layer.beyond(ray, without)]
+        ;[withStars, without] = [layer.beyond(ray, withStars), layer.beyond(ray, without)]
       }
     }
-    return vec4(light.sub(without).max(0))
+    return vec4(withStars.sub(without).max(0))
   }
 }
 
-/** Adds the stars after post-processing: see {@link StarsOverlayNode}. */
+/** Stars drawn after post-processing: see {@link StarsOverlayNode}. */
 export const starsOverlay = (
   color: Node,
   depth: Node,

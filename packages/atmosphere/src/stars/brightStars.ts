@@ -1,13 +1,13 @@
 import { brightStarData } from './brightStarData'
-import { BYTES_PER_STAR, decodeStar, type Star } from './starCode'
+import { BYTES_PER_STAR, decodeStar, type Star } from './starEncoding'
 
 let catalogue: Star[] | undefined
 
 /**
- * The 5,044 stars to magnitude 6, the brightest first: a naked eye's sky.
+ * The 5,044 stars to magnitude 6, brightest first: the naked eye's sky.
  *
- * Positions are of epoch and equinox J2000, to 0.7″; stars move on by 1″ a year or less but for three
- * dozen, none of them by more than 8″. Magnitudes to 0.015, B − V to 0.008.
+ * Positions are of epoch and equinox J2000, within 0.7″; all but three dozen stars move by less than 1″ a
+ * year, none by more than 8″. Magnitudes within 0.015, B − V within 0.008.
  *
  * @see d3-celestial (O. Frohn), after the Extended Hipparcos Compilation (Anderson & Francis 2012)
  */

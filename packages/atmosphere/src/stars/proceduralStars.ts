@@ -1,33 +1,41 @@
-import { fail } from '@welkin/geo'
-import { checkOptions, checkRange } from '../check'
-import type { Star } from './starCode'
+import { checkOptions, fail } from '@welkin/geo'
+import { checkRange } from '../check'
+import type { Star } from './starEncoding'
 
 /** Options of {@link proceduralStars}. */
 export interface ProceduralStarsOptions {
-  /** How many stars, an integer in [1, 50000]. */
+  /** Number of stars, an integer in [1, 50000]. */
   count?: number
-  /** Magnitude of the faintest, in [−10, 20]. */
+  /** Magnitude of the faintest star, in [−10, 20]. */
   faintest?: number
-  /** The same number gives the same sky. */
+  /** Seed of the random numbers: the same seed gives the same sky. */
   seed?: number
 }
 
-/** Stars to magnitude m grow as 10^(0.51 m) in the naked eye's range. Allen, Astrophysical Quantities. */
-const GROWTH = 0.51
+/**
+ * Growth of the number of stars to magnitude m, 10^(0.51 m), in the naked eye's range.
+ *
+ * @see Allen 1976, Astrophysical Quantities
+ */
+const COUNT_EXPONENT = 0.51
 
-/** None is brighter than Sirius by more than a little. */
-const BRIGHTEST_SPAN = 7.5
+/** Magnitudes between the faintest and the brightest star, which is about as bright as Sirius. */
+const MAGNITUDE_SPAN = 7.5
 
 /**
- * A sky of stars of no particular place, with the real sky's numbers by magnitude and its colours: for
- * other worlds, and where the catalogue's 47 kB are too much.
+ * Random stars with the real sky's distribution of magnitudes and colours: for other worlds, and where
+ * the catalogue's 36 kB are too much.
  *
  * @throws If an option is out of range.
  */
 export function proceduralStars(options: ProceduralStarsOptions = {}): Star[] {
-  const { count = 5000, faintest = 6, seed = 1 } = checkOptions('proceduralStars', options)
+  const {
+    count = 5000,
+    faintest = 6,
+    seed = 1
+  } = checkOptions('proceduralStars', options, 'count', 'faintest', 'seed')
   if (!(Number.isInteger(count) && count >= 1 && count <= 50_000)) {
-    throw new Error(`proceduralStars: count must be an integer in [1, 50000], got ${count}`)
+    fail('proceduralStars', 'count must be an integer in [1, 50000]', count)
   }
   checkRange('proceduralStars', 'faintest', faintest, -10, 20)
   if (!Number.isFinite(seed)) fail('proceduralStars', 'seed must be finite', seed)
@@ -35,10 +43,10 @@ export function proceduralStars(options: ProceduralStarsOptions = {}): Star[] {
   return Array.from({ length: count }, () => {
     const ascension = 2 * Math.PI * next()
     const declination = Math.asin(2 * next() - 1)
-    const magnitude = faintest + Math.max(Math.log10(1 - next()) / GROWTH, -BRIGHTEST_SPAN)
-    // Two humps: stars like Sirius and Vega, and orange giants.
-    const spread = (next() + next() + next() - 1.5) * 0.5
-    const colorIndex = (next() < 0.55 ? 0.1 : 1.1) + spread
+    const magnitude = faintest + Math.max(Math.log10(1 - next()) / COUNT_EXPONENT, -MAGNITUDE_SPAN)
+    // Two peaks of colour: stars like Sirius and Vega, and orange giants.
+    const deviation = (next() + next() + next() - 1.5) * 0.5
+    const colorIndex = (next() < 0.55 ? 0.1 : 1.1) + deviation
     return { ascension, declination, magnitude, colorIndex }
   })
 }

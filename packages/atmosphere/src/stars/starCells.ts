@@ -1,32 +1,30 @@
-import { octahedralDirection, octahedralPoint } from './octahedron'
-import type { Star } from './starCode'
+import { octahedralDirection, octahedralPoint } from '../math/cpu/octahedron'
+import type { Star } from './starEncoding'
 
-/** Cells of the sky for stars whose pictures have a size. */
+/** Grid of cells on the sky, for stars' images up to some size. */
 export interface StarLevel {
   /** Cells along an edge of the octahedral map. */
   readonly cells: number
-  /** Cells that a star may shine into from outside of them are within this angle of it [rad]. */
-  readonly reach: number
+  /** Angle around a cell within which stars belong to it: the radius of a star's image [rad]. */
+  readonly margin: number
 }
 
-/** For pictures of stars as small as most cameras make them, and for large ones. */
+/** Small cells for the small star images of most cameras, large cells for large images. */
 export const STAR_LEVELS = [
-  { cells: 128, reach: 0.004 },
-  { cells: 64, reach: 0.024 }
+  { cells: 128, margin: 0.004 },
+  { cells: 64, margin: 0.024 }
 ] as const satisfies readonly StarLevel[]
 
-/** Columns of the texture that the cells' stars are kept in, a power of two. */
+/** Width of the texture of entries, a power of two [texels]. */
 export const ENTRY_COLUMNS = 256
 
-/** Magnitudes are stored as a fraction of this range. */
+/** Range of magnitudes that an entry can hold. */
 export const MAGNITUDE_RANGE = { min: -4, span: 32 } as const
 
-/** Colours are stored as whole steps of B − V. */
+/** Steps of B − V that an entry can hold. */
 export const COLOR_STEPS = { min: -0.4, step: 0.1, count: 25 } as const
 
-/**
- * A star's magnitude and colour in one number: the step of B − V, and as its fraction the magnitude.
- */
+/** Magnitude and colour of a star in one number: the step of B − V plus the magnitude as a fraction. */
 export function packStar({ magnitude, colorIndex }: Star): number {
   const step = Math.round((colorIndex - COLOR_STEPS.min) / COLOR_STEPS.step)
   const fraction = (magnitude - MAGNITUDE_RANGE.min) / MAGNITUDE_RANGE.span
@@ -35,7 +33,7 @@ export function packStar({ magnitude, colorIndex }: Star): number {
   )
 }
 
-/** Unit vector of a star in the frame of J2000. */
+/** Direction to a star, frame of J2000, unit length. */
 export function starDirection({ ascension, declination }: Star): [number, number, number] {
   const level = Math.cos(declination)
   return [level * Math.cos(ascension), level * Math.sin(ascension), Math.sin(declination)]
@@ -55,10 +53,11 @@ const unit = (v: readonly number[]): number[] => {
   return v.map(value => value / length)
 }
 
-/** Half-spaces, as (normal, least dot product), that hold all that is within `reach` of a cell. */
-type Bounds = (readonly [normal: readonly number[], least: number])[]
+/** Half-spaces (normal, least dot product) whose intersection holds a cell and its margin. */
+type CellBounds = (readonly [normal: readonly number[], least: number])[]
 
-function boundCell({ cells, reach }: StarLevel, cell: number): Bounds {
+/** Bounds of a cell with its margin. */
+function boundCell({ cells, margin }: StarLevel, cell: number): CellBounds {
   const at = (i: number): number => (2 * i) / cells - 1
   const [column, row] = [cell % cells, Math.floor(cell / cells)]
   const corners = [
@@ -70,19 +69,19 @@ function boundCell({ cells, reach }: StarLevel, cell: number): Bounds {
   const middle = unit(octahedralDirection(at(column + 0.5), at(row + 0.5)))
   const fold = Math.abs(at(column + 0.5)) + Math.abs(at(row + 0.5))
   if (Math.abs(fold - 1) < 0.5 / cells) {
-    // The map is folded along its diagonal: no point of it is farther from its middle than a corner.
+    // On the map's fold a cell is not convex: a circle through its farthest corner bounds it.
     const radius = Math.max(...corners.map(corner => Math.acos(Math.min(dot(middle, corner), 1))))
-    return [[middle, Math.cos(radius + reach)]]
+    return [[middle, Math.cos(radius + margin)]]
   }
   // Its edges are great circles.
   return corners.map((corner, i) => {
     const normal = unit(cross(corner, corners[(i + 1) % 4]))
     const inwards = normal.map(value => value * Math.sign(dot(normal, middle)))
-    return [inwards, -Math.sin(reach)] as const
+    return [inwards, -Math.sin(margin)] as const
   })
 }
 
-/** The four cells that share an edge with one; those at the map's edges meet others there. */
+/** Four neighbours of a cell, across the folded edges of the map too. */
 function neighbours({ cells }: StarLevel, cell: number): number[] {
   const [column, row] = [cell % cells, Math.floor(cell / cells)]
   const last = cells - 1
@@ -94,18 +93,18 @@ function neighbours({ cells }: StarLevel, cell: number): number[] {
   return [at(column - 1, row), at(column + 1, row), at(column, row - 1), at(column, row + 1)]
 }
 
-/** Numbers of the stars that can shine into each cell. */
+/** Indices of the stars in each cell and its margin. */
 function starsByCell(level: StarLevel, directions: readonly (readonly number[])[]): number[][] {
   const { cells } = level
   const lists: number[][] = Array.from({ length: cells * cells }, () => [])
-  const bounds: Bounds[] = []
+  const bounds: CellBounds[] = []
   directions.forEach((direction, star) => {
     const [column, row] = octahedralPoint(direction).map(x =>
       Math.min(Math.floor(((x + 1) / 2) * cells), cells - 1)
     )
     const waiting = [row * cells + column]
     const seen = new Set(waiting)
-    // Spreads from the star's own cell: what a circle touches is connected.
+    // Flood fill from the star's own cell: the cells that a circle touches are connected.
     for (let cell = waiting.pop(); cell !== undefined; cell = waiting.pop()) {
       bounds[cell] ??= boundCell(level, cell)
       if (bounds[cell].some(([normal, least]) => dot(normal, direction) < least)) continue
@@ -119,18 +118,18 @@ function starsByCell(level: StarLevel, directions: readonly (readonly number[])[
   return lists
 }
 
-/** Textures that say which stars can shine where. */
+/** Texels of the stars sorted by cell. */
 export interface StarCells {
   /**
-   * Texels (first entry, number of entries) of the cells, those of the first of {@link STAR_LEVELS} in the
-   * first rows, and as wide.
+   * Texels (first entry, number of entries), as wide as the first of {@link STAR_LEVELS}, whose rows come
+   * first.
    */
   cells: Float32Array<ArrayBuffer>
   /** Texels (unit vector, {@link packStar}), {@link ENTRY_COLUMNS} wide. */
   entries: Float32Array<ArrayBuffer>
 }
 
-/** Sorts stars into cells. The unit vectors are in the frame of J2000. */
+/** Stars sorted into cells, with unit vectors in the frame of J2000. */
 export function starCells(stars: readonly Star[]): StarCells {
   const directions = stars.map(starDirection)
   const levels = STAR_LEVELS.map(level => starsByCell(level, directions))

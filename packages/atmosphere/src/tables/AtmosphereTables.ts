@@ -1,12 +1,12 @@
 import { DataUtils } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { fail } from '@welkin/geo'
 import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { DiffuseLightTable } from '../diffuseLight/DiffuseLightTable'
 import type { DiffuseLightData } from '../diffuseLight/cpu/diffuseLight'
 import { SkyVolumes } from '../skyVolume/SkyVolumes'
 import { TransmittanceTable } from '../transmittance/TransmittanceTable'
+import { checkOwner } from '../view/renderers'
 
 /** What an atmosphere keeps on the GPU: its two tables and the sky volumes made from them. */
 export class AtmosphereTables {
@@ -39,9 +39,9 @@ export class AtmosphereTables {
     luminanceScale: number,
     steps: number
   ): void {
-    if (!renderer?.isRenderer) fail('Atmosphere', 'renderer must be a WebGPURenderer', renderer)
+    checkOwner('Atmosphere', this.#renderer, renderer)
     if (renderer !== this.#renderer) {
-      // Another renderer shares no textures with the last one.
+      // Textures went with the renderer before.
       this.#work?.return()
       this.#work = null
       this.volumes.invalidate()

@@ -1,5 +1,6 @@
 import type { Vector3 } from 'three'
 import type { Renderer } from 'three/webgpu'
+import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView, ViewedAtmosphere } from './AtmosphereView'
 import type { LightSource } from './LightSource'
@@ -95,4 +96,14 @@ export interface SkyLayer {
   veil?(line: Sightline, air: Veil): Veil
   /** Frees GPU memory. */
   dispose?(): void
+}
+
+/** One of which a layer has: nothing else changes the sky. */
+const EFFECTS = ['eclipse', 'beyond', 'ground', 'glow', 'below', 'haze', 'veil'] as const
+
+/** @throws If it is no layer. */
+export function checkLayer(where: string, layer: SkyLayer): void {
+  if (!EFFECTS.some(name => typeof layer?.[name] === 'function')) {
+    fail(where, 'layer must be a SkyLayer, such as moon() or heightFog()', layer)
+  }
 }

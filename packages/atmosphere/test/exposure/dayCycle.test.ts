@@ -221,7 +221,7 @@ describe('DayCycle', () => {
     expect(make({ daylight: 1 })).toThrow('DayCycle: daylight must be in (0, 1), got 1')
     expect(make({ rate: NaN })).toThrow('DayCycle: rate must be finite, got NaN')
     expect(make({ adaptation: -1 })).toThrow('DayCycle: adaptation must be finite and ≥ 0, got -1')
-    expect(make({ date: new Date(NaN) })).toThrow('DayCycle: time must be a date')
+    expect(make({ date: new Date(NaN) })).toThrow('DayCycle: date must be a valid Date')
     expect(() => new DayCycle({} as Atmosphere)).toThrow('DayCycle: atmosphere must be')
     expect(() => new DayCycle(atmosphere).update(NaN)).toThrow('deltaSeconds must be finite')
   })

@@ -11,8 +11,9 @@ import {
 } from '@welkin/atmosphere'
 import { SearchLocalSolarEclipse, Observer } from 'astronomy-engine'
 import { Ellipsoid, moonPositionECEF } from '@welkin/geo'
-import { coveredSun } from '../../src/moon/cpu/eclipse'
-import { lommelSeeligerPhase, moonIrradiance, moonPhaseLaw } from '../../src/moon/cpu/moonlight'
+import { sunObscuration } from '../../src/moon/cpu/eclipse'
+import { moonIrradiance } from '../../src/moon/cpu/moonIrradiance'
+import { lommelSeeligerPhase, moonPhaseLaw } from '../../src/moon/cpu/moonPhaseLaw'
 import { number, runs } from '../arbitraries'
 
 const degree = Math.PI / 180
@@ -210,15 +211,17 @@ describe('Moon', () => {
     expect(() => new Moon(atmosphere, { radius: NaN })).toThrow('Moon: radius must be')
     expect(() => new Moon(atmosphere, { strength: -1 })).toThrow('Moon: strength must be')
     expect(() => new Moon(atmosphere, { mapSize: 100 })).toThrow('Moon: mapSize must be')
-    expect(() => new Moon(atmosphere, { direction: origin })).toThrow('Moon: direction must be')
+    expect(() => new Moon(atmosphere, { direction: origin })).toThrow(
+      'Moon: direction must not be zero'
+    )
     expect(() => new Moon(atmosphere, { flare: { innerPower: 0 } })).toThrow('Moon: innerPower')
     expect(() => new MoonDirectionalLight(atmosphere, null as never)).toThrow('must be a Moon')
     const other = moon(new Atmosphere())
     expect(() => new MoonDirectionalLight(atmosphere, other)).toThrow(
-      'MoonDirectionalLight: moon must be made for the same atmosphere, got Moon'
+      'MoonDirectionalLight: moon must be made for the same atmosphere, got a Moon'
     )
     expect(() => atmosphere.add(other)).toThrow(
-      'Atmosphere: layer must be made for this atmosphere, got Moon'
+      'Atmosphere.add: layer must be made for this atmosphere, got a Moon'
     )
   })
 })
@@ -234,19 +237,19 @@ describe('eclipse', () => {
     fc.assert(
       fc.property(number(0.5, 1.5), number(0.001, 0.999), (m, part) => {
         const s = Math.abs(1 - m) + part * (1 + m - Math.abs(1 - m))
-        expect(Math.abs(coveredSun(s * 3, 3, m * 3) - circles(s, m))).toBeLessThan(1e-4)
+        expect(Math.abs(sunObscuration(s * 3, 3, m * 3) - circles(s, m))).toBeLessThan(1e-4)
       }),
       runs
     )
   })
 
   it('covers all, or none, or grows as the discs come nearer', () => {
-    expect(coveredSun(0, 1, 1.05, 0.6)).toBeCloseTo(1, 9)
-    expect(coveredSun(2.1, 1, 1.05, 0.6)).toBe(0)
-    expect(coveredSun(0, 1, 0.95, 0)).toBeCloseTo(0.95 ** 2, 6)
+    expect(sunObscuration(0, 1, 1.05, 0.6)).toBeCloseTo(1, 9)
+    expect(sunObscuration(2.1, 1, 1.05, 0.6)).toBe(0)
+    expect(sunObscuration(0, 1, 0.95, 0)).toBeCloseTo(0.95 ** 2, 6)
     fc.assert(
       fc.property(number(0.5, 1.5), number(0, 2.6), number(0, 1), (m, s, u) => {
-        const [near, far] = [coveredSun(s, 1, m, u), coveredSun(s + 0.01, 1, m, u)]
+        const [near, far] = [sunObscuration(s, 1, m, u), sunObscuration(s + 0.01, 1, m, u)]
         expect(far).toBeLessThanOrEqual(near + 1e-6)
         expect(near).toBeGreaterThanOrEqual(0)
       }),
@@ -290,7 +293,7 @@ describe('eclipse', () => {
       atmosphere.date = peak.time.date
       const { direction, angularRadius } = moon(atmosphere).seenFrom(origin)
       const apart = direction.angleTo(atmosphere.sunDirection)
-      const covered = coveredSun(apart, 0.004675, angularRadius)
+      const covered = sunObscuration(apart, 0.004675, angularRadius)
       expect(Math.abs(covered - obscuration), `${latitude}, ${longitude}`).toBeLessThan(0.01)
     }
   })

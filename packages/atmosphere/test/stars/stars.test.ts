@@ -21,8 +21,9 @@ import {
   starCells,
   starDirection
 } from '../../src/stars/starCells'
-import { BYTES_PER_STAR, decodeStar, encodeStar } from '../../src/stars/starCode'
-import { colorTemperature, luminanceOf, starIrradiance } from '../../src/stars/starColor'
+import { BYTES_PER_STAR, decodeStar, encodeStar } from '../../src/stars/starEncoding'
+import { luminanceOf } from '../../src/parameters/photometry'
+import { colorTemperature, starIrradiance } from '../../src/stars/starBrightness'
 import { number, runs } from '../arbitraries'
 
 const degrees = Math.PI / 180
@@ -266,7 +267,7 @@ describe('star cells', () => {
           )
           const missing = catalogue.filter(
             (star, i) =>
-              directionOf(star).angleTo(v) < STAR_LEVELS[level].reach &&
+              directionOf(star).angleTo(v) < STAR_LEVELS[level].margin &&
               !listed.has(packed[i].join())
           )
           expect(missing).toEqual([])

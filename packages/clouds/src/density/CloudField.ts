@@ -1,7 +1,7 @@
 import { Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
 import type { Texture } from 'three'
 import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
-import { fail } from '@welkin/geo'
+import { checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
 import { texture, texture3D } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -110,18 +110,27 @@ export class CloudField {
 
   /**
    * @param view - Nodes of the camera that samples are seen from.
+   * @param where - The class that errors name.
    * @throws If the atmosphere or the layers are missing, or the map does not repeat.
    */
   constructor(
     atmosphere: Atmosphere,
     layers: CloudLayers,
     view: ViewNodes = viewNodes(atmosphere),
-    { worldMap = null, noise }: CloudFieldOptions = {}
+    options: CloudFieldOptions = {},
+    where = 'CloudField'
   ) {
-    checkAtmosphere('CloudField', atmosphere)
-    if (!(layers instanceof CloudLayers)) fail('CloudField', 'layers must be CloudLayers', layers)
-    if (worldMap !== null && worldMap.wrapS !== RepeatWrapping) {
-      fail('CloudField', 'worldMap.wrapS must be RepeatWrapping', worldMap.wrapS)
+    checkAtmosphere(where, atmosphere)
+    if (!(layers instanceof CloudLayers)) fail(where, 'layers must be CloudLayers', layers)
+    const { worldMap = null, noise } = checkOptions(where, options, 'worldMap', 'noise')
+    if (worldMap !== null) {
+      if (!worldMap?.isTexture) fail(where, 'worldMap must be a Texture or null', worldMap)
+      if (worldMap.wrapS !== RepeatWrapping) {
+        fail(where, 'worldMap.wrapS must be RepeatWrapping', worldMap.wrapS)
+      }
+    }
+    if (noise !== undefined && !(noise instanceof CloudNoise)) {
+      fail(where, 'noise must be a CloudNoise', noise)
     }
     this.atmosphere = atmosphere
     this.layers = layers

@@ -1,5 +1,4 @@
 import {
-  checkOptions,
   FragmentPass,
   octahedralDirection,
   octahedralPoint,
@@ -7,7 +6,7 @@ import {
   viewNodes
 } from '@welkin/atmosphere'
 import type { AtmosphereView, SkyOverlay, ViewNodes } from '@welkin/atmosphere'
-import { fail } from '@welkin/geo'
+import { checkOptions, checkPositive, fail } from '@welkin/geo'
 import { Vector3 } from 'three'
 import type { Quaternion, RenderTarget } from 'three'
 import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
@@ -80,8 +79,7 @@ export class CloudOverlay implements SkyOverlay {
   readonly steps = WAIT + STRIPS
   /** Whose clouds; shared, not owned. */
   readonly clouds: CloudsNode
-  /** How far the wind may carry clouds before they are drawn again [m]. */
-  drift: number
+  #drift = 200
   readonly #target: RenderTarget
   readonly #picture: LevelTexture<Vec2>
   readonly #quality = new QualityUniforms()
@@ -108,13 +106,22 @@ export class CloudOverlay implements SkyOverlay {
     if (!(Number.isInteger(size) && size >= 16 && size <= 2048)) {
       fail('CloudOverlay', 'size must be an integer in [16, 2048]', size)
     }
-    if (!(drift > 0)) fail('CloudOverlay', 'drift must be positive', drift)
     this.clouds = clouds
     this.drift = drift
-    this.#quality.set(resolveQuality(quality))
+    this.#quality.set(resolveQuality('CloudOverlay', quality))
     this.#target = tableTarget('Welkin.CloudOverlay', size, size)
     this.#target.scissorTest = true
     this.#picture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+  }
+
+  /** How far the wind may carry clouds before they are drawn again, > 0 [m]. */
+  get drift(): number {
+    return this.#drift
+  }
+
+  set drift(value: number) {
+    checkPositive('CloudOverlay', 'drift', value)
+    this.#drift = value
   }
 
   /** Size on the GPU [bytes]. */

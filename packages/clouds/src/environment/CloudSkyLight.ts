@@ -24,9 +24,12 @@ export class CloudSkyLight {
     if (probe?.overcast === undefined) {
       fail('CloudSkyLight', 'probe must be a SkyLightProbe', probe)
     }
+    if (probe.overcast !== null) {
+      fail('CloudSkyLight', 'probe must have no other CloudSkyLight: dispose of that first', probe)
+    }
     checkClouds('CloudSkyLight', clouds)
     if (probe.atmosphere !== clouds.atmosphere) {
-      fail('CloudSkyLight', "clouds must be in the probe's atmosphere", 'another')
+      fail('CloudSkyLight', "clouds must be in the probe's atmosphere")
     }
     this.probe = probe
     this.clouds = clouds

@@ -1,5 +1,5 @@
-import { checkSpectrum } from '@welkin/atmosphere'
-import { fail } from '@welkin/geo'
+import { checkSpectrum, withDefaults } from '@welkin/atmosphere'
+import { checkBoolean, checkFinite, checkOptions, fail } from '@welkin/geo'
 import { checkRanges } from '../check'
 
 /** Horizontal velocity of the air at a layer [m/s], towards east and north. */
@@ -60,18 +60,15 @@ const ranges = {
 
 function requireParameters(parameters: CloudLayerParameters): void {
   const where = 'CloudLayer'
-  checkRanges(where, parameters, ranges, 'weatherWeights', 'wind', 'shadow')
+  checkRanges(where, parameters, ranges)
   const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
   if (topAltitude <= baseAltitude) {
     fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)
   }
   checkSpectrum(where, 'weatherWeights', weatherWeights, 1)
-  for (const name of ['east', 'north'] as const) {
-    if (!Number.isFinite(wind?.[name])) {
-      fail(where, `wind.${name} must be a finite number`, wind?.[name])
-    }
-  }
-  if (typeof shadow !== 'boolean') fail(where, 'shadow must be true or false', shadow)
+  checkOptions(`${where}.wind`, wind, 'east', 'north')
+  for (const name of ['east', 'north'] as const) checkFinite(where, `wind.${name}`, wind[name])
+  checkBoolean(where, 'shadow', shadow)
 }
 
 /**
@@ -79,11 +76,37 @@ function requireParameters(parameters: CloudLayerParameters): void {
  *
  * ```ts
  * const cirrus = new CloudLayer({ baseAltitude: 8500, topAltitude: 9500, density: 0.002 })
- * cirrus.set({ coverage: 0.6 })
+ * cirrus.coverage = 0.6
+ * cirrus.set({ baseAltitude: 9000, topAltitude: 10_000 })
  * ```
+ *
+ * Each parameter is a property too; setting it checks it.
  */
 export class CloudLayer {
+  declare baseAltitude: CloudLayerParameters['baseAltitude']
+  declare topAltitude: CloudLayerParameters['topAltitude']
+  declare coverage: CloudLayerParameters['coverage']
+  declare density: CloudLayerParameters['density']
+  declare profileExponent: CloudLayerParameters['profileExponent']
+  declare shapeAmount: CloudLayerParameters['shapeAmount']
+  declare detailAmount: CloudLayerParameters['detailAmount']
+  declare weatherWeights: CloudLayerParameters['weatherWeights']
+  declare wind: CloudLayerParameters['wind']
+  declare shadow: CloudLayerParameters['shadow']
   #parameters: CloudLayerParameters
+
+  static {
+    for (const name of Object.keys(defaults) as (keyof CloudLayerParameters)[]) {
+      Object.defineProperty(CloudLayer.prototype, name, {
+        get(this: CloudLayer) {
+          return this.#parameters[name]
+        },
+        set(this: CloudLayer, value: unknown) {
+          this.set({ [name]: value })
+        }
+      })
+    }
+  }
 
   /**
    * @param parameters - What differs from scattered fair-weather cumulus.
@@ -117,7 +140,7 @@ function merge(
   base: CloudLayerParameters,
   changes: Partial<CloudLayerParameters>
 ): CloudLayerParameters {
-  const merged = { ...base, ...changes }
+  const merged = withDefaults('CloudLayer', base, changes)
   requireParameters(merged)
   const [a, b, c, d] = merged.weatherWeights
   const weatherWeights = Object.freeze([a, b, c, d] as const)

@@ -1,6 +1,7 @@
 import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray } from 'three'
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
+import { withDefaults } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { depths, layers, positions } from './cpu/cloudLightSize'
@@ -55,9 +56,26 @@ export interface CloudLight {
 export class CloudLightTable {
   readonly texture: Data3DTexture
   readonly nodes: CloudLight
+  declare forwardAsymmetry: CloudPhaseParameters['forwardAsymmetry']
+  declare backwardAsymmetry: CloudPhaseParameters['backwardAsymmetry']
+  declare forwardShare: CloudPhaseParameters['forwardShare']
+  declare scatteringAlbedo: CloudPhaseParameters['scatteringAlbedo']
   #phase: CloudPhaseParameters
   /** What is left to do for the phase function. */
   #steps: Generator<void, void, void> | null = null
+
+  static {
+    for (const name of Object.keys(defaults) as (keyof CloudPhaseParameters)[]) {
+      Object.defineProperty(CloudLightTable.prototype, name, {
+        get(this: CloudLightTable) {
+          return this.#phase[name]
+        },
+        set(this: CloudLightTable, value: number) {
+          this.set({ [name]: value })
+        }
+      })
+    }
+  }
 
   /**
    * @param phase - What differs from droplets of fair-weather clouds.
@@ -106,7 +124,7 @@ export class CloudLightTable {
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   set(changes: Partial<CloudPhaseParameters>): this {
-    const phase = Object.freeze({ ...this.#phase, ...changes })
+    const phase = Object.freeze(withDefaults('CloudLightTable', this.#phase, changes))
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
     this.#steps = this.#solve()

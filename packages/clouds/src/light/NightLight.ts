@@ -1,4 +1,4 @@
-import { NIGHT_ILLUMINANCE, ofLuminance } from '@welkin/atmosphere'
+import { NIGHT_ILLUMINANCE, scaleToLuminance } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
 import { MathUtils, Vector3 } from 'three'
 import { number, vector3, vector4 } from '../uniforms'
@@ -80,7 +80,7 @@ export class NightLight {
       this.source.direction(_direction, _position)
       atmosphere.space.direction(_direction, this.direction.value)
     }
-    const values = ofLuminance(atmosphere.parameters, [1, 1, 1, 1], this.illuminance / Math.PI)
+    const values = scaleToLuminance(atmosphere.parameters, [1, 1, 1, 1], this.illuminance / Math.PI)
     this.radiance.value.fromArray(values)
   }
 

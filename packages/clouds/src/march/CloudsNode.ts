@@ -1,6 +1,6 @@
-import { AtmosphereNode, checkOptions } from '@welkin/atmosphere'
+import { AtmosphereNode } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
-import { checkNonNegative, fail } from '@welkin/geo'
+import { checkChoice, checkNonNegative, checkOptions, fail } from '@welkin/geo'
 import { Vector2 } from 'three'
 import type { Camera, DepthTexture, PerspectiveCamera, Texture } from 'three'
 import { Fn, If, exp2, uniform, uv, vec3, vec4 } from 'three/tsl'
@@ -114,18 +114,20 @@ export class CloudsNode extends AtmosphereNode {
   ) {
     super(atmosphere, camera)
     checkOptions('CloudsNode', options, 'quality', 'worldMap', 'noise', 'light')
-    const { quality = 'high', noise, light } = options
+    const { quality = 'high', worldMap, noise, light } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
-    if (!isDepth(depthNode))
-      fail('CloudsNode', "depthNode must be a depth texture's", depthNode?.type)
-    if (!isPerspective(camera)) {
-      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera?.type)
+    if (!isDepth(depthNode)) {
+      fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
+    }
+    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
+    if (light !== undefined && !(light instanceof CloudLightTable)) {
+      fail('CloudsNode', 'light must be a CloudLightTable', light)
     }
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera
-    this.#quality = resolveQuality(quality)
-    this.field = new CloudField(atmosphere, layers, this.view, options)
+    this.#quality = resolveQuality('CloudsNode', quality)
+    this.field = new CloudField(atmosphere, layers, this.view, { noise, worldMap }, 'CloudsNode')
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
@@ -157,7 +159,7 @@ export class CloudsNode extends AtmosphereNode {
 
   /** @throws If a parameter is out of its range. */
   set quality(quality: CloudQualityName | CloudQuality) {
-    this.#quality = resolveQuality(quality)
+    this.#quality = resolveQuality('CloudsNode', quality)
   }
 
   /**
@@ -181,9 +183,8 @@ export class CloudsNode extends AtmosphereNode {
 
   /** @throws If there is no such view. */
   set debugView(view: CloudsDebug | null) {
-    const index = debugViews.indexOf(view)
-    if (index < 0) fail('CloudsNode', `debugView must be one of ${debugViews.map(String)}`, view)
-    this.#debug.value = index
+    checkChoice('CloudsNode', 'debugView', view, debugViews)
+    this.#debug.value = debugViews.indexOf(view)
   }
 
   /** Size of the pictures on the GPU, without noise and light table [bytes]. */
@@ -301,7 +302,7 @@ function isDepth(node: Node): boolean {
 }
 
 function isPerspective(camera: Camera): camera is PerspectiveCamera {
-  return (camera as PerspectiveCamera).isPerspectiveCamera
+  return (camera as PerspectiveCamera | undefined)?.isPerspectiveCamera === true
 }
 
 /** Of what is drawn into [pixels]. */

@@ -1,6 +1,6 @@
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { fail } from '@welkin/geo'
+import { checkOptions, fail } from '@welkin/geo'
 import { checkRanges, named } from '../check'
 import { number } from '../uniforms'
 
@@ -48,13 +48,17 @@ const ranges = {
  *
  * @throws Error naming the parameter and its value when one is out of its range.
  */
-export function resolveQuality(quality: CloudQualityName | CloudQuality): CloudQuality {
+export function resolveQuality(
+  where: string,
+  quality: CloudQualityName | CloudQuality
+): CloudQuality {
   if (typeof quality === 'string') {
-    return named('CloudsNode', 'quality', cloudQualities, quality)
+    return named(where, 'quality', cloudQualities, quality)
   }
-  checkRanges('CloudsNode.quality', quality, ranges)
+  checkOptions(`${where}.quality`, quality, ...(Object.keys(ranges) as (keyof CloudQuality)[]))
+  checkRanges(`${where}.quality`, quality, ranges)
   if (!Number.isInteger(quality.block)) {
-    fail('CloudsNode.quality', 'block must be 1, 2, 3 or 4', quality.block)
+    fail(`${where}.quality`, 'block must be 1, 2, 3 or 4', quality.block)
   }
   return Object.freeze({ ...quality })
 }

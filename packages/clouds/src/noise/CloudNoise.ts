@@ -8,7 +8,7 @@ import {
   UnsignedByteType
 } from 'three'
 import type { Data3DTexture, PixelFormat } from 'three'
-import { FragmentPass } from '@welkin/atmosphere'
+import { checkOwner, FragmentPass } from '@welkin/atmosphere'
 import { Fn, float, texture3D, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { NOISE_SIZE } from './noiseSizes'
@@ -124,6 +124,7 @@ export class CloudNoise {
   readonly #textures = [this.weather, this.shape, this.detail]
   #steps: Generator<void, void, void> | null = null
   #isReady = false
+  #renderer: Renderer | null = null
 
   /** Whether all texels are drawn. */
   get isReady(): boolean {
@@ -143,13 +144,26 @@ export class CloudNoise {
    *
    * @param slices - How many slices at most.
    * @returns Whether all texels are drawn.
+   * @throws If another renderer drew the noise that was not disposed of.
    */
   update(renderer: Renderer, slices = Infinity): boolean {
+    if (renderer !== this.#renderer) {
+      checkOwner('CloudNoise', this.#renderer, renderer)
+      // Textures went with the renderer before.
+      if (this.#renderer !== null) this.#restart()
+      this.#renderer = renderer
+    }
     this.#steps ??= this.#bake(renderer)
     for (let i = 0; i < slices && !this.#isReady; i++) {
       this.#isReady = this.#steps.next().done === true
     }
     return this.#isReady
+  }
+
+  #restart(): void {
+    this.#steps?.return()
+    this.#steps = null
+    this.#isReady = false
   }
 
   *#bake(renderer: Renderer): Generator<void, void, void> {
@@ -158,9 +172,8 @@ export class CloudNoise {
 
   /** Frees the textures; the next update draws them anew. */
   dispose(): void {
-    this.#steps?.return()
-    this.#steps = null
-    this.#isReady = false
+    this.#restart()
+    this.#renderer = null
     for (const noise of this.#textures) noise.dispose()
   }
 }

@@ -185,6 +185,8 @@ describe('cloudPreset', () => {
       cloudPreset(name).at(0).set({ coverage: 0.01 })
       expect(cloudPreset(name).at(0).parameters.coverage).not.toBe(0.01)
     }
-    expect(() => cloudPreset('foggy' as never)).toThrow(/name must be one of .* got foggy/)
+    expect(() => cloudPreset('foggy' as never)).toThrow(
+      /name must be 'fairWeather', .* got 'foggy'/
+    )
   })
 })

@@ -15,7 +15,7 @@ const invalid: [Partial<CloudLayerParameters>, RegExp][] = [
   ],
   [{ wind: { east: Infinity, north: 0 } }, /wind.east must be .* got Infinity/],
   [{ shadow: 1 as never }, /shadow must be true or false, got 1/],
-  [{ covrage: 1 } as never, /options must be baseAltitude, .* got covrage/]
+  [{ covrage: 1 } as never, /CloudLayer: unknown option 'covrage', did you mean 'coverage'\?/]
 ]
 
 describe('CloudLayer', () => {

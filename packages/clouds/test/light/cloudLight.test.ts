@@ -80,7 +80,7 @@ describe('cloud-light table', () => {
     [{ forwardAsymmetry: 1 }, /forwardAsymmetry must be .* got 1/],
     [{ forwardShare: NaN }, /forwardShare must be .* got NaN/],
     [{ scatteringAlbedo: 1 }, /scatteringAlbedo must be .* got 1/],
-    [{ asymmetry: 0.8 }, /options must be forwardAsymmetry, .* got asymmetry/]
+    [{ asymmetry: 0.8 }, /unknown option 'asymmetry', there are forwardAsymmetry/]
   ] as [object, RegExp][])('rejects %o', ([parameters, message]) => {
     expect(() => new CloudLightTable(parameters)).toThrow(message)
   })

@@ -17,28 +17,30 @@ describe('CloudsNode', () => {
     const scene = pass(new Scene(), camera)
     for (const other of [scene, scene.getTextureNode(), color]) {
       expect(() => clouds(scene, other, camera, atmosphere, layers)).toThrow(
-        "CloudsNode: depthNode must be a depth texture's, got "
+        "CloudsNode: depthNode must be a depth texture's node, got "
       )
     }
     const node = clouds(scene, scene.getTextureNode('depth'), camera, atmosphere, layers)
     expect(node.isReady).toBe(false)
     node.dispose()
     expect(() => make({ qualty: 'low' })).toThrow(
-      'CloudsNode: options must be quality, worldMap, noise, light, got qualty'
+      "CloudsNode: unknown option 'qualty', did you mean 'quality'?"
     )
     expect(() => clouds(color, depth, new OrthographicCamera(), atmosphere, layers)).toThrow(
-      'CloudsNode: camera must be a PerspectiveCamera, got OrthographicCamera'
+      'CloudsNode: camera must be a PerspectiveCamera, got an OrthographicCamera'
     )
   })
 
   test('knows qualities by name or number, and keeps the last valid one', () => {
     const node = make({ quality: 'low' })
     expect(node.quality).toBe(cloudQualities.low)
-    expect(() => (node.quality = 'best' as never)).toThrow(/one of low, medium, high, ultra/)
+    expect(() => (node.quality = 'best' as never)).toThrow(/'low', 'medium', 'high' or 'ultra'/)
     const wrong = { ...cloudQualities.high, steps: NaN }
     expect(() => (node.quality = wrong)).toThrow(/quality: steps must be in \[1, 1024\]/)
     const more = { ...cloudQualities.high, stps: 9 } as never
-    expect(() => (node.quality = more)).toThrow(/options must be steps, .* got stps/)
+    expect(() => (node.quality = more)).toThrow(
+      /CloudsNode.quality: unknown option 'stps', did you mean 'steps'\?/
+    )
     const between = { ...cloudQualities.high, block: 2.5 }
     expect(() => (node.quality = between)).toThrow(/quality: block must be 1, 2, 3 or 4, got 2\.5/)
     expect(node.quality).toBe(cloudQualities.low)
@@ -64,7 +66,7 @@ describe('CloudsNode', () => {
     node.debugView = 'history'
     expect(node.debugView).toBe('history')
     expect(() => (node.debugView = 'opacity' as never)).toThrow(
-      'CloudsNode: debugView must be one of null,density,steps,depth,history, got opacity'
+      "CloudsNode: debugView must be null, 'density', 'steps', 'depth' or 'history', got 'opacity'"
     )
     expect(node.debugView).toBe('history')
     node.dispose()
@@ -75,7 +77,7 @@ describe('cloudOverlay', () => {
   test('refuses options that it does not know', () => {
     const node = make()
     expect(() => cloudOverlay(node, { sise: 64 } as never)).toThrow(
-      'CloudOverlay: options must be size, quality, drift, got sise'
+      "CloudOverlay: unknown option 'sise', did you mean 'size'?"
     )
     node.dispose()
   })
@@ -84,7 +86,7 @@ describe('cloudOverlay', () => {
 describe('cloudShadow', () => {
   test('refuses what are no clouds', () => {
     expect(() => cloudShadow(new CloudLayers() as never)).toThrow(
-      'CloudShadowNode: clouds must be a CloudsNode, got CloudLayers'
+      'CloudShadowNode: clouds must be a CloudsNode, got a CloudLayers'
     )
   })
 })

@@ -1,41 +1,41 @@
 import { If } from 'three/tsl'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 
-/** Lobes of light that an eye or a lens spreads around something bright. */
+/** Halo around a bright source in two lobes, as shader nodes. */
 export interface Halo {
-  /** Power of the tight lobe: the larger, the tighter. */
+  /** Power of the tight lobe: larger is tighter. */
   innerPower: Float
-  /** Part of the light that goes into it. */
+  /** Fraction of the source's light in it. */
   innerStrength: Float
   outerPower: Float
   outerStrength: Float
-  /** Cosine of the angle from its middle where it ends. */
-  cosReach: Float
+  /** Cosine of the angle from the source at which the halo ends. */
+  cosMaxAngle: Float
 }
 
 /**
- * Adds a halo to light [1/sr].
+ * Adds a halo to radiance [1/sr].
  *
- * Each lobe is cosⁿ of the angle from it, as exp(−n |v − s|²/2), which keeps its digits near the
- * middle; (n + 1)/2π makes it add up to its strength.
+ * Each lobe is cosⁿ of the angle from the source, written as exp(−n |v − s|²/2), which keeps its digits
+ * near the source; the factor (n + 1)/2π makes it integrate to its strength.
  *
- * @param light - A variable.
- * @param irradiance - By what is in its middle.
- * @param direction - Of view, unit length.
- * @param centre - Unit length, same frame.
- * @param cosCentre - Cosine of the angle between them.
+ * @param light - Variable that is added to.
+ * @param irradiance - Irradiance by the source.
+ * @param direction - View direction, unit length.
+ * @param sourceDirection - Direction to the source, same frame, unit length.
+ * @param cosViewSource - Cosine of the angle between the two.
  */
 export function addHalo(
   light: { addAssign(value: Vec4): unknown },
   halo: Halo,
   irradiance: Vec4,
   direction: Vec3,
-  centre: Vec3,
-  cosCentre: Float
+  sourceDirection: Vec3,
+  cosViewSource: Float
 ): void {
-  If(cosCentre.greaterThan(halo.cosReach), () => {
-    const apart = direction.sub(centre).toConst()
-    const square = apart.dot(apart).toConst()
+  If(cosViewSource.greaterThan(halo.cosMaxAngle), () => {
+    const chord = direction.sub(sourceDirection).toConst()
+    const square = chord.dot(chord).toConst()
     const lobe = (power: Float, strength: Float): Float =>
       square
         .mul(power)

@@ -1,4 +1,4 @@
-/** A round feature of the moon: longitude east and latitude [°], radius [°], strength in [0, 1]. */
+/** Round feature of the moon: longitude east and latitude [°], radius [°], strength in [0, 1]. */
 export type MoonFeature = readonly [
   longitude: number,
   latitude: number,
@@ -7,7 +7,7 @@ export type MoonFeature = readonly [
 ]
 
 /**
- * Seas, lakes, bays and dark floors; those that are not round are several discs.
+ * Maria: seas, lakes, bays and dark crater floors. Those that are not round are several discs.
  *
  * @see Gazetteer of Planetary Nomenclature, International Astronomical Union / USGS
  */
@@ -71,7 +71,7 @@ export const MARIA: readonly MoonFeature[] = [
   [-74.6, -3, 1.6, 0.8]
 ]
 
-/** Craters with bright rays, or a bright halo; the radius is how far these reach. */
+/** Craters with bright rays or a bright halo; the radius is that of the rays. */
 export const RAYS: readonly MoonFeature[] = [
   // Tycho, Copernicus, Kepler, Aristarchus
   [-11.4, -43.3, 42, 1],
@@ -90,7 +90,7 @@ export const RAYS: readonly MoonFeature[] = [
   [57.1, -19.9, 8, 0.45]
 ]
 
-/** Large craters; the strength is that of their relief. */
+/** Large craters; the strength is that of their slopes. */
 export const CRATERS: readonly MoonFeature[] = [
   // Tycho, Copernicus, Kepler, Aristarchus, Clavius, Maginus, Longomontanus
   [-11.4, -43.3, 1.4, 1],

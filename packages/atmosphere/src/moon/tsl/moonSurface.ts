@@ -12,31 +12,33 @@ import {
 import { cellRandom, fractalNoise } from '../../math/tsl/noise'
 import { CRATERS, MARIA, RAYS, type MoonFeature } from './moonFeatures'
 
-/** How far from the middle of the near side the map reaches [rad]: as far as libration shows. */
-const MAP_REACH = (102 * Math.PI) / 180
+/** Angle from the middle of the near side to the edge of the map: as far as libration shows [rad]. */
+const MAP_ANGLE = (102 * Math.PI) / 180
 
-/** Half the width of the map, a length of Lambert's azimuthal equal-area projection. */
-export const MAP_RADIUS = 2 * Math.sin(MAP_REACH / 2)
+/** Half the width of the map, in units of the moon's radius. */
+export const MAP_RADIUS = 2 * Math.sin(MAP_ANGLE / 2)
 
 /**
- * Where a place on the moon is on the map: Lambert's azimuthal equal-area projection of the near side.
+ * Map coordinates of a point of the moon, by Lambert's azimuthal equal-area projection of the near side.
  *
- * @param place - Moon-fixed, unit length: X to the middle of the near side, Z north.
+ * @param direction - Moon's centre to the point, moon-fixed axes (X to the middle of the near side, Z
+ *   north), unit length.
+ * @see Snyder 1987, Map Projections: A Working Manual, §24
  */
-export function moonMapUV(place: Vec3): Vec2 {
-  const scale = float(2).div(place.x.add(1).max(1e-3)).sqrt().div(MAP_RADIUS)
-  return vec2(place.y, place.z).mul(scale).mul(0.5).add(0.5)
+export function moonMapUV(direction: Vec3): Vec2 {
+  const scale = float(2).div(direction.x.add(1).max(1e-3)).sqrt().div(MAP_RADIUS)
+  return vec2(direction.y, direction.z).mul(scale).mul(0.5).add(0.5)
 }
 
-/** The inverse of {@link moonMapUV}. */
-export function moonMapPlace(uv: Vec2): Vec3 {
+/** Direction of a point of the map, moon-fixed axes: the inverse of {@link moonMapUV}. */
+export function moonMapDirection(uv: Vec2): Vec3 {
   const point = uv.sub(0.5).mul(2 * MAP_RADIUS)
   const square = point.dot(point).min(3.999).toConst()
   const scale = square.div(4).oneMinus().sqrt()
   return vec3(square.div(2).oneMinus(), point.mul(scale)).normalize()
 }
 
-/** Features as (direction × strength, radius [rad]). */
+/** Features as texels (direction × strength, radius [rad]). */
 function featureArray(features: readonly MoonFeature[]): Vec4Array {
   return vec4Array(
     features.map(([longitude, latitude, radius, strength]) => {
@@ -60,8 +62,8 @@ interface Feature {
   strength: Float
 }
 
-/** Calls a function for each feature, in a shader's loop. */
-function forEach(
+/** Loops over features in the shader. */
+function forEachFeature(
   name: string,
   features: readonly MoonFeature[],
   body: (feature: Feature) => void
@@ -74,12 +76,12 @@ function forEach(
   })
 }
 
-/** How much of a place is covered by lava, in [0, 1]. */
-function mariaCoverage(place: Vec3): Float {
-  const ragged = fractalNoise(place.mul(7), 6).mul(0.047)
-  const warped = place.add(ragged).normalize().toConst()
+/** Fraction of the ground covered by maria, in [0, 1]. */
+function mariaCoverage(direction: Vec3): Float {
+  const ragged = fractalNoise(direction.mul(7), 6).mul(0.047)
+  const warped = direction.add(ragged).normalize().toConst()
   const bare = float(1).toVar()
-  forEach('mare', MARIA, ({ centre, radius, strength }) => {
+  forEachFeature('mare', MARIA, ({ centre, radius, strength }) => {
     const inside = radius.sub(warped.sub(centre).length())
     const cover = smoothstep(-0.045, 0, inside).mul(strength)
     bare.mulAssign(cover.oneMinus())
@@ -87,15 +89,15 @@ function mariaCoverage(place: Vec3): Float {
   return bare.oneMinus().toConst()
 }
 
-/** Brightness by rays and haloes of young craters, in [0, 1]. */
-function rayBrightness(place: Vec3): Float {
+/** Brightness of rays and haloes around young craters, in [0, 1]. */
+function rayBrightness(direction: Vec3): Float {
   const bright = float(0).toVar()
-  forEach('ray', RAYS, ({ centre, radius, strength }) => {
-    const away = place.sub(centre).toConst()
+  forEachFeature('ray', RAYS, ({ centre, radius, strength }) => {
+    const away = direction.sub(centre).toConst()
     const distance = away.length().max(1e-4).toConst()
     If(distance.lessThan(radius.mul(1.15)), () => {
       const along = away.sub(centre.mul(away.dot(centre))).normalize()
-      // Noise on a circle around the crater, that changes slowly on the way out.
+      // Noise on a circle around the crater that changes slowly outwards: radial streaks.
       const at = along.mul(5).add(centre.mul(distance.mul(0.6).add(7)))
       const streak = smoothstep(-0.05, 0.6, fractalNoise(at, 3).x)
       const part = distance.div(radius).toConst()
@@ -108,10 +110,10 @@ function rayBrightness(place: Vec3): Float {
 }
 
 /**
- * Slope of a crater, along the direction away from its centre: a flat floor, walls, and outside of the
- * rim a blanket of what was thrown out.
+ * Slope of a crater along the direction away from its centre: a flat floor, a wall up to the rim, and an
+ * ejecta blanket outside.
  *
- * @param distance - From the centre, over the radius.
+ * @param distance - Distance from the centre, over the crater's radius.
  */
 function craterSlope(distance: Float): Float {
   const wall = smoothstep(0.35, 0.9, distance)
@@ -121,33 +123,33 @@ function craterSlope(distance: Float): Float {
   return wall.sub(blanket)
 }
 
-/** Sizes of craters by chance, each half of the one before. */
-const SCALES = 5
-const NEIGHBOURS = 8
+/** Octaves of random craters, each half the size of the one before. */
+const CRATER_OCTAVES = 5
+const NEIGHBOUR_CELLS = 8
 
-/** Gradient of the height of ground strewn with craters of all sizes, tangent to the sphere. */
-function craterGradient(place: Vec3, maria: Float): { gradient: Vec3; fresh: Float } {
+/** Cratered ground: height gradient, tangent to the sphere, and brightness of fresh material in [0, 1]. */
+function craterGradient(direction: Vec3, maria: Float): { gradient: Vec3; fresh: Float } {
   const gradient = vec3(0).toVar()
   const fresh = float(0).toVar()
-  forEach('crater', CRATERS, ({ centre, radius, strength }) => {
-    const away = place.sub(centre).toConst()
+  forEachFeature('crater', CRATERS, ({ centre, radius, strength }) => {
+    const away = direction.sub(centre).toConst()
     const distance = away.length().max(1e-5).toConst() as Float
     const slope = craterSlope(distance.div(radius)).mul(strength)
     gradient.addAssign(away.div(distance).mul(slope))
   })
-  loop('scale', SCALES, scale => {
+  loop('scale', CRATER_OCTAVES, scale => {
     const frequency = float(scale).exp2().mul(9).toConst()
-    const scaled = place.mul(frequency).toConst()
-    loop('cell', NEIGHBOURS, cell => {
-      // The eight cells whose middles are nearest.
+    const scaled = direction.mul(frequency).toConst()
+    loop('cell', NEIGHBOUR_CELLS, cell => {
+      // The eight cells with the nearest centres.
       const index = float(cell).add(0.5)
       const offset = vec3(index, index.div(2), index.div(4)).floor().mod(2).sub(0.5)
       const corner = scaled.round().add(offset).toConst()
       const centre = corner.add(cellRandom(corner.sub(0.5)).sub(0.5).mul(0.8)).toConst()
       const height = centre.length().toConst()
-      const away = place.sub(centre.div(height)).toConst()
+      const away = direction.sub(centre.div(height)).toConst()
       const distance = away.length().max(1e-5).toConst() as Float
-      // Only cells whose centre is near the surface: as many craters everywhere.
+      // Cells with centres near the surface only, so that craters are evenly dense.
       const isNear = distance.mul(frequency).lessThan(0.6)
       If(isNear.and(height.sub(frequency).abs().lessThan(0.5)), () => {
         const random = cellRandom(corner.add(40.5)).toConst() as Vec3
@@ -160,37 +162,36 @@ function craterGradient(place: Vec3, maria: Float): { gradient: Vec3; fresh: Flo
       })
     })
   })
-  const tangent = gradient.sub(place.mul(gradient.dot(place)))
+  const tangent = gradient.sub(direction.mul(gradient.dot(direction)))
   return { gradient: tangent.toConst(), fresh: fresh.min(1) }
 }
 
-/** Brightest that the map holds, in units of the mean of the full disc. */
-export const BRIGHTEST_GROUND = 2
+/** Largest brightness that the map can hold, over the mean of the full disc. */
+export const MAX_GROUND_BRIGHTNESS = 2
+
+/** Mean brightness of the full disc before it is divided out; a GPU test of the moon holds it to 2 %. */
+const DISC_MEAN = 0.979
 
 /**
- * Makes the mean of the full disc 1.
+ * Ground of the moon: the maria, the large craters and their rays in their places, and many more random
+ * craters.
  *
- * @see e2e/gpu/atmosphere/moon.gpu.ts, which holds it to 2 %.
- */
-const MEAN = 0.979
-
-/**
- * The ground of the moon: seas where they are, the large craters and their rays, and many more craters
- * by chance.
+ * The brightnesses of highland and mare, 1.25 and 0.54, and the noise on them were found by looking:
+ * closer together the face of the full moon fades, more noise makes it blotchy. Story: Moon, Full.
  *
- * @param place - Moon-fixed, unit length.
- * @returns Gradient of the height, tangent to the sphere, in [0, 1] for [−1, 1]; and the brightness of
- *   the full moon over the mean of its disc, over {@link BRIGHTEST_GROUND}.
+ * @param direction - Moon's centre to the point, moon-fixed axes, unit length.
+ * @returns Height gradient, tangent to the sphere, mapped from [−1, 1] to [0, 1]; and brightness at full
+ *   moon over the mean of the disc, over {@link MAX_GROUND_BRIGHTNESS}.
  */
-export const moonGround = (place: Vec3): Vec4 =>
+export const moonGround = (direction: Vec3): Vec4 =>
   Fn(() => {
-    const maria = mariaCoverage(place)
-    const { gradient, fresh } = craterGradient(place, maria)
-    const rough = fractalNoise(place.mul(7), 5).x
-    const patches = fractalNoise(place.mul(3.2).add(5), 4).y
+    const maria = mariaCoverage(direction)
+    const { gradient, fresh } = craterGradient(direction, maria)
+    const rough = fractalNoise(direction.mul(7), 5).x
+    const patches = fractalNoise(direction.mul(3.2).add(5), 4).y
     const highland = float(1.25).add(rough.mul(0.2))
     const sea = float(0.54).add(patches.mul(0.12)).add(rough.mul(0.06))
     const ground = mix(highland, sea, maria)
-    const bright = ground.add(rayBrightness(place).mul(0.6)).add(fresh.mul(0.12))
-    return vec4(gradient.mul(0.5).add(0.5), bright.mul(1 / (MEAN * BRIGHTEST_GROUND)))
+    const bright = ground.add(rayBrightness(direction).mul(0.6)).add(fresh.mul(0.12))
+    return vec4(gradient.mul(0.5).add(0.5), bright.mul(1 / (DISC_MEAN * MAX_GROUND_BRIGHTNESS)))
   })()

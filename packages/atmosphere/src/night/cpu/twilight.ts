@@ -1,17 +1,17 @@
 /**
- * Illuminance of level ground in a clear night with no moon: by airglow 5e-4, by stars 2e-4, by the
- * Milky Way and what is too faint to be told apart 1.5e-4 [lx].
+ * Illuminance of level ground on a clear moonless night [lx]: airglow 5e-4, stars 2e-4, the Milky Way and
+ * unresolved starlight 1.5e-4.
  */
 export const NIGHT_ILLUMINANCE = 8.5e-4
 
 /**
- * Illuminance of level ground by sun and clear sky, from day to night: upper bounds of a range of the
- * sun's elevations [°], and the coefficients of log₁₀ of illuminance, powers of elevation/90°.
+ * Fit of log₁₀ of illuminance: upper bound of a range of the sun's elevations [°], and coefficients of
+ * the powers of elevation/90°.
  *
  * @see Seidelmann (ed.) 1992, Explanatory Supplement to the Astronomical Almanac, table 9.32.1;
  *   Janiczek & DeYoung 1987, US Naval Observatory Circular 171
  */
-const RANGES = [
+const ALMANAC_RANGES = [
   [90, 3.74, 3.97, -4.07, 1.47],
   [20, 3.05, 13.28, -45.98, 64.33],
   [5, 2.88, 22.26, -207.64, 1034.3],
@@ -21,14 +21,16 @@ const RANGES = [
 ] as const
 
 /**
- * Illuminance of level ground by sun and clear sky on Earth, as the almanacs tabulate it. With the sun
- * 18° down and more it is the night sky's, 6.5e-4 lx.
+ * Illuminance of level ground by sun and clear sky on Earth, as almanacs tabulate it. With the sun 18° or
+ * more below the horizon it is that of the night sky, 6.5e-4 lx.
  *
- * @param elevationDegrees - Of the sun's centre, in [−90, 90] [°].
+ * @param elevationDegrees - Elevation of the sun's centre, in [−90, 90] [°].
  * @returns [lx]
+ * @see Explanatory Supplement to the Astronomical Almanac 1992, table 9.32.1
  */
 export function almanacIlluminance(elevationDegrees: number): number {
   const x = Math.max(elevationDegrees, -18) / 90
-  const [, a, b, c, d] = RANGES.findLast(([top]) => elevationDegrees <= top) ?? RANGES[0]
+  const [, a, b, c, d] =
+    ALMANAC_RANGES.findLast(([top]) => elevationDegrees <= top) ?? ALMANAC_RANGES[0]
   return 10 ** (a + b * x + c * x ** 2 + d * x ** 3)
 }

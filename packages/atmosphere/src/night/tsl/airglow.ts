@@ -1,22 +1,22 @@
 import { float } from 'three/tsl'
 import type { Float } from '../../tsl-types'
 
-/** A luminous layer around a planet, as nodes: see `GlowLayer` of test/twins/airglow.ts. */
-export interface GlowLayerNodes {
-  /** Altitude of its middle [m]. */
+/** Luminous layer around a planet, a Gaussian in altitude, as shader nodes. */
+export interface AirglowLayerNodes {
+  /** Altitude of the layer's middle [m]. */
   altitude: Float
   /** Standard deviation [m]. */
   width: Float
 }
 
 /**
- * F(q) = ∫₀^∞ exp(−(u² − q)²/2) du, within 0.7 %: what a Gaussian layer gives to a line whose nearest
- * point to the planet is q standard deviations below its middle.
+ * Light of a Gaussian layer along half of a line whose lowest point is q standard deviations below the
+ * layer's middle: F(q) = ∫₀^∞ exp(−(u² − q)²/2) du, within 0.7 %.
  *
  * With R(q) = F(q) exp(min(q, 0)²/2), R(q) (q² + c)^¼ is a polynomial in q/√(q² + b), fitted to
  * quadrature for −5 ≤ q ≤ 80; at both ends it has F's own asymptote √(π/2q).
  */
-function crossing(q: Float): Float {
+function gaussianLayerIntegral(q: Float): Float {
   const coefficients = [1.44171, 1.14665, 0.26507, -1.70059, -1.54035, 0.72903, 0.91185]
   const square = q.mul(q).toConst()
   const t = q.div(square.add(3.75).sqrt()).toConst()
@@ -28,64 +28,64 @@ function crossing(q: Float): Float {
   return polynomial.div(square.add(3.2).sqrt().sqrt()).mul(below.mul(below).mul(-0.5).exp())
 }
 
-/** About Φ, the integral of the normal distribution. */
-const normal = (x: Float): Float => x.mul(-1.702).clamp(-40, 40).exp().add(1).reciprocal()
+/** Φ, the cumulative normal distribution, approximated by a logistic function. */
+const normalCDF = (x: Float): Float => x.mul(-1.702).clamp(-40, 40).exp().add(1).reciprocal()
 
 /**
- * How many times brighter a layer is along a line than straight through, for each of the two places
- * where the line goes through it: on its way down to the point that is nearest to the planet, and up
- * from there. At the limb they are one, and share the light.
+ * Van Rhijn factors of a view ray: brightness of the layer along the ray over that seen perpendicularly,
+ * for the crossing on the way down to the ray's lowest point and for the one on the way up. At the limb the
+ * two crossings merge and share the light.
  *
- * @param altitude - Of the eye [m].
+ * @param altitude - Altitude of the camera [m].
  * @param cosView - μ.
  * @param bottomRadius - Planet's centre to the ground [m].
- * @param distance - Where the line ends [m]; null for a line without end.
- * @see van Rhijn 1921 for lines that cross the layer steeply. Twin: test/twins/airglow.ts
+ * @param distance - Length of the ray [m]; null for one without end.
+ * @see van Rhijn 1921, for rays that cross the layer steeply. Twin: test/twins/night/airglow.ts
  */
-export function glowGains(
-  layer: GlowLayerNodes,
+export function vanRhijnFactors(
+  layer: AirglowLayerNodes,
   altitude: Float,
   cosView: Float,
   bottomRadius: Float,
   distance: Float | null
 ): { down: Float; up: Float } {
   const radius = bottomRadius.add(layer.altitude).toConst()
-  // Along the line, from its point nearest to the planet.
+  // Distance of the camera along the ray from the ray's lowest point.
   const start = bottomRadius.add(altitude).mul(cosView).toConst()
   const rise = layer.altitude.sub(altitude)
   const square = rise.mul(radius.add(bottomRadius).add(altitude)).add(start.mul(start)).toConst()
   const span = radius.mul(layer.width).mul(2).toConst()
-  const gain = radius
+  const factor = radius
     .div(layer.width)
     .div(Math.PI)
     .sqrt()
-    .mul(crossing(square.div(span)))
+    .mul(gaussianLayerIntegral(square.div(span)))
     .toConst()
   const half = square.max(0).sqrt().toConst()
-  // Standard deviation of each crossing along the line.
-  const spread = span.div(half.max(span.sqrt()).mul(2)).toConst()
-  const part = (at: Float): Float => {
-    const ahead = normal(at.sub(start).div(spread))
+  // Standard deviation of each crossing along the ray.
+  const sigma = span.div(half.max(span.sqrt()).mul(2)).toConst()
+  const fractionAt = (at: Float): Float => {
+    const ahead = normalCDF(at.sub(start).div(sigma))
     if (distance === null) return ahead
-    return ahead.sub(normal(at.sub(start).sub(distance).div(spread))).max(0)
+    return ahead.sub(normalCDF(at.sub(start).sub(distance).div(sigma))).max(0)
   }
   return {
-    down: gain.mul(part(half.negate())),
-    up: gain.mul(part(half))
+    down: factor.mul(fractionAt(half.negate())),
+    up: factor.mul(fractionAt(half))
   }
 }
 
 /**
- * How many times brighter a layer far above the eye is along a line than straight through: r/√(r² − b²),
- * b the line's distance from the planet's centre, which does not cross the ground.
+ * Van Rhijn factor of a layer far above the camera, taken for a thin shell: r/√(r² − b²), with b the
+ * distance of the view ray from the planet's centre. The ray must not hit the ground.
  *
- * @param altitude - Of the eye, ten standard deviations below the layer or more [m].
+ * @param altitude - Altitude of the camera, at least ten standard deviations below the layer [m].
  * @param cosView - μ.
  * @param bottomRadius - Planet's centre to the ground [m].
- * @see van Rhijn 1921. Twin: test/twins/airglow.ts
+ * @see van Rhijn 1921. Twin: test/twins/night/airglow.ts
  */
-export function overheadGain(
-  layer: GlowLayerNodes,
+export function thinLayerVanRhijnFactor(
+  layer: AirglowLayerNodes,
   altitude: Float,
   cosView: Float,
   bottomRadius: Float

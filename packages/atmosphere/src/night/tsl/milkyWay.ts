@@ -15,8 +15,13 @@ export const CELESTIAL_TO_GALACTIC = [
   -0.867666149, -0.1980763734, 0.4559837762
 ] as const
 
-/** Star clouds and two other galaxies: longitude, latitude, half widths [°], strength. */
-const CLOUDS = [
+/**
+ * Star clouds and the Magellanic Clouds: galactic longitude, latitude, half widths [°], strength.
+ *
+ * The strengths were found by looking: larger ones make blobs of the clouds that stand out of the band.
+ * Story: Night, Wide.
+ */
+const STAR_CLOUDS = [
   ['Sagittarius', 6, -4, 7, 3.5, 1.5],
   ['Scutum', 27, -3, 4.5, 3, 1.3],
   ['Cygnus', 74, 1, 11, 4, 0.9],
@@ -26,8 +31,13 @@ const CLOUDS = [
   ['Small Magellanic Cloud', -57.2, -44.3, 1.4, 1, 0.8]
 ] as const
 
-/** Dark clouds: longitude, latitude, half widths [°], optical depth. */
-const DARK = [
+/**
+ * Dark clouds: galactic longitude, latitude, half widths [°], optical depth.
+ *
+ * The depths were found by looking: smaller ones fill in the Great Rift that splits the band. Story: Night,
+ * Wide.
+ */
+const DARK_CLOUDS = [
   ['Coalsack', -57, -0.5, 3, 2.4, 1.5],
   ['Pipe and Ophiuchus', -1, 5, 9, 2.6, 1.8],
   ['Aquila rift', 28, 4.5, 17, 2.8, 2.2],
@@ -35,17 +45,16 @@ const DARK = [
   ['Northern Coalsack', 92, 2, 5, 2, 1]
 ] as const
 
-/** Dust reddens: its optical depth at 440, 520, 560, 630 nm over that at 550. Cardelli et al. 1989. */
+/** Optical depth of dust at 440, 520, 560, 630 nm over that at 550. @see Cardelli, Clayton & Mathis 1989, ApJ 345, 245 */
 const REDDENING = vec4(1.3, 1.08, 0.98, 0.85)
 
 /**
- * Light of the stars that no eye separates, of the whole sky, without its colour: a model with the
- * brightness that photometry found at the poles, in the band and towards the centre, and noise for
- * clouds of stars and dust.
+ * Unresolved starlight of the whole sky: a model with the photometric brightness of the poles, the band
+ * and the galactic centre, and noise for clouds of stars and dust.
  *
- * @param point - Of the octahedral map of directions in galactic axes, in [−1, 1]; a little beyond is
- *   across the edge.
- * @returns Luminance at the four wavelengths, dust's reddening included [1e-4 cd/m²].
+ * @param point - Point of the octahedral map of directions in galactic axes, in [−1, 1]; a little beyond
+ *   is across the edge.
+ * @returns Luminance at the four wavelengths, reddened by dust, without the stars' colour [1e-4 cd/m²].
  * @see Leinert et al. 1998, "The 1997 reference of diffuse night sky brightness", §10
  */
 export function milkyWayMap(point: Vec2): Vec4 {
@@ -59,8 +68,8 @@ export function milkyWayMap(point: Vec2): Vec4 {
   const coarse = noise(7, 5).toConst()
   const fine = noise(21, 5).toConst()
 
-  const bump = (of: readonly [string, number, number, number, number, number]): Float => {
-    const [, longitude0, latitude0, width, height, strength] = of
+  const gaussian = (cloud: readonly [string, number, number, number, number, number]): Float => {
+    const [, longitude0, latitude0, width, height, strength] = cloud
     const across = longitude.sub(longitude0).div(width)
     const up = latitude.sub(latitude0).div(height)
     return across.mul(across).add(up.mul(up)).negate().exp().mul(strength)
@@ -77,13 +86,13 @@ export function milkyWayMap(point: Vec2): Vec4 {
     .negate()
     .exp()
     .mul(3.2)
-  const clouds = sum(CLOUDS.map(bump)).mul(fine.mul(0.9).add(1).max(0.1))
+  const clouds = sum(STAR_CLOUDS.map(gaussian)).mul(fine.mul(0.9).add(1).max(0.1))
   const grain = coarse.mul(0.7).add(fine.mul(0.5)).add(1).clamp(0.35, 2)
   const stars = disc.add(bulge).mul(grain).add(clouds)
 
-  // Dust lies in a thinner sheet than the stars, and in a few near clouds that bulge out of it.
+  // Dust lies in a thinner sheet than the stars, and in a few near clouds outside it.
   const sheet = latitude.sub(0.6).div(2.2).pow2().negate().exp().mul(towards.mul(0.9).add(0.35))
-  const dust = sum(DARK.map(bump)).add(sheet)
+  const dust = sum(DARK_CLOUDS.map(gaussian)).add(sheet)
   const clumps = fine.mul(1.6).add(coarse.mul(1.2)).add(0.75).clamp(0, 2.2)
   const depth = dust.mul(clumps)
   // Half of the stars are in front of the dust towards the anticentre, a fourth towards the centre.

@@ -1,16 +1,16 @@
-/** A star as a catalogue has it. */
+/** A star of a catalogue. */
 export interface Star {
-  /** Right ascension, mean equator and equinox of J2000, in [0, 2π) [rad]. */
+  /** Right ascension at the mean equator and equinox of J2000, in [0, 2π) [rad]. */
   ascension: number
   /** Declination, same frame [rad]. */
   declination: number
-  /** Apparent visual magnitude; brighter is less. */
+  /** Apparent visual magnitude; less is brighter. */
   magnitude: number
-  /** B − V; bluer is less [mag]. */
+  /** Colour index B − V; less is bluer [mag]. */
   colorIndex: number
 }
 
-/** 20 bits each for right ascension and declination, 8 each for magnitude and colour. */
+/** Size of an encoded star: 20 bits each for right ascension and declination, 8 each for magnitude and colour. */
 export const BYTES_PER_STAR = 7
 
 const STEPS = 2 ** 20
@@ -20,7 +20,7 @@ const COLOR_INDICES = { min: -0.4, step: 0.015 }
 const byte = (value: number, { min, step }: { min: number; step: number }): number =>
   Math.min(Math.max(Math.round((value - min) / step), 0), 255)
 
-/** Writes a star into its place: to 0.6″ in right ascension, 0.3″ in declination. */
+/** Writes a star, rounded to 0.6″ in right ascension and 0.3″ in declination. */
 export function encodeStar(star: Star, bytes: Uint8Array, index: number): void {
   const ascension = Math.round((star.ascension / (2 * Math.PI)) * STEPS) % STEPS
   const declination = Math.round((star.declination / Math.PI + 0.5) * (STEPS - 1))
@@ -34,7 +34,7 @@ export function encodeStar(star: Star, bytes: Uint8Array, index: number): void {
   bytes[at + 6] = byte(star.colorIndex, COLOR_INDICES)
 }
 
-/** Reads what {@link encodeStar} wrote. */
+/** Reads a star written by {@link encodeStar}. */
 export function decodeStar(bytes: Uint8Array, index: number): Star {
   const at = index * BYTES_PER_STAR
   const ascension = (bytes[at] << 12) | (bytes[at + 1] << 4) | (bytes[at + 2] >> 4)

@@ -1,22 +1,22 @@
-/** A luminous layer around a planet: a Gaussian in altitude. */
-export interface GlowLayer {
-  /** Altitude of its middle [m]. */
+/** Luminous layer around a planet, a Gaussian in altitude. */
+export interface AirglowLayer {
+  /** Altitude of the layer's middle [m]. */
   altitude: number
   /** Standard deviation [m]. */
   width: number
 }
 
 /**
- * How many times brighter a layer is along a line than straight through: the integral of its emission
- * along the line over that along a vertical, by the trapezoid rule.
+ * Van Rhijn factor of a layer: the integral of its emission along a ray over that along a vertical, by
+ * the trapezoid rule. Twin of night/tsl/airglow.ts, both crossings together.
  *
  * @param radius - Planet's centre to the start of the line [m].
  * @param cosView - μ of the line at its start.
  * @param bottomRadius - Planet's centre to the ground [m].
  * @param distance - Length of the line [m].
  */
-export function glowGain(
-  { altitude, width }: GlowLayer,
+export function vanRhijnFactor(
+  { altitude, width }: AirglowLayer,
   radius: number,
   cosView: number,
   bottomRadius: number,

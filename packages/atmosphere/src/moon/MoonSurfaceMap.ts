@@ -2,14 +2,14 @@ import { LinearFilter, LinearMipmapLinearFilter, RenderTarget, UnsignedByteType 
 import { Fn, uv } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { FragmentPass } from '../tables/FragmentPass'
-import { moonGround, moonMapPlace } from './tsl/moonSurface'
+import { moonGround, moonMapDirection } from './tsl/moonSurface'
 
-/** A map of the moon's near side, drawn on the GPU once, with mipmaps. */
-export class MoonSurface {
+/** Map of the moon's near side with mipmaps, drawn once on the GPU. See `moonGround` for its texels. */
+export class MoonSurfaceMap {
   readonly target: RenderTarget
   readonly #pass = new FragmentPass(
     'Welkin.MoonSurface',
-    Fn(() => moonGround(moonMapPlace(uv()).toConst() as never))()
+    Fn(() => moonGround(moonMapDirection(uv()).toConst() as never))()
   )
   #renderer: Renderer | null = null
 
@@ -25,14 +25,14 @@ export class MoonSurface {
     this.target.texture.name = 'MoonSurface'
   }
 
-  /** Draws the map, unless this renderer has it. */
+  /** Draws the map unless this renderer has it already. */
   prepare(renderer: Renderer): void {
     if (renderer === this.#renderer) return
     this.#renderer = renderer
     this.#pass.render(renderer, this.target)
   }
 
-  /** Frees GPU memory. The next {@link prepare} draws anew. */
+  /** Frees GPU memory. The next {@link prepare} draws the map again. */
   dispose(): void {
     this.#renderer = null
     this.#pass.dispose()

@@ -2,9 +2,9 @@ import type { Renderer } from 'three/webgpu'
 import { SkyVolumes, type SkyVolume } from '../skyVolume/SkyVolumes'
 import type { EyeScalars } from '../view/tsl/eye'
 
-/** Sky volumes of a source that seldom matters: computed only while it does. */
-export class MoonVolumes extends SkyVolumes {
-  /** Whether anyone will look at them. */
+/** Sky volumes of moonlight, computed only while moonlit air can be seen. */
+export class MoonSkyVolumes extends SkyVolumes {
+  /** Set while moonlit air can be seen. */
   isNeeded = false
   readonly #none: SkyVolume = { slot: 0, eye: null, tablesVersion: -1, lastUsed: 0 }
 

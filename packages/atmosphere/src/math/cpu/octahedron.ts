@@ -1,17 +1,20 @@
+/** Coordinate folded across an edge of the map, where the octahedron's lower faces are. */
 const fold = (a: number, b: number): number => (a < 0 ? -1 : 1) * (1 - Math.abs(b))
 
 /**
- * Direction, not of unit length, of a point on the map of directions that is the net of an octahedron.
+ * Direction of a point of the octahedral map, not of unit length.
  *
  * @param x - In [−1, 1].
  * @param y - In [−1, 1].
+ * @see Cigolle et al. 2014, "A survey of efficient representations for independent unit vectors".
+ *   Twin of tsl/octahedron.ts, which gives unit vectors
  */
 export function octahedralDirection(x: number, y: number): [number, number, number] {
   const z = 1 - Math.abs(x) - Math.abs(y)
   return z < 0 ? [fold(x, y), fold(y, x), z] : [x, y, z]
 }
 
-/** Where a direction of any length is on that map; each in [−1, 1]. */
+/** Point of the octahedral map in [−1, 1]² for a direction of any length. */
 export function octahedralPoint([x, y, z]: readonly number[]): [number, number] {
   const size = Math.abs(x) + Math.abs(y) + Math.abs(z)
   const [u, v] = [x / size, y / size]

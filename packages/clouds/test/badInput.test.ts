@@ -1,0 +1,170 @@
+import { Atmosphere, SkyLightProbe } from '@welkin/atmosphere'
+import { Mesh, PerspectiveCamera, Scene, Texture } from 'three'
+import { float, vec4 } from 'three/tsl'
+import { describe, expect, it } from 'vitest'
+import {
+  CloudLayer,
+  CloudLayers,
+  CloudLightTable,
+  cloudOverlay,
+  cloudPreset,
+  clouds,
+  CloudField,
+  cloudShadow,
+  cloudSkyLight
+} from '@welkin/clouds'
+
+const atmosphere = new Atmosphere()
+const camera = new PerspectiveCamera()
+const layers = new CloudLayers()
+
+/** What the compiler would not let pass. */
+const wrong = (value: unknown): never => value as never
+
+const make = (options = {}, given = layers) =>
+  clouds(vec4(0), float(1), camera, atmosphere, given, options)
+const node = make()
+const probe = new SkyLightProbe(atmosphere)
+const layer = layers.at(0)
+
+const cases: [message: string, call: () => unknown][] = [
+  // No such option.
+  ["CloudsNode: unknown option 'qualty', did you mean 'quality'?", () => make({ qualty: 'low' })],
+  [
+    "CloudsNode.quality: unknown option 'step', did you mean 'steps'?",
+    () => make({ quality: { step: 3 } })
+  ],
+  [
+    "CloudOverlay: unknown option 'drft', did you mean 'drift'?",
+    () => cloudOverlay(node, wrong({ drft: 1 }))
+  ],
+  [
+    "CloudField: unknown option 'worldmap', did you mean 'worldMap'?",
+    () => new CloudField(atmosphere, layers, undefined, wrong({ worldmap: null }))
+  ],
+  [
+    "CloudLayer: unknown option 'covrage', did you mean 'coverage'?",
+    () => new CloudLayer(wrong({ covrage: 1 }))
+  ],
+  [
+    "CloudLayer: unknown option 'base', there are baseAltitude",
+    () => layer.set(wrong({ base: 1 }))
+  ],
+  [
+    "CloudLayer.wind: unknown option 'est', did you mean 'east'?",
+    () => (layer.wind = wrong({ est: 1, north: 0 }))
+  ],
+  [
+    "CloudLightTable: unknown option 'forwardAsymetry', did you mean 'forwardAsymmetry'?",
+    () => new CloudLightTable(wrong({ forwardAsymetry: 0 }))
+  ],
+
+  // One thing for another.
+  ['CloudsNode: layers must be CloudLayers, got a CloudLayer', () => make({}, wrong(layer))],
+  [
+    'CloudsNode: layers must be CloudLayers, got undefined',
+    () => clouds(vec4(0), float(1), camera, atmosphere, wrong(undefined))
+  ],
+  [
+    'CloudsNode: atmosphere must be an Atmosphere, got a CloudLayers',
+    () => clouds(vec4(0), float(1), camera, wrong(layers), wrong(atmosphere))
+  ],
+  [
+    'CloudsNode: colorNode must be a node, got a Scene',
+    () => clouds(wrong(new Scene()), float(1), camera, atmosphere, layers)
+  ],
+  [
+    'CloudsNode: worldMap must be a Texture or null, got a Mesh',
+    () => make({ worldMap: new Mesh() })
+  ],
+  [
+    'CloudsNode: worldMap.wrapS must be RepeatWrapping, got 1001',
+    () => make({ worldMap: new Texture() })
+  ],
+  ['CloudsNode: noise must be a CloudNoise, got {}', () => make({ noise: {} })],
+  ["CloudsNode: light must be a CloudLightTable, got 'sun'", () => make({ light: 'sun' })],
+  [
+    "CloudsNode: quality must be 'low', 'medium', 'high' or 'ultra', got 'best'",
+    () => make({ quality: 'best' })
+  ],
+  [
+    "CloudOverlay: quality must be 'low', 'medium', 'high' or 'ultra', got 'best'",
+    () => cloudOverlay(node, { quality: wrong('best') })
+  ],
+  [
+    'CloudOverlay: drift must be positive and finite, got 0',
+    () => cloudOverlay(node, { drift: 0 })
+  ],
+  [
+    'CloudOverlay: clouds must be a CloudsNode, got an Atmosphere',
+    () => cloudOverlay(wrong(atmosphere))
+  ],
+  [
+    "cloudPreset: name must be 'fairWeather', 'stratocumulus', 'overcast', 'cumulonimbus', 'cirrus' or 'mixed', got 'fair'",
+    () => cloudPreset(wrong('fair'))
+  ],
+  ['CloudLayer: options must be an object, got a CloudLayer', () => new CloudLayer(wrong(layer))],
+  [
+    'CloudShadowNode: clouds must be a CloudsNode, got an Atmosphere',
+    () => cloudShadow(wrong(atmosphere))
+  ],
+  [
+    'CloudSkyLight: probe must be a SkyLightProbe, got a CloudsNode',
+    () => cloudSkyLight(wrong(node), wrong(probe))
+  ],
+  [
+    'CloudSkyLight: probe must have no other CloudSkyLight: dispose of that first, got a SkyLightProbe',
+    () => {
+      const lit = new SkyLightProbe(atmosphere)
+      cloudSkyLight(lit, node)
+      return cloudSkyLight(lit, node)
+    }
+  ],
+
+  // Setters.
+  ['CloudLayer: coverage must be in [0, 1], got 7', () => (layer.coverage = 7)],
+  [
+    'CloudLayer: topAltitude must be above baseAltitude (1000 m), got 900',
+    () => (layer.topAltitude = 900)
+  ],
+  ["CloudLayer: shadow must be true or false, got 'no'", () => (layer.shadow = wrong('no'))],
+  [
+    'CloudLightTable: forwardShare must be in [0, 1], got 2',
+    () => (new CloudLightTable().forwardShare = 2)
+  ]
+]
+
+describe('wrong use throws with name and value', () => {
+  it.each(cases)('%s', (message, call) => {
+    expect(call).toThrow(message)
+  })
+})
+
+describe('settings are properties', () => {
+  it('of layers', () => {
+    const changed = new CloudLayer({ coverage: 0.5 })
+    expect(changed.coverage).toBe(0.5)
+    const before = changed.parameters
+    changed.coverage = 0.7
+    changed.wind = { east: 1, north: 2 }
+    expect(changed.parameters).toEqual({ ...before, coverage: 0.7, wind: { east: 1, north: 2 } })
+    // Those of another one stay.
+    expect(new CloudLayer().coverage).toBe(0.35)
+    expect(() => (changed.coverage = 7)).toThrow('coverage')
+    expect(changed.set({ coverage: undefined }).coverage).toBe(0.7)
+  })
+
+  it('of the light table', () => {
+    const table = new CloudLightTable()
+    table.forwardAsymmetry = 0.7
+    expect([table.phase.forwardAsymmetry, table.forwardAsymmetry, table.forwardShare]).toEqual([
+      0.7, 0.7, 0.8
+    ])
+  })
+
+  it('free a probe for other clouds', () => {
+    const lit = new SkyLightProbe(atmosphere)
+    cloudSkyLight(lit, node).dispose()
+    expect(cloudSkyLight(lit, node).probe).toBe(lit)
+  })
+})
