@@ -8,7 +8,7 @@ import { benchScene, type Path } from './scene'
 import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
 import { measureCloudMemory } from './memory'
-import { measureShaders, shaderLine } from './shaders'
+import { measureShaders } from './shaders'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -136,9 +136,8 @@ for (const { quality, renderTargets, shadowMaps, noise } of cloudMemory) {
     `clouds' memory, ${quality.padEnd(7)} render targets ${megabytes(renderTargets)}   shadow maps ${megabytes(shadowMaps)}   noise ${megabytes(noise)}`
   )
 }
-const shaders = await measureShaders(device)
 log('\nshaders, vertex + fragment')
-for (const cost of shaders) log(shaderLine(cost))
+const shaders = await measureShaders(device, log)
 const result = {
   device: device.name,
   cases,

@@ -34,46 +34,52 @@ function distinct(pipelines: readonly BuiltPipeline[]): BuiltPipeline[] {
 const isSame = (a: ShaderCost, b: ShaderCost): boolean =>
   a.name === b.name && JSON.stringify(a.wgsl) === JSON.stringify(b.wgsl)
 
-/** Shaders of every scene in WGSL and GLSL, and how long each takes to build; a shader counts once. */
-export async function measureShaders(device: HeadlessDevice): Promise<ShaderCost[]> {
+/** Shaders of a scene in WGSL and GLSL, and how long each takes to build. */
+async function measureScene(device: HeadlessDevice, scene: string): Promise<ShaderCost[]> {
+  const renderer = await device.renderer(...SIZE)
+  const wgsl = traceShaders(renderer)
+  const recorder = await recordingRenderer(...SIZE)
+  const glsl = traceShaders(recorder)
+  for (const each of [renderer, recorder]) {
+    const draw = shaderScenes[scene](each)
+    for (let frame = 0; frame < FRAMES; frame++) {
+      nextFrame()
+      draw()
+      await finished(renderer)
+    }
+  }
+  const inGLSL = distinct(glsl)
+  const costs = distinct(wgsl).map(({ name, vertex, fragment, ms }) => {
+    // Of several by one name, both lists have them in one order.
+    const place = inGLSL.findIndex(other => other.name === name)
+    if (place < 0) throw new Error(`bench: no GLSL was generated for ${name} of ${scene}`)
+    const [other] = inGLSL.splice(place, 1)
+    const stages = { vertex: other.vertex, fragment: other.fragment }
+    return { scene, name, wgsl: { vertex, fragment }, glsl: stages, ms }
+  })
+  release(renderer)
+  void recorder.dispose()
+  return costs
+}
+
+/** The same for every scene; a shader counts where it comes first, which `log` is told at once. */
+export async function measureShaders(
+  device: HeadlessDevice,
+  log: (line: string) => void
+): Promise<ShaderCost[]> {
   const costs: ShaderCost[] = []
-  for (const [scene, create] of Object.entries(shaderScenes)) {
-    const renderer = await device.renderer(...SIZE)
-    const wgsl = traceShaders(renderer)
-    const recorder = await recordingRenderer(...SIZE)
-    const glsl = traceShaders(recorder)
-    for (const each of [renderer, recorder]) {
-      const draw = create(each)
-      for (let frame = 0; frame < FRAMES; frame++) {
-        nextFrame()
-        draw()
-      }
+  for (const scene of Object.keys(shaderScenes)) {
+    for (const cost of await measureScene(device, scene)) {
+      if (costs.some(known => isSame(known, cost))) continue
+      costs.push(cost)
+      log(shaderLine(cost))
     }
-    await finished(renderer)
-    const inGLSL = distinct(glsl)
-    for (const pipeline of distinct(wgsl)) {
-      const { name, vertex, fragment, ms } = pipeline
-      // Of several by one name, both lists have them in one order.
-      const place = inGLSL.findIndex(other => other.name === name)
-      if (place < 0) throw new Error(`bench: no GLSL was generated for ${name} of ${scene}`)
-      const [other] = inGLSL.splice(place, 1)
-      const cost = {
-        scene,
-        name,
-        wgsl: { vertex, fragment },
-        glsl: { vertex: other.vertex, fragment: other.fragment },
-        ms
-      }
-      if (!costs.some(known => isSame(known, cost))) costs.push(cost)
-    }
-    release(renderer)
-    void recorder.dispose()
   }
   return costs
 }
 
 /** A line of a report. */
-export function shaderLine({ scene, name, wgsl, glsl, ms }: ShaderCost): string {
+function shaderLine({ scene, name, wgsl, glsl, ms }: ShaderCost): string {
   const lines = ({ vertex, fragment }: Stages): string =>
     `${vertex.lines} + ${fragment.lines}`.padEnd(10)
   const textures = ({ vertex, fragment }: Stages): string =>

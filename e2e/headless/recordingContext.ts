@@ -65,7 +65,7 @@ export async function recordingRenderer(width: number, height: number): Promise<
     getContext: () => recordingContext(canvas as unknown as HTMLCanvasElement)
   }
   // three asks textures of WebGL2 whether they hold one.
-  Object.assign(globalThis, { ImageBitmap: class {} })
+  Object.assign(globalThis, { ImageBitmap: Object })
   const renderer = new WebGPURenderer({
     canvas: canvas as unknown as HTMLCanvasElement,
     antialias: false,

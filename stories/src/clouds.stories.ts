@@ -169,9 +169,9 @@ export const WorldClouds: Story = {
   tags: ['screenshot']
 }
 
-/** The same from 15,000 km. */
+/** The same from 12,000 km. */
 export const WorldCloudsFromAfar: Story = {
-  name: 'World clouds from 15,000 km',
+  name: 'World clouds from 12,000 km',
   args: {
     ...world,
     longitude: -40,

@@ -104,7 +104,7 @@ export async function createEnvironment(
     atmosphere.setSunAngles(current.elevation, current.azimuth)
     water.setSlope(current.ripples / 1000)
     renderer.toneMappingExposure = exposureOf(current.exposure)
-    // One frame must show it all; a running scene draws it over seven.
+    // One frame must show it all; a running scene draws it over fifteen.
     if (current.frame) environment.needsRedraw = true
   }
   apply()
