@@ -50,7 +50,7 @@ export const cloudReference: CloudQuality = {
   stepGrowth: cloudQualities.high.stepGrowth / 8,
   shortestStep: cloudQualities.high.shortestStep / 8,
   layerSteps: cloudQualities.high.layerSteps * 8,
-  sunSteps: 4,
+  lightSteps: 4,
   block: 1
 }
 

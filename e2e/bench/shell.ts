@@ -1,6 +1,6 @@
 import {
   AtmosphereParameters,
-  atmosphereShell,
+  AtmosphereShell,
   type AtmosphereShellOptions
 } from '@welkin/atmosphere'
 import { HalfFloatType, PerspectiveCamera, RenderTarget, Scene, Vector3 } from 'three'
@@ -26,7 +26,7 @@ async function time(
 ): Promise<number> {
   const renderer = await device.renderer(width, height)
   const options: AtmosphereShellOptions = { sun: new Vector3(1, 0.8, 0.3), model }
-  const shell = atmosphereShell(new AtmosphereParameters(), 1, options)
+  const shell = new AtmosphereShell(new AtmosphereParameters(), 1, options)
   if (shell === null) throw new Error('bench: the Earth has no air')
   const scene = new Scene().add(shell)
   const camera = new PerspectiveCamera(50, width / height, 1e-6, 10)

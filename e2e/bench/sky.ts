@@ -51,14 +51,14 @@ function inView(): Vector3 {
 
 /** Layers one after another, far to near. */
 function parts({ showsMoon = false }: SkyCase): ((atmosphere: Atmosphere) => void)[] {
-  const luna = (atmosphere: Atmosphere, lightsAir: boolean) =>
-    moon(atmosphere, { lightsAir, phase: 0.5, direction: showsMoon ? inView() : null })
+  const luna = (lightsAir: boolean) =>
+    moon({ lightsAir, phase: 0.5, direction: showsMoon ? inView() : null })
   return [
     () => undefined,
-    sky => sky.add(sunFlare(sky), stars(), luna(sky, false)),
-    sky => sky.add(sunFlare(sky), stars(), luna(sky, true)),
-    sky => sky.add(sunFlare(sky), milkyWay(), stars(), luna(sky, true)),
-    sky => sky.add(sunFlare(sky), milkyWay(), stars(), luna(sky, true), airglow())
+    sky => sky.add(sunFlare(), stars(), luna(false)),
+    sky => sky.add(sunFlare(), stars(), luna(true)),
+    sky => sky.add(sunFlare(), milkyWay(), stars(), luna(true)),
+    sky => sky.add(sunFlare(), milkyWay(), stars(), luna(true), airglow())
   ]
 }
 

@@ -3,14 +3,14 @@ import {
   aerialPerspective,
   Atmosphere,
   exposureFor,
-  marsAtmosphere,
+  marsParameters,
   milkyWay,
   moon,
   MoonDirectionalLight,
   NightLightProbe,
   planetGround,
   SkyLightProbe,
-  standardAtmosphere,
+  standardEarthParameters,
   stars,
   SunDirectionalLight,
   sunFlare,
@@ -43,7 +43,7 @@ const TIME = 300
 
 function atmosphereOf({ planet, sun }: Still): Atmosphere {
   const atmosphere =
-    planet === 'mars' ? marsBody() : new Atmosphere({ parameters: standardAtmosphere() })
+    planet === 'mars' ? marsBody() : new Atmosphere({ parameters: standardEarthParameters() })
   atmosphere.place({ longitude: 139.77, latitude: 35.68 })
   if (sun instanceof Date) atmosphere.date = sun
   else atmosphere.setSunAngles(sun.elevation, sun.azimuth)
@@ -51,7 +51,7 @@ function atmosphereOf({ planet, sun }: Still): Atmosphere {
 }
 
 function marsBody(): Atmosphere {
-  const parameters = marsAtmosphere()
+  const parameters = marsParameters()
   const radius = parameters.bottomRadius
   return new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
 }
@@ -109,7 +109,7 @@ export class StillView {
     // Continents and seas are the Earth's alone.
     if (still.planet === undefined) atmosphere.add(planetGround())
     if (still.sun instanceof Date) this.#addNight(scene)
-    else atmosphere.add(sunFlare(atmosphere))
+    else atmosphere.add(sunFlare())
     if (still.land === 'hills') {
       const isMars = still.planet === 'mars'
       const radius = atmosphere.parameters.bottomRadius
@@ -166,7 +166,7 @@ export class StillView {
 
   #addNight(scene: Scene): void {
     const atmosphere = this.#atmosphere
-    const luna = moon(atmosphere)
+    const luna = moon()
     atmosphere.add(milkyWay(), stars(), luna, airglow())
     const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
     const moonSky = new SkyLightProbe(atmosphere, luna.source)

@@ -7,7 +7,7 @@ import {
   MoonDirectionalLight,
   NightLightProbe,
   SkyLightProbe,
-  standardAtmosphere,
+  standardEarthParameters,
   stars
 } from '@welkin/atmosphere'
 import {
@@ -63,8 +63,8 @@ export async function createDay(
   scene.add(...meshes)
 
   // #region day
-  const atmosphere = new Atmosphere({ parameters: standardAtmosphere() }) // twilight as it is
-  const luna = moon(atmosphere)
+  const atmosphere = new Atmosphere({ parameters: standardEarthParameters() }) // twilight as it is
+  const luna = moon()
   atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 50) // 50 m from its target
   const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
@@ -74,7 +74,7 @@ export async function createDay(
 
   const cycle = new DayCycle(atmosphere, {
     rate: 1440, // a day in a minute
-    exposure: { sources: [luna.source] }
+    exposureOptions: { sources: [luna.source] }
   })
   // #endregion
   const air = new Air(renderer, scene, camera, args.path, atmosphere)

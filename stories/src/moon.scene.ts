@@ -94,8 +94,8 @@ export async function createMoon(
   const { atmosphere } = air
   const mapSize = args.frame ? Math.min(args.mapSize, FRAME_MAP_SIZE) : args.mapSize
   // #region moon
-  const luna = moon(atmosphere, { mapSize }) // where the date has it, in its phase
-  atmosphere.add(sunFlare(atmosphere), luna) // far before near
+  const luna = moon({ mapSize }) // where the date has it, in its phase
+  atmosphere.add(sunFlare(), luna) // far before near
 
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 150) // 150 m from its target
   const moonlitSky = new SkyLightProbe(atmosphere, luna.source)

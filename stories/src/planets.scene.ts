@@ -1,13 +1,12 @@
 import {
-  airlessBody,
+  airlessParameters,
   Atmosphere,
   AtmosphereParameters,
-  marsAtmosphere,
+  marsParameters,
   planetGround,
-  titanAtmosphere,
-  venusAtmosphere
+  titanParameters,
+  venusParameters
 } from '@welkin/atmosphere'
-import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene } from 'three'
 import { Air } from './air'
 import { earthPictures } from './globe/earthPictures'
@@ -61,16 +60,14 @@ export async function createPlanets(
     const { planet, dust } = current
     // #region planets
     const parameters = {
-      earth: AtmosphereParameters.earth(),
-      'made-up': AtmosphereParameters.earth(),
-      mars: marsAtmosphere({ dust }), // its optical depth
-      titan: titanAtmosphere(),
-      venus: venusAtmosphere(), // above its clouds
-      moon: airlessBody()
+      earth: new AtmosphereParameters(),
+      'made-up': new AtmosphereParameters(),
+      mars: marsParameters({ dust }), // its optical depth
+      titan: titanParameters(),
+      venus: venusParameters(), // above its clouds
+      moon: airlessParameters()
     }[planet]
-    const radius = parameters.bottomRadius
-    const ellipsoid = planet === 'earth' ? Ellipsoid.WGS84 : new Ellipsoid(radius, radius)
-    const atmosphere = new Atmosphere({ parameters, ellipsoid })
+    const atmosphere = new Atmosphere({ parameters })
     // #endregion
     if (planet === 'earth' || planet === 'made-up') {
       const options = planet === 'earth' ? pictures : { seed: 3 }

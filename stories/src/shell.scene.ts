@@ -1,11 +1,10 @@
 import {
-  airlessBody,
+  airlessParameters,
   AtmosphereParameters,
-  atmosphereShell,
-  marsAtmosphere,
-  titanAtmosphere
+  AtmosphereShell,
+  marsParameters,
+  titanParameters
 } from '@welkin/atmosphere'
-import type { AtmosphereShell } from '@welkin/atmosphere'
 import {
   BoxGeometry,
   Color,
@@ -85,19 +84,19 @@ export async function createShell(
     meshes.push(ball)
     scene.add(ball)
     // #region shell
-    const shell = atmosphereShell(parameters, 1, { sun: light, model }) // null for a body without air
-    if (shell !== null) ball.add(shell) // a mesh whose geometry has radius 1, of any scale
+    const shell = new AtmosphereShell(parameters, 1, { sun: light, model })
+    ball.add(shell) // a mesh whose geometry has radius 1, of any scale
     // #endregion
-    if (shell !== null) shells.push(shell)
+    shells.push(shell)
   }
 
   const cockpit = new Group()
   const build = (): void => {
     if (args.view === 'map') {
       add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#ffffff', earth?.surface)
-      add(marsAtmosphere(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
-      add(titanAtmosphere(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
-      add(airlessBody(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
+      add(marsParameters(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
+      add(titanParameters(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
+      add(airlessParameters(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
       return
     }
     add(

@@ -127,7 +127,7 @@ export async function createTables(
     const { turbidity, ozone, groundAlbedo, altitude, sunElevation } = current
     // #region tables
     atmosphere.parameters
-      .setEarth({ turbidity, ozone })
+      .set({ turbidity, ozone })
       .set({ groundAlbedo: [groundAlbedo, groundAlbedo, groundAlbedo, groundAlbedo] })
     atmosphere.setSunAngles(sunElevation, 180)
     // #endregion

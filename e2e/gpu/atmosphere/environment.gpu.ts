@@ -2,6 +2,7 @@ import {
   Atmosphere,
   heightFog,
   skyBackground,
+  imageEnvironment,
   skyEnvironment,
   skyLuminanceAt,
   SkyLightProbe,
@@ -409,7 +410,7 @@ gpuTest('can be an .hdr file, mirrored as the sky that it is of', async t => {
   const image = await new HDRLoader().loadAsync(url)
   URL.revokeObjectURL(url)
   image.mapping = EquirectangularReflectionMapping
-  scene.environmentNode = skyEnvironment(image)
+  scene.environmentNode = imageEnvironment(image)
   const file = await draw(renderer, scene, camera)
   for (const [x, y] of [
     [16, 6],

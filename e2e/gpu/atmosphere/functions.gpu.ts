@@ -1,4 +1,4 @@
-import { Atmosphere, AtmosphereParameters, standardAtmosphere } from '@welkin/atmosphere'
+import { Atmosphere, AtmosphereParameters, standardEarthParameters } from '@welkin/atmosphere'
 import { float, vec4 } from 'three/tsl'
 import { AtmosphereUniforms } from '../../../packages/atmosphere/src/air/AtmosphereUniforms'
 import * as boundaryTwin from '../../../packages/atmosphere/src/air/cpu/boundary'
@@ -102,7 +102,7 @@ gpuTest('knows the densities of the air', async t => {
   const inputs = table(i => [120_000 * spread(i, 0) ** 2])
   for (const air of [
     earth,
-    standardAtmosphere(),
+    standardEarthParameters(),
     new AtmosphereParameters({ rayleighLayers: [[7000, 5000]] }),
     new AtmosphereParameters({
       rayleighLayers: [
@@ -126,9 +126,9 @@ gpuTest('reads sunlight within 0.2 % of the sun from the transmittance table', a
   const renderer = await t.createRenderer()
   for (const [air, absolute] of [
     [earth, 2e-3],
-    [standardAtmosphere({ ozone: 0 }), 2e-3],
+    [standardEarthParameters({ ozone: 0 }), 2e-3],
     // The ozone ends between rows of the table, which are 2 km apart there.
-    [standardAtmosphere(), 7e-3]
+    [standardEarthParameters(), 7e-3]
   ] as const) {
     const atmosphere = new Atmosphere({ parameters: air })
     await atmosphere.bake(renderer)
@@ -176,7 +176,7 @@ gpuTest('gathers sky light on planes as float64 does', async t => {
 
 for (const [name, air] of [
   ['default', earth],
-  ['standard', standardAtmosphere()]
+  ['standard', standardEarthParameters()]
 ] as const) {
   gpuTest(`bakes the diffuse light that float64 solves, ${name} air`, t => comparesBake(t, air), {
     bakes: true

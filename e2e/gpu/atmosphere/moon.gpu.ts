@@ -3,8 +3,6 @@ import {
   moon,
   type Moon,
   MoonDirectionalLight,
-  moonIlluminanceAt,
-  moonSkyIlluminanceAt,
   skyBackground,
   SkyLightProbe,
   SunDirectionalLight,
@@ -51,7 +49,7 @@ gpuTest('draws a moon whose light is the illuminance that it gives', async t => 
   const atmosphere = new Atmosphere()
   atmosphere.sunDirection = new Vector3(0, -1, 0)
   const direction = new Vector3(1, 4, 1)
-  const luna = moon(atmosphere, { direction, mapSize: 128, flare: noFlare, lightsAir: false })
+  const luna = moon({ direction, mapSize: 128, flare: noFlare, lightsAir: false })
   atmosphere.add(luna)
   const camera = telescope(luna, 0.6)
   const scene = new Scene()
@@ -66,7 +64,7 @@ gpuTest('draws a moon whose light is the illuminance that it gives', async t => 
     const picture = await drawForward(renderer, scene, camera, atmosphere)
     expectLight(picture, `phase ${phase}`)
     const measured = illuminance(picture, 0.6, atmosphere.luminanceScale)
-    const expected = luminance(moonIlluminanceAt(luna, camera.position))
+    const expected = luminance(luna.illuminanceAt(camera.position))
     t.note(`phase ${phase}: ${(measured / expected).toFixed(4)}`)
     expectClose(measured, expected, { relative }, `phase ${phase}`)
   }
@@ -79,7 +77,7 @@ gpuTest('has its seas in their places, and the far side of the terminator dark',
   const atmosphere = new Atmosphere()
   // Due west of the moon: the terminator runs from north to south.
   atmosphere.sunDirection = new Vector3(-1, 0, 0)
-  const luna = moon(atmosphere, {
+  const luna = moon({
     mapSize: 256,
     flare: noFlare,
     lightsAir: false,
@@ -136,7 +134,7 @@ gpuTest('lights a plane and the sky over it as float64 predicts, within 2 %', as
   const small = { width: 16, height: 16 }
   const renderer = await t.createRenderer(small)
   const atmosphere = new Atmosphere().setSunAngles(-40, 0)
-  const luna = moon(atmosphere, { mapSize: 16, strength: 1e4 })
+  const luna = moon({ mapSize: 16, strength: 1e4 })
   atmosphere.add(luna)
   await atmosphere.bake(renderer)
   const scene = new Scene()
@@ -156,8 +154,8 @@ gpuTest('lights a plane and the sky over it as float64 predicts, within 2 %', as
     luna.direction = new Vector3(Math.cos(angle), Math.sin(angle), 0)
     luna.phase = phase
     const picture = await t.render(renderer, scene, camera, small)
-    const direct = moonIlluminanceAt(luna, camera.position)
-    const sky = moonSkyIlluminanceAt(luna, camera.position, up)
+    const direct = luna.illuminanceAt(camera.position)
+    const sky = luna.skyIlluminanceAt(camera.position, up)
     const expected = direct.map((value, i) => (value * Math.sin(angle) + sky[i]) / Math.PI)
     const predicted = luminance(expected) * atmosphere.luminanceScale
     expectClose(luminance(picture.at(8, 8)), predicted, { relative: 0.02 }, `moon at ${elevation}°`)
@@ -179,10 +177,10 @@ gpuTest('glows like the sky by day, a 400,000th as bright, by either path', asyn
   const sunlight = luminance(atmosphere.sunIlluminanceAt(aboveTheAir))
   atmosphere.sunDirection = new Vector3(0, -1, 0)
   const strength = 1e5
-  const luna = moon(atmosphere, { direction, phase: 0.5, mapSize: 16, strength, flare: noFlare })
+  const luna = moon({ direction, phase: 0.5, mapSize: 16, strength, flare: noFlare })
   atmosphere.add(luna)
   const moonlight = await drawForward(renderer, new Scene(), camera, atmosphere)
-  const light = luminance(moonIlluminanceAt(luna, aboveTheAir))
+  const light = luminance(luna.illuminanceAt(aboveTheAir))
   for (const [x, y] of [
     [4, 4],
     [16, 12],
@@ -231,7 +229,7 @@ gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
     return { sky, plane: lit }
   }
   const bare = await draw('18:42:38')
-  atmosphere.add(sunFlare(atmosphere), moon(atmosphere, { mapSize: 64 }))
+  atmosphere.add(sunFlare(), moon({ mapSize: 64 }))
   const total = await draw('18:42:38')
   const partial = await draw('18:10:00')
   expectTrue(luminance(total.sky.at(32, 32)) < 1e-5 * luminance(bare.sky.at(32, 32)), 'disc')
@@ -259,7 +257,7 @@ gpuTest('leaves no memory behind when it comes and goes under a sky that stays',
   }
   const [without, withMoon] = [[memory()], Array<string>()]
   for (let i = 0; i < 4; i++) {
-    const luna = moon(atmosphere, { mapSize: 16 })
+    const luna = moon({ mapSize: 16 })
     atmosphere.add(luna)
     withMoon.push(memory())
     luna.dispose()
@@ -283,7 +281,7 @@ gpuTest(
       const atmosphere = new Atmosphere().setSunAngles(-30, 0)
       // Tables that are never done are never read back.
       atmosphere.bakeStepsPerFrame = 1
-      atmosphere.add(sunFlare(atmosphere), moon(atmosphere, { mapSize: 16 }))
+      atmosphere.add(sunFlare(), moon({ mapSize: 16 }))
       const scene = new Scene()
       const background = skyBackground(atmosphere)
       scene.backgroundNode = background

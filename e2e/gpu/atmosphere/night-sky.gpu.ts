@@ -95,7 +95,9 @@ gpuTest(
   async t => {
     const vega = brightStars().find(({ ascension }) => Math.abs(ascension - 4.87356) < 1e-3) as Star
     const renderer = await t.createRenderer()
-    const atmosphere = stellarAtmosphere().add(new Stars([{ ...vega, colorIndex: 0 }]))
+    const atmosphere = stellarAtmosphere().add(
+      new Stars({ catalogue: [{ ...vega, colorIndex: 0 }] })
+    )
     const scene = new Scene()
     scene.backgroundNode = skyBackground(atmosphere)
     for (const [width, height, fov] of [
@@ -268,7 +270,7 @@ gpuTest('dims stars by the air in a night that no day came before', async t => {
     }
     const atmosphere = new Atmosphere().setSunAngles(-60, 270)
     atmosphere.luminanceScale = 1
-    atmosphere.add(new Stars([star]))
+    atmosphere.add(new Stars({ catalogue: [star] }))
     const camera = new PerspectiveCamera(fov, width / height, 1, 1e6)
     camera.position.y = 2
     camera.lookAt(new Vector3(Math.cos(angle), Math.sin(angle), 0).add(camera.position))

@@ -2,12 +2,12 @@ import {
   Atmosphere,
   AtmosphereParameters,
   SunDirectionalLight,
-  airlessBody,
-  marsAtmosphere,
+  airlessParameters,
+  marsParameters,
   planetGround,
   skyBackground,
   skyLuminanceAt,
-  venusAtmosphere
+  venusParameters
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import {
@@ -50,7 +50,7 @@ gpuTest('draws the limb from 400 km within 5 % of the march', async t => {
   const renderer = await t.createRenderer({ width: size[0], height: size[1] })
   for (const [name, parameters] of [
     ['Earth', new AtmosphereParameters()],
-    ['Earth, turbidity 6', AtmosphereParameters.earth({ turbidity: 6 })]
+    ['Earth, turbidity 6', new AtmosphereParameters({ turbidity: 6 })]
   ] as const) {
     const radius = parameters.bottomRadius
     const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
@@ -113,7 +113,7 @@ gpuTest('puts the ground where float64 does, from 2 m to 20,000 km', async t => 
   const size = [64, 36]
   const renderer = await t.createRenderer({ width: size[0], height: size[1] })
   const { a, b } = Ellipsoid.WGS84
-  const parameters = airlessBody({ radius: a })
+  const parameters = airlessParameters({ radius: a })
   const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(a, a, b) })
   const columns = 3600
   const map = stripes(columns)
@@ -245,7 +245,7 @@ gpuTest('feeds the mean albedo of its ground to the air', async t => {
 
 gpuTest('shows a body without air: black sky, sun, sunlit ground', async t => {
   const renderer = await t.createRenderer({ width: 64, height: 36 })
-  const parameters = airlessBody()
+  const parameters = airlessParameters()
   const { bottomRadius } = parameters
   const ellipsoid = new Ellipsoid(bottomRadius, bottomRadius)
   const atmosphere = new Atmosphere({ parameters, ellipsoid }).setSunAngles(10, 0)
@@ -275,7 +275,7 @@ gpuTest('keeps two atmospheres in one scene apart', async t => {
   const renderer = await t.createRenderer(size)
   const earth = new Atmosphere().setSunAngles(30, 40)
   const mars = new Atmosphere({
-    parameters: marsAtmosphere(),
+    parameters: marsParameters(),
     ellipsoid: new Ellipsoid(3_396_190, 3_376_200)
   })
   // A red planet 20,000 km overhead.
@@ -332,7 +332,7 @@ gpuTest('keeps up and the sky of a flat world wherever the camera goes', async t
 
 gpuTest('draws only light on Venus, from the clouds to space', async t => {
   const renderer = await t.createRenderer({ width: 32, height: 18 })
-  const parameters = venusAtmosphere()
+  const parameters = venusParameters()
   const { bottomRadius } = parameters
   const ellipsoid = new Ellipsoid(bottomRadius, bottomRadius)
   const atmosphere = new Atmosphere({ parameters, ellipsoid })

@@ -2,7 +2,7 @@ import {
   aerialPerspectiveFog,
   Atmosphere,
   AtmosphereParameters,
-  atmosphereShell,
+  AtmosphereShell,
   milkyWay,
   NightLightProbe,
   skyBackground,
@@ -53,7 +53,7 @@ gpuTest('says what to use in place of a WebGLRenderer', async t => {
     SunDirectionalLight: new SunDirectionalLight(atmosphere),
     SkyLightProbe: new SkyLightProbe(atmosphere),
     NightLightProbe: new NightLightProbe(atmosphere),
-    AtmosphereShell: atmosphereShell(AtmosphereParameters.earth(), 1)!
+    AtmosphereShell: new AtmosphereShell(new AtmosphereParameters(), 1)
   }
   for (const [name, thing] of Object.entries(things)) {
     const ball = new Mesh(new SphereGeometry(), new MeshStandardMaterial())

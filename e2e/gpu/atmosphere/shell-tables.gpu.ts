@@ -1,4 +1,4 @@
-import { AtmosphereParameters, atmosphereShell } from '@welkin/atmosphere'
+import { AtmosphereParameters, AtmosphereShell } from '@welkin/atmosphere'
 import { Scene, Vector3 } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { expectLight, relativeDifferences } from '../harness/atmosphere'
@@ -25,7 +25,7 @@ gpuTest('bakes once for all shells of the same parameters', async t => {
   const parameters = new AtmosphereParameters()
   const sun = new Vector3(0.3, 1, 0.2)
   const make = (shared = parameters) => {
-    const shell = atmosphereShell(shared, 1, { sun })
+    const shell = new AtmosphereShell(shared, 1, { sun })
     if (shell === null) throw new Error('the Earth has air')
     return shell
   }

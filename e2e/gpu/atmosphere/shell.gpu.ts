@@ -1,8 +1,8 @@
 import {
   Atmosphere,
   AtmosphereParameters,
-  airlessBody,
-  atmosphereShell,
+  airlessParameters,
+  AtmosphereShell,
   skyBackground
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
@@ -64,7 +64,7 @@ gpuTest('is the same sky as the background, inside and outside the air', async t
       background.showSun = false
       scene.backgroundNode = background
       const expected = await drawForward(renderer, scene, camera, atmosphere)
-      const shell = atmosphereShell(parameters, RADIUS, { sun: atmosphere })!
+      const shell = new AtmosphereShell(parameters, RADIUS, { sun: atmosphere })
       const alone = new Scene().add(shell)
       const picture = await draw(renderer, alone, camera)
       // Where there is light: a hundredth of the brightest is dusk, which eight steps only sketch.
@@ -207,7 +207,7 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
 }
 
 gpuTest('is not there for a body without air, and frees what it took', async t => {
-  expectTrue(atmosphereShell(airlessBody(), 1) === null, 'the Moon has a shell')
+  expectTrue(!new AtmosphereShell(airlessParameters(), 1).visible, 'the Moon has a shell')
   const renderer = await t.createRenderer(size)
   const { scene, globe, shell } = body(1, {})
   const camera = cameraAt(3, 1, -1.5)
@@ -227,19 +227,28 @@ gpuTest('is not there for a body without air, and frees what it took', async t =
 
 gpuTest('names what is wrong with its arguments', () => {
   const parameters = new AtmosphereParameters()
-  const right = atmosphereShell(parameters, 1)!
+  const right = new AtmosphereShell(parameters, 1)
   const wrong = [null, 'noon', 3, {}, [], new Vector3(NaN, 1, 0), new Vector3()] as never[]
   for (const [make, message] of [
-    [() => atmosphereShell(parameters, 0), /AtmosphereShell: bodyRadius must be positive.*got 0/],
     [
-      () => atmosphereShell(null as never, 1),
+      () => new AtmosphereShell(parameters, 0),
+      /AtmosphereShell: bodyRadius must be positive.*got 0/
+    ],
+    [
+      () => new AtmosphereShell(null as never, 1),
       /parameters must be AtmosphereParameters, got object/
     ],
-    [() => atmosphereShell(parameters, 1, { model: 'none' as never }), /model must be .*got none/],
-    [() => atmosphereShell(parameters, 1, { luminanceScale: NaN }), /luminanceScale .*NaN/],
+    [
+      () => new AtmosphereShell(parameters, 1, { model: 'none' as never }),
+      /model must be .*got 'none'/
+    ],
+    [() => new AtmosphereShell(parameters, 1, { luminanceScale: NaN }), /luminanceScale .*NaN/],
     [() => (right.luminanceScale = -1), /AtmosphereShell: luminanceScale must be positive.*got -1/],
     ...wrong.flatMap(sun => [
-      [() => atmosphereShell(parameters, 1, { sun }), /AtmosphereShell: sun must be an.*, got ./],
+      [
+        () => new AtmosphereShell(parameters, 1, { sun }),
+        /AtmosphereShell: sun must be an.*, got ./
+      ],
       [() => (right.sun = sun), /AtmosphereShell: sun must be an.*, got ./]
     ])
   ] as [() => unknown, RegExp][]) {

@@ -3,8 +3,8 @@ import { CloudField, CloudLayers, cloudPreset } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
 import { float, Loop, vec3 } from 'three/tsl'
 import type { Node, NodeFrame } from 'three/webgpu'
-import { cloudColumn } from '../../../packages/clouds/src/density/tsl/columns'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/density'
+import { verticalOpticalDepth } from '../../../packages/clouds/src/density/tsl/columns'
+import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { CloudColumns, highestPeak, PlanetColumns } from '../harness/cloud-columns'
 import { cloudScene, mean, places, worldMap } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -234,7 +234,7 @@ gpuTest('has no seam in a world map', async t => {
     const results = await evaluateOnGpu(renderer, inputs, input => {
       const offset = input.xyz.toConst() as unknown as Node<'vec3'>
       const { altitude, up } = field.view.place(offset)
-      return cloudColumn(field, { offset, altitude, up, distance: input.w })
+      return verticalOpticalDepth(field, { offset, altitude, up, distance: input.w })
     })
     const depths = inputs.map((_, i) => results[4 * i])
     expectFinite(depths)

@@ -6,15 +6,12 @@ import type { Node } from 'three/webgpu'
 import { cloudExtinction as extinctionTwin } from '../../../packages/clouds/test/twins/density'
 import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../../packages/clouds/src/noise/noiseSizes'
-import { cloudColumn } from '../../../packages/clouds/src/density/tsl/columns'
-import {
-  clearanceAt,
-  cloudBound,
-  cloudExtinction
-} from '../../../packages/clouds/src/density/tsl/density'
+import { verticalOpticalDepth } from '../../../packages/clouds/src/density/tsl/columns'
+import { cloudBound } from '../harness/cloud-bound'
+import { cloudExtinction, emptyDistanceAt } from '../../../packages/clouds/src/density/tsl/sampler'
 import { random } from '../harness/atmosphere'
 import { CloudColumns } from '../harness/cloud-columns'
-import { cloudScene, mean, offsets, places, worldMap } from '../harness/cloud-scene'
+import { cloudScene, mean, altitudeIn, offsets, places, worldMap } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectFinite, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -59,15 +56,6 @@ gpuTest('bakes the noise that float64 computes, levels of detail and all', async
   }
   field.dispose()
 })
-
-/** Altitudes in one of the layers each, by a number in [0, 1). */
-const altitudeIn =
-  (layers: CloudLayers) =>
-  (share: number): number => {
-    const place = layers.length * share
-    const { baseAltitude, topAltitude } = layers.at(Math.floor(place)).parameters
-    return baseAltitude + (topAltitude - baseAltitude) * (place % 1)
-  }
 
 for (const [where, place] of places) {
   gpuTest(`puts clouds where float64 does ${where}`, async t => {
@@ -145,7 +133,7 @@ gpuTest('bounds the density from above, in every preset', async t => {
       const offset = input.xyz.toConst() as unknown as Node<'vec3'>
       const { altitude, up } = scene.field.view.place(offset)
       const sample = { offset, altitude, up, distance: input.w }
-      const column = cloudColumn(scene.field, sample)
+      const column = verticalOpticalDepth(scene.field, sample)
       return vec4(
         cloudBound(scene.field, sample),
         cloudExtinction(scene.field, sample, true),
@@ -174,7 +162,7 @@ gpuTest('has clear air as far as it says', async t => {
     const results = await evaluateOnGpu(scene.renderer, inputs, input => {
       const offset = input.xyz.toConst() as unknown as Node<'vec3'>
       const here = { offset, ...field.view.place(offset), distance: input.w }
-      const clearance = clearanceAt(field, here).toConst()
+      const emptyDistance = emptyDistanceAt(field, here).toConst()
       const most = float(0).toVar()
       const count = 24
       Loop(count, ({ i }) => {
@@ -188,21 +176,21 @@ gpuTest('has clear air as far as it says', async t => {
         const across = z.mul(z).oneMinus().sqrt()
         const angle = index.mul(2.399963)
         const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
-        const radius = clearance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
+        const radius = emptyDistance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
         const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
         most.assign(most.max(scene.extinction(there, input.w, true)))
       })
-      return vec4(clearance, most, scene.extinction(offset, input.w, true), 1)
+      return vec4(emptyDistance, most, scene.extinction(offset, input.w, true), 1)
     })
     let clear = 0
     inputs.forEach((_, i) => {
-      const [clearance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
-      expectTrue(clearance >= 0, `${name}: a clearance of ${clearance}`)
+      const [emptyDistance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
+      expectTrue(emptyDistance >= 0, `${name}: an empty distance of ${emptyDistance}`)
       expectTrue(
-        clearance === 0 || most === 0,
-        `${name}: ${most} within ${clearance} m of clear air`
+        emptyDistance === 0 || most === 0,
+        `${name}: ${most} within ${emptyDistance} m of clear air`
       )
-      if (clearance > 100 && extinction === 0) clear++
+      if (emptyDistance > 100 && extinction === 0) clear++
     })
     t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
     expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
@@ -260,7 +248,7 @@ gpuTest('gives numbers for any parameters', async t => {
       return vec4(
         cloudExtinction(scene.field, sample, true),
         cloudBound(scene.field, sample),
-        cloudColumn(scene.field, sample),
+        verticalOpticalDepth(scene.field, sample),
         1
       )
     })

@@ -3,7 +3,7 @@ import { CloudLayers, CloudNoise, cloudPreset, cloudQualities, clouds } from '@w
 import { PerspectiveCamera, Vector3, type Quaternion } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { latticeRotation } from '../../../packages/clouds/src/density/lattice'
+import { latticeRotations } from '../../../packages/clouds/src/density/lattice'
 import { drawToFloat } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -52,7 +52,7 @@ function axesOf(atmosphere: Atmosphere, turn: Quaternion): Map<string, number> {
     atmosphere.space.direction(new Vector3(x, 0, z), new Vector3())
   const [right, back] = [inMapped(1, 0), inMapped(0, 1)]
   const axes = new Map<string, number>()
-  for (const [name, rotation] of Object.entries(latticeRotation)) {
+  for (const [name, rotation] of Object.entries(latticeRotations)) {
     for (const axis of [0, 1, 2]) {
       const normal = new Vector3()
         .setComponent(axis, 1)
@@ -100,7 +100,7 @@ gpuTest(
         await nextFrame()
         const picture = await drawToFloat(renderer, () => pipeline.render())
         const light = straighten(picture, camera, square, size)
-        const axes = axesOf(atmosphere, node.field.turns[0])
+        const axes = axesOf(atmosphere, node.field.rotations[0])
         const seen = contrasts(light, size, 12)
         const sky = alignment(seen.values, size, longest)
         const along = [...axes].map(([axis, angle]) => ({ axis, power: sky.along(angle) }))

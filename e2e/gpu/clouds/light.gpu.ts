@@ -49,27 +49,27 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
       const results = await evaluateOnGpu(renderer, inputs, input =>
         vec4(
           cloudSource(light.nodes, {
-            depthToSun: input.x,
+            depthToLight: input.x,
             depthThrough: input.y,
             depthAcross: input.y.mul(1.3),
             depthToEye: float(0.3),
             layered: float(layered),
-            cosSun: float(cosSun),
+            cosLight: float(cosSun),
             cosView: input.z,
-            cosViewSun: input.w
+            cosViewLight: input.w
           })
         )
       )
-      const expected = inputs.map(([depthToSun, depthThrough, cosView, cosViewSun]) =>
+      const expected = inputs.map(([depthToLight, depthThrough, cosView, cosViewLight]) =>
         twin.cloudSource(light.phase, table, {
-          depthToSun,
+          depthToLight,
           depthThrough,
           depthAcross: 1.3 * depthThrough,
           depthToEye: 0.3,
           layered,
-          cosSun,
+          cosLight: cosSun,
           cosView,
-          cosViewSun
+          cosViewLight
         })
       )
       // Texels are half floats, and filtered at their positions' 1/256.
@@ -148,12 +148,12 @@ gpuTest('gives no NaN at the ends of its domain', async t => {
         )
         const source = cloudSource(light.nodes, {
           ...sample,
-          depthToSun: input.x,
+          depthToLight: input.x,
           depthThrough: input.y,
           depthAcross: input.y,
           depthToEye: input.x,
-          cosSun: float(cosSun),
-          cosViewSun: input.w
+          cosLight: float(cosSun),
+          cosViewLight: input.w
         })
         return vec4(source, ambient.x, 0, 0)
       })

@@ -22,7 +22,7 @@ const quality: CloudQuality = {
   stepGrowth: 0.06,
   shortestStep: 40,
   layerSteps: 6,
-  sunSteps: 2,
+  lightSteps: 2,
   block: 2
 }
 const presets: CloudPresetName[] = ['fairWeather', 'overcast', 'cumulonimbus', 'mixed']

@@ -38,7 +38,7 @@ const coarse: CloudQuality = {
   stepGrowth: 0.08,
   shortestStep: 40,
   layerSteps: 6,
-  sunSteps: 1,
+  lightSteps: 1,
   block: 2
 }
 

@@ -3,7 +3,7 @@ import { CloudLightTable, CloudNoise, cloudPreset, cloudShadow, clouds } from '@
 import { Mesh, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/density'
+import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { CloudField } from '../../../packages/clouds/src/density/CloudField'
 import { CloudShadowMap } from '../../../packages/clouds/src/shadow/CloudShadowMap'
 import { sampleShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
@@ -137,8 +137,8 @@ gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
       const sample = { offset, ...field.view.place(offset), distance: float(15_000).toConst() }
       marched.addAssign(cloudExtinction(field, sample, false).mul(to.sub(from)))
     })
-    const { toSun, through, known } = sampleShadows(shadows.nodes, start, float(0))
-    return vec4(toSun, marched, through, known)
+    const { toLight, through, known } = sampleShadows(shadows.nodes, start, float(0))
+    return vec4(toLight, marched, through, known)
   })
   let [apart, lit, wronglyDark, dark, wronglyLit] = [0, 0, 0, 0, 0]
   places.forEach((_, i) => {

@@ -9,7 +9,7 @@ import {
 import {
   CloudLightTable,
   CloudNoise,
-  cloudOverlay,
+  cloudEnvironment,
   cloudPreset,
   clouds,
   cloudShadow,
@@ -49,7 +49,7 @@ const quality: CloudQuality = {
   stepGrowth: 0.06,
   shortestStep: 40,
   layerSteps: 6,
-  sunSteps: 1,
+  lightSteps: 1,
   block: 1
 }
 
@@ -76,11 +76,11 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
   const rows = Array.from({ length: 128 }, () =>
     [20 * next() ** 2, 0.05 + 0.95 * next(), 20 * next() ** 2, 2 * next() - 1].map(Math.fround)
   )
-  const diffusing = 0.52
+  const oneMinusAsymmetry = 0.52
   const [sun, sky, albedo] = [0.7, 0.2, 0.25]
   const found = await evaluateOnGpu(renderer, rows, ({ x, y, z, w }) => {
-    const above = eddington(x, y, float(diffusing))
-    const below = eddington(z, y, float(diffusing))
+    const above = eddington(x, y, float(oneMinusAsymmetry))
+    const below = eddington(z, y, float(oneMinusAsymmetry))
     const light = cloudyIrradiance(
       {
         sun: { above: vec4(sun).mul(y), below: vec4(sun * 0.9).mul(y) },
@@ -96,8 +96,8 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
     return vec4(above.diffuse, above.direct, light.x, 0)
   })
   const expected = rows.flatMap(([over, mu, under, cosNormal]) => {
-    const sheet = (thickness: number): twin.CloudSheet =>
-      twin.stackSheets([{ thickness, cover: 1 }], mu, diffusing)
+    const deck = (thickness: number): twin.CloudDeck =>
+      twin.stackDecks([{ thickness, cover: 1 }], mu, oneMinusAsymmetry)
     const light = twin.cloudyIrradiance(
       {
         sun: { above: sun * mu, below: 0.9 * sun * mu },
@@ -106,11 +106,11 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
         plane: sky / 2,
         albedo
       },
-      sheet(over),
-      sheet(under),
+      deck(over),
+      deck(under),
       cosNormal
     )
-    return [sheet(over).diffuse, sheet(over).direct, light, 0]
+    return [deck(over).diffuse, deck(over).direct, light, 0]
   })
   expectClose(found, expected, { relative: 1e-4, absolute: 1e-5 })
 })
@@ -194,7 +194,7 @@ gpuTest(
     renderer.shadowMap.enabled = true
     const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
     const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
-    const luna = moon(atmosphere, { lightsAir: false })
+    const luna = moon({ lightsAir: false })
     luna.direction = towards(40, 100)
     atmosphere.add(luna)
     const camera = new PerspectiveCamera(50, size.width / size.height, 0.1, 1e4)
@@ -296,7 +296,7 @@ gpuTest(
     expectTrue(below > 1.5 * clearBelow, `from below ${below}, without clouds ${clearBelow}`)
 
     // The same clouds in a mirror, and as the light that they send down.
-    const overlay = cloudOverlay(node, { size: 48, quality })
+    const overlay = cloudEnvironment(node, { size: 48, quality })
     const environment = skyEnvironment(atmosphere, { overlay, diffuse: false })
     plane.material = new MeshStandardMaterial({ metalness: 1, roughness: 0 }) as never
     scene.environmentNode = environment

@@ -2,7 +2,7 @@ import { FloatType, RenderTarget } from 'three'
 import { exp, float, Fn, Loop, screenCoordinate, uniform, vec3 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type WebGPURenderer } from 'three/webgpu'
 import type { CloudField, CloudLayerParameters } from '@welkin/clouds'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/density'
+import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { powerSpectrum } from '../../validate/power-spectrum'
 import { readPicture } from './picture'
 

@@ -10,7 +10,7 @@ import {
 } from 'three'
 import type { Node, NodeFrame, WebGPURenderer } from 'three/webgpu'
 import type { CloudState } from '../../../packages/clouds/test/twins/density'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/density'
+import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { random } from './atmosphere'
 import type { GpuContext } from './context'
 import { expectTrue } from './expect'
@@ -68,7 +68,7 @@ export async function cloudScene(
     },
     state: () => ({
       layers: [...layers].map(layer => layer.parameters),
-      turns: field.turns,
+      rotations: field.rotations,
       bottomRadius: atmosphere.parameters.bottomRadius,
       pixelAngle: field.pixelAngle.value,
       axialRatio: field.axialRatio,
@@ -151,3 +151,12 @@ export const places: [string, Place][] = [
   ['at the date line', { longitude: 180, latitude: -17 }],
   ['at the pole', { longitude: 0, latitude: 90 }]
 ]
+
+/** Altitudes in one of the layers each, by a number in [0, 1). */
+export const altitudeIn =
+  (layers: CloudLayers) =>
+  (share: number): number => {
+    const place = layers.length * share
+    const { baseAltitude, topAltitude } = layers.at(Math.floor(place)).parameters
+    return baseAltitude + (topAltitude - baseAltitude) * (place % 1)
+  }

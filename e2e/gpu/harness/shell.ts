@@ -1,6 +1,6 @@
 import {
   AtmosphereParameters,
-  atmosphereShell,
+  AtmosphereShell,
   type AtmosphereShellOptions
 } from '@welkin/atmosphere'
 import {
@@ -26,8 +26,7 @@ export function body(radius: number, options: AtmosphereShellOptions, color = 0x
   const globe = new Mesh(new SphereGeometry(1, 256, 128), new MeshBasicMaterial({ color }))
   globe.scale.setScalar(radius)
   scene.add(globe)
-  const shell = atmosphereShell(new AtmosphereParameters(), 1, options)
-  if (shell === null) throw new Error('the Earth has air')
+  const shell = new AtmosphereShell(new AtmosphereParameters(), 1, options)
   globe.add(shell)
   return {
     scene,

@@ -46,20 +46,20 @@ function march(length: Float, source: (depth: Float) => Float): Float {
 
 function slabRadiance(light: CloudLight, input: Vec4): Float {
   const thickness = input.x.mul(light.depthScale).toConst()
-  const [cosSun, cosView, cosViewSun] = [input.y, input.z, input.w]
+  const [cosLight, cosView, cosViewLight] = [input.y, input.z, input.w]
   const slope = cosView.abs().toConst()
   return march(thickness.div(slope), depthToEye => {
     const below = depthToEye.mul(slope)
     const depth = cosView.greaterThan(0).select(thickness.sub(below), below)
     return cloudSource(light, {
-      depthToSun: depth.div(cosSun),
-      depthThrough: thickness.div(cosSun),
+      depthToLight: depth.div(cosLight),
+      depthThrough: thickness.div(cosLight),
       depthAcross: float(0),
       depthToEye,
       layered: float(1),
-      cosSun,
+      cosLight,
       cosView,
-      cosViewSun
+      cosViewLight
     })
   })
 }
@@ -79,15 +79,15 @@ function sphereRadiance(light: CloudLight, input: Vec4): Float {
     const fromAxis = offAxis.add(z.mul(z)).sub(towardsSun.mul(towardsSun))
     const chord = square.sub(fromAxis).max(0).sqrt().toConst()
     return cloudSource(light, {
-      depthToSun: chord.sub(towardsSun).max(0),
+      depthToLight: chord.sub(towardsSun).max(0),
       depthThrough: chord.mul(2),
       depthAcross: radius.mul(2),
       depthToEye,
       layered: float(0),
       // There is no up.
-      cosSun: float(1),
+      cosLight: float(1),
       cosView: cosine,
-      cosViewSun: cosine
+      cosViewLight: cosine
     })
   })
 }

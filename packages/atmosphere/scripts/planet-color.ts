@@ -12,8 +12,8 @@ import {
 import type { Triple } from '../src/air/cpu/color'
 import { skyRadiance } from '../src/scattering/cpu/scattering'
 import { solveDiffuseLight } from '../src/diffuseLight/cpu/solveDiffuseLight'
-import { marsAtmosphere, titanAtmosphere, venusAtmosphere } from '../src/parameters/planets'
-import { standardAtmosphere } from '../src/parameters/standardAtmosphere'
+import { marsParameters, titanParameters, venusParameters } from '../src/parameters/planets'
+import { standardEarthParameters } from '../src/parameters/standardEarth'
 import { spectrumToXYZ, standardAt, sunlight, wavelengths } from './spectra'
 
 /** A value at any wavelength from those at four: straight lines, carried on beyond the ends. */
@@ -62,12 +62,12 @@ const quality = {
 const DAY = [20, 60, 80, 86]
 
 for (const { name, planet, suns = DAY, atWavelengths = at } of [
-  { name: 'Mars', planet: marsAtmosphere() },
-  { name: 'Titan', planet: titanAtmosphere() },
-  { name: 'Venus', planet: venusAtmosphere() },
+  { name: 'Mars', planet: marsParameters() },
+  { name: 'Titan', planet: titanParameters() },
+  { name: 'Venus', planet: venusParameters() },
   {
     name: 'Standard',
-    planet: standardAtmosphere(),
+    planet: standardEarthParameters(),
     suns: [...DAY, 90, 93, 96],
     atWavelengths: (_: AtmosphereParameters, nm: readonly number[]) => standardAt(nm)
   }

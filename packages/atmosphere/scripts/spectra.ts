@@ -4,8 +4,8 @@ import type { Triple } from '../src/air/cpu/color'
 import {
   ANGSTROM_EXPONENT,
   rayleighCrossSection,
-  standardAtmosphere
-} from '../src/parameters/standardAtmosphere'
+  standardEarthParameters
+} from '../src/parameters/standardEarth'
 
 const spectra = JSON.parse(
   readFileSync(new URL('../../../e2e/reference/spectra.json', import.meta.url), 'utf8')
@@ -70,9 +70,9 @@ export function earthAt(nm: readonly number[], groundAlbedo = 0.1): AtmospherePa
   })
 }
 
-/** Air of `standardAtmosphere` at four of {@link wavelengths}. */
+/** Air of `standardEarthParameters` at four of {@link wavelengths}. */
 export function standardAt(nm: readonly number[]): AtmosphereParameters {
-  const air = standardAtmosphere()
+  const air = standardEarthParameters()
   const [first] = air.wavelengths
   const aerosols = (x: number): number => (x / first) ** -ANGSTROM_EXPONENT
   return air.set({

@@ -12,6 +12,7 @@ import {
   Ellipsoid,
   fail,
   Geodetic,
+  setOptions,
   sunDirectionECEF
 } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
@@ -31,18 +32,49 @@ import type { Triple } from './air/cpu/color'
 
 /** Options of {@link Atmosphere}. */
 export interface AtmosphereOptions {
-  /** What the air is made of; by default the Earth's. Shared, not copied. */
+  /** Composition of the air; by default the Earth's. Shared, not copied. */
   parameters?: AtmosphereParameters
-  /** The planet's figure; by default WGS84. */
+  /** The planet's figure; by default that of the parameters. */
   ellipsoid?: Ellipsoid
   /** See {@link Atmosphere.flat}; by default false. */
   flat?: boolean
+  /** See {@link Atmosphere.frame}; by default `'local'`. */
+  frame?: AtmosphereFrame
+  /** See {@link Atmosphere.metersPerUnit}; by default 1. */
+  metersPerUnit?: number
+  /** See {@link Atmosphere.luminanceScale}; by default 1e-4. */
+  luminanceScale?: number
+  /** See {@link Atmosphere.bakeStepsPerFrame}; by default infinity. */
+  bakeStepsPerFrame?: number
+  /** See {@link Atmosphere.date}; by default null. */
+  date?: Date | null
 }
 
-/** How the scene's world space lies on the planet. */
+/** Options that may change later. */
+const SETTINGS = [
+  'flat',
+  'frame',
+  'metersPerUnit',
+  'luminanceScale',
+  'bakeStepsPerFrame',
+  'date'
+] as const
+
+/** Lie of the scene's world space on the planet. */
 export type AtmosphereFrame = 'local' | 'ecef'
 
 const FULL: Spectrum = [1, 1, 1, 1]
+
+/** The parameters' own figure, WGS84 where they are of the Earth's size, or a sphere. */
+function ellipsoidOf(parameters: AtmosphereParameters): Ellipsoid {
+  checkParameters('Atmosphere', parameters)
+  const { bottomRadius, ellipsoid } = parameters
+  if (ellipsoid !== null) return ellipsoid
+  return isNear(bottomRadius, Ellipsoid.WGS84) ? Ellipsoid.WGS84 : new Ellipsoid(bottomRadius)
+}
+
+const isNear = (radius: number, { radii }: Ellipsoid): boolean =>
+  Math.abs(radius / radii.x - 1) <= 0.02
 
 const _position = new Vector3()
 const _rotation = new Matrix4()
@@ -63,7 +95,7 @@ const _rotation = new Matrix4()
 export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   /** For type testing. */
   readonly isAtmosphere = true
-  /** What the air is made of. Change it with `parameters.set(…)`. */
+  /** Composition of the air. Change it with `parameters.set(…)`. */
   readonly parameters: AtmosphereParameters
   /** The planet's figure. */
   readonly ellipsoid: Ellipsoid
@@ -80,7 +112,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   #date: Date | null = null
   readonly #sunECEF = new Vector3()
   readonly #sunWorld = new Vector3(1, Math.SQRT2, 1).normalize()
-  /** What is kept on the GPU. */
+  /** Tables on the GPU. */
   readonly tables = new AtmosphereTables()
   /** The sun as a source of light; its `irradiance` dims in an eclipse. */
   readonly sun = new LightSource(target => target.copy(this.sunDirection), this.tables.volumes)
@@ -97,18 +129,18 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     }
     const {
       parameters = new AtmosphereParameters(),
-      ellipsoid = Ellipsoid.WGS84,
-      flat = false
-    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', 'flat')
+      ellipsoid = ellipsoidOf(parameters),
+      ...settings
+    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
     checkParameters('Atmosphere', parameters)
     checkEllipsoid('Atmosphere', ellipsoid)
     const { bottomRadius } = parameters
-    if (Math.abs(bottomRadius / ellipsoid.radii.x - 1) > 0.02) {
+    if (!isNear(bottomRadius, ellipsoid)) {
       fail('Atmosphere', 'bottomRadius must be near that of the ellipsoid', bottomRadius)
     }
     this.parameters = parameters
     this.ellipsoid = ellipsoid
-    this.flat = flat
+    this.set(settings)
     this.sun.irradianceAt = position =>
       this.#layers.reduce<Spectrum>((light, layer) => {
         const left = layer.eclipse?.(position)
@@ -118,7 +150,16 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   /**
-   * Whether the world is flat: up is +Y wherever the camera goes, and height is y. For scenes with no
+   * Changes some settings.
+   *
+   * @throws If one is unknown or refused; then nothing has changed.
+   */
+  set(settings: Pick<AtmosphereOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('Atmosphere', this, settings, ...SETTINGS)
+  }
+
+  /**
+   * Flat world: up is +Y wherever the camera goes, and height is y. For scenes with no
    * planet, however far they reach.
    *
    * It looks just as it does at the origin of a round world, the horizon's dip and the reddening of a
@@ -213,7 +254,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     this.worldToECEF.scale(_position.setScalar(unit))
   }
 
-  /** When it is, a copy: the sun follows. Null if the sun's direction was set by hand. */
+  /** Date that sun, moon and stars follow; a copy. Null if the sun's direction was set by hand. */
   get date(): Date | null {
     return this.#date && new Date(this.#date)
   }
@@ -298,7 +339,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
     return this.#views.get(source)?.get(camera)
   }
 
-  /** What is in the sky besides air and sun, from far to near. */
+  /** Layers of the sky besides air and sun, from far to near. */
   get layers(): readonly SkyLayer[] {
     return this.#layers
   }
@@ -316,18 +357,16 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
    * yours around background or fog when its own is.
    *
    * @returns This atmosphere.
-   * @throws If something is no layer, made for another atmosphere, or there already; then nothing is added.
+   * @throws If something is no layer, another atmosphere's, or there already; then nothing is added.
    */
   add(...layers: SkyLayer[]): this {
     for (const layer of layers) {
       checkLayer('Atmosphere.add', layer)
-      if ((layer.atmosphere ?? this) !== this) {
-        fail('Atmosphere.add', 'layer must be made for this atmosphere', layer)
-      }
     }
     const all = [...this.#layers, ...layers]
     const twice = all.find((layer, i) => all.indexOf(layer) < i)
     if (twice) fail('Atmosphere.add', 'layer must not be in the sky already', twice)
+    for (const layer of layers) layer.attach?.(this)
     this.#layers.push(...layers)
     this.#layersVersion++
     return this
@@ -360,7 +399,7 @@ export class Atmosphere extends EventDispatcher<{ dispose: object }> {
   }
 
   /**
-   * What answers questions about light, as things are now.
+   * Answers questions about light, as things are now.
    *
    * @param position - World: where light is asked about; by default the origin.
    * @param source - Whose light.

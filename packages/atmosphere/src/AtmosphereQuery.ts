@@ -14,7 +14,7 @@ export class AtmosphereQuery {
   readonly parameters: AtmosphereParameters
   readonly #space: SphericalSpace
   readonly #data: DiffuseLightData | null
-  /** Of the source of light, over the bare sun's. */
+  /** Irradiance of the source, over the bare sun's. */
   readonly #irradiance: Spectrum
   readonly sun: Vector3
 
@@ -32,7 +32,7 @@ export class AtmosphereQuery {
     this.sun = space.direction(sunWorld, new Vector3())
   }
 
-  /** Where a position [world] is in the mapped space. */
+  /** Place of a position [world] in the mapped space. */
   place(position: Vector3) {
     checkVector('Atmosphere', 'position', position)
     const up = this.#space.position(position, new Vector3())
@@ -57,7 +57,7 @@ export class AtmosphereQuery {
     return this.#data
   }
 
-  /** From values per unit of the source's irradiance. */
+  /** Linear sRGB from values per unit of the source's irradiance. */
   linearSRGB(perIrradiance: number[]): Triple {
     const { solarIrradiance } = this.parameters
     const values = perIrradiance.map((value, i) => value * solarIrradiance[i] * this.#irradiance[i])

@@ -59,7 +59,7 @@ export function checkCamera(where: string, camera: Camera): void {
   if (!camera?.isCamera) fail(where, 'camera must be a Camera', camera)
 }
 
-/** What every post effect takes. @throws If it is of another kind. */
+/** Checks the arguments of every post effect. @throws If one is of another kind. */
 export function checkPostEffect(where: string, color: Node, depth: Node, camera: Camera): void {
   if (!color?.isNode) fail(where, 'colorNode must be a node', color)
   if (!depth?.isNode) fail(where, 'depthNode must be a node', depth)

@@ -2,6 +2,7 @@ export { Atmosphere } from './Atmosphere'
 export type { AtmosphereFrame, AtmosphereOptions } from './Atmosphere'
 export { AtmosphereParameters } from './parameters/AtmosphereParameters'
 export type {
+  AtmosphereParametersFields,
   AtmosphereParametersInit,
   ScaleHeightLayers,
   SpectralMatrix,
@@ -34,27 +35,25 @@ export type { ExposureOptions } from './exposure/exposureFor'
 export { DayCycle } from './exposure/DayCycle'
 export type { DayCycleOptions } from './exposure/DayCycle'
 export { SunFlare, sunFlare } from './halo/SunFlare'
-export type { FlareOptions } from './halo/HaloUniforms'
+export { Flare, type FlareOptions } from './halo/Flare'
 export { Moon, moon } from './moon/Moon'
 export type { MoonAppearance, MoonOptions } from './moon/Moon'
 export { MoonDirectionalLight } from './moon/MoonDirectionalLight'
-export { moonIlluminanceAt, moonSkyIlluminanceAt } from './moon/moonIlluminance'
 export { PlanetGround, planetGround } from './ground/PlanetGround'
 export type { PlanetGroundOptions } from './ground/PlanetGround'
-export { AtmosphereShell, atmosphereShell } from './shell/AtmosphereShell'
+export { AtmosphereShell } from './shell/AtmosphereShell'
 export type { AtmosphereShellOptions, ShellSun } from './shell/AtmosphereShell'
 export {
-  airlessBody,
-  isAirless,
-  marsAtmosphere,
-  titanAtmosphere,
-  venusAtmosphere
+  airlessParameters,
+  marsParameters,
+  titanParameters,
+  venusParameters
 } from './parameters/planets'
-export { standardAtmosphere } from './parameters/standardAtmosphere'
+export { standardEarthParameters } from './parameters/standardEarth'
 export type { SkyOverlay } from './environment/SkyOverlay'
 export { SkyEnvironmentNode, skyEnvironment } from './environment/SkyEnvironmentNode'
 export type { SkyEnvironmentOptions } from './environment/SkyEnvironmentNode'
-export { ImageEnvironmentNode } from './environment/ImageEnvironmentNode'
+export { ImageEnvironmentNode, imageEnvironment } from './environment/ImageEnvironmentNode'
 export type { EnvironmentOptions } from './environment/ImageEnvironmentNode'
 export { HeightFog, heightFog } from './fog/HeightFog'
 export type { HeightFogOptions } from './fog/HeightFog'

@@ -10,6 +10,7 @@ import {
   heightFog,
   skyBackground,
   skyLuminanceAt,
+  moon,
   sunFlare
 } from '@welkin/atmosphere'
 import type { AtmosphereFrame } from '@welkin/atmosphere'
@@ -52,8 +53,8 @@ describe('Atmosphere', () => {
         'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got '
       )
     }
-    expect(() => atmosphere.add(sunFlare(new Atmosphere()))).toThrow(
-      'Atmosphere.add: layer must be made for this atmosphere, got a SunFlare'
+    expect(() => atmosphere.add(sunFlare(), moon().attach(new Atmosphere()))).toThrow(
+      'Moon.attach: atmosphere must be the one that it was added to before'
     )
     expect(atmosphere.layers).toEqual([])
   })

@@ -4,7 +4,7 @@ import { describe, expect, it } from 'vitest'
 import {
   aerialPerspective,
   airglow,
-  airlessBody,
+  airlessParameters,
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
@@ -13,7 +13,9 @@ import {
   exposureFor,
   exposureOfIlluminance,
   heightFog,
-  marsAtmosphere,
+  type HeightFog,
+  imageEnvironment,
+  marsParameters,
   milkyWay,
   moon,
   MoonDirectionalLight,
@@ -24,7 +26,7 @@ import {
   skyEnvironment,
   SkyLightProbe,
   skyLuminanceAt,
-  standardAtmosphere,
+  standardEarthParameters,
   Stars,
   stars,
   starsOverlay,
@@ -34,11 +36,15 @@ import {
 
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
-const luna = moon(atmosphere)
+const luna = moon().attach(atmosphere)
 const cycle = new DayCycle(atmosphere, { date: new Date('2026-06-21T12:00:00Z') })
 const fog = distanceFog()
 const ground = planetGround()
-const night = { stars: new Stars(proceduralStars({ count: 2 })), way: milkyWay(), glow: airglow() }
+const night = {
+  stars: new Stars({ catalogue: proceduralStars({ count: 2 }) }),
+  way: milkyWay(),
+  glow: airglow()
+}
 const flat = new Matrix4().set(
   ...(Array.from({ length: 16 }).fill(NaN) as Parameters<Matrix4['set']>)
 )
@@ -57,7 +63,7 @@ const cases: [message: string, call: () => unknown][] = [
   ['HeightFog: sources must be an array, got null', () => heightFog({ sources: wrong(null) })],
   [
     `DayCycle: sources[0] ${source}`,
-    () => new DayCycle(atmosphere, { exposure: { sources: [wrong(luna)] } })
+    () => new DayCycle(atmosphere, { exposureOptions: { sources: [wrong(luna)] } })
   ],
   [
     `exposureFor: sources[0] ${source}`,
@@ -76,9 +82,9 @@ const cases: [message: string, call: () => unknown][] = [
   // Exposure.
   [
     'DayCycle: floor must be positive and finite, got NaN',
-    () => new DayCycle(atmosphere, { exposure: { floor: NaN } })
+    () => new DayCycle(atmosphere, { exposureOptions: { floor: NaN } })
   ],
-  [`DayCycle: ${noOptions}`, () => new DayCycle(atmosphere, { exposure: wrong(null) })],
+  [`DayCycle: ${noOptions}`, () => new DayCycle(atmosphere, { exposureOptions: wrong(null) })],
   [
     'exposureFor: camera must be a Camera, got undefined',
     () => exposureFor(atmosphere, wrong(undefined))
@@ -95,7 +101,10 @@ const cases: [message: string, call: () => unknown][] = [
   ],
   ['PlanetGround: water must be a Texture', () => planetGround({ water: wrong({}) })],
   ['PlanetGround: nightLights must be a Texture', () => planetGround({ nightLights: wrong(1) })],
-  ['Stars: orientation must be a Matrix4', () => new Stars([], { orientation: wrong('north') })],
+  [
+    'Stars: orientation must be a Matrix4',
+    () => new Stars({ catalogue: [], orientation: wrong('north') })
+  ],
   ['Stars: orientation must be a Matrix4', () => (night.stars.orientation = wrong(undefined))],
   ['MilkyWay: orientation must be a Matrix4', () => milkyWay({ orientation: flat })],
 
@@ -127,18 +136,18 @@ const cases: [message: string, call: () => unknown][] = [
   ['PlanetGround: roughness must be in', () => planetGround({ roughness: wrong(null) })],
   ['NightLightProbe: illuminance must', () => new NightLightProbe(atmosphere, wrong(null))],
   ['Moon: strength must be finite', () => (luna.strength = wrong(null))],
-  ['Moon: phase must be in [0, 1], got []', () => moon(atmosphere, { phase: wrong([]) })],
-  ['SunFlare: innerStrength must be', () => sunFlare(atmosphere, { innerStrength: wrong(null) })],
+  ['Moon: phase must be in [0, 1], got []', () => moon({ phase: wrong([]) })],
+  ['SunFlare: innerStrength must be', () => sunFlare({ innerStrength: wrong(null) })],
   ['Atmosphere.setSunAngles: elevation must be in', () => atmosphere.setSunAngles(wrong(null), 0)],
   [
-    'standardAtmosphere: aerosolOpticalDepth must',
-    () => standardAtmosphere({ aerosolOpticalDepth: wrong(null) })
+    'standardEarthParameters: aerosolOpticalDepth must',
+    () => standardEarthParameters({ aerosolOpticalDepth: wrong(null) })
   ],
   [
-    'marsAtmosphere: dust must be in [0, 10], got null',
-    () => marsAtmosphere({ dust: wrong(null) })
+    'marsParameters: dust must be in [0, 10], got null',
+    () => marsParameters({ dust: wrong(null) })
   ],
-  ['airlessBody: distance must be in', () => airlessBody({ distance: wrong([]) })],
+  ['airlessParameters: distance must be in', () => airlessParameters({ distance: wrong([]) })],
   ['proceduralStars: faintest must be in', () => proceduralStars({ faintest: wrong(null) })],
   [
     'Atmosphere: sunDirection must have finite components, got (null, 1, 0)',
@@ -146,15 +155,21 @@ const cases: [message: string, call: () => unknown][] = [
   ],
 
   // Of another kind.
-  ['Moon: direction must be a Vector3', () => moon(atmosphere, { direction: wrong([0, 1, 0]) })],
+  ['Moon: direction must be a Vector3', () => moon({ direction: wrong([0, 1, 0]) })],
   ['Moon: direction must be a Vector3', () => (luna.direction = wrong(undefined))],
   [
     "DayCycle: date must be a valid Date, got '2026'",
     () => new DayCycle(atmosphere, { date: wrong('2026') })
   ],
-  ['Stars: catalogue must be an array of stars, got undefined', () => new Stars(wrong(undefined))],
-  ['Stars: ascension of star 0 must be finite, got undefined', () => new Stars([wrong({})])],
-  ['Stars: ascension of star 0 must be finite, got undefined', () => new Stars([wrong(null)])],
+  ['Stars: catalogue must be an array of stars, got undefined', () => new Stars(wrong({}))],
+  [
+    'Stars: ascension of star 0 must be finite, got undefined',
+    () => new Stars({ catalogue: [wrong({})] })
+  ],
+  [
+    'Stars: ascension of star 0 must be finite, got undefined',
+    () => new Stars({ catalogue: [wrong(null)] })
+  ],
   [
     'HeightFog: albedo must be an array of 4 values, got null',
     () => heightFog({ albedo: wrong(null) })
@@ -172,23 +187,23 @@ const cases: [message: string, call: () => unknown][] = [
   // No such option.
   [
     "SunFlare: unknown option 'typo', there are innerPower, innerStrength, outerPower, outerStrength",
-    () => sunFlare(atmosphere, wrong({ typo: 1 }))
+    () => sunFlare(wrong({ typo: 1 }))
   ],
   [
     "Moon: unknown option 'inerPower', did you mean 'innerPower'?",
-    () => moon(atmosphere, { flare: wrong({ inerPower: 3 }) })
+    () => moon({ flare: wrong({ inerPower: 3 }) })
   ],
   [
     "AtmosphereParameters: unknown option 'tubidity', did you mean 'turbidity'?",
-    () => AtmosphereParameters.earth(wrong({ tubidity: 3 }))
+    () => new AtmosphereParameters(wrong({ tubidity: 3 }))
   ],
   [
-    "standardAtmosphere: unknown option 'ozon', did you mean 'ozone'?",
-    () => standardAtmosphere(wrong({ ozon: 300 }))
+    "standardEarthParameters: unknown option 'ozon', did you mean 'ozone'?",
+    () => standardEarthParameters(wrong({ ozon: 300 }))
   ],
   [
-    "marsAtmosphere: unknown option 'dist', did you mean 'dust'?",
-    () => marsAtmosphere(wrong({ dist: 1 }))
+    "marsParameters: unknown option 'dist', did you mean 'dust'?",
+    () => marsParameters(wrong({ dist: 1 }))
   ],
 
   ...(
@@ -196,42 +211,58 @@ const cases: [message: string, call: () => unknown][] = [
       ['Atmosphere', 'paramaters', 'parameters', o => new Atmosphere(o)],
       ['AtmosphereParameters', 'mieScatering', 'mieScattering', o => new AtmosphereParameters(o)],
       ['AtmosphereParameters', 'groundAlbdo', 'groundAlbedo', o => parameters.set(o)],
-      ['AtmosphereParameters', 'ozon', 'ozone', o => parameters.setEarth(o)],
-      ['airlessBody', 'raduis', 'radius', o => airlessBody(o)],
+      ['AtmosphereParameters', 'ozon', 'ozone', o => parameters.set(o)],
+      ['airlessParameters', 'raduis', 'radius', o => airlessParameters(o)],
       ['DayCycle', 'rat', 'rate', o => new DayCycle(atmosphere, o)],
-      ['DayCycle', 'flor', 'floor', o => new DayCycle(atmosphere, { exposure: o })],
+      ['DayCycle', 'flor', 'floor', o => new DayCycle(atmosphere, { exposureOptions: o })],
       ['exposureFor', 'source', 'sources', o => exposureFor(atmosphere, camera, o)],
       ['HeightFog', 'densty', 'density', o => heightFog(o)],
       ['HeightFog', 'densty', 'density', o => heightFog().set(o)],
       ['DistanceFog', 'Density', 'density', o => distanceFog(o)],
       ['PlanetGround', 'surfce', 'surface', o => planetGround(o)],
-      ['Stars', 'overlays', 'overlay', o => new Stars([], o)],
+      ['Stars', 'overlays', 'overlay', o => new Stars(o)],
       ['Stars', 'orientatoin', 'orientation', o => stars(o)],
       ['proceduralStars', 'cuont', 'count', o => proceduralStars(o)],
       ['MilkyWay', 'orientaton', 'orientation', o => milkyWay(o)],
       ['Airglow', 'luminence', 'luminance', o => airglow(o)],
-      ['Moon', 'fase', 'phase', o => moon(atmosphere, o)],
+      ['Moon', 'fase', 'phase', o => moon(o)],
       ['SkyEnvironmentNode', 'sise', 'size', o => skyEnvironment(atmosphere, o)],
-      ['ImageEnvironmentNode', 'difuse', 'diffuse', o => skyEnvironment(new Texture(), o)],
+      ['ImageEnvironmentNode', 'difuse', 'diffuse', o => imageEnvironment(new Texture(), o)],
       ['AtmosphereShell', 'modle', 'model', o => new AtmosphereShell(parameters, 1, o)]
     ] satisfies [string, string, string, (options: never) => unknown][]
   ).map(
     ([where, misspelt, right, call]) =>
       [
-        `${where}: unknown ${/Scat|Alb/.test(misspelt) ? 'parameter' : 'option'} '${misspelt}', did you mean '${right}'?`,
+        `${where}: unknown option '${misspelt}', did you mean '${right}'?`,
         () => call(wrong({ [misspelt]: 1 }))
       ] as [string, () => unknown]
   ),
   [
-    "Atmosphere: unknown option 'sky', there are parameters, ellipsoid, flat",
-    () => new Atmosphere(wrong({ sky: 1 }))
+    "Atmosphere: unknown option 'ocean', there are parameters, ellipsoid, flat, frame",
+    () => new Atmosphere(wrong({ ocean: 1 }))
   ],
 
   // One thing for another.
   [
     'Atmosphere: options must be an object: write new Atmosphere({ parameters }), got an AtmosphereParameters',
-    () => new Atmosphere(wrong(marsAtmosphere()))
+    () => new Atmosphere(wrong(marsParameters()))
   ],
+  [
+    'AtmosphereParameters: turbidity must not be given together with mieExtinction',
+    () => parameters.set({ turbidity: 2, mieExtinction: [0, 0, 0, 0] })
+  ],
+  [
+    "Cannot assign to read only property 'groundAlbedo'",
+    () => Object.assign(parameters, { groundAlbedo: [0, 0, 0, 0] })
+  ],
+  [
+    'AtmosphereParameters: ellipsoid must be an Ellipsoid, got 6378137',
+    () => new AtmosphereParameters({ ellipsoid: wrong(6_378_137) })
+  ],
+  ['airlessParameters: radius must be positive', () => airlessParameters({ radius: wrong('1') })],
+  ['Moon: outerPower must be positive and finite, got 0', () => (luna.flare.outerPower = 0)],
+  ['SunFlare: innerStrength must be finite and ≥ 0', () => (sunFlare().innerStrength = -1)],
+  ["Moon: unknown option 'mapSize', there are", () => luna.set(wrong({ mapSize: 16 }))],
   [
     'Atmosphere: parameters must be AtmosphereParameters, got { dust: 1 }',
     () => new Atmosphere({ parameters: wrong({ dust: 1 }) })
@@ -246,7 +277,7 @@ const cases: [message: string, call: () => unknown][] = [
   ],
   [
     "Atmosphere: frame must be 'local' or 'ecef', got 'ECEF'",
-    () => (atmosphere.frame = wrong('ECEF'))
+    () => new Atmosphere({ frame: wrong('ECEF') })
   ],
   [
     "Atmosphere.place: geodetic must be { longitude, latitude, height } [degrees, metres], got '35'",
@@ -281,11 +312,15 @@ const cases: [message: string, call: () => unknown][] = [
     () => new Atmosphere().add(night.glow).add(night.way, night.glow)
   ],
   [
-    'skyEnvironment: source must be an Atmosphere or a Texture, got a Scene',
-    () => skyEnvironment(wrong(new Scene()))
+    'SkyEnvironmentNode: atmosphere must be an Atmosphere, got a Texture',
+    () => skyEnvironment(wrong(new Texture()))
   ],
   [
-    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudOverlay(), or null, got a Mesh',
+    'ImageEnvironmentNode: image must be a Texture, got an Atmosphere',
+    () => imageEnvironment(wrong(atmosphere))
+  ],
+  [
+    'SkyEnvironmentNode: overlay must be a SkyOverlay, such as cloudEnvironment(), or null, got a Mesh',
     () => skyEnvironment(atmosphere, { overlay: wrong(new Mesh()) })
   ],
   [
@@ -326,22 +361,22 @@ const cases: [message: string, call: () => unknown][] = [
   [`Atmosphere: ${noOptions}`, () => new Atmosphere(wrong(null))],
   [`AtmosphereParameters: ${noOptions}`, () => new AtmosphereParameters(wrong(null))],
   [`AtmosphereParameters: ${noOptions}`, () => parameters.set(wrong(null))],
-  [`AtmosphereParameters: ${noOptions}`, () => AtmosphereParameters.earth(wrong(null))],
+  [`AtmosphereParameters: ${noOptions}`, () => new AtmosphereParameters(wrong(null))],
   [`DayCycle: ${noOptions}`, () => new DayCycle(atmosphere, wrong(null))],
   [`exposureFor: ${noOptions}`, () => exposureFor(atmosphere, camera, wrong(null))],
   [`HeightFog: ${noOptions}`, () => heightFog(wrong(null))],
   [`HeightFog: ${noOptions}`, () => heightFog().set(wrong(null))],
   [`DistanceFog: ${noOptions}`, () => distanceFog(wrong(null))],
   [`PlanetGround: ${noOptions}`, () => planetGround(wrong(null))],
-  [`Stars: ${noOptions}`, () => new Stars([], wrong(null))],
+  [`Stars: ${noOptions}`, () => new Stars(wrong(null))],
   [`MilkyWay: ${noOptions}`, () => milkyWay(wrong(null))],
   [`Airglow: ${noOptions}`, () => airglow(wrong(null))],
-  [`Moon: ${noOptions}`, () => moon(atmosphere, wrong(null))],
-  [`Moon: ${noOptions}`, () => moon(atmosphere, { flare: wrong(null) })],
-  [`SunFlare: ${noOptions}`, () => sunFlare(atmosphere, wrong(null))],
-  [`standardAtmosphere: ${noOptions}`, () => standardAtmosphere(wrong(null))],
-  [`marsAtmosphere: ${noOptions}`, () => marsAtmosphere(wrong(null))],
-  [`airlessBody: ${noOptions}`, () => airlessBody(wrong(null))],
+  [`Moon: ${noOptions}`, () => moon(wrong(null))],
+  [`Moon: ${noOptions}`, () => moon({ flare: wrong(null) })],
+  [`SunFlare: ${noOptions}`, () => sunFlare(wrong(null))],
+  [`standardEarthParameters: ${noOptions}`, () => standardEarthParameters(wrong(null))],
+  [`marsParameters: ${noOptions}`, () => marsParameters(wrong(null))],
+  [`airlessParameters: ${noOptions}`, () => airlessParameters(wrong(null))],
   [`proceduralStars: ${noOptions}`, () => proceduralStars(wrong(null))]
 ]
 
@@ -357,9 +392,10 @@ const none = (...names: string[]): object =>
 
 describe('undefined is the default', () => {
   it('of fog', () => {
-    const names = Object.keys(heightFog().options)
-    expect(heightFog(none(...names)).options).toEqual(heightFog().options)
-    expect(heightFog({ density: 2 }).set({ density: undefined }).options.density).toBe(2)
+    const names = ['density', 'falloff', 'base', 'albedo', 'asymmetry', 'fade'] as const
+    const values = (fog: HeightFog) => names.map(name => fog[name])
+    expect(values(heightFog(none(...names, 'sources')))).toEqual(values(heightFog()))
+    expect(heightFog({ density: 2 }).set({ density: undefined }).density).toBe(2)
     const { density, fade } = distanceFog(none('density', 'fade'))
     expect([density, fade]).toEqual([1e-4, [5000, 15_000]])
   })
@@ -372,25 +408,27 @@ describe('undefined is the default', () => {
 
   it('of parameters', () => {
     const init = none(...Object.keys(parameters))
-    expect(Object.keys(init)).toHaveLength(18)
+    expect(Object.keys(init)).toHaveLength(19)
     expect(new AtmosphereParameters(init)).toEqual(parameters)
-    const hazy = AtmosphereParameters.earth({ turbidity: 5 })
+    const hazy = new AtmosphereParameters({ turbidity: 5 })
     const { mieExtinction } = hazy
     expect(hazy.set({ mieExtinction: undefined }).mieExtinction).toEqual(mieExtinction)
-    expect(AtmosphereParameters.earth(none('turbidity', 'ozone'))).toEqual(parameters)
+    expect(new AtmosphereParameters(none('turbidity', 'ozone'))).toEqual(parameters)
     const options = none('aerosolOpticalDepth', 'ozone')
-    expect(standardAtmosphere(options)).toEqual(standardAtmosphere())
+    expect(standardEarthParameters(options)).toEqual(standardEarthParameters())
   })
 
   it('of everything else', () => {
     expect(() => new Atmosphere(none('parameters', 'ellipsoid', 'flat'))).not.toThrow()
     const names = ['direction', 'phase', 'distance', 'radius', 'strength', 'lightsAir', 'mapSize']
-    expect(() => moon(atmosphere, none('flare', ...names))).not.toThrow()
-    expect(() => sunFlare(atmosphere, none('innerPower', 'outerStrength'))).not.toThrow()
-    const rates = none('date', 'rate', 'daylight', 'holdDay', 'adaptation', 'exposure')
+    expect(() => moon(none('flare', ...names))).not.toThrow()
+    expect(() => sunFlare(none('innerPower', 'outerStrength'))).not.toThrow()
+    const rates = none('date', 'rate', 'daylight', 'holdDay', 'adaptation', 'exposureOptions')
     const { rate, holdDay, exposureOptions } = new DayCycle(atmosphere, rates)
     expect([rate, holdDay, exposureOptions]).toEqual([1440, false, {}])
-    expect(new Stars([], none('overlay', 'orientation')).orientation).toBe(null)
+    expect(
+      new Stars({ catalogue: [], ...none('overlay', 'orientation', 'intensity') }).orientation
+    ).toBe(null)
     expect(milkyWay(none('orientation')).orientation).toBe(null)
     expect(airglow(none('luminance', 'altitude', 'width', 'spectrum')).luminance).toBe(1e-4)
   })

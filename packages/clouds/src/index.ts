@@ -8,5 +8,9 @@ export type { CloudPhaseParameters } from './light/cpu/cloudPhase'
 export { CloudsNode, clouds, type CloudsDebug, type CloudsOptions } from './march/CloudsNode'
 export { cloudQualities, type CloudQuality, type CloudQualityName } from './march/quality'
 export { CloudShadowNode, cloudShadow } from './shadow/CloudShadowNode'
-export { CloudOverlay, cloudOverlay, type CloudOverlayOptions } from './environment/CloudOverlay'
+export {
+  CloudEnvironment,
+  cloudEnvironment,
+  type CloudEnvironmentOptions
+} from './environment/CloudEnvironment'
 export { CloudSkyLight, cloudSkyLight } from './environment/CloudSkyLight'

@@ -6,7 +6,7 @@ import {
   CloudLayer,
   CloudLayers,
   CloudLightTable,
-  cloudOverlay,
+  cloudEnvironment,
   cloudPreset,
   clouds,
   CloudField,
@@ -35,8 +35,8 @@ const cases: [message: string, call: () => unknown][] = [
     () => make({ quality: { step: 3 } })
   ],
   [
-    "CloudOverlay: unknown option 'drft', did you mean 'drift'?",
-    () => cloudOverlay(node, wrong({ drft: 1 }))
+    "CloudEnvironment: unknown option 'drft', did you mean 'drift'?",
+    () => cloudEnvironment(node, wrong({ drft: 1 }))
   ],
   [
     "CloudField: unknown option 'worldmap', did you mean 'worldMap'?",
@@ -88,16 +88,16 @@ const cases: [message: string, call: () => unknown][] = [
     () => make({ quality: 'best' })
   ],
   [
-    "CloudOverlay: quality must be 'low', 'medium', 'high' or 'ultra', got 'best'",
-    () => cloudOverlay(node, { quality: wrong('best') })
+    "CloudEnvironment: quality must be 'low', 'medium', 'high' or 'ultra', got 'best'",
+    () => cloudEnvironment(node, { quality: wrong('best') })
   ],
   [
-    'CloudOverlay: drift must be positive and finite, got 0',
-    () => cloudOverlay(node, { drift: 0 })
+    'CloudEnvironment: drift must be positive and finite, got 0',
+    () => cloudEnvironment(node, { drift: 0 })
   ],
   [
-    'CloudOverlay: clouds must be a CloudsNode, got an Atmosphere',
-    () => cloudOverlay(wrong(atmosphere))
+    'CloudEnvironment: clouds must be a CloudsNode, got an Atmosphere',
+    () => cloudEnvironment(wrong(atmosphere))
   ],
   [
     "cloudPreset: name must be 'fairWeather', 'stratocumulus', 'overcast', 'cumulonimbus', 'cirrus' or 'mixed', got 'fair'",

@@ -43,7 +43,7 @@ export class Ellipsoid {
   }
 
   /**
-   * From a structure with a `radius` or `radii` vector, such as the `Ellipsoid` of 3d-tiles-renderer.
+   * Ellipsoid from a structure with a `radius` or `radii` vector, such as the `Ellipsoid` of 3d-tiles-renderer.
    *
    * @throws Error unless every radius is positive and finite.
    */
@@ -201,7 +201,7 @@ export class Ellipsoid {
   }
 
   /**
-   * Where a ray first meets the surface; from inside, where it leaves.
+   * Point where a ray first meets the surface; from inside, where it leaves.
    *
    * @param originECEF - [m], finite.
    * @param directionECEF - Any non-zero length.

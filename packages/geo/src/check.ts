@@ -174,7 +174,7 @@ function editsBetween(a: string, b: string): number {
   return row[b.length]
 }
 
-/** Whether it is an object that no class has made. */
+/** True of an object that no class has made. */
 function isPlain(value: unknown): value is object {
   if (typeof value !== 'object' || value === null) return false
   const prototype: unknown = Object.getPrototypeOf(value)

@@ -12,7 +12,7 @@ import {
 import { checkEllipsoid, Ellipsoid } from './Ellipsoid'
 import { visibleDistance } from './horizon'
 
-/** How the depth buffer is written: the renderer's `reversedDepthBuffer`, `logarithmicDepthBuffer` or neither. */
+/** Writing of the depth buffer: the renderer's `reversedDepthBuffer`, `logarithmicDepthBuffer` or neither. */
 export type DepthKind = 'standard' | 'reversed' | 'logarithmic'
 
 export interface FitGlobeCameraOptions {

@@ -3,7 +3,7 @@ import type { Matrix4 } from 'three'
 import { checkFinite, checkOptions, checkVector, fail } from './check'
 import { checkEllipsoid, Ellipsoid } from './Ellipsoid'
 
-/** What is looked at, and which way. */
+/** Options of the distances to the horizon. */
 export interface HorizonOptions {
   /** Default `Ellipsoid.WGS84`. */
   ellipsoid?: Ellipsoid

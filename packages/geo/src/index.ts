@@ -13,11 +13,8 @@ export { ecefFromTilesGroup } from './tiles'
 export { eciToECEF, siderealAngle } from './earthRotation'
 export { sunDirectionECEF, sunPositionECEF } from './sun'
 export { moonDirectionECEF, moonOrientation, moonPositionECEF } from './moon'
-export { sphereEye, sphereScale } from './sphereEye'
-export type { SphereEye } from './sphereEye'
-export { ellipsoidToSphere } from './tsl/ellipsoidToSphere'
-export { offsetHeight } from './tsl/offsetHeight'
-export { rayEllipsoid, raySphere } from './tsl/rayEllipsoid'
+export { offsetPoint } from './tsl/offsetPoint'
+export type { OffsetPoint } from './tsl/offsetPoint'
 // Preconditions that Welkin's packages share; not for use elsewhere.
 export {
   checkBoolean,

@@ -35,7 +35,7 @@ export class AtmosphereUniforms {
   readonly mieExtinction = spectrum()
   readonly mieScaleHeight = number()
   readonly mieAsymmetry = spectrum()
-  /** Whether that is the same at the four wavelengths: 1, else 0. */
+  /** 1 if the asymmetry is the same at the four wavelengths, else 0. */
   readonly mieIsGrey = number()
   /** 3/(8π) (1 − g²)/(2 + g²), what is constant in the Cornette–Shanks phase function [1/sr]. */
   readonly miePhaseFactor = spectrum()

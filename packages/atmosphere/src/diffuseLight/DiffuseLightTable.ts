@@ -25,7 +25,7 @@ const ORDERS = 5
 
 const integer = (): UniformNode<'int', number> => uniform(0, 'int')
 
-/** What baking needs and the finished table does not. */
+/** Bake resources: textures and passes that the finished table does not need. */
 class Workshop {
   readonly rays = tableTarget('DiffuseLight.rays', MOST_RAYS, BAKE_ROWS * COLUMNS, 1, NearestFilter)
   readonly orders = Array.from({ length: ORDERS }, (_, order) =>
@@ -110,7 +110,7 @@ class Workshop {
  * scattered n − 1 times. Each order gathers rays in every direction from every cell.
  */
 export class DiffuseLightTable {
-  /** Where the table is kept: tiles side by side, see `DIFFUSE_TILES`; values × `RADIANCE_SCALE`. */
+  /** Target of the table: tiles side by side, see `DIFFUSE_TILES`; values × `RADIANCE_SCALE`. */
   readonly target: RenderTarget = tableTarget('DiffuseLight', COLUMNS * DIFFUSE_TILES, ROWS)
   readonly #uniforms: AtmosphereUniforms
   readonly #transmittance: RenderTarget

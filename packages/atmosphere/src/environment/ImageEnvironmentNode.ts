@@ -4,16 +4,22 @@ import { Node } from 'three/webgpu'
 import type { NodeBuilder } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 
-/** Options of {@link skyEnvironment}. */
+/** Options of {@link ImageEnvironmentNode} and `SkyEnvironmentNode`. */
 export interface EnvironmentOptions {
   /**
-   * Whether it lights matte surfaces too, besides being mirrored. By default it does, unless a
+   * Lights matte surfaces too, besides being mirrored. By default it does, unless a
    * `SkyLightProbe` lights the scene: their light must not count twice.
    */
   diffuse?: boolean
 }
 
-/** A picture of a sky in place of the sky: see {@link skyEnvironment}. */
+/**
+ * A picture of a sky as what materials mirror, in place of an atmosphere's.
+ *
+ * ```ts
+ * scene.environmentNode = imageEnvironment(await new HDRLoader().loadAsync('sky.hdr'))
+ * ```
+ */
 export class ImageEnvironmentNode extends Node<'vec3'> {
   static get type(): string {
     return 'ImageEnvironmentNode'
@@ -43,7 +49,7 @@ export class ImageEnvironmentNode extends Node<'vec3'> {
 
 const maps = new WeakMap<Texture, Node>()
 
-/** What a material gets from a map: by roughness what it mirrors, or light from all around. */
+/** Look-up of a material in a map: by roughness what it mirrors, or light from all around. */
 export function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | null): Node {
   const { context, lightsNode } = builder as unknown as {
     context: { getUV?: (node: Node, builder: NodeBuilder) => unknown }
@@ -55,3 +61,9 @@ export function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | nul
   const hasProbe = lights.some(light => 'isLightProbe' in light && 'atmosphere' in light)
   return (diffuse ?? !hasProbe) ? map : vec3(0)
 }
+
+/** A picture of a sky as what materials mirror: see {@link ImageEnvironmentNode}. */
+export const imageEnvironment = (
+  image: Texture,
+  options?: EnvironmentOptions
+): ImageEnvironmentNode => new ImageEnvironmentNode(image, options)

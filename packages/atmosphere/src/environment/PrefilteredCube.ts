@@ -3,7 +3,7 @@ import { pmremTexture, renderGroup, select, uniform } from 'three/tsl'
 import { PMREMGenerator } from 'three/webgpu'
 import type { CubeRenderTarget, Node, Renderer } from 'three/webgpu'
 
-/** Of the passes of three's filter, those that run together. */
+/** Passes of three's filter that run together. */
 interface Part {
   /** Level of the map that they draw; −1 for those that prepare its source. */
   level: number
@@ -40,7 +40,7 @@ function partsOf({ texture: { mipmaps } }: CubeRenderTarget): Part[] {
  */
 export class PrefilteredCube {
   readonly #source: CubeTexture
-  /** Which map materials see. Not a swapped texture: that would not reach all materials. */
+  /** Index of the map that materials see. Not a swapped texture: that would not reach all materials. */
   readonly #seen = uniform(0).setGroup(renderGroup)
   #shown = 0
   #maps: [CubeRenderTarget, CubeRenderTarget] | null = null
@@ -48,7 +48,7 @@ export class PrefilteredCube {
   #next = 0
   #renderer: Renderer | null = null
   #generator: PMREMGenerator | null = null
-  /** What is let through; null for all passes. */
+  /** Passes that are let through; null for all. */
   #part: Part | null = null
   #target: CubeRenderTarget | null = null
   #node: Node | null = null
@@ -58,7 +58,7 @@ export class PrefilteredCube {
     this.#source = source
   }
 
-  /** What materials mirror, once there is anything. */
+  /** Map that materials mirror, once there is one. */
   get node(): Node | null {
     return this.#node
   }

@@ -53,7 +53,7 @@ export class SkyCube {
   /** Luminance scale that all faces of a cube have; that of the map that was completed last. */
   #scale = 1
   #completedScale = 1
-  /** From the luminance scale of now to that of the cube, and from that of the map to now's. */
+  /** Factors from the luminance scale of now to that of the cube, and from that of the map to now's. */
   readonly #toCube = uniform(1).setGroup(renderGroup)
   readonly #fromMap = uniform(1).setGroup(renderGroup)
   /** Those that the shader has. */
@@ -99,14 +99,14 @@ export class SkyCube {
     })()
   }
 
-  /** What materials mirror, once there is anything. */
+  /** Map that materials mirror, once there is one. */
   get node(): Node | null {
     const { node } = this.#filtered
     if (node !== null) this.#node ??= (node as Vec3).mul(this.#fromMap)
     return this.#node
   }
 
-  /** Whether nothing is half done. */
+  /** True if no drawing is half done. */
   get isIdle(): boolean {
     return this.#drawn === null
   }

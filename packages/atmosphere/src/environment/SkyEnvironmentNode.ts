@@ -1,11 +1,11 @@
-import type { Camera, Texture } from 'three'
+import type { Camera } from 'three'
 import { vec3 } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { DrawnSky } from './DrawnSky'
-import { ImageEnvironmentNode, mirrored, type EnvironmentOptions } from './ImageEnvironmentNode'
+import { mirrored, type EnvironmentOptions } from './ImageEnvironmentNode'
 import { SkyCube } from './SkyCube'
 import type { SkyOverlay } from './SkyOverlay'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
@@ -14,11 +14,11 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 export interface SkyEnvironmentOptions extends EnvironmentOptions {
   /** Texels along the edge of a cube face, a power of two in [256, 2048]. */
   size?: number
-  /** How far the sun may move, or the axes of the world turn, before it is drawn again, > 0 [°]. */
+  /** Angle by which the sun or the axes of the world may turn before it is drawn again, > 0 [°]. */
   angle?: number
-  /** How far the camera may climb or sink, as a part of its height (at least 500 m), > 0. */
+  /** Climb of the camera before it is drawn again, as a part of its height (at least 500 m), > 0. */
   climb?: number
-  /** What is in front of the sky: `cloudOverlay` of `@welkin/clouds`. Shared, not owned. */
+  /** Picture in front of the sky: `cloudEnvironment` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
 
@@ -52,8 +52,10 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   readonly overlay: SkyOverlay | null
   /** Draws all of it before the next frame, whatever has changed. */
   needsRedraw = true
-  /** How often it was drawn. */
+  /** Number of times that it was drawn. */
   redraws = 0
+  /** Texels along the edge of a cube face. */
+  readonly size: number
   readonly #view: ViewNodes
   readonly #cube: SkyCube
   readonly #drawn: DrawnSky
@@ -77,10 +79,11 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     }
     if (diffuse !== undefined) checkBoolean(where, 'diffuse', diffuse)
     if (overlay !== null && typeof overlay?.over !== 'function') {
-      fail(where, 'overlay must be a SkyOverlay, such as cloudOverlay(), or null', overlay)
+      fail(where, 'overlay must be a SkyOverlay, such as cloudEnvironment(), or null', overlay)
     }
     this.atmosphere = atmosphere
     this.diffuse = diffuse ?? null
+    this.size = size
     this.angle = angle
     this.climb = climb
     this.overlay = overlay
@@ -177,30 +180,8 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
   }
 }
 
-/**
- * What materials of a scene mirror: an atmosphere's sky, or a picture that stands in for it, loaded by
- * three's `HDRLoader` say. See {@link SkyEnvironmentNode}.
- *
- * ```ts
- * scene.environmentNode = skyEnvironment(atmosphere)
- * scene.environmentNode = skyEnvironment(await new HDRLoader().loadAsync('sky.hdr'))
- * ```
- *
- * @param source - A texture may be equirectangular or a cube.
- * @throws If it is neither an atmosphere nor a texture, or an option is out of range.
- */
-export function skyEnvironment(
-  source: Atmosphere,
+/** An atmosphere's sky as what materials mirror: see {@link SkyEnvironmentNode}. */
+export const skyEnvironment = (
+  atmosphere: Atmosphere,
   options?: SkyEnvironmentOptions
-): SkyEnvironmentNode
-export function skyEnvironment(source: Texture, options?: EnvironmentOptions): ImageEnvironmentNode
-export function skyEnvironment(
-  source: Atmosphere | Texture,
-  options?: SkyEnvironmentOptions
-): SkyEnvironmentNode | ImageEnvironmentNode {
-  if ('isTexture' in Object(source)) return new ImageEnvironmentNode(source as Texture, options)
-  if (!('isAtmosphere' in Object(source))) {
-    fail('skyEnvironment', 'source must be an Atmosphere or a Texture', source)
-  }
-  return new SkyEnvironmentNode(source as Atmosphere, options)
-}
+): SkyEnvironmentNode => new SkyEnvironmentNode(atmosphere, options)

@@ -19,7 +19,7 @@ export interface DayCycleOptions {
   /** Time in which exposure follows the light to 63 %, ≥ 0; 0 follows at once [s]. Default 0.3. */
   adaptation?: number
   /** Options of `exposureFor`. */
-  exposure?: ExposureOptions
+  exposureOptions?: ExposureOptions
 }
 
 const DAY = 86_400_000
@@ -83,7 +83,7 @@ export class DayCycle {
   /** @throws If an argument is of the wrong kind or out of range. */
   constructor(atmosphere: Atmosphere, options: DayCycleOptions = {}) {
     checkAtmosphere('DayCycle', atmosphere)
-    const { date, rate, daylight, adaptation, holdDay, exposure } = checkOptions(
+    const { date, rate, daylight, adaptation, holdDay, exposureOptions } = checkOptions(
       'DayCycle',
       options,
       'date',
@@ -91,11 +91,10 @@ export class DayCycle {
       'daylight',
       'holdDay',
       'adaptation',
-      'exposure'
+      'exposureOptions'
     )
-    if (date !== undefined) checkDate('DayCycle', date)
     this.atmosphere = atmosphere
-    this.exposureOptions = checkExposure('DayCycle', exposure)
+    this.exposureOptions = checkExposure('DayCycle', exposureOptions)
     this.holdDay = holdDay ?? false
     if (rate !== undefined) this.rate = rate
     if (daylight !== undefined) this.daylight = daylight
@@ -104,7 +103,7 @@ export class DayCycle {
     const known = scales.get(atmosphere)
     this.#daylightScale = known?.written === luminanceScale ? known.daylight : luminanceScale
     this.#time = 0
-    this.time = (date ?? atmosphere.date ?? new Date()).getTime()
+    this.date = date ?? atmosphere.date ?? new Date()
   }
 
   /** When it is in the sky [ms since 1970]. */
@@ -115,6 +114,16 @@ export class DayCycle {
   set time(value: number) {
     this.#moveTo(value)
     this.#asked = null
+  }
+
+  /** The same as a date, a copy. */
+  get date(): Date {
+    return new Date(this.#time)
+  }
+
+  set date(value: Date) {
+    checkDate('DayCycle', value)
+    this.time = value.getTime()
   }
 
   #moveTo(time: number): void {

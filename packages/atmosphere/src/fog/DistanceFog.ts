@@ -1,5 +1,5 @@
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
-import { checkOptions } from '@welkin/geo'
+import { setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
 import type { Sightline, SkyLayer, Veil } from '../view/SkyLayer'
@@ -24,23 +24,35 @@ export interface DistanceFogOptions {
  * ```
  */
 export class DistanceFog implements SkyLayer {
-  /** See {@link DistanceFogOptions} [m]. */
-  readonly fade: readonly [number, number]
-  #value = 0
+  #value = 1e-4
+  #fade: readonly [number, number] = [5000, 15_000]
   #version = 0
   readonly #density = uniform(0).setGroup(renderGroup)
 
   /** @throws If an option is out of range. */
   constructor(options: DistanceFogOptions = {}) {
-    const { density = 1e-4, fade = [5000, 15_000] } = checkOptions(
-      'DistanceFog',
-      options,
-      'density',
-      'fade'
-    )
-    checkFade('DistanceFog', fade)
-    this.density = density
-    this.fade = [...fade]
+    this.set(options)
+    this.#version = 0
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: DistanceFogOptions): this {
+    return setOptions('DistanceFog', this, settings, 'density', 'fade')
+  }
+
+  /** See {@link DistanceFogOptions}, rising [m]. */
+  get fade(): readonly [number, number] {
+    return this.#fade
+  }
+
+  set fade(value: readonly [number, number]) {
+    checkFade('DistanceFog', value)
+    this.#fade = [...value]
+    this.#version++
   }
 
   /** See {@link DistanceFogOptions}, in [0, 100] [1/m]. */

@@ -1,6 +1,7 @@
 import { Vector3, Vector4 } from 'three'
 import { If, exp, renderGroup, uniform, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
+import { checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
@@ -32,6 +33,9 @@ export interface HeightFogOptions {
   fade?: readonly [number, number]
 }
 
+/** Options that may change later. */
+const SETTINGS = ['density', 'falloff', 'base', 'albedo', 'asymmetry', 'fade'] as const
+
 /**
  * Ground fog: mist whose density falls off exponentially with altitude, over and in the haze, in front of
  * the sky too.
@@ -48,6 +52,12 @@ export interface HeightFogOptions {
  * The fog is everywhere on the planet, so that it fades out as the camera climbs.
  */
 export class HeightFog implements SkyLayer {
+  declare density: number
+  declare falloff: number
+  declare base: number
+  declare albedo: Spectrum
+  declare asymmetry: number
+  declare fade: readonly [number, number]
   readonly #density = number(0)
   readonly #falloff = number(1)
   readonly #height = number(0)
@@ -56,6 +66,19 @@ export class HeightFog implements SkyLayer {
   readonly #lamps: readonly Lamp[]
   #options: Required<HeightFogOptions>
   #version = 0
+
+  static {
+    for (const name of SETTINGS) {
+      Object.defineProperty(HeightFog.prototype, name, {
+        get(this: HeightFog) {
+          return this.#options[name]
+        },
+        set(this: HeightFog, value: unknown) {
+          this.set({ [name]: value })
+        }
+      })
+    }
+  }
 
   /** @throws If an option is out of range. */
   constructor(options: HeightFogOptions = {}) {
@@ -67,25 +90,26 @@ export class HeightFog implements SkyLayer {
     }))
   }
 
+  /** What lights it besides the sun. */
+  get sources(): readonly LightSource[] {
+    return this.#options.sources
+  }
+
   /** See {@link SkyLayer.version}. */
   get version(): number {
     return this.#version
   }
 
-  /** As they are; change them with {@link set}. */
-  get options(): Readonly<Required<HeightFogOptions>> {
-    return this.#options
-  }
-
   /**
-   * Changes some options, of which `sources` are fixed; nothing is compiled.
+   * Changes some settings, of which `sources` are fixed; nothing is compiled.
    *
-   * @throws If an option is out of range.
+   * @throws If one is unknown or out of range; then nothing has changed.
    */
-  set(options: Omit<HeightFogOptions, 'sources'>): this {
+  set(settings: Omit<HeightFogOptions, 'sources'>): this {
+    checkOptions('HeightFog', settings, ...SETTINGS)
     const values = (): string => JSON.stringify({ ...this.#options, sources: [] })
     const before = values()
-    this.#options = checked(this.#options, options)
+    this.#options = checked(this.#options, settings)
     if (values() !== before) this.#version++
     return this
   }

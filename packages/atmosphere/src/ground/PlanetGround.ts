@@ -16,7 +16,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Renderer, TextureNode, UniformNode } from 'three/webgpu'
-import { fail } from '@welkin/geo'
+import { fail, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, withDefaults } from '../check'
@@ -50,6 +50,9 @@ export interface PlanetGroundOptions {
   /** Other continents of a made-up planet. */
   seed?: number
 }
+
+/** Options that may change later. */
+const SETTINGS = ['nightLuminance', 'roughness', 'windSpeed'] as const
 
 const DEFAULTS: Required<PlanetGroundOptions> = {
   surface: null,
@@ -134,9 +137,36 @@ export class PlanetGround implements SkyLayer {
       }
     }
     if (!Number.isFinite(seed)) fail('PlanetGround', 'seed must be finite', seed)
-    this.nightLuminance = nightLuminance
-    this.roughness = roughness
-    this.windSpeed = windSpeed
+    this.set({ nightLuminance, roughness, windSpeed })
+  }
+
+  /**
+   * Changes some settings; textures and seed are fixed.
+   *
+   * @throws If one is unknown or out of its range; then nothing has changed.
+   */
+  set(settings: Pick<PlanetGroundOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('PlanetGround', this, settings, ...SETTINGS)
+  }
+
+  /** Colour of the ground; shared, not owned. */
+  get surface(): Texture | null {
+    return this.#options.surface
+  }
+
+  /** Where open water is; shared, not owned. */
+  get water(): Texture | null {
+    return this.#options.water
+  }
+
+  /** Lights of the night; shared, not owned. */
+  get nightLights(): Texture | null {
+    return this.#options.nightLights
+  }
+
+  /** Other continents of a made-up planet. */
+  get seed(): number {
+    return this.#options.seed
   }
 
   /** Wind over the sea, in [0, 40] [m/s]. */

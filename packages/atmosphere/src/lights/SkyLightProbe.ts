@@ -15,7 +15,7 @@ import { watchScene } from '../view/renderers'
 /** A small plane in the light of sky and ground, as shader nodes. */
 export interface SkyLitPlane {
   readonly view: ViewNodes
-  /** Where it is, from the camera in the mapped space [m]. */
+  /** Position from the camera, in the mapped space [m]. */
   readonly offset: Vec3
   /** Above the ground [m]. */
   readonly altitude: Float
@@ -37,11 +37,11 @@ export class SkyLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
 
-  /** Whose light sky and ground scatter: the sun's. */
+  /** Source of the light that sky and ground scatter; by default the sun. */
   readonly source: LightSource
 
   /**
-   * What clouds make of the irradiance that a plane has from a clear sky and its ground, for unit
+   * Irradiance under clouds, given that of a plane under a clear sky and its ground, for unit
    * irradiance of the source. Set it before the first render.
    */
   overcast: ((plane: SkyLitPlane, clear: Vec4) => Vec4) | null = null

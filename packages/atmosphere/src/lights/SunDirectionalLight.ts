@@ -28,7 +28,7 @@ export class SunDirectionalLight extends DirectionalLight {
   readonly atmosphere: Atmosphere
   #distance = 1
 
-  /** Whose light it is: the sun's. */
+  /** Source of the light; by default the sun. */
   readonly source: LightSource
 
   /**
@@ -45,7 +45,7 @@ export class SunDirectionalLight extends DirectionalLight {
     this.follow()
   }
 
-  /** From the target to the light, along the sun's direction, > 0 [world units]. */
+  /** Distance from the target to the light, along the sun's direction, > 0 [world units]. */
   get distance(): number {
     return this.#distance
   }

@@ -7,15 +7,17 @@ import {
   checkNonNegative,
   checkOptions,
   checkPositive,
-  fail
+  fail,
+  setOptions
 } from '@welkin/geo'
+import type { Triple } from '../air/cpu/color'
 import type { Atmosphere } from '../Atmosphere'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange } from '../check'
 import { eclipsedSunlight } from './cpu/eclipse'
 import { MOON_RADIUS, moonIrradiance } from './cpu/moonIrradiance'
-import { HaloUniforms, type FlareOptions } from '../halo/HaloUniforms'
+import { Flare, type FlareOptions } from '../halo/Flare'
 import { LightSource } from '../view/LightSource'
 import { moonGeometryFrom, type MoonGeometry } from './moonGeometry'
 import { MoonSurfaceMap } from './MoonSurfaceMap'
@@ -48,6 +50,16 @@ export interface MoonOptions {
   mapSize?: number
 }
 
+/** Atmosphere that a moon is in, and what the moon made for it. */
+interface Home {
+  readonly atmosphere: Atmosphere
+  readonly source: LightSource
+  readonly air: MoonlitAir
+}
+
+/** Options that may change later. */
+const SETTINGS = ['direction', 'phase', 'distance', 'radius', 'strength'] as const
+
 /** Appearance of the moon for an observer. */
 export interface MoonAppearance {
   /** Observer to moon, world, unit length. */
@@ -79,7 +91,7 @@ const _matrix = new Matrix4()
  * The moon: its disc, halo and light in the air, and eclipses of the sun by it.
  *
  * ```ts
- * const luna = moon(atmosphere)
+ * const luna = moon()
  * atmosphere.add(luna)
  * scene.add(new MoonDirectionalLight(atmosphere, luna), new SkyLightProbe(atmosphere, luna.source))
  * ```
@@ -94,10 +106,6 @@ const _matrix = new Matrix4()
  * left out.
  */
 export class Moon implements SkyLayer {
-  /** Shared, not owned. */
-  readonly atmosphere: Atmosphere
-  /** The moon as a source of light, for lights and probes. */
-  readonly source: LightSource
   /** The moon lights the air: glow of the sky, and haze. */
   readonly lightsAir: boolean
   #directionWorld: Vector3 | null = null
@@ -109,48 +117,64 @@ export class Moon implements SkyLayer {
   /** Direction at the last change of `version`. */
   readonly #versionDirection = new Vector3()
   readonly #ephemeris = new SunMoonEphemeris()
-  readonly #air: MoonlitAir
   readonly #surface: MoonSurfaceMap
-  readonly #halo = new HaloUniforms('Moon', FLARE)
+  /** Its halo; the strengths are of its light. Change it by its properties or with `flare.set(…)`. */
+  readonly flare = new Flare('Moon', FLARE)
+  /** Width of the map of its ground [texels]. */
+  readonly mapSize: number
+  /** Null before it is added. */
+  #home: Home | null = null
   readonly #uniforms = new MoonUniforms()
 
   /** @throws If an argument is of the wrong kind or out of its range. */
-  constructor(atmosphere: Atmosphere, options: MoonOptions = {}) {
-    checkAtmosphere('Moon', atmosphere)
-    checkOptions(
-      'Moon',
-      options,
-      'direction',
-      'phase',
-      'distance',
-      'radius',
-      'strength',
-      'lightsAir',
-      'flare',
-      'mapSize'
-    )
-    const { lightsAir = true, flare = {}, mapSize = 1024 } = options
+  constructor(options: MoonOptions = {}) {
+    checkOptions('Moon', options, ...SETTINGS, 'lightsAir', 'flare', 'mapSize')
+    const { lightsAir = true, flare = {}, mapSize = 1024, ...settings } = options
     checkBoolean('Moon', 'lightsAir', lightsAir)
     if (!(Number.isInteger(Math.log2(mapSize)) && mapSize >= 16 && mapSize <= 8192)) {
       fail('Moon', 'mapSize must be a power of two in [16, 8192]', mapSize)
     }
-    this.atmosphere = atmosphere
     this.lightsAir = lightsAir
-    this.direction = options.direction ?? null
-    this.phase = options.phase ?? null
-    this.distance = options.distance ?? null
-    this.radius = options.radius ?? MOON_RADIUS
-    this.strength = options.strength ?? 1
-    this.setFlare(flare)
+    this.mapSize = mapSize
+    this.flare.set(flare)
+    this.set(settings)
     this.#surface = new MoonSurfaceMap(mapSize)
+  }
+
+  /**
+   * Makes it the moon of an atmosphere, for good. `atmosphere.add` and `MoonDirectionalLight` do this.
+   *
+   * @throws If it is another atmosphere's.
+   */
+  attach(atmosphere: Atmosphere): this {
+    checkAtmosphere('Moon.attach', atmosphere)
+    if (this.#home !== null) {
+      if (this.#home.atmosphere === atmosphere) return this
+      fail('Moon.attach', 'atmosphere must be the one that it was added to before')
+    }
     const { uniforms, transmittance, diffuseLight } = atmosphere.tables
     const volumes = new MoonSkyVolumes(uniforms, transmittance.target, diffuseLight.target)
-    this.source = new LightSource(
+    const source = new LightSource(
       (target, from = _position.set(0, 0, 0)) => target.copy(this.#directionFrom(from)),
       volumes
     )
-    this.source.irradianceAt = position => this.#irradiance(this.#geometryFrom(position))
-    this.#air = new MoonlitAir(atmosphere, this.source, volumes)
+    source.irradianceAt = position => this.#irradiance(this.#geometryFrom(position))
+    this.#home = { atmosphere, source, air: new MoonlitAir(atmosphere, source, volumes) }
+    return this
+  }
+
+  #inHome(): Home {
+    return this.#home ?? fail('Moon', 'is in no atmosphere yet: call atmosphere.add(moon) first')
+  }
+
+  /** Atmosphere that it is in, once it was added. Shared, not owned. */
+  get atmosphere(): Atmosphere {
+    return this.#inHome().atmosphere
+  }
+
+  /** The moon as a source of light, for lights and probes, once it was added. */
+  get source(): LightSource {
+    return this.#inHome().source
   }
 
   /** Direction to the moon in world space, unit length, a copy; null while it follows the date. */
@@ -220,13 +244,36 @@ export class Moon implements SkyLayer {
   }
 
   /**
-   * Changes powers and strengths of the halo.
+   * Changes some settings.
    *
-   * @throws If one is out of its range; then nothing has changed.
+   * @throws If one is unknown or out of its range; then nothing has changed.
    */
-  setFlare(options: FlareOptions): this {
-    this.#halo.set(options)
-    return this
+  set(settings: Pick<MoonOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('Moon', this, settings, ...SETTINGS)
+  }
+
+  /**
+   * Illuminance by the moon on a plane that faces it, reddened by the air and blocked by the planet.
+   *
+   * @param position - World.
+   * @returns Linear sRGB [lx].
+   */
+  illuminanceAt(position: Vector3): Triple {
+    const { atmosphere, source } = this.#inHome()
+    return atmosphere.query(position, source).sunIlluminance(position)
+  }
+
+  /**
+   * Illuminance by moonlit sky and ground on a plane.
+   *
+   * @param position - World.
+   * @param normal - World, unit length: where the plane faces.
+   * @returns Linear sRGB [lx].
+   * @throws Before the tables were baked and read back: await `atmosphere.bake(renderer)` first.
+   */
+  skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
+    const { atmosphere, source } = this.#inHome()
+    return atmosphere.query(position, source).skyIlluminance(position, normal)
   }
 
   /**
@@ -283,7 +330,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (this.lightsAir && this.#strength > 0) this.#air.prepare(renderer, view)
+    if (this.lightsAir && this.#strength > 0) this.#home?.air.prepare(renderer, view)
   }
 
   update(view: AtmosphereView): void {
@@ -296,31 +343,30 @@ export class Moon implements SkyLayer {
       strength: this.#strength,
       irradiance: this.#irradiance(geometry)
     }
-    this.#uniforms.update(view, state, this.#halo)
-    this.#air.update(view)
+    this.#uniforms.update(view, state, this.flare)
+    this.#home?.air.update(view)
   }
 
   beyond(ray: SkyRay, background: Vec4): Vec4 {
     const map = texture(this.#surface.target.texture)
-    return moonSky(this.#uniforms, map, this.#halo, ray, background)
+    return moonSky(this.#uniforms, map, this.flare.uniforms, ray, background)
   }
 
   glow(ray: SkyRay, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#air.glow(ray, without) : without
+    return this.lightsAir ? this.#inHome().air.glow(ray, without) : without
   }
 
   haze(line: HazeLine, without: Vec4): Vec4 {
-    return this.lightsAir ? this.#air.haze(line, without) : without
+    return this.lightsAir ? this.#inHome().air.haze(line, without) : without
   }
 
   /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */
   dispose(): void {
-    this.atmosphere.remove(this)
+    this.#home?.atmosphere.remove(this)
+    this.#home?.air.dispose()
     this.#surface.dispose()
-    this.#air.dispose()
   }
 }
 
 /** The moon: see {@link Moon}. */
-export const moon = (atmosphere: Atmosphere, options: MoonOptions = {}): Moon =>
-  new Moon(atmosphere, options)
+export const moon = (options?: MoonOptions): Moon => new Moon(options)

@@ -1,8 +1,7 @@
 import { checkAtmosphere } from '../view/ViewNodes'
-import { LightSource } from '../view/LightSource'
 import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import type { Moon } from './Moon'
+import { Moon } from './Moon'
 import { SunDirectionalLight } from '../lights/SunDirectionalLight'
 
 /**
@@ -17,17 +16,12 @@ export class MoonDirectionalLight extends SunDirectionalLight {
 
   /**
    * @param distance - Distance from the target to the light [world units].
-   * @throws If `moon` is no {@link Moon}, or made for another atmosphere.
+   * @throws If `moon` is no {@link Moon}, or another atmosphere's.
    */
   constructor(atmosphere: Atmosphere, moon: Moon, distance = 1) {
     checkAtmosphere('MoonDirectionalLight', atmosphere)
-    if (!(moon?.source instanceof LightSource)) {
-      fail('MoonDirectionalLight', 'moon must be a Moon', moon)
-    }
-    super(atmosphere, distance, moon.source)
-    if (moon.atmosphere !== atmosphere) {
-      fail('MoonDirectionalLight', 'moon must be made for the same atmosphere', moon)
-    }
+    if (!(moon instanceof Moon)) fail('MoonDirectionalLight', 'moon must be a Moon', moon)
+    super(atmosphere, distance, moon.attach(atmosphere).source)
     this.moon = moon
   }
 

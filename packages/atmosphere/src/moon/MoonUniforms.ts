@@ -2,7 +2,7 @@ import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
 import { renderGroup, uniform } from 'three/tsl'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { HaloUniforms } from '../halo/HaloUniforms'
+import type { Flare } from '../halo/Flare'
 import { visibleSun } from '../transmittance/cpu/transmittance'
 import { CORONA_LIGHT } from './cpu/eclipse'
 import { earthshine, moonIrradiance } from './cpu/moonIrradiance'
@@ -60,7 +60,7 @@ export class MoonUniforms {
   /** 0 in totality, when the sun's disc is all covered, else 1. */
   readonly sunVisibility = scalar(1)
 
-  update(view: AtmosphereView, moon: MoonState, halo: HaloUniforms): void {
+  update(view: AtmosphereView, moon: MoonState, halo: Flare): void {
     const { parameters, space } = view.atmosphere
     const { geometry, angularRadius, radius, strength } = moon
     const { distance, phaseAngle } = geometry
@@ -82,8 +82,8 @@ export class MoonUniforms {
     const eyeRadius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleSun(parameters, eyeRadius, view.up.dot(this.directionMapped.value))
     this.irradiance.value.set(...moon.irradiance).multiplyScalar(visible)
-    halo.update(this.irradiance.value.y > 0)
+    halo.updateReach(this.irradiance.value.y > 0)
     this.cosNearSun.value = cosWidened(CORONA_RADII * parameters.sunAngularRadius)
-    this.cosNearMoon.value = Math.min(cosWidened(angularRadius), halo.cosMaxAngle.value)
+    this.cosNearMoon.value = Math.min(cosWidened(angularRadius), halo.uniforms.cosMaxAngle.value)
   }
 }

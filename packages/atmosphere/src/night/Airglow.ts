@@ -1,6 +1,6 @@
 import { Vector4 } from 'three'
 import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
-import { checkNonNegative, checkOptions } from '@welkin/geo'
+import { checkNonNegative, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, checkSpectrum } from '../check'
@@ -20,7 +20,12 @@ export interface AirglowOptions {
   width?: number
   /** Spectral radiance at the four wavelengths; only the ratios count. */
   spectrum?: Spectrum
+  /** Factor on the physical brightness, finite, ≥ 0, default 1. */
+  intensity?: number
 }
+
+/** Options that may change later. */
+const SETTINGS = ['luminance', 'altitude', 'width', 'spectrum', 'intensity'] as const
 
 /** Spectrum of the green line of oxygen at 557.7 nm, the sodium lines at 589 nm, and a continuum. */
 const GREENISH: Spectrum = [0.76, 1.06, 1.05, 0.68]
@@ -55,10 +60,12 @@ const THIN_LAYER_SIGMAS = 10
  */
 export class Airglow implements SkyLayer {
   readonly isAdditive = true
-  /** Luminance of the layer seen perpendicularly [cd/m²]. */
-  readonly luminance: number
-  readonly #spectrum: Spectrum
-  readonly #layer
+  #luminance = 1e-4
+  #spectrum: Spectrum = GREENISH
+  readonly #layer = {
+    altitude: uniform(96_000).setGroup(renderGroup),
+    width: uniform(4000).setGroup(renderGroup)
+  }
   /** Radiance of the layer seen perpendicularly, over `solarIrradiance` [1/sr]. */
   readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
   /** Radiance of the air in the green that masks the layer [1/sr]. */
@@ -70,22 +77,61 @@ export class Airglow implements SkyLayer {
 
   /** @throws If an option is out of range. */
   constructor(options: AirglowOptions = {}) {
-    const {
-      luminance = 1e-4,
-      altitude = 96_000,
-      width = 4000,
-      spectrum = GREENISH
-    } = checkOptions('Airglow', options, 'luminance', 'altitude', 'width', 'spectrum')
-    checkRange('Airglow', 'luminance', luminance, 0, 1e9)
-    checkRange('Airglow', 'altitude', altitude, 1, 1e7)
-    checkRange('Airglow', 'width', width, 1, 1e6)
-    checkSpectrum('Airglow', 'spectrum', spectrum, 1e9)
-    this.luminance = luminance
-    this.#spectrum = spectrum
-    this.#layer = {
-      altitude: uniform(altitude).setGroup(renderGroup),
-      width: uniform(width).setGroup(renderGroup)
-    }
+    this.set(options)
+    this.#version = 0
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: AirglowOptions): this {
+    return setOptions('Airglow', this, settings, ...SETTINGS)
+  }
+
+  /** Luminance of the layer seen perpendicularly, in [0, 1e9] [cd/m²]. */
+  get luminance(): number {
+    return this.#luminance
+  }
+
+  set luminance(value: number) {
+    checkRange('Airglow', 'luminance', value, 0, 1e9)
+    this.#luminance = value
+    this.#version++
+  }
+
+  /** Altitude of the layer's middle, in [1, 1e7] [m]. */
+  get altitude(): number {
+    return this.#layer.altitude.value
+  }
+
+  set altitude(value: number) {
+    checkRange('Airglow', 'altitude', value, 1, 1e7)
+    this.#layer.altitude.value = value
+    this.#version++
+  }
+
+  /** Standard deviation of its emission over altitude, in [1, 1e6] [m]. */
+  get width(): number {
+    return this.#layer.width.value
+  }
+
+  set width(value: number) {
+    checkRange('Airglow', 'width', value, 1, 1e6)
+    this.#layer.width.value = value
+    this.#version++
+  }
+
+  /** Spectral radiance at the four wavelengths; only the ratios count. */
+  get spectrum(): Spectrum {
+    return this.#spectrum
+  }
+
+  set spectrum(value: Spectrum) {
+    checkSpectrum('Airglow', 'spectrum', value, 1e9)
+    this.#spectrum = [...value]
+    this.#version++
   }
 
   /** Factor on the physical brightness, finite, ≥ 0. */

@@ -2,7 +2,7 @@ import { Matrix3, Vector4 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
 import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { checkNonNegative, checkOptions } from '@welkin/geo'
+import { checkNonNegative, setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkOrientation } from '../check'
 import { CelestialFrame } from './CelestialFrame'
@@ -18,6 +18,8 @@ import { sampleLevel0, type Vec4 } from '../tsl-types'
 export interface MilkyWayOptions {
   /** Rotation from the stars' frame (J2000) to ECEF; by default it follows the atmosphere's date. */
   orientation?: Matrix4 | null
+  /** Factor on the physical brightness, finite, ≥ 0, default 1. */
+  intensity?: number
 }
 
 /** Width of the map [texels], each a sixth to a third of a degree. */
@@ -58,8 +60,17 @@ export class MilkyWay implements SkyLayer {
 
   /** @throws If an option is of the wrong kind. */
   constructor(options: MilkyWayOptions = {}) {
-    this.orientation = checkOptions('MilkyWay', options, 'orientation').orientation ?? null
+    this.set(options)
     this.#map = texture(this.#target.texture)
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or of the wrong kind; then nothing has changed.
+   */
+  set(settings: MilkyWayOptions): this {
+    return setOptions('MilkyWay', this, settings, 'orientation', 'intensity')
   }
 
   /** Factor on the physical brightness, finite, ≥ 0. */

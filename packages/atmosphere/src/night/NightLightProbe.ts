@@ -22,8 +22,7 @@ import { watchScene } from '../view/renderers'
 export class NightLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
-  /** Illuminance of level ground [lx]. */
-  readonly illuminance: number
+  #illuminance = NIGHT_ILLUMINANCE
 
   /**
    * @param illuminance - Illuminance of level ground, finite, ≥ 0 [lx].
@@ -32,9 +31,18 @@ export class NightLightProbe extends LightProbe {
   constructor(atmosphere: Atmosphere, illuminance = NIGHT_ILLUMINANCE) {
     super()
     checkAtmosphere('NightLightProbe', atmosphere)
-    checkNonNegative('NightLightProbe', 'illuminance', illuminance)
     this.atmosphere = atmosphere
     this.illuminance = illuminance
+  }
+
+  /** Illuminance of level ground, finite, ≥ 0 [lx]. */
+  get illuminance(): number {
+    return this.#illuminance
+  }
+
+  set illuminance(value: number) {
+    checkNonNegative('NightLightProbe', 'illuminance', value)
+    this.#illuminance = value
   }
 
   override updateMatrixWorld(force?: boolean): void {

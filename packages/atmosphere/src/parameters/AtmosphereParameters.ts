@@ -1,4 +1,5 @@
-import { checkOptions, fail, failUnknown } from '@welkin/geo'
+import { checkEllipsoid, fail, failUnknown } from '@welkin/geo'
+import type { Ellipsoid } from '@welkin/geo'
 
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
@@ -16,7 +17,7 @@ export type ScaleHeightLayers = readonly (readonly [baseAltitude: number, scaleH
  * {@link AtmosphereParametersInit.rayleighLayers}), an absorber (on Earth ozone) has the profile of a
  * tent, the ground is Lambertian.
  */
-export interface AtmosphereParametersInit {
+export interface AtmosphereParametersFields {
   /** The four wavelengths [nm]. */
   wavelengths?: Spectrum
   /** Spectral irradiance of the sun above the air [W/m²/nm]. */
@@ -27,6 +28,11 @@ export interface AtmosphereParametersInit {
   limbDarkening?: Spectrum
   /** Planet's centre to the ground: radius of the sphere that the ellipsoid is mapped to [m]. */
   bottomRadius?: number
+  /**
+   * The planet's figure; null, the default, is WGS84 where `bottomRadius` is within 2 % of the Earth's,
+   * else a sphere.
+   */
+  ellipsoid?: Ellipsoid | null
   /** Planet's centre to the top of the air [m]. */
   topRadius?: number
   /** Scattering by molecules at the ground [1/m]. */
@@ -37,7 +43,7 @@ export interface AtmosphereParametersInit {
    * Layers above the lowest, in which molecules thin out by a factor e over other heights: at most
    * three, from the ground up; base altitudes and scale heights in [1, 1e6] [m]. By default none.
    *
-   * `standardAtmosphere()` has those of the U.S. Standard Atmosphere 1976.
+   * `standardEarthParameters()` has those of the U.S. Standard Atmosphere 1976.
    */
   rayleighLayers?: ScaleHeightLayers
   /** Scattering by aerosols at the ground, at most `mieExtinction` [1/m]. */
@@ -68,7 +74,18 @@ export interface AtmosphereParametersInit {
   spectralToXYZ?: SpectralMatrix
 }
 
-type Fields = Required<AtmosphereParametersInit>
+/** Fields of {@link AtmosphereParameters}, and two everyday numbers that stand for some of them. */
+export interface AtmosphereParametersInit extends AtmosphereParametersFields {
+  /**
+   * The Earth's haziness as aerosol optical depth, in [1, 20]: 1 none, 2 the clear air of the default,
+   * growing in proportion. In place of `mieScattering` and `mieExtinction`.
+   */
+  turbidity?: number
+  /** The Earth's ozone, in [0, 1000], in place of `absorptionExtinction` [Dobson units]. */
+  ozone?: number
+}
+
+type Fields = Required<AtmosphereParametersFields>
 
 /** Air at sea level scatters this over λ⁴, λ in µm [µm⁴/m]. Bruneton 2017, after Penndorf 1957. */
 const RAYLEIGH_COEFFICIENT = 1.24062e-6
@@ -110,6 +127,7 @@ const FIELDS: {
   sunAngularRadius: [0.004675, 1e-6, 0.2],
   limbDarkening: [[0.75, 0.65, 0.6, 0.52], 0, 1],
   bottomRadius: [6_378_137, 1e3, 1e9],
+  ellipsoid: [null, 0, 0],
   topRadius: [6_378_137 + 60_000, 1e3, 2e9],
   rayleighScattering: [
     /*#__PURE__*/ map(EARTH_WAVELENGTHS, nm => RAYLEIGH_COEFFICIENT / (nm * 1e-3) ** 4),
@@ -139,6 +157,31 @@ const FIELDS: {
 
 const CLASS = 'AtmosphereParameters'
 
+/** What may be set. */
+const NAMES = [...Object.keys(FIELDS), 'turbidity', 'ozone']
+
+/** Fields, with those that turbidity and ozone stand for. */
+function fieldsOf({ turbidity, ozone, ...fields }: AtmosphereParametersInit): object {
+  const made: AtmosphereParametersFields = {}
+  const stand = (name: string, ...others: (keyof AtmosphereParametersFields)[]): void => {
+    const other = others.find(field => fields[field] !== undefined)
+    if (other) fail(CLASS, `${name} must not be given together with ${other}`)
+  }
+  if (turbidity !== undefined) {
+    check('turbidity', turbidity, 1, 20)
+    stand('turbidity', 'mieScattering', 'mieExtinction')
+    const extinction = CLEAR_AEROSOL_EXTINCTION * (turbidity - 1)
+    made.mieScattering = all(0.9 * extinction)
+    made.mieExtinction = all(extinction)
+  }
+  if (ozone !== undefined) {
+    check('ozone', ozone, 0, 1000)
+    stand('ozone', 'absorptionExtinction')
+    made.absorptionExtinction = earthOzone(ozone)
+  }
+  return { ...fields, ...made }
+}
+
 function check(name: string, value: unknown, min: number, max: number): void {
   if (!(typeof value === 'number' && value >= min && value <= max)) {
     fail(CLASS, `${name} must be a number in [${min}, ${max}]`, value)
@@ -158,12 +201,12 @@ function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: n
 }
 
 /**
- * What an atmosphere is made of. Immutable fields; {@link set} replaces some and counts `version` up,
+ * What an atmosphere is made of. Fields are read only; {@link set} replaces some and counts `version` up,
  * so that tables made from them know that they are stale.
  *
  * ```ts
- * const parameters = AtmosphereParameters.earth({ turbidity: 4, ozone: 280 })
- * parameters.set({ groundAlbedo: [0.3, 0.3, 0.3, 0.3] })
+ * const parameters = new AtmosphereParameters({ turbidity: 4, ozone: 280 })
+ * parameters.set({ turbidity: 6, groundAlbedo: [0.3, 0.3, 0.3, 0.3] })
  * ```
  */
 export class AtmosphereParameters {
@@ -174,6 +217,7 @@ export class AtmosphereParameters {
   declare readonly sunAngularRadius: number
   declare readonly limbDarkening: Spectrum
   declare readonly bottomRadius: number
+  declare readonly ellipsoid: Ellipsoid | null
   declare readonly topRadius: number
   declare readonly rayleighScattering: Spectrum
   declare readonly rayleighScaleHeight: number
@@ -203,36 +247,12 @@ export class AtmosphereParameters {
     return this.#version
   }
 
-  /**
-   * The Earth's atmosphere from two everyday numbers. `standardAtmosphere()` is as bright as the real one.
-   *
-   * @param options - `turbidity` in [1, 20]: haziness as aerosol optical depth, 1 none, 2 the clear
-   *   air of the default, growing in proportion; `ozone` in [0, 1000] [Dobson units], default 300.
-   * @throws If a number is out of its range.
-   */
-  static earth(options: { turbidity?: number; ozone?: number } = {}): AtmosphereParameters {
-    return new AtmosphereParameters().setEarth(options)
-  }
-
-  /**
-   * Sets turbidity and ozone as {@link earth} does, keeping everything else.
-   *
-   * @throws If a number is out of its range; then nothing has changed.
-   */
-  setEarth(options: { turbidity?: number; ozone?: number }): this {
-    const { turbidity, ozone } = checkOptions(CLASS, options, 'turbidity', 'ozone')
-    const init: AtmosphereParametersInit = {}
-    if (turbidity !== undefined) {
-      check('turbidity', turbidity, 1, 20)
-      const extinction = CLEAR_AEROSOL_EXTINCTION * (turbidity - 1)
-      init.mieScattering = all(0.9 * extinction)
-      init.mieExtinction = all(extinction)
-    }
-    if (ozone !== undefined) {
-      check('ozone', ozone, 0, 1000)
-      init.absorptionExtinction = earthOzone(ozone)
-    }
-    return this.set(init)
+  /** Whether there is no air: nothing that scatters or absorbs light. */
+  get isAirless(): boolean {
+    const { rayleighScattering, mieExtinction, absorptionExtinction } = this
+    return [rayleighScattering, mieExtinction, absorptionExtinction].every(spectrum =>
+      spectrum.every(value => value === 0)
+    )
   }
 
   /**
@@ -242,16 +262,21 @@ export class AtmosphereParameters {
    * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
    */
   set(init: AtmosphereParametersInit): this {
-    const next: AtmosphereParametersInit = {}
+    const next: AtmosphereParametersFields = {}
     if (typeof init !== 'object' || init === null || Array.isArray(init)) {
       fail(CLASS, 'options must be an object', init)
     }
-    for (const [name, value] of Object.entries(init)) {
-      if (!Object.hasOwn(FIELDS, name)) failUnknown(CLASS, 'parameter', name, Object.keys(FIELDS))
+    for (const [name, value] of Object.entries(fieldsOf(init))) {
+      if (!Object.hasOwn(FIELDS, name)) failUnknown(CLASS, 'option', name, NAMES)
       if (value === undefined) continue
       const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
       const [earth, least, most] = field
       // The fields of more than one shape.
+      if (name === 'ellipsoid') {
+        if (value !== null) checkEllipsoid(CLASS, value)
+        next.ellipsoid = value as unknown as Ellipsoid | null
+        continue
+      }
       let shape = name === 'mieAsymmetry' && Array.isArray(value) ? all(0) : earth
       if (name === 'rayleighLayers') {
         if (!Array.isArray(value) || value.length > 3) {
@@ -269,7 +294,10 @@ export class AtmosphereParameters {
       return base
     }, 1)
     check('topRadius', topRadius, bottomRadius * (1 + 1e-5), bottomRadius * 1.5)
-    Object.assign(this, next)
+    for (const [name, value] of Object.entries(next)) {
+      // Assigning to a field throws: those who hold tables would not learn of it.
+      Object.defineProperty(this, name, { configurable: true, enumerable: true, value })
+    }
     this.#version++
     return this
   }

@@ -1,4 +1,4 @@
-import { checkOptions } from '@welkin/geo'
+import { checkOptions, checkPositive, Ellipsoid } from '@welkin/geo'
 import { checkRange } from '../check'
 import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 
@@ -62,15 +62,17 @@ const MARS_DUST = {
  *   days (default 0.5), several in a dust storm.
  * @throws If it is out of its range.
  */
-export function marsAtmosphere(options: { dust?: number } = {}): AtmosphereParameters {
-  const { dust = 0.5 } = checkOptions('marsAtmosphere', options, 'dust')
-  checkRange('marsAtmosphere', 'dust', dust, 0, 10)
+export function marsParameters(options: { dust?: number } = {}): AtmosphereParameters {
+  const { dust = 0.5 } = checkOptions('marsParameters', options, 'dust')
+  checkRange('marsParameters', 'dust', dust, 0, 10)
   const sun = sunAt(1.5237)
   const scaleHeight = 11_100
   const extinction = map(MARS_DUST.extinction, value => (value * dust) / scaleHeight)
   return new AtmosphereParameters({
     ...sun,
     bottomRadius: 3_396_190,
+    // IAU 2015, Archinal et al. 2018.
+    ellipsoid: new Ellipsoid(3_396_190, 3_396_190, 3_376_200),
     topRadius: 3_396_190 + 110_000,
     rayleighScattering: rayleigh(sun.wavelengths, 2.1e23, CO2_CROSS_SECTION),
     rayleighScaleHeight: scaleHeight,
@@ -93,7 +95,7 @@ export function marsAtmosphere(options: { dust?: number } = {}): AtmosphereParam
  * no absorption. The deck's albedo, with the unknown absorber of blue light in it, gives the planet
  * its spherical albedo of about 0.76 (Moroz 1981).
  */
-export function venusAtmosphere(): AtmosphereParameters {
+export function venusParameters(): AtmosphereParameters {
   const sun = sunAt(0.7233)
   const haze: Spectrum = [0.00075, 0.00075, 0.00075, 0.00075]
   return new AtmosphereParameters({
@@ -120,7 +122,7 @@ export function venusAtmosphere(): AtmosphereParameters {
  * et al. 2005), scale height 20 km. So thick a haze scatters light more often than the tables follow;
  * beyond five times they extrapolate.
  */
-export function titanAtmosphere(): AtmosphereParameters {
+export function titanParameters(): AtmosphereParameters {
   const sun = sunAt(9.58)
   const scaleHeight = 80_000
   const albedo = [0.7, 0.84, 0.88, 0.93]
@@ -147,18 +149,20 @@ export function titanAtmosphere(): AtmosphereParameters {
  * @param options - `radius` [m]; `groundAlbedo`; `distance` to the sun [astronomical units].
  * @throws If a number is out of its range.
  */
-export function airlessBody(
+export function airlessParameters(
   options: { radius?: number; groundAlbedo?: Spectrum; distance?: number } = {}
 ): AtmosphereParameters {
   const {
     radius = 1_737_400,
     groundAlbedo = [0.09, 0.11, 0.12, 0.135],
     distance = 1
-  } = checkOptions('airlessBody', options, 'radius', 'groundAlbedo', 'distance')
-  checkRange('airlessBody', 'distance', distance, 1e-3, 1e4)
+  } = checkOptions('airlessParameters', options, 'radius', 'groundAlbedo', 'distance')
+  checkPositive('airlessParameters', 'radius', radius)
+  checkRange('airlessParameters', 'distance', distance, 1e-3, 1e4)
   return new AtmosphereParameters({
     ...sunAt(distance),
     bottomRadius: radius,
+    ellipsoid: new Ellipsoid(radius),
     topRadius: radius * 1.001,
     rayleighScattering: NONE,
     mieScattering: NONE,
@@ -166,12 +170,4 @@ export function airlessBody(
     absorptionExtinction: NONE,
     groundAlbedo
   })
-}
-
-/** Whether there is no air: nothing that scatters or absorbs light. */
-export function isAirless(parameters: AtmosphereParameters): boolean {
-  const { rayleighScattering, mieExtinction, absorptionExtinction } = parameters
-  return [rayleighScattering, mieExtinction, absorptionExtinction].every(spectrum =>
-    spectrum.every(value => value === 0)
-  )
 }

@@ -25,12 +25,11 @@ import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
 import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { AtmosphereParameters, checkParameters } from '../parameters/AtmosphereParameters'
+import { checkParameters, type AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { eyeScalars } from '../view/cpu/eye'
 import { sunWhite } from '../ground/cpu/reflectance'
-import { isAirless } from '../parameters/planets'
 import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
 import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
@@ -44,7 +43,7 @@ import type { Bool, Vec4 } from '../tsl-types'
 /** Where a shell's light comes from. */
 export type ShellSun = Atmosphere | DirectionalLight | PointLight | Vector3
 
-/** Options of {@link atmosphereShell}. */
+/** Options of {@link AtmosphereShell}. */
 export interface AtmosphereShellOptions {
   /**
    * The sun. An atmosphere's; or a light, whose colour and intensity then are those of the sun above the
@@ -141,8 +140,7 @@ class ShellNode extends Node<'vec4'> {
  * many small planets. A child of the body's mesh:
  *
  * ```ts
- * const shell = atmosphereShell(new AtmosphereParameters(), 1, { sun: light })
- * if (shell !== null) globe.add(shell)
+ * globe.add(new AtmosphereShell(new AtmosphereParameters(), 1, { sun: light }))
  * ```
  *
  * Seen from space it hazes the body and rims it, on the night side too; seen from inside it is the sky.
@@ -154,7 +152,7 @@ class ShellNode extends Node<'vec4'> {
  * ship or a cockpit, is drawn without haze, and what is behind it with all of it; multisampling bares no
  * ground. One alpha dims all colours of what is behind alike.
  *
- * An eclipse of its sun does not dim it.
+ * An eclipse of its sun does not dim it. That of a body without air is not `visible`, and draws nothing.
  *
  * It draws transparent, back faces only, premultiplied, writes no depth, and has `renderOrder` 1, after
  * a body's own transparent tiles. It casts no shadow and no ray hits it.
@@ -217,6 +215,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#luminanceScale = this.luminanceScale = luminanceScale
     this.name = 'AtmosphereShell'
     this.renderOrder = 1
+    this.visible = !parameters.isAirless
 
     this.#isSingle = model === 'single-scattering'
     const lends = !this.#isSingle && isAtmosphere(sun) && sun.parameters === parameters
@@ -431,20 +430,4 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#giveBack()
     this.#renderer = null
   }
-}
-
-/**
- * A planet's air as a mesh, see {@link AtmosphereShell}; null for a body without air.
- *
- * @param parameters - What the air is made of.
- * @param bodyRadius - Of the body, in units of the object that the shell is added to.
- * @throws If an argument is missing or out of its range.
- */
-export const atmosphereShell = (
-  parameters: AtmosphereParameters,
-  bodyRadius: number,
-  options: AtmosphereShellOptions = {}
-): AtmosphereShell | null => {
-  const isBare = parameters instanceof AtmosphereParameters && isAirless(parameters)
-  return isBare ? null : new AtmosphereShell(parameters, bodyRadius, options)
 }

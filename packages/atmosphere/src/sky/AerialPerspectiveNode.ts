@@ -49,15 +49,15 @@ export class AerialPerspectiveNode extends AtmosphereNode {
     return 'AerialPerspectiveNode'
   }
 
-  /** What was drawn: linear colour. */
+  /** Colour that was drawn, linear. */
   colorNode: Node
   /** Its depth, as the renderer writes it. */
   depthNode: Node
   /** The camera that drew it. */
   readonly camera: Camera
-  /** Whether sky is drawn where nothing was. Set it before the first render. */
+  /** Draws the sky where nothing was drawn. Set it before the first render. */
   showSky = true
-  /** Whether the sun's disc is drawn. Set it before the first render. */
+  /** Draws the sun's disc. Set it before the first render. */
   showSun = true
   readonly #projectionInverse
   readonly #near = uniform(0.1)

@@ -20,7 +20,7 @@ export class SkyBackgroundNode extends AtmosphereNode {
     return 'SkyBackgroundNode'
   }
 
-  /** Whether the sun's disc is drawn. Set it before the first render. */
+  /** Draws the sun's disc. Set it before the first render. */
   showSun = true
 
   override customCacheKey(): number {

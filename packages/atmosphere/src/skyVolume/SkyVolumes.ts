@@ -43,7 +43,7 @@ export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
 /** A volume's place in the atlas. */
 export interface SkyVolume {
   readonly slot: number
-  /** What it was computed for; null before the first time. */
+  /** Viewpoint that it was computed for; null before the first time. */
   eye: EyeScalars<number> | null
   /** Version of the tables that it was computed from. */
   tablesVersion: number
@@ -148,7 +148,7 @@ export class SkyVolumes {
     this.#sumPass.render(renderer, this.light)
   }
 
-  /** What takes GPU memory of its own. */
+  /** Targets that take GPU memory of their own. */
   get targets(): RenderTarget[] {
     return [this.light, this.depth, ...(this.#ownsSegments ? [this.segments] : [])]
   }

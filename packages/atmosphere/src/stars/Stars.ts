@@ -1,6 +1,6 @@
 import { DataTexture, FloatType, NearestFilter, RGBAFormat, RGFormat, Vector4 } from 'three'
 import type { Matrix4 } from 'three'
-import { checkBoolean, checkNonNegative, checkOptions, fail } from '@welkin/geo'
+import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkOrientation } from '../check'
 import { CelestialFrame } from '../night/CelestialFrame'
@@ -18,10 +18,14 @@ const MASKING_RATIO = 100
 
 /** Options of {@link Stars}. */
 export interface StarsOptions {
+  /** What is drawn; by default the bright stars, which only `stars()` adds to a bundle. */
+  catalogue?: readonly Star[]
   /** Leaves the drawing to `starsOverlay`, after post-processing. Default false. */
   overlay?: boolean
   /** Rotation from the stars' frame (J2000) to ECEF; by default it follows the atmosphere's date. */
   orientation?: Matrix4 | null
+  /** Factor on the physical brightness, finite, ≥ 0, default 1. */
+  intensity?: number
 }
 
 /**
@@ -54,13 +58,9 @@ export class Stars implements SkyLayer {
   #paletteKey = ''
 
   /** @throws If a star lacks a finite number, or an option is of the wrong kind. */
-  constructor(catalogue: readonly Star[], options: StarsOptions = {}) {
-    const { overlay = false, orientation } = checkOptions(
-      'Stars',
-      options,
-      'overlay',
-      'orientation'
-    )
+  constructor(options: StarsOptions & { catalogue: readonly Star[] }) {
+    checkOptions('Stars', options, 'catalogue', 'overlay', 'orientation', 'intensity')
+    const { catalogue, overlay = false, ...settings } = options
     checkBoolean('Stars', 'overlay', overlay)
     if (!Array.isArray(catalogue)) fail('Stars', 'catalogue must be an array of stars', catalogue)
     catalogue.forEach((star, i) => {
@@ -71,12 +71,21 @@ export class Stars implements SkyLayer {
     })
     this.catalogue = catalogue
     this.overlay = overlay
-    this.orientation = orientation ?? null
+    this.set(settings)
     const { cells, entries } = starCells(catalogue)
     this.#textures = {
       cells: dataTexture('Stars.cells', cells, STAR_LEVELS[0].cells, RGFormat),
       entries: dataTexture('Stars.entries', entries, ENTRY_COLUMNS, RGBAFormat)
     }
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or of the wrong kind; then nothing has changed.
+   */
+  set(settings: Pick<StarsOptions, 'orientation' | 'intensity'>): this {
+    return setOptions('Stars', this, settings, 'orientation', 'intensity')
   }
 
   /** Factor on the physical brightness, finite, ≥ 0. */

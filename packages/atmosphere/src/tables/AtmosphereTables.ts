@@ -8,7 +8,7 @@ import { SkyVolumes } from '../skyVolume/SkyVolumes'
 import { TransmittanceTable } from '../transmittance/TransmittanceTable'
 import { checkOwner } from '../view/renderers'
 
-/** What an atmosphere keeps on the GPU: its two tables and the sky volumes made from them. */
+/** Tables of an atmosphere on the GPU: transmittance, diffuse light, and the sky volumes made from them. */
 export class AtmosphereTables {
   readonly uniforms = new AtmosphereUniforms()
   readonly transmittance = new TransmittanceTable(this.uniforms)

@@ -5,7 +5,7 @@ export const TRANSMITTANCE_SIZE = [256, 64] as const
 export const DIFFUSE_SIZE = [96, 16] as const
 
 /**
- * What the tiles of the diffuse-light table hold, side by side: six moments, then the irradiance on
+ * Tiles of the diffuse-light table, side by side: six moments, then the irradiance on
  * a plane that faces up and on one that faces down.
  */
 export const DIFFUSE_TILES = 8
@@ -17,7 +17,7 @@ export const VOLUME_SIZE = [32, 96, 23] as const
 export const VOLUME_SLOTS = 2
 
 /**
- * How the distances of the sky volume lie in its atlas: columns × rows of tiles. One tile follows the
+ * Layout of the sky volume's distances in its atlas: columns × rows of tiles. One tile follows the
  * last distance: all the air along a ray and the ground behind it.
  */
 export const VOLUME_TILES = [6, 4] as const

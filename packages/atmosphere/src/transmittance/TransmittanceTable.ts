@@ -10,7 +10,7 @@ import { horizonCosine, transmittanceRay } from './tsl/transmittance'
 import { sine } from '../math/tsl/trigonometry'
 import type { Float, Vec4 } from '../tsl-types'
 
-/** Of a march to the top of the air; two evaluations each. */
+/** Steps of a march to the top of the air; two evaluations each. */
 const STEPS = 30
 
 /**
@@ -42,7 +42,7 @@ function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
  * underflows, and is nearly linear between texels.
  */
 export class TransmittanceTable {
-  /** Where the table is kept; `target.texture` is what shaders sample. */
+  /** Target of the table; shaders sample `target.texture`. */
   readonly target: RenderTarget = tableTarget('Transmittance', ...TRANSMITTANCE_SIZE)
   readonly #pass: FragmentPass
 

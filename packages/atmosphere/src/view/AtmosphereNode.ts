@@ -37,7 +37,7 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from './ViewNodes'
 export abstract class AtmosphereNode extends Node<'vec4'> {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
-  /** What shaders read, as the camera that renders sees it. */
+  /** Uniforms and tables for shaders, as the camera that renders sees them. */
   protected readonly view: ViewNodes
   #layersVersion = 0
 

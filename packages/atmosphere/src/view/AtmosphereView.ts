@@ -37,9 +37,9 @@ export class AtmosphereView {
   readonly sunDirection = new Vector3()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = new Matrix3()
-  /** Of the source, over the bare sun's. */
+  /** Irradiance of the source, over the bare sun's. */
   irradiance: Spectrum = [1, 1, 1, 1]
-  /** Whether the source can light any air that is seen. */
+  /** True if the source can light any air that is seen. */
   isLit = true
   eye: EyeScalars<number> | null = null
   /** Number of its volume in the atlas. */

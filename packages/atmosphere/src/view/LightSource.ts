@@ -6,7 +6,7 @@ import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { SkyVolumes } from '../skyVolume/SkyVolumes'
 
 /**
- * What lights the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both;
+ * Source of light in the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both;
  * sky volumes depend on the direction, so each source has its own.
  */
 export class LightSource {

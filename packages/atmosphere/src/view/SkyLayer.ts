@@ -18,7 +18,7 @@ export interface SkyRay extends Readonly<Aim> {
   readonly direction: Vec3
   /** Against the sun. */
   readonly cosViewSun: Float
-  /** Whether there is air in this direction. */
+  /** True if there is air in this direction. */
   readonly meetsAir: Bool
   /** Angle that a pixel covers [rad]. */
   readonly pixel: Float
@@ -28,7 +28,7 @@ export interface SkyRay extends Readonly<Aim> {
 
 /** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */
 export interface Sightline extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewSun'> {
-  /** To a point [m]; absent for the sky. */
+  /** Distance to a point [m]; absent for the sky. */
   readonly distance?: Float
   /** For the sky: whether the planet is in the way. */
   readonly hitsGround?: Bool
@@ -58,8 +58,8 @@ export interface Veil {
 export interface SkyLayer {
   /** Whether {@link beyond} only adds light and hides nothing. */
   readonly isAdditive?: boolean
-  /** The only atmosphere that it can be added to; absent if any will do. */
-  readonly atmosphere?: ViewedAtmosphere
+  /** Called before it is added. @throws If it cannot be added to this atmosphere. */
+  attach?(atmosphere: ViewedAtmosphere): void
   /** The light that it sends to the planet, if it lights more than its own picture. */
   readonly source?: LightSource
   /** Part of the sun's light that it leaves at a position in world space. */

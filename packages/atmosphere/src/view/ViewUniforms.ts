@@ -2,6 +2,7 @@ import { Matrix3, Vector3 } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Camera } from 'three'
+import { offsetPoint } from '@welkin/geo'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { EyeUniforms } from '../skyVolume/SkyVolumes'
 import type { Air } from '../scattering/tsl/scattering'
@@ -15,7 +16,7 @@ const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGro
 /** Uniforms and textures of an atmosphere as a camera sees it in the light of one source. */
 export class ViewUniforms {
   readonly source: LightSource
-  /** Whose view it is; null for whichever renders. */
+  /** Camera of the view; null for whichever renders. */
   readonly camera: Camera | null
   readonly air: Air
   readonly volume: VolumeTextures
@@ -67,21 +68,17 @@ export class ViewUniforms {
   }
 
   /**
-   * Altitude and sun of a point, without cancellation: h' = h + (2 r d·up + d²)/(r' + r).
+   * Altitude, sun and zenith of a point.
    *
    * @param offset - From the camera, in the mapped space [m].
    */
   place(offset: Vec3): { altitude: Float; cosSun: Float; up: Vec3 } {
     const { bottomRadius, thickness } = this.air.uniforms
-    const radius = bottomRadius.add(this.height).toConst()
-    const rise = offset.dot(this.up).mul(radius).mul(2).add(offset.dot(offset)).toConst()
-    const radiusThere = radius.mul(radius).add(rise).max(1).sqrt().toConst()
-    const altitude = this.height.add(rise.div(radiusThere.add(radius))).clamp(0, thickness)
-    const up = this.up.mul(radius).add(offset).div(radiusThere).toConst()
+    const { height, up } = offsetPoint(offset, this.up, this.height, bottomRadius)
     return {
-      altitude: altitude.toConst(),
+      altitude: height.clamp(0, thickness).toConst(),
       cosSun: up.dot(this.sunDirection).clamp(-1, 1).toConst(),
-      up: up
+      up
     }
   }
 }

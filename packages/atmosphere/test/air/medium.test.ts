@@ -1,6 +1,6 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
-import { AtmosphereParameters, opticalDepth, standardAtmosphere } from '@welkin/atmosphere'
+import { AtmosphereParameters, opticalDepth, standardEarthParameters } from '@welkin/atmosphere'
 import { homogeneousHeight, molecularDensity } from '../../src/air/cpu/medium'
 import { asymmetryMoments } from '../../src/air/cpu/phase'
 import { number, runs, spectrumIndex } from '../arbitraries'
@@ -60,7 +60,7 @@ describe('density of molecules', () => {
   })
 
   it('is that of the U.S. Standard Atmosphere', () => {
-    const air = standardAtmosphere()
+    const air = standardEarthParameters()
     for (const [kilometres, density] of TABLE) {
       const error = Math.abs((molecularDensity(air, 1e3 * kilometres) * 1.225) / density - 1)
       const tolerance = kilometres <= 60 ? 0.035 : kilometres <= 90 ? 0.07 : 0.2
@@ -102,11 +102,11 @@ describe('density of molecules', () => {
   })
 })
 
-describe('standardAtmosphere', () => {
+describe('standardEarthParameters', () => {
   it('has the optical depths that were measured', () => {
     const depth = (air: AtmosphereParameters): number[] =>
       opticalDepth(air, air.bottomRadius, 1, 100_000)
-    const molecules = depth(standardAtmosphere({ aerosolOpticalDepth: 0, ozone: 0 }))
+    const molecules = depth(standardEarthParameters({ aerosolOpticalDepth: 0, ozone: 0 }))
     const wavelengths = [440, 520, 560, 630]
     for (const i of spectrumIndex) {
       // Hansen & Travis 1974, Space Sci. Rev. 16, eq. 2.30, for 1013 hPa.
@@ -115,7 +115,7 @@ describe('standardAtmosphere', () => {
       expect(Math.abs(molecules[i] / published - 1)).toBeLessThan(0.01)
     }
     const [clear, hazy] = [0.05, 0.4].map(aerosolOpticalDepth =>
-      depth(standardAtmosphere({ aerosolOpticalDepth, ozone: 0 }))
+      depth(standardEarthParameters({ aerosolOpticalDepth, ozone: 0 }))
     ) as [number[], number[]]
     for (const i of spectrumIndex) {
       const expected = 0.35 * (wavelengths[i] / 550) ** -1.3
@@ -125,15 +125,15 @@ describe('standardAtmosphere', () => {
   })
 
   it('takes ozone as the default does', () => {
-    expect(standardAtmosphere({ ozone: 400 }).absorptionExtinction).toEqual(
-      AtmosphereParameters.earth({ ozone: 400 }).absorptionExtinction
+    expect(standardEarthParameters({ ozone: 400 }).absorptionExtinction).toEqual(
+      new AtmosphereParameters({ ozone: 400 }).absorptionExtinction
     )
   })
 
   it('wants sensible numbers', () => {
-    expect(() => standardAtmosphere({ aerosolOpticalDepth: -0.1 })).toThrow(
-      'standardAtmosphere: aerosolOpticalDepth must be in [0, 5], got -0.1'
+    expect(() => standardEarthParameters({ aerosolOpticalDepth: -0.1 })).toThrow(
+      'standardEarthParameters: aerosolOpticalDepth must be in [0, 5], got -0.1'
     )
-    expect(() => standardAtmosphere({ ozone: NaN })).toThrow('ozone must be')
+    expect(() => standardEarthParameters({ ozone: NaN })).toThrow('ozone must be')
   })
 })

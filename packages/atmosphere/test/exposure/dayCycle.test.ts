@@ -7,7 +7,7 @@ import {
   DayCycle,
   exposureFor,
   exposureOfIlluminance,
-  standardAtmosphere
+  standardEarthParameters
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
@@ -321,7 +321,7 @@ describe('twilight', () => {
   }
 
   it('and day are within 25 % of the almanac in the standard atmosphere, until the sun is 12° down', () => {
-    const ratio = overAlmanac(standardAtmosphere())
+    const ratio = overAlmanac(standardEarthParameters())
     for (let elevation = 90; elevation >= -18; elevation--) {
       // Later in the evening the night sky has its share, which the almanac counts.
       const night = NIGHT_ILLUMINANCE / almanacIlluminance(elevation)

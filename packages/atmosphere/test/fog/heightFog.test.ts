@@ -179,6 +179,6 @@ describe('fog', () => {
     expect(() => new HeightFog({ fade: [5, 5] })).toThrow('fade must rise, got [5, 5]')
     expect(() => new HeightFog().set({ asymmetry: 1 })).toThrow('asymmetry')
     expect(() => new DistanceFog({ density: -1 })).toThrow('DistanceFog: density must be in')
-    expect(new HeightFog().set({ base: 20 }).options.falloff).toBe(50)
+    expect(new HeightFog().set({ base: 20 }).falloff).toBe(50)
   })
 })

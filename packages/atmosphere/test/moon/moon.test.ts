@@ -1,14 +1,7 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
 import { PerspectiveCamera, Vector3 } from 'three'
-import {
-  Atmosphere,
-  DayCycle,
-  Moon,
-  moon,
-  MoonDirectionalLight,
-  moonIlluminanceAt
-} from '@welkin/atmosphere'
+import { Atmosphere, DayCycle, Moon, moon, MoonDirectionalLight } from '@welkin/atmosphere'
 import { SearchLocalSolarEclipse, Observer } from 'astronomy-engine'
 import { Ellipsoid, moonPositionECEF } from '@welkin/geo'
 import { sunObscuration } from '../../src/moon/cpu/eclipse'
@@ -43,7 +36,7 @@ const ALLEN: readonly (readonly [number, number])[] = [
 
 describe('version of a moon', () => {
   it('counts what is set by hand, a direction once it has moved by a tenth of a degree', () => {
-    const luna = moon(new Atmosphere(), { direction: new Vector3(1, 1, 0) })
+    const luna = moon({ direction: new Vector3(1, 1, 0) }).attach(new Atmosphere())
     const counts = (change: () => void): number => {
       const { version } = luna
       change()
@@ -75,21 +68,21 @@ describe('moonlight', () => {
     const full = 2.54e-6 * 10 ** (0.4 * 12.74)
     const { solarIrradiance } = new Atmosphere().parameters
     const atmosphere = new Atmosphere()
-    const luna = new Moon(atmosphere, { direction: new Vector3(0, 1, 0) })
+    const luna = new Moon({ direction: new Vector3(0, 1, 0) }).attach(atmosphere)
     const high = new Vector3(0, 3e5, 0)
     expect(solarIrradiance.length).toBe(4)
     for (const [angle, magnitudes] of ALLEN) {
       luna.phase = 0.5 - angle / 360
       expect(luna.seenFrom(high).phaseAngle / degree).toBeCloseTo(angle, 3)
       const expected = full * 10 ** (-0.4 * magnitudes)
-      const ratio = luminance(moonIlluminanceAt(luna, high)) / expected
+      const ratio = luminance(luna.illuminanceAt(high)) / expected
       expect(Math.abs(ratio - 1), `${angle}°: ${ratio}`).toBeLessThan(0.1)
     }
   })
 
   it('is about a quarter of a lux on the ground under a high full moon', () => {
-    const luna = new Moon(new Atmosphere(), { direction: new Vector3(0, 1, 0), phase: 0.5 })
-    const lux = luminance(moonIlluminanceAt(luna, origin))
+    const luna = new Moon({ direction: new Vector3(0, 1, 0), phase: 0.5 }).attach(new Atmosphere())
+    const lux = luminance(luna.illuminanceAt(origin))
     expect(lux).toBeGreaterThan(0.22)
     expect(lux).toBeLessThan(0.32)
   })
@@ -140,19 +133,19 @@ describe('Moon', () => {
     atmosphere.date = date
     const here = Ellipsoid.WGS84.geodeticToECEF(place)
     const expected = moonPositionECEF(date).sub(here)
-    const seen = moon(atmosphere).seenFrom(here)
+    const seen = moon().attach(atmosphere).seenFrom(here)
     expect(seen.direction.angleTo(expected) / degree).toBeLessThan(10 / 3600)
     expect(seen.distance / expected.length()).toBeCloseTo(1, 12)
     // First quarter was at 11:11 UTC on that day.
     expect(Math.abs(seen.litFraction - 0.5)).toBeLessThan(0.05)
     atmosphere.place(place).date = date
-    const local = moon(atmosphere).seenFrom(origin)
+    const local = moon().attach(atmosphere).seenFrom(origin)
     expect(local.phaseAngle).toBeCloseTo(seen.phaseAngle, 9)
   })
 
   it('stands opposite the sun and full without a date, or as far from it as its phase says', () => {
     const atmosphere = new Atmosphere().setSunAngles(-20, 250)
-    const luna = new Moon(atmosphere)
+    const luna = new Moon().attach(atmosphere)
     const { direction, litFraction } = luna.seenFrom(origin)
     expect(direction.angleTo(atmosphere.sunDirection)).toBeCloseTo(Math.PI, 6)
     expect(litFraction).toBeCloseTo(1, 9)
@@ -172,13 +165,14 @@ describe('Moon', () => {
 
   it('waxes and wanes as a day cycle runs, and exposure follows its light', () => {
     const atmosphere = new Atmosphere().place({ longitude: 0, latitude: 35 })
-    const luna = moon(atmosphere)
+    const luna = moon().attach(atmosphere)
     const sources = [luna.source]
     // Almanac: new on 16 May 2026 at 20:01 UTC, quarters on 23 May at 11:11 and 8 June at 10:00,
     // full on 31 May at 08:45, new on 15 June at 02:54.
     const date = new Date('2026-05-16T20:01:00Z')
     const [lit, dark] = [{ sources }, {}].map(
-      exposure => new DayCycle(atmosphere, { date, rate: 86_400, adaptation: 0, exposure })
+      exposureOptions =>
+        new DayCycle(atmosphere, { date, rate: 86_400, adaptation: 0, exposureOptions })
     )
     const camera = new PerspectiveCamera()
     const fractions = [0, 6.63, 7.9, 8.05, 6.7].map(days => {
@@ -205,23 +199,23 @@ describe('Moon', () => {
 
   it('takes no wrong argument', () => {
     const atmosphere = new Atmosphere()
-    expect(() => new Moon(undefined as never)).toThrow('Moon: atmosphere must be')
-    expect(() => new Moon(atmosphere, { phase: 1.5 })).toThrow('Moon: phase must be')
-    expect(() => new Moon(atmosphere, { distance: 0 })).toThrow('Moon: distance must be')
-    expect(() => new Moon(atmosphere, { radius: NaN })).toThrow('Moon: radius must be')
-    expect(() => new Moon(atmosphere, { strength: -1 })).toThrow('Moon: strength must be')
-    expect(() => new Moon(atmosphere, { mapSize: 100 })).toThrow('Moon: mapSize must be')
-    expect(() => new Moon(atmosphere, { direction: origin })).toThrow(
-      'Moon: direction must not be zero'
-    )
-    expect(() => new Moon(atmosphere, { flare: { innerPower: 0 } })).toThrow('Moon: innerPower')
+    expect(() => moon().attach(undefined as never)).toThrow('Moon.attach: atmosphere must be')
+    expect(() => moon().source).toThrow('Moon: is in no atmosphere yet')
+    expect(() => moon().seenFrom(origin)).toThrow('Moon: is in no atmosphere yet')
+    expect(() => new Moon({ phase: 1.5 })).toThrow('Moon: phase must be')
+    expect(() => new Moon({ distance: 0 })).toThrow('Moon: distance must be')
+    expect(() => new Moon({ radius: NaN })).toThrow('Moon: radius must be')
+    expect(() => new Moon({ strength: -1 })).toThrow('Moon: strength must be')
+    expect(() => new Moon({ mapSize: 100 })).toThrow('Moon: mapSize must be')
+    expect(() => new Moon({ direction: origin })).toThrow('Moon: direction must not be zero')
+    expect(() => new Moon({ flare: { innerPower: 0 } })).toThrow('Moon: innerPower')
     expect(() => new MoonDirectionalLight(atmosphere, null as never)).toThrow('must be a Moon')
-    const other = moon(new Atmosphere())
+    const other = moon().attach(new Atmosphere())
     expect(() => new MoonDirectionalLight(atmosphere, other)).toThrow(
-      'MoonDirectionalLight: moon must be made for the same atmosphere, got a Moon'
+      'Moon.attach: atmosphere must be the one that it was added to before'
     )
     expect(() => atmosphere.add(other)).toThrow(
-      'Atmosphere.add: layer must be made for this atmosphere, got a Moon'
+      'Moon.attach: atmosphere must be the one that it was added to before'
     )
   })
 })
@@ -261,7 +255,7 @@ describe('eclipse', () => {
     const atmosphere = new Atmosphere().place({ longitude, latitude })
     atmosphere.date = new Date(time)
     const bare = luminance(atmosphere.sunIlluminanceAt(origin))
-    atmosphere.add(moon(atmosphere))
+    atmosphere.add(moon())
     return luminance(atmosphere.sunIlluminanceAt(origin)) / bare
   }
 
@@ -291,7 +285,7 @@ describe('eclipse', () => {
       const { peak, obscuration } = SearchLocalSolarEclipse(new Date(start), observer)
       const atmosphere = new Atmosphere().place({ longitude, latitude })
       atmosphere.date = peak.time.date
-      const { direction, angularRadius } = moon(atmosphere).seenFrom(origin)
+      const { direction, angularRadius } = moon().attach(atmosphere).seenFrom(origin)
       const apart = direction.angleTo(atmosphere.sunDirection)
       const covered = sunObscuration(apart, 0.004675, angularRadius)
       expect(Math.abs(covered - obscuration), `${latitude}, ${longitude}`).toBeLessThan(0.01)
@@ -300,7 +294,7 @@ describe('eclipse', () => {
 
   it('is partial in Halifax on 2025-03-29, 83 % at 10:17 UTC', () => {
     const atmosphere = new Atmosphere().place({ longitude: -63.57, latitude: 44.65 })
-    atmosphere.add(moon(atmosphere))
+    atmosphere.add(moon())
     const left = (time: string): number => {
       atmosphere.date = new Date(`2025-03-29T${time}Z`)
       return atmosphere.sun.irradianceAt(origin)[2]
@@ -317,7 +311,7 @@ describe('eclipse', () => {
     expect(sunlight(-96.8, 32.8, '2024-04-23T18:42:00Z')).toBe(1)
     const atmosphere = new Atmosphere().place({ longitude: -96.8, latitude: 32.8 })
     atmosphere.date = new Date('2024-04-08T18:42:30Z')
-    moon(atmosphere)
+    moon().attach(atmosphere)
     expect(luminance(atmosphere.sunIlluminanceAt(origin))).toBeGreaterThan(1e4)
   })
 
@@ -326,8 +320,8 @@ describe('eclipse', () => {
     atmosphere.date = new Date('2024-04-08T18:45:00Z')
     const left = (): number => luminance(atmosphere.sunIlluminanceAt(origin))
     const bare = left()
-    const luna = moon(atmosphere)
-    const other = moon(atmosphere, { direction: new Vector3(0, 1, 0) })
+    const luna = moon().attach(atmosphere)
+    const other = moon({ direction: new Vector3(0, 1, 0) }).attach(atmosphere)
     expect(left()).toBe(bare)
     atmosphere.add(luna, other)
     const dim = left()
@@ -347,10 +341,10 @@ describe('eclipse', () => {
   it('leaves nothing behind of a thousand moons that came and went', () => {
     const atmosphere = new Atmosphere().place({ longitude: -96.8, latitude: 32.8 })
     atmosphere.date = new Date('2024-04-08T18:45:00Z')
-    const luna = moon(atmosphere)
+    const luna = moon().attach(atmosphere)
     let asked = 0
     for (let i = 0; i < 1000; i++) {
-      const guest = moon(atmosphere)
+      const guest = moon().attach(atmosphere)
       guest.eclipse = () => {
         asked++
         return [0, 0, 0, 0]

@@ -127,28 +127,28 @@ describe('AtmosphereParameters', () => {
   })
 
   it('makes the air of the Earth from turbidity and ozone', () => {
-    const clear = AtmosphereParameters.earth({ turbidity: 1, ozone: 0 })
+    const clear = new AtmosphereParameters({ turbidity: 1, ozone: 0 })
     expect(clear.mieExtinction).toEqual([0, 0, 0, 0])
     expect(clear.mieScattering).toEqual([0, 0, 0, 0])
     expect(clear.absorptionExtinction).toEqual([0, 0, 0, 0])
     const usual = new AtmosphereParameters()
-    expect(AtmosphereParameters.earth().mieExtinction).toEqual(usual.mieExtinction)
-    const hazy = AtmosphereParameters.earth({ turbidity: 6, ozone: 600 })
+    expect(new AtmosphereParameters().mieExtinction).toEqual(usual.mieExtinction)
+    const hazy = new AtmosphereParameters({ turbidity: 6, ozone: 600 })
     hazy.mieExtinction.forEach((v, i) => expect(v / usual.mieExtinction[i]).toBeCloseTo(5, 9))
     hazy.absorptionExtinction.forEach((v, i) =>
       expect(v / usual.absorptionExtinction[i]).toBeCloseTo(2, 9)
     )
-    expect(() => AtmosphereParameters.earth({ turbidity: 0.5 })).toThrow(
+    expect(() => new AtmosphereParameters({ turbidity: 0.5 })).toThrow(
       /AtmosphereParameters: turbidity .*0\.5/
     )
-    expect(() => AtmosphereParameters.earth({ ozone: NaN })).toThrow(
+    expect(() => new AtmosphereParameters({ ozone: NaN })).toThrow(
       /AtmosphereParameters: ozone .*NaN/
     )
   })
 
   it('changes nothing if one of turbidity and ozone is wrong', () => {
     const parameters = new AtmosphereParameters()
-    expect(() => parameters.setEarth({ turbidity: 5, ozone: -1 })).toThrow(/ozone .*-1/)
+    expect(() => parameters.set({ turbidity: 5, ozone: -1 })).toThrow(/ozone .*-1/)
     expect(parameters.mieExtinction).toEqual(new AtmosphereParameters().mieExtinction)
   })
 })

@@ -1,12 +1,11 @@
 import {
   Atmosphere,
   AtmosphereParameters,
-  airlessBody,
-  isAirless,
-  marsAtmosphere,
+  airlessParameters,
+  marsParameters,
   planetGround,
-  titanAtmosphere,
-  venusAtmosphere
+  titanParameters,
+  venusParameters
 } from '@welkin/atmosphere'
 import { Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
@@ -49,7 +48,7 @@ function skyColors(parameters: AtmosphereParameters) {
 
 describe('planets', () => {
   it('has a butterscotch sky on Mars by day, and a blue glow at the setting sun', () => {
-    const color = skyColors(marsAtmosphere())
+    const color = skyColors(marsParameters())
     for (const azimuth of [30, 90, 180]) {
       const [red, green, blue] = color(30, azimuth, 50)
       expect(red).toBeGreaterThan(1.15 * green)
@@ -62,7 +61,7 @@ describe('planets', () => {
   })
 
   it("gives Mars the sun's light of its distance", () => {
-    const mars = marsAtmosphere()
+    const mars = marsParameters()
     const earth = new AtmosphereParameters()
     expect(mars.solarIrradiance[1] / earth.solarIrradiance[1]).toBeCloseTo(0.4307, 3)
     // 21 arc-minutes across.
@@ -71,22 +70,22 @@ describe('planets', () => {
 
   it('lets as much light through as its optical depths say', () => {
     // Dust of depth 0.5 at 630 nm; gas of 610 Pa adds little.
-    expect(-Math.log(transmittanceTo(marsAtmosphere({ dust: 0.5 }))[3])).toBeCloseTo(0.5, 1)
-    expect(-Math.log(transmittanceTo(marsAtmosphere({ dust: 2 }))[3])).toBeCloseTo(2, 1)
-    expect(-Math.log(transmittanceTo(titanAtmosphere())[1])).toBeCloseTo(8.96 + 1.23, 0)
-    expect(-Math.log(transmittanceTo(venusAtmosphere())[1])).toBeCloseTo(3, 1)
+    expect(-Math.log(transmittanceTo(marsParameters({ dust: 0.5 }))[3])).toBeCloseTo(0.5, 1)
+    expect(-Math.log(transmittanceTo(marsParameters({ dust: 2 }))[3])).toBeCloseTo(2, 1)
+    expect(-Math.log(transmittanceTo(titanParameters())[1])).toBeCloseTo(8.96 + 1.23, 0)
+    expect(-Math.log(transmittanceTo(venusParameters())[1])).toBeCloseTo(3, 1)
   })
 
   it('has an orange sky on Titan', () => {
-    const [red, green, blue] = skyColors(titanAtmosphere())(40, 90, 50)
+    const [red, green, blue] = skyColors(titanParameters())(40, 90, 50)
     expect(red).toBeGreaterThan(1.5 * green)
     expect(green).toBeGreaterThan(1.5 * blue)
   })
 
   it('shows a black sky and sunlit ground without air', () => {
-    const moon = airlessBody()
-    expect(isAirless(moon)).toBe(true)
-    expect(isAirless(marsAtmosphere({ dust: 0 }))).toBe(false)
+    const moon = airlessParameters()
+    expect(moon.isAirless).toBe(true)
+    expect(marsParameters({ dust: 0 }).isAirless).toBe(false)
     const light = solveDiffuseLight(moon, QUICK)
     const ray = { radius: moon.bottomRadius + 2, cosView: 0.3, cosSun: 0.5, cosViewSun: 0.6 }
     expect(skyRadiance(moon, light, ray)).toEqual([0, 0, 0, 0])
@@ -96,9 +95,9 @@ describe('planets', () => {
   })
 
   it.each([
-    [() => marsAtmosphere({ dust: -1 }), /dust must be in \[0, 10\], got -1/],
-    [() => airlessBody({ distance: 0 }), /distance must be in .*got 0/],
-    [() => airlessBody({ radius: NaN }), /bottomRadius .*NaN/],
+    [() => marsParameters({ dust: -1 }), /dust must be in \[0, 10\], got -1/],
+    [() => airlessParameters({ distance: 0 }), /distance must be in .*got 0/],
+    [() => airlessParameters({ radius: NaN }), /airlessParameters: radius .*NaN/],
     [() => planetGround({ windSpeed: 99 }), /PlanetGround: windSpeed must be in \[0, 40\], got 99/],
     [() => planetGround({ roughness: NaN }), /PlanetGround: roughness .*NaN/]
   ])('refuses numbers that make no sense: %s', (make, message) => {

@@ -310,7 +310,9 @@ describe('star cells', () => {
 
   it('take no star that is not a number', () => {
     const star = { ascension: 0, declination: NaN, magnitude: 0, colorIndex: 0 }
-    expect(() => new Stars([star])).toThrow('Stars: declination of star 0 must be finite, got NaN')
+    expect(() => new Stars({ catalogue: [star] })).toThrow(
+      'Stars: declination of star 0 must be finite, got NaN'
+    )
   })
 })
 

@@ -89,7 +89,7 @@ describe('transmittance', () => {
     const strips = 400
     fc.assert(
       fc.property(number(0, 100_000), number(-0.0046, 0.3), number(0, 19), (height, e, haze) => {
-        const p = AtmosphereParameters.earth({ turbidity: 1 + haze })
+        const p = new AtmosphereParameters({ turbidity: 1 + haze })
         const radius = bottomRadius + height
         const horizon = Math.PI - Math.asin(bottomRadius / radius)
         const elevation = Math.sign(e) * e ** 2 * (e < 0 ? 200 : 3)

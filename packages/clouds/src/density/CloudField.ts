@@ -9,7 +9,7 @@ import { CloudLayers } from '../layers/CloudLayers'
 import { CloudNoise } from '../noise/CloudNoise'
 import { NightLight } from '../light/NightLight'
 import type { NoiseName } from '../noise/noiseSizes'
-import { latticeRotation, layerTurn } from './lattice'
+import { latticeRotations, layerRotation } from './lattice'
 import {
   CURL_PERIOD,
   DETAIL_PERIOD,
@@ -22,7 +22,7 @@ import {
 } from '../layers/layerUniforms'
 import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
-import { windTurn } from '../layers/wind'
+import { windRotation } from '../layers/wind'
 
 /** Part of its coverage that a layer gains in a frame after its noise was drawn over several. */
 const GROWTH = 1 / 48
@@ -47,8 +47,10 @@ export interface CloudFieldOptions {
 }
 
 /** A camera's place, from the planet's centre in the mapped space [m]. */
-export const eyePosition = ({ atmosphere, up, height }: AtmosphereView, target: Vector3): Vector3 =>
-  target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
+export const viewpointMapped = (
+  { atmosphere, up, height }: AtmosphereView,
+  target: Vector3
+): Vector3 => target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
 
 /**
  * Where the clouds are, as shaders see it: layers, weather and wind as uniforms, and noise.
@@ -97,14 +99,15 @@ export class CloudField {
   readonly axialRatio: number
   readonly #ownsNoise: boolean
   /** How each layer's noise is turned about the planet's centre: the wind's work. */
-  readonly turns: readonly Quaternion[] = Array.from({ length: CloudLayers.maxLayers }, (_, i) =>
-    layerTurn(i)
+  readonly rotations: readonly Quaternion[] = Array.from(
+    { length: CloudLayers.maxLayers },
+    (_, i) => layerRotation(i)
   )
   /** How far each layer has moved at the camera since the update before, in the mapped space [m]. */
-  readonly drifts: readonly Vector3[] = this.turns.map(() => new Vector3())
+  readonly drifts: readonly Vector3[] = this.rotations.map(() => new Vector3())
   #seconds: number | null = null
   /** Part of their coverage that layers have: 0 until there is noise. */
-  grown = 0
+  fadeIn = 0
   /** How much more in a frame. */
   #growth = 1
 
@@ -158,10 +161,10 @@ export class CloudField {
     const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
     const elapsed = now - (this.#seconds ?? now)
     this.#seconds = now
-    this.grown = this.noise.isReady ? Math.min(this.grown + this.#growth, 1) : 0
+    this.fadeIn = this.noise.isReady ? Math.min(this.fadeIn + this.#growth, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
-    eyePosition(view, _position)
+    viewpointMapped(view, _position)
     _foot.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
@@ -177,7 +180,7 @@ export class CloudField {
   #drift(index: number, up: Vector3, elapsed: number): void {
     const { wind, baseAltitude } = this.layers.at(index).parameters
     const radius = this.atmosphere.parameters.bottomRadius + baseAltitude
-    this.turns[index].multiply(windTurn(wind, up, elapsed, radius, _turn)).normalize()
+    this.rotations[index].multiply(windRotation(wind, up, elapsed, radius, _turn)).normalize()
     _point.copy(up).multiplyScalar(radius)
     this.drifts[index].copy(_point).sub(_point.applyQuaternion(_turn))
   }
@@ -192,7 +195,7 @@ export class CloudField {
     const periods = layerPeriods(parameters)
     const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
     const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
-    const turn = this.turns[index]
+    const turn = this.rotations[index]
     const { elements: e } = _matrix.makeRotationFromQuaternion(turn)
     const perStretch = 1 / stretch
     const anchor = (
@@ -210,9 +213,9 @@ export class CloudField {
         .divideScalar(length * periodsKept)
         .toArray()
         .map(v => periodsKept * (v - Math.floor(v)))
-    const { weather, region, shape, detail, fields } = latticeRotation
+    const { weather, region, shape, detail, fields } = latticeRotations
     const vectors = [
-      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.grown, density],
+      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.fadeIn, density],
       [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
       scales.clouds,
       [e[0], e[4], e[8], steepness],

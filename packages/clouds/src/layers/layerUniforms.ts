@@ -1,10 +1,5 @@
 import type { CloudLayerParameters } from './CloudLayer'
-import {
-  carvedSharpness,
-  cirrusEdgeWidth,
-  edgeWidth,
-  smoothSharpness
-} from '../density/densityShape'
+import { erosionForm, strengthForm } from '../density/formConstants'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 12
@@ -151,14 +146,14 @@ export function layerForms({
 } {
   const fibrous = shareOf(weatherWeights, 3)
   const mix = (from: number, to: number, share: number): number => from + (to - from) * share
-  const carved = shapeAmount ** 2 * (1 - fibrous)
+  const eroded = shapeAmount ** 2 * (1 - fibrous)
   const towers = shareOf(weatherWeights, 2)
   const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
     fibrous,
     stretch: mix(1, CIRRUS_STRETCH, fibrous),
-    steepness: 1 / mix(edgeWidth, cirrusEdgeWidth, fibrous),
-    sharpness: mix(smoothSharpness, carvedSharpness, carved),
+    steepness: 1 / mix(strengthForm.edgeWidth, strengthForm.cirrusEdgeWidth, fibrous),
+    sharpness: mix(erosionForm.smoothSharpness, erosionForm.erodedSharpness, eroded),
     coarseness: towers,
     anvil: towers * Math.min(Math.max(tall, 0), 1)
   }

@@ -13,7 +13,7 @@ const _north = new Vector3()
  * @param seconds - Time [s].
  * @param radius - Of the shell [m].
  */
-export function windTurn(
+export function windRotation(
   wind: CloudWind,
   up: Vector3,
   seconds: number,

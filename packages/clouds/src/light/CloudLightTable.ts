@@ -24,7 +24,7 @@ const ranges = {
   scatteringAlbedo: [0, 0.99999]
 } as const satisfies Record<keyof CloudPhaseParameters, readonly [number, number]>
 
-/** What the shader functions of cloud light read: see tsl/cloudLight.ts. */
+/** Table and uniforms that the shader functions of cloud light read: see tsl/cloudLight.ts. */
 export interface CloudLight {
   /** The table's 3-D texture; its layers as `fillCloudLight` says. */
   readonly table: LevelTexture<Vec3>
@@ -32,8 +32,8 @@ export interface CloudLight {
   readonly depthScale: UniformNode<'float', number>
   /** ω/(1 − ωf). */
   readonly scatteringScale: UniformNode<'float', number>
-  /** 1 − χ′₁. */
-  readonly diffusing: UniformNode<'float', number>
+  /** 1 − g′, with g′ = χ′₁ the asymmetry of the delta-scaled phase function. */
+  readonly oneMinusAsymmetry: UniformNode<'float', number>
   readonly forwardAsymmetry: UniformNode<'float', number>
   readonly backwardAsymmetry: UniformNode<'float', number>
   readonly forwardShare: UniformNode<'float', number>
@@ -61,7 +61,7 @@ export class CloudLightTable {
   declare forwardShare: CloudPhaseParameters['forwardShare']
   declare scatteringAlbedo: CloudPhaseParameters['scatteringAlbedo']
   #phase: CloudPhaseParameters
-  /** What is left to do for the phase function. */
+  /** Steps left until the table is that of the phase function. */
   #steps: Generator<void, void, void> | null = null
 
   static {
@@ -78,7 +78,7 @@ export class CloudLightTable {
   }
 
   /**
-   * @param phase - What differs from droplets of fair-weather clouds.
+   * @param phase - Differences from droplets of fair-weather clouds.
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   constructor(phase: Partial<CloudPhaseParameters> = {}) {
@@ -92,7 +92,7 @@ export class CloudLightTable {
       table: texture3D(this.texture) as unknown as LevelTexture<Vec3>,
       depthScale: number(),
       scatteringScale: number(),
-      diffusing: number(),
+      oneMinusAsymmetry: number(),
       forwardAsymmetry: number(),
       backwardAsymmetry: number(),
       forwardShare: number()
@@ -137,7 +137,7 @@ export class CloudLightTable {
     const { depthScale, moments } = scalePhase(phase)
     this.nodes.depthScale.value = depthScale
     this.nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
-    this.nodes.diffusing.value = 1 - moments[1]
+    this.nodes.oneMinusAsymmetry.value = 1 - moments[1]
     for (const name of ['forwardAsymmetry', 'backwardAsymmetry', 'forwardShare'] as const) {
       this.nodes[name].value = phase[name]
     }
@@ -156,7 +156,7 @@ export class CloudLightTable {
   /**
    * Goes on with the table, if the phase function has changed.
    *
-   * @param steps - How many at most, of 29.
+   * @param steps - Most steps to take, of 29: one for each of 28 thicknesses, and the upload.
    */
   update(steps = Infinity): void {
     for (let i = 0; i < steps && this.#steps !== null; i++) this.#steps.next()

@@ -3,105 +3,114 @@ import { NearestFilter, UnsignedByteType } from 'three'
 import type { RenderTarget } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import type { ShadingContext } from '../light/tsl/lighting'
+import type { ShadingContext } from '../light/tsl/shadingContext'
 import type { FrameUniforms } from './FrameUniforms'
-import { withAirBefore } from './tsl/airBefore'
-import { approachClouds, TILE } from './tsl/approach'
-import { marchClouds } from './tsl/march'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
-import { encodeDistance, type CloudPictures } from '../temporal/tsl/pictures'
-import { sightAt, sightEnd, type SightNodes } from './tsl/sight'
+import { encodeDistance } from '../temporal/tsl/packing'
+import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
+import { withAerialPerspective } from './tsl/aerialPerspective'
+import { conePrepass, TILE } from './tsl/conePrepass'
+import { marchClouds } from './tsl/march'
+import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
 
-/** What the pictures of clouds are made from. */
+/** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
-  readonly sights: SightNodes
+  readonly viewRays: ViewRayNodes
 }
 
-/** @param isPacked - Whether places are bytes. */
-function pictureTarget(name: string, isPacked = false): RenderTarget {
+/** @param isPacked - Whether distances are bytes: see `pack`. */
+function cloudTarget(name: string, isPacked = false): RenderTarget {
   const target = tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
   if (isPacked) target.textures[1].type = UnsignedByteType
   return target
 }
 
-function picturesOf({ textures }: RenderTarget): CloudPictures {
-  const [light, place] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
-  return { light, place }
+function texturesOf({ textures }: RenderTarget): CloudTargets {
+  const [light, distances] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
+  return { light, distances }
 }
 
-/** Marches one pixel of each block: light with the air in front of it, and where it is. */
-function marchPixels(scene: CloudScene, clear: LevelTexture<Vec2>): TwoOutputs {
-  const { field, sights } = scene
-  const { frame } = sights
-  return twoOutputs(([color, place]) =>
+/** Marches one pixel of each block: light with the air in front of it, and its distances. */
+function marchPixels(scene: CloudScene, emptyDistance: LevelTexture<Vec2>): TwoOutputs {
+  const { field, viewRays } = scene
+  const { frame } = viewRays
+  return twoOutputs(([color, distances]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
       const tiles = frame.marchedSize.div(TILE).ceil().mul(TILE)
       const tile = block.add(0.5).div(tiles).toConst() as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
       const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
-      const sight = sightAt(sights, at)
-      const { direction, directionView } = sight
-      const end = sightEnd(sights, at, sight)
+      const ray = viewRayAt(viewRays, at)
+      const { direction, directionView } = ray
+      const end = viewRayEnd(viewRays, at, ray)
+      const start = frame.isAmongClouds
+        .greaterThan(0)
+        .select(emptyDistance.sample(tile).level(0).x, 0)
       const marched = marchClouds(scene, {
         direction,
         end,
         jitter: interleavedNoise(block, frame.noiseShift),
-        start: frame.isAmong.greaterThan(0).select(clear.sample(tile).level(0).x, 0)
+        start
       })
-      color.assign(withAirBefore(field.view, marched, directionView, frame.gain))
+      color.assign(withAerialPerspective(field.view, marched, directionView, frame.gain))
       const distance = encodeDistance(marched.distance)
-      place.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
+      distances.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
       return vec4(0)
     })()
   )
 }
 
 /**
- * Draws the clouds of a camera: marches a part of the pixels in each frame, and puts them together with
- * those of the frames before.
+ * Render targets and passes of a camera's clouds. A frame takes four passes: the cone prepass (among clouds
+ * alone), the march of one pixel of each block, the statistics of the cells between marched pixels, and the
+ * upscale, which blends them into the history of the frames before.
  */
 export class CloudRenderer {
   readonly #frame: FrameUniforms
-  readonly #marched = pictureTarget('Marched')
-  readonly #cells = pictureTarget('Cells')
-  /** The picture, and that of the last frame, in turns. */
-  readonly #accumulated = [0, 1].map(i => pictureTarget(`${i}`, true))
-  readonly #approached = tableTarget('Welkin.CloudsApproach', 1, 1, 1, NearestFilter)
-  readonly #approach: FragmentPass
+  readonly #conePrepassTarget = tableTarget('Welkin.CloudsConePrepass', 1, 1, 1, NearestFilter)
+  readonly #marchedTarget = cloudTarget('Marched')
+  readonly #cellsTarget = cloudTarget('Cells')
+  /** History and the picture that is drawn from it, in turns. */
+  readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
+  readonly #conePrepass: FragmentPass
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
-  /** What was marched in the latest frame. */
-  readonly marched = picturesOf(this.#marched)
-  /** Both pictures: the shader chooses by {@link current}. */
-  readonly pictures: readonly CloudPictures[] = this.#accumulated.map(picturesOf)
-  /** Which one is the latest. */
+  /** Marched pixels of the latest frame. */
+  readonly marched = texturesOf(this.#marchedTarget)
+  /** Both accumulated targets: the shader chooses by {@link current}. */
+  readonly accumulated: readonly CloudTargets[] = this.#accumulatedTargets.map(texturesOf)
+  /** Index of the latest one. */
   current = 0
 
   constructor(scene: CloudScene) {
-    this.#frame = scene.sights.frame
-    const clear = texture(this.#approached.texture) as unknown as LevelTexture<Vec2>
-    this.#approach = new FragmentPass('Welkin.CloudsApproach', approachClouds(scene.sights))
-    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, clear))
+    const { field, viewRays } = scene
+    this.#frame = viewRays.frame
+    const { texture: emptyDistances } = this.#conePrepassTarget
+    const emptyDistance = texture(emptyDistances) as unknown as LevelTexture<Vec2>
+    this.#conePrepass = new FragmentPass('Welkin.CloudsConePrepass', conePrepass(viewRays))
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, emptyDistance))
     const { marched } = this
-    this.#gather = new FragmentPass(
-      'Welkin.CloudsGather',
-      gatherCells(scene.field, scene.sights, marched)
-    )
-    const cells = picturesOf(this.#cells)
-    this.#upscale = this.#accumulated.map((_, i) => {
-      const history = picturesOf(this.#accumulated[1 - i])
-      const output = upscale(scene.sights, marched, cells, history)
+    this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, marched))
+    const cells = texturesOf(this.#cellsTarget)
+    this.#upscale = this.#accumulatedTargets.map((_, i) => {
+      const history = texturesOf(this.#accumulatedTargets[1 - i])
+      const output = upscale(viewRays, marched, cells, history)
       return new FragmentPass('Welkin.CloudsUpscale', output)
     })
   }
 
   get #targets(): RenderTarget[] {
-    return [this.#approached, this.#marched, this.#cells, ...this.#accumulated]
+    return [
+      this.#conePrepassTarget,
+      this.#marchedTarget,
+      this.#cellsTarget,
+      ...this.#accumulatedTargets
+    ]
   }
 
   /** Size on the GPU [bytes]. */
@@ -113,33 +122,38 @@ export class CloudRenderer {
       }, 0)
   }
 
-  /** Gives the pictures a size [pixels]; when it is another, their contents are gone. */
+  /** Sizes the render targets [pixels]; where the size changes, their contents are gone. */
   setSize(width: number, height: number, block: number): void {
-    const [first] = this.#accumulated
+    const [first] = this.#accumulatedTargets
     if (first.width !== width || first.height !== height) {
-      for (const target of this.#accumulated) target.setSize(width, height)
+      for (const target of this.#accumulatedTargets) target.setSize(width, height)
       this.#frame.reset()
     }
-    this.#marched.setSize(Math.ceil(width / block), Math.ceil(height / block))
-    const { width: across, height: down } = this.#marched
-    this.#approached.setSize(Math.ceil(across / TILE), Math.ceil(down / TILE))
-    this.#cells.setSize(this.#marched.width + 1, this.#marched.height + 1)
+    const across = Math.ceil(width / block)
+    const down = Math.ceil(height / block)
+    this.#marchedTarget.setSize(across, down)
+    this.#conePrepassTarget.setSize(Math.ceil(across / TILE), Math.ceil(down / TILE))
+    this.#cellsTarget.setSize(across + 1, down + 1)
     this.#frame.size.value.set(width, height)
-    this.#frame.marchedSize.value.set(this.#marched.width, this.#marched.height)
+    this.#frame.marchedSize.value.set(across, down)
   }
 
   /** Draws a frame; `FrameUniforms.next` goes first. */
   render(renderer: Renderer): void {
-    if (this.#frame.isAmong.value > 0) this.#approach.render(renderer, this.#approached)
-    this.#march.render(renderer, this.#marched)
-    this.#gather.render(renderer, this.#cells)
+    if (this.#frame.isAmongClouds.value > 0) {
+      this.#conePrepass.render(renderer, this.#conePrepassTarget)
+    }
+    this.#march.render(renderer, this.#marchedTarget)
+    this.#gather.render(renderer, this.#cellsTarget)
     this.current = 1 - this.current
-    this.#upscale[this.current].render(renderer, this.#accumulated[this.current])
+    this.#upscale[this.current].render(renderer, this.#accumulatedTargets[this.current])
   }
 
-  /** Frees the pictures. */
+  /** Frees the render targets. */
   dispose(): void {
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#approach, this.#march, this.#gather, ...this.#upscale]) pass.dispose()
+    for (const pass of [this.#conePrepass, this.#march, this.#gather, ...this.#upscale]) {
+      pass.dispose()
+    }
   }
 }

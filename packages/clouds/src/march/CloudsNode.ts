@@ -18,7 +18,8 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import { unpack, type CloudPictures } from '../temporal/tsl/pictures'
+import { unpack } from '../temporal/tsl/packing'
+import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
@@ -49,7 +50,7 @@ export type CloudsDebug =
   | 'steps'
   /** Distance, by its logarithm: black at 100 m, white at 1000 km. */
   | 'depth'
-  /** Looks that a pixel remembers, of 32. */
+  /** Accumulated samples of a pixel, of 32. */
   | 'history'
 
 const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', 'depth', 'history']
@@ -230,7 +231,7 @@ export class CloudsNode extends AtmosphereNode {
       light: this.light.nodes,
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
-      sights: {
+      viewRays: {
         field: this.field,
         frame: this.#frame,
         isLogarithmic,
@@ -246,14 +247,14 @@ export class CloudsNode extends AtmosphereNode {
 
   override setup(builder: NodeBuilder): Node {
     this.#renderer ??= this.#createRenderer(builder.renderer)
-    const { marched, pictures } = this.#renderer
+    const { marched, accumulated } = this.#renderer
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
       const at = uv() as unknown as Vec2
-      const latest = (part: keyof CloudPictures): Vec4 => {
+      const latest = (part: keyof CloudTargets): Vec4 => {
         const value = vec4(0).toVar() as Vec4
-        const [first, second] = pictures.map(picture => () => {
-          value.assign(picture[part].sample(at).level(0))
+        const [first, second] = accumulated.map(target => () => {
+          value.assign(target[part].sample(at).level(0))
         })
         If(this.#current.equal(0), first).Else(second)
         return value
@@ -265,12 +266,12 @@ export class CloudsNode extends AtmosphereNode {
         color.a.mul(clouds.a).add(clouds.a.oneMinus())
       ).toVar()
       If(this.#debug.greaterThan(0), () => {
-        const place = unpack(latest('place'))
+        const { x: distance, z: samples } = unpack(latest('distances'))
         const views = [
           clouds.a.oneMinus(),
-          marched.place.sample(at).level(0).w,
-          exp2(place.x).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
-          place.z.abs().div(32)
+          marched.distances.sample(at).level(0).w,
+          exp2(distance).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
+          samples.abs().div(32)
         ]
         views.forEach((view, i) => {
           If(this.#debug.equal(i + 1), () => {

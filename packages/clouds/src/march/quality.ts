@@ -14,8 +14,8 @@ export interface CloudQuality {
   readonly shortestStep: number
   /** Least number of steps through a layer, in [1, 256]. */
   readonly layerSteps: number
-  /** Samples of the clouds towards the sun, near each lit place, in [1, 16]. */
-  readonly sunSteps: number
+  /** Samples of the clouds towards sun or moon, near each shaded place, in [1, 16]. */
+  readonly lightSteps: number
   /**
    * A frame marches one pixel of each block of so many by so many, 1, 2, 3 or 4; what was marched before
    * fills the rest.
@@ -28,10 +28,24 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 
 /** Well-tried qualities. */
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
-  low: { steps: 64, stepGrowth: 0.06, shortestStep: 120, layerSteps: 8, sunSteps: 1, block: 4 },
-  medium: { steps: 96, stepGrowth: 0.04, shortestStep: 100, layerSteps: 11, sunSteps: 2, block: 4 },
-  high: { steps: 128, stepGrowth: 0.03, shortestStep: 85, layerSteps: 16, sunSteps: 2, block: 3 },
-  ultra: { steps: 256, stepGrowth: 0.012, shortestStep: 25, layerSteps: 32, sunSteps: 4, block: 2 }
+  low: { steps: 64, stepGrowth: 0.06, shortestStep: 120, layerSteps: 8, lightSteps: 1, block: 4 },
+  medium: {
+    steps: 96,
+    stepGrowth: 0.04,
+    shortestStep: 100,
+    layerSteps: 11,
+    lightSteps: 2,
+    block: 4
+  },
+  high: { steps: 128, stepGrowth: 0.03, shortestStep: 85, layerSteps: 16, lightSteps: 2, block: 3 },
+  ultra: {
+    steps: 256,
+    stepGrowth: 0.012,
+    shortestStep: 25,
+    layerSteps: 32,
+    lightSteps: 4,
+    block: 2
+  }
 }
 
 const ranges = {
@@ -39,7 +53,7 @@ const ranges = {
   stepGrowth: [1e-3, 1],
   shortestStep: [0.1, 1000],
   layerSteps: [1, 256],
-  sunSteps: [1, 16],
+  lightSteps: [1, 16],
   block: [1, 4]
 } as const satisfies Record<keyof CloudQuality, readonly [number, number]>
 
@@ -72,13 +86,13 @@ export class QualityUniforms {
   readonly stepGrowth = number()
   readonly shortestStep = number()
   readonly layerSteps = number()
-  readonly sunSteps = whole()
+  readonly lightSteps = whole()
 
   set(quality: CloudQuality): void {
     this.pairs.value = Math.ceil(quality.steps / 2)
     this.stepGrowth.value = quality.stepGrowth
     this.shortestStep.value = quality.shortestStep
     this.layerSteps.value = quality.layerSteps
-    this.sunSteps.value = Math.round(quality.sunSteps)
+    this.lightSteps.value = Math.round(quality.lightSteps)
   }
 }

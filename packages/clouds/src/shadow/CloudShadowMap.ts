@@ -4,8 +4,8 @@ import { Quaternion, Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { eyePosition, type CloudField } from '../density/CloudField'
-import { CASCADE_SIZE as SIZE, ShadowDrawing } from './ShadowDrawing'
+import { viewpointMapped, type CloudField } from '../density/CloudField'
+import { CASCADE_SIZE as SIZE, CascadeState } from './CascadeState'
 import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
 import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
@@ -41,7 +41,7 @@ const STALE_LIGHT = 6e-4
 interface Cascade {
   readonly nodes: CascadeNodes
   isDrawn: boolean
-  drawing: ShadowDrawing
+  state: CascadeState
 }
 
 const _foot = new Vector3()
@@ -63,10 +63,10 @@ export class CloudShadowMap {
   readonly target: RenderTarget
   readonly nodes: CloudShadows
   readonly #cascades: readonly Cascade[]
-  /** Whose drawing goes on, which strip is next, and where it is drawn: it is swapped in when it is done. */
+  /** Whose state goes on, which strip is next, and where it is drawn: it is swapped in when it is done. */
   #current: Cascade | null = null
   #strip = 0
-  #spare: ShadowDrawing
+  #spare: CascadeState
   readonly #ray: ShadowRayUniforms
   readonly #pass: FragmentPass
   /** Where the camera was at the last update, from the planet's centre in the mapped space [m]. */
@@ -83,24 +83,24 @@ export class CloudShadowMap {
   constructor(field: CloudField) {
     this.field = field
     this.source = field.atmosphere.sun
-    const count = HALF_WIDTHS.length + 1
-    this.target = tableTarget('Welkin.CloudShadows', SIZE * count, SIZE)
+    const tileCount = HALF_WIDTHS.length + 1
+    this.target = tableTarget('Welkin.CloudShadows', SIZE * tileCount, SIZE)
     this.#cascades = HALF_WIDTHS.map((_, i) => ({
       nodes: {
         u: vector4(),
         v: vector4(),
         w: vector4(),
         isDrawn: number(),
-        square: number()
+        atlasTile: number()
       },
       isDrawn: false,
-      drawing: new ShadowDrawing(i, field.turns)
+      state: new CascadeState(i, field.rotations)
     }))
-    this.#spare = new ShadowDrawing(HALF_WIDTHS.length, field.turns)
+    this.#spare = new CascadeState(HALF_WIDTHS.length, field.rotations)
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
-      count,
+      tileCount,
       isMoonlit: number()
     }
     this.#ray = {
@@ -132,12 +132,12 @@ export class CloudShadowMap {
    */
   update(renderer: Renderer, view: AtmosphereView): void {
     const radius = this.field.radius.value
-    eyePosition(view, this.camera)
+    viewpointMapped(view, this.camera)
     const { night, atmosphere } = this.field
-    const isMoonlit = night.rulesAt(view)
+    const isMoonlit = night.isMoonlitAt(view)
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
     this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
-    this.#light.copy(isMoonlit ? night.direction.value : view.sunDirection)
+    this.#light.copy(isMoonlit ? night.moonDirection.value : view.sunDirection)
     if (view.height > HIGHEST) {
       for (const cascade of this.#cascades) cascade.isDrawn = false
       this.#current = null
@@ -148,9 +148,9 @@ export class CloudShadowMap {
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
-    const { layers, noise, grown, worldMapTexture } = this.field
+    const { layers, noise, fadeIn, worldMapTexture } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
-    this.#inputs = [noise.isReady, radius, grown, worldMapTexture?.version, ...parameters]
+    this.#inputs = [noise.isReady, radius, fadeIn, worldMapTexture?.version, ...parameters]
     _foot.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_foot.dot(this.#anchor) > ANCHOR_COSINE * _foot.length() * this.#anchor.length())) {
       this.#anchor.copy(_foot)
@@ -159,38 +159,38 @@ export class CloudShadowMap {
     let oldest = this.#current
     for (const [index, cascade] of this.#cascades.entries()) {
       const halfWidth = HALF_WIDTHS[index] * scale
-      const { drawing } = cascade
-      if (!cascade.isDrawn || !this.#fits(drawing, halfWidth)) {
+      const { state } = cascade
+      if (!cascade.isDrawn || !this.#fits(state, halfWidth)) {
         if (cascade === this.#current) this.#current = null
         if (cascade === oldest) oldest = null
-        this.#place(drawing, halfWidth)
-        this.#render(renderer, drawing, 0, SIZE)
+        this.#place(state, halfWidth)
+        this.#render(renderer, state, 0, SIZE)
         cascade.isDrawn = true
-      } else if (this.#current === null && this.#isStale(drawing)) {
-        if (oldest === null || drawing.order < oldest.drawing.order) oldest = cascade
+      } else if (this.#current === null && this.#isStale(state)) {
+        if (oldest === null || state.order < oldest.state.order) oldest = cascade
       }
     }
     if (oldest === null) return
     if (this.#current === null) {
       this.#current = oldest
       this.#strip = 0
-      this.#place(this.#spare, oldest.drawing.halfWidth)
+      this.#place(this.#spare, oldest.state.halfWidth)
     }
     const rows = SIZE / STRIPS
     this.#render(renderer, this.#spare, this.#strip * rows, rows)
     if (++this.#strip < STRIPS) return
-    const { drawing } = oldest
-    oldest.drawing = this.#spare
-    this.#spare = drawing
+    const { state } = oldest
+    oldest.state = this.#spare
+    this.#spare = state
     this.#current = null
   }
 
   /** Draws some rows of a cascade. */
-  #render(renderer: Renderer, drawing: ShadowDrawing, from: number, rows: number): void {
-    this.#setRay(drawing)
+  #render(renderer: Renderer, state: CascadeState, from: number, rows: number): void {
+    this.#setRay(state)
     const { viewport, scissor } = this.target
-    viewport.set(drawing.square * SIZE, 0, SIZE, SIZE)
-    scissor.set(drawing.square * SIZE, from, SIZE, rows)
+    viewport.set(state.atlasTile * SIZE, 0, SIZE, SIZE)
+    scissor.set(state.atlasTile * SIZE, from, SIZE, rows)
     this.target.scissorTest = true
     this.#pass.render(renderer, this.target)
   }
@@ -209,15 +209,15 @@ export class CloudShadowMap {
   }
 
   /** How far the wind has carried a layer, where the camera is, since a cascade was drawn [m]. */
-  #driftOf({ turns }: ShadowDrawing, target: Vector3, layer = this.#thickest): Vector3 {
-    _turn.copy(turns[layer]).invert().multiply(this.field.turns[layer])
+  #driftOf({ rotations }: CascadeState, target: Vector3, layer = this.#thickest): Vector3 {
+    _turn.copy(rotations[layer]).invert().multiply(this.field.rotations[layer])
     return target.copy(_foot).applyQuaternion(_turn).sub(_foot).negate()
   }
 
   /** How far the camera is from a cascade's middle, along its axes [m]. */
-  #distance(drawing: ShadowDrawing): number {
-    const { anchor, across, measure, center } = drawing
-    this.#driftOf(drawing, _drift)
+  #distance(state: CascadeState): number {
+    const { anchor, across, measure, center } = state
+    this.#driftOf(state, _drift)
     _offset.copy(_foot).sub(anchor).sub(_drift)
     const u = across.dot(_offset) - center.u
     const v = measure.dot(_offset) - center.v
@@ -225,42 +225,42 @@ export class CloudShadowMap {
   }
 
   /** Whether a cascade is of use until it is drawn anew. */
-  #fits(drawing: ShadowDrawing, halfWidth: number): boolean {
+  #fits(state: CascadeState, halfWidth: number): boolean {
     return (
-      drawing.halfWidth === halfWidth &&
+      state.halfWidth === halfWidth &&
       // Until the noise is there, so is no cloud.
-      drawing.inputs[0] === this.#inputs[0] &&
-      drawing.light.distanceTo(this.#light) < LIGHT_JUMP &&
-      this.#distance(drawing) < PLACE_JUMP * halfWidth
+      state.inputs[0] === this.#inputs[0] &&
+      state.light.distanceTo(this.#light) < LIGHT_JUMP &&
+      this.#distance(state) < PLACE_JUMP * halfWidth
     )
   }
 
-  #isStale(drawing: ShadowDrawing): boolean {
-    const { inputs, light, texel } = drawing
-    const place = this.#distance(drawing)
+  #isStale(state: CascadeState): boolean {
+    const { inputs, light, texel } = state
+    const place = this.#distance(state)
     return (
       place > STALE_PLACE * texel ||
       light.distanceTo(this.#light) > STALE_LIGHT ||
       this.#inputs.some((value, i) => value !== inputs[i]) ||
       [...this.field.layers].some(
-        (_, i) => this.#driftOf(drawing, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
+        (_, i) => this.#driftOf(state, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
       )
     )
   }
 
-  #place(drawing: ShadowDrawing, halfWidth: number): void {
-    drawing.place(this.#light, this.#anchor, _foot, halfWidth, this.field.turns)
-    drawing.inputs = this.#inputs
-    drawing.order = this.#order++
+  #place(state: CascadeState, halfWidth: number): void {
+    state.place(this.#light, this.#anchor, _foot, halfWidth, this.field.rotations)
+    state.inputs = this.#inputs
+    state.order = this.#order++
   }
 
-  #setRay(drawing: ShadowDrawing): void {
-    const { light, anchor, across, along, center, halfWidth } = drawing
+  #setRay(state: CascadeState): void {
+    const { light, anchor, across, along, center, halfWidth } = state
     const ray = this.#ray
     ray.toLight.value.copy(light)
     ray.origin.value
       .copy(anchor)
-      .add(this.#driftOf(drawing, _drift))
+      .add(this.#driftOf(state, _drift))
       .sub(this.camera)
       .addScaledVector(across, center.u)
       .addScaledVector(along, center.v)
@@ -271,12 +271,12 @@ export class CloudShadowMap {
 
   /** Sets what look-ups need, for the camera and the clouds where they are now. */
   #follow(): void {
-    for (const { nodes, isDrawn, drawing } of this.#cascades) {
+    for (const { nodes, isDrawn, state } of this.#cascades) {
       nodes.isDrawn.value = isDrawn ? 1 : 0
       if (!isDrawn) continue
-      const { square, halfWidth, anchor, across, measure, normal, center } = drawing
-      nodes.square.value = square
-      _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(drawing, _drift))
+      const { atlasTile, halfWidth, anchor, across, measure, normal, center } = state
+      nodes.atlasTile.value = atlasTile
+      _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(state, _drift))
       const row = (target: Vector4, axis: Vector3, shift: number, width: number): void => {
         target.set(axis.x, axis.y, axis.z, axis.dot(_offset) + shift).divideScalar(width)
       }

@@ -4,9 +4,9 @@ import type { NodeFrame } from 'three/webgpu'
 import { checkSource, viewNodes } from '@welkin/atmosphere'
 import type { LightSource, ViewNodes } from '@welkin/atmosphere'
 import { checkClouds } from '../check'
-import { eyePosition } from '../density/CloudField'
+import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
-import { columnTowards } from '../density/tsl/columns'
+import { opticalDepthTowards } from '../density/tsl/columns'
 import { sampleShadows } from './tsl/sampleShadows'
 import type { Float, Vec3 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
@@ -78,7 +78,7 @@ export class CloudShadowNode extends Node<'float'> {
     const view = this.#view.update(frame)
     const { shadows } = this.clouds
     this.#isMapped.value = shadows.source === this.source ? 1 : 0
-    if (view !== undefined) eyePosition(view, this.#shift.value).sub(shadows.camera)
+    if (view !== undefined) viewpointMapped(view, this.#shift.value).sub(shadows.camera)
   }
 
   override setup(): Node {
@@ -92,7 +92,7 @@ export class CloudShadowNode extends Node<'float'> {
       If(known.mul(this.#isMapped).equal(0), () => {
         const distance = offset.length()
         const sample = { offset, ...field.view.place(offset), distance }
-        depth.assign(columnTowards(field, sample, this.#view.sunDirection))
+        depth.assign(opticalDepthTowards(field, sample, this.#view.sunDirection))
       })
       // What is scattered within the forward peak arrives with the sun.
       const passing = depth.mul(clouds.light.nodes.depthScale).negate().exp()

@@ -5,20 +5,20 @@ import { CloudLayer, type CloudLayerParameters } from '../../src/layers/CloudLay
 import { cloudPreset, type CloudPresetName } from '../../src'
 import { cloudExtinction, weatherAt, type CloudState } from '../twins/density'
 import { NoiseTextures } from '../twins/noiseTextures'
-import { layerTurn } from '../../src/density/lattice'
+import { layerRotation } from '../../src/density/lattice'
 import {
   layerForms,
   layerPeriods,
   REGION_CELLS,
   weatherScales
 } from '../../src/layers/layerUniforms'
-import { windTurn } from '../../src/layers/wind'
+import { windRotation } from '../../src/layers/wind'
 
 const noise = new NoiseTextures()
 const bottomRadius = 6_360_000
 const stateOf = (parameters: Partial<CloudLayerParameters>): CloudState => ({
   layers: [new CloudLayer(parameters).parameters],
-  turns: [layerTurn(0)],
+  rotations: [layerRotation(0)],
   bottomRadius,
   pixelAngle: 0.001
 })
@@ -79,7 +79,9 @@ describe('cloudExtinction', () => {
     })
     for (const coverage of [0.25, 0.6]) {
       const state = stateOf({ coverage })
-      const covers = directions.map(up => weatherAt(state, noise, 0, at(up, 0), 100).cover)
+      const covers = directions.map(
+        up => weatherAt(state, noise, 0, at(up, 0), 100).filteredCoverage
+      )
       const mean = covers.reduce((a, b) => a + b) / count
       // Systems are few: their number scatters.
       expect(Math.abs(mean - coverage), `${mean} for ${coverage}`).toBeLessThan(0.06)
@@ -97,8 +99,10 @@ describe('windTurn', () => {
     const altitude = 1300
     const after: CloudState = {
       ...before,
-      turns: [
-        layerTurn(0).multiply(windTurn(wind, up, 600, bottomRadius + altitude, new Quaternion()))
+      rotations: [
+        layerRotation(0).multiply(
+          windRotation(wind, up, 600, bottomRadius + altitude, new Quaternion())
+        )
       ]
     }
     let cloudy = 0
@@ -121,10 +125,10 @@ describe('windTurn', () => {
 
   it('has a direction at the poles, and stands still in calm', () => {
     const turn = new Quaternion()
-    windTurn({ east: 3, north: 4 }, new Vector3(0, 0, 1), 1000, bottomRadius, turn)
+    windRotation({ east: 3, north: 4 }, new Vector3(0, 0, 1), 1000, bottomRadius, turn)
     expect(turn.toArray().every(Number.isFinite)).toBe(true)
     expect(turn.angleTo(new Quaternion())).toBeCloseTo(5000 / bottomRadius, 9)
-    windTurn({ east: 0, north: 0 }, new Vector3(1, 0, 0), 1000, bottomRadius, turn)
+    windRotation({ east: 0, north: 0 }, new Vector3(1, 0, 0), 1000, bottomRadius, turn)
     expect(turn.angleTo(new Quaternion())).toBe(0)
   })
 })

@@ -6,7 +6,7 @@ import type { Renderer } from 'three/webgpu'
 import { describe, expect, test, vi } from 'vitest'
 import {
   CloudField,
-  cloudOverlay,
+  cloudEnvironment,
   CloudLayers,
   clouds,
   cloudShadow,
@@ -39,7 +39,7 @@ describe('NightLight', () => {
     const night = new NightLight()
     const isSeen = (elevation: number, height: number): boolean => {
       night.update(viewAt(elevation, height))
-      return night.isSeen.value === 1
+      return night.isVisible.value === 1
     }
     expect(isSeen(1, 2)).toBe(false)
     expect(isSeen(-7, 2)).toBe(true)
@@ -52,29 +52,31 @@ describe('NightLight', () => {
   test('sets in where the sun’s light reaches no cloud, on small planets too', () => {
     const night = new NightLight()
     night.update(viewAt(-20))
-    expect(Math.asin(night.sunk.value) / degrees).toBeCloseTo(-6, 6)
-    expect(Math.asin(night.dark.value) / degrees).toBeCloseTo(-8, 6)
+    expect(Math.asin(night.nightfall.value) / degrees).toBeCloseTo(-6, 6)
+    expect(Math.asin(night.deepNight.value) / degrees).toBeCloseTo(-8, 6)
     // Of the highest clouds, and half of the sun's disc.
     const lowest = -Math.acos(radius / (radius + 30_000)) - atmosphere.parameters.sunAngularRadius
-    expect(Math.asin(night.sunk.value)).toBeLessThan(lowest)
+    expect(Math.asin(night.nightfall.value)).toBeLessThan(lowest)
   })
 
   test('takes moonlight from a moon that was added, and none by day', () => {
     const world = new Atmosphere()
-    const luna = moon(world, { direction: new Vector3(0, 1, 0), phase: 0.5 })
+    const luna = moon({ direction: new Vector3(0, 1, 0), phase: 0.5 }).attach(world)
     const night = new NightLight()
     night.update(viewAt(-20, 2, world))
     expect(night.source).toBe(null)
-    expect(night.irradiance.value.length()).toBe(0)
+    expect(night.moonIrradiance.value.length()).toBe(0)
     world.add(luna)
     night.update(viewAt(-20, 2, world))
     expect(night.source).toBe(luna.source)
-    expect(night.irradiance.value.toArray()).toEqual([...luna.source.irradianceAt(new Vector3())])
-    expect(night.rulesAt(viewAt(-20, 2, world))).toBe(true)
-    expect(night.rulesAt(viewAt(-5, 2, world))).toBe(false)
+    expect(night.moonIrradiance.value.toArray()).toEqual([
+      ...luna.source.irradianceAt(new Vector3())
+    ])
+    expect(night.isMoonlitAt(viewAt(-20, 2, world))).toBe(true)
+    expect(night.isMoonlitAt(viewAt(-5, 2, world))).toBe(false)
     night.update(viewAt(20, 2, world))
-    expect(night.irradiance.value.length()).toBe(0)
-    expect(night.rulesAt(viewAt(20, 2, world))).toBe(false)
+    expect(night.moonIrradiance.value.length()).toBe(0)
+    expect(night.isMoonlitAt(viewAt(20, 2, world))).toBe(false)
   })
 })
 
@@ -115,18 +117,18 @@ test('light is raised as deep as night is at the lightest place in sight', () =>
 test('a picture forgets the light of before at motion’s pace, then rests; another light starts anew', () => {
   const frames = new FrameUniforms()
   node.field.radius.value = radius
-  const next = (elevation: number): { looks: number; hasHistory: number } => {
+  const next = (elevation: number): { samples: number; hasHistory: number } => {
     const view = Object.assign(viewAt(elevation), { viewToMapped: new Matrix3() })
     node.field.night.update(view)
     frames.next(camera, view, node.field, 2, true)
-    return { looks: frames.memory.value, hasHistory: frames.hasHistory.value }
+    return { samples: frames.maxSamples.value, hasHistory: frames.hasHistory.value }
   }
   expect(next(50).hasHistory).toBe(0)
   const rest = next(50)
   expect(rest.hasHistory).toBe(1)
-  expect(next(40).looks).toBeLessThan(rest.looks / 10)
-  // Twelve looks at each of four pixels.
-  for (let frame = 1; frame < 48; frame++) expect(next(40).looks).toBeLessThan(rest.looks / 10)
+  expect(next(40).samples).toBeLessThan(rest.samples / 10)
+  // Twelve samples of each of four pixels.
+  for (let frame = 1; frame < 48; frame++) expect(next(40).samples).toBeLessThan(rest.samples / 10)
   expect(next(40)).toEqual(rest)
   expect(next(-40).hasHistory).toBe(0)
   expect(next(-40)).toEqual(rest)
@@ -162,18 +164,22 @@ describe('cloudSkyLight', () => {
   })
 })
 
-describe('cloudOverlay', () => {
+describe('cloudEnvironment', () => {
   test('refuses what is missing or out of range', () => {
-    expect(() => cloudOverlay(null as never)).toThrow('CloudOverlay: clouds must be a CloudsNode')
-    expect(() => cloudOverlay(node, { size: 8 })).toThrow('CloudOverlay: size must be')
-    expect(() => cloudOverlay(node, { drift: 0 })).toThrow('CloudOverlay: drift must be positive')
-    expect(() => cloudOverlay(node, { quality: 'best' as never })).toThrow(
+    expect(() => cloudEnvironment(null as never)).toThrow(
+      'CloudEnvironment: clouds must be a CloudsNode'
+    )
+    expect(() => cloudEnvironment(node, { size: 8 })).toThrow('CloudEnvironment: size must be')
+    expect(() => cloudEnvironment(node, { drift: 0 })).toThrow(
+      'CloudEnvironment: drift must be positive'
+    )
+    expect(() => cloudEnvironment(node, { quality: 'best' as never })).toThrow(
       /quality must be 'low', .* got 'best'/
     )
   })
 
   test('has nothing drawn at first', () => {
-    const overlay = cloudOverlay(node)
+    const overlay = cloudEnvironment(node)
     expect(overlay.version).toBe(1)
     expect(overlay.version).toBe(1)
     overlay.dispose()
@@ -184,7 +190,7 @@ test('shadows of moonlight need a source of light', () => {
   expect(() => cloudShadow(node, null, {} as never)).toThrow(
     'CloudShadowNode: source must be a LightSource'
   )
-  const luna = moon(atmosphere)
+  const luna = moon().attach(atmosphere)
   expect(cloudShadow(node, null, luna.source).source).toBe(luna.source)
   expect(cloudShadow(node).source).toBe(atmosphere.sun)
 })

@@ -6,9 +6,9 @@ import {
   cloudyIrradiance,
   eddingtonDiffuse,
   eddingtonTransmittance,
-  stackSheets,
+  stackDecks,
   type ClearLight,
-  type CloudSheet
+  type CloudDeck
 } from '../../src/environment/cpu/overcast'
 import { SlabSolver } from '../../src/light/cpu/solveSlab'
 
@@ -18,7 +18,7 @@ const phase = scalePhase({
   forwardShare: 0.8,
   scatteringAlbedo: 0.999_999_9
 })
-const diffusing = 1 - phase.moments[1]
+const oneMinusAsymmetry = 1 - phase.moments[1]
 const solver = new SlabSolver(phase)
 
 const rule = gaussLegendre(48)
@@ -51,11 +51,11 @@ describe('eddingtonTransmittance', () => {
     for (const thickness of [0.1, 0.5, 1, 2, 4, 8, 16, 32, 64]) {
       for (const mu0 of [0.2, 0.35, 0.5, 0.75, 1]) {
         const exact = transmittance(thickness, mu0)
-        const model = eddingtonTransmittance(thickness, mu0, diffusing)
+        const model = eddingtonTransmittance(thickness, mu0, oneMinusAsymmetry)
         expect(Math.abs(model - exact)).toBeLessThan(Math.min(0.035, 0.1 * exact))
       }
       const sky = integrate(1, mu => 2 * mu * transmittance(thickness, Math.max(mu, 0.01)))
-      expect(Math.abs(eddingtonDiffuse(thickness, diffusing) - sky)).toBeLessThan(0.03)
+      expect(Math.abs(eddingtonDiffuse(thickness, oneMinusAsymmetry) - sky)).toBeLessThan(0.03)
     }
   })
 
@@ -73,7 +73,7 @@ describe('eddingtonTransmittance', () => {
   })
 })
 
-describe('stackSheets', () => {
+describe('stackDecks', () => {
   const thicknesses = fc.double({ min: 0.01, max: 40, noNaN: true })
   const cosines = fc.double({ min: 0.1, max: 1, noNaN: true })
 
@@ -81,10 +81,12 @@ describe('stackSheets', () => {
     fc.assert(
       fc.property(thicknesses, thicknesses, cosines, (a, b, mu0) => {
         const layers = [a, b].map(thickness => ({ thickness, cover: 1 }))
-        const { diffuse, direct, beam } = stackSheets(layers, mu0, diffusing)
-        expect(diffuse).toBeCloseTo(eddingtonDiffuse(a + b, diffusing), 9)
+        const { diffuse, direct, beam } = stackDecks(layers, mu0, oneMinusAsymmetry)
+        expect(diffuse).toBeCloseTo(eddingtonDiffuse(a + b, oneMinusAsymmetry), 9)
         expect(beam).toBeCloseTo(Math.exp(-(a + b) / mu0), 9)
-        expect(Math.abs(direct - eddingtonTransmittance(a + b, mu0, diffusing))).toBeLessThan(0.12)
+        expect(
+          Math.abs(direct - eddingtonTransmittance(a + b, mu0, oneMinusAsymmetry))
+        ).toBeLessThan(0.12)
       })
     )
   })
@@ -92,8 +94,8 @@ describe('stackSheets', () => {
   it('passes no less where clouds cover less', () => {
     fc.assert(
       fc.property(thicknesses, cosines, fc.double({ min: 0, max: 1, noNaN: true }), (a, mu, c) => {
-        const some = stackSheets([{ thickness: a, cover: c }], mu, diffusing)
-        const all = stackSheets([{ thickness: a, cover: 1 }], mu, diffusing)
+        const some = stackDecks([{ thickness: a, cover: c }], mu, oneMinusAsymmetry)
+        const all = stackDecks([{ thickness: a, cover: 1 }], mu, oneMinusAsymmetry)
         for (const part of ['diffuse', 'direct', 'beam'] as const) {
           expect(some[part]).toBeCloseTo(1 - c + c * all[part], 9)
         }
@@ -104,9 +106,9 @@ describe('stackSheets', () => {
 })
 
 describe('cloudyIrradiance', () => {
-  const none: CloudSheet = { diffuse: 1, direct: 1, beam: 1 }
+  const none: CloudDeck = { diffuse: 1, direct: 1, beam: 1 }
   const parts = fc.double({ min: 0.01, max: 1, noNaN: true })
-  const sheets = fc
+  const decks = fc
     .tuple(parts, parts, parts)
     .map(([diffuse, direct, b]) => ({ diffuse, direct, beam: b * direct }))
   const albedos = fc.double({ min: 0, max: 0.9, noNaN: true })
@@ -132,12 +134,12 @@ describe('cloudyIrradiance', () => {
 
   it('loses no light: what comes in is reflected or warms the ground', () => {
     fc.assert(
-      fc.property(lights, sheets, (clear, sheet) => {
-        const under = cloudyIrradiance(clear, sheet, none, 1) + clear.sun.above * sheet.beam
+      fc.property(lights, decks, (clear, deck) => {
+        const under = cloudyIrradiance(clear, deck, none, 1) + clear.sun.above * deck.beam
         // A plane that faces down has the ground's light where the sky is clear.
-        const up = cloudyIrradiance({ ...clear, plane: clear.ground }, none, sheet, -1)
+        const up = cloudyIrradiance({ ...clear, plane: clear.ground }, none, deck, -1)
         expect(up + (1 - clear.albedo) * under).toBeCloseTo(clear.all, 6)
-        const fromGround = cloudyIrradiance({ ...clear, plane: clear.ground }, sheet, none, -1)
+        const fromGround = cloudyIrradiance({ ...clear, plane: clear.ground }, deck, none, -1)
         expect(fromGround).toBeCloseTo(clear.albedo * under, 6)
       })
     )
@@ -145,11 +147,11 @@ describe('cloudyIrradiance', () => {
 
   it('dims nothing above the clouds, whose white is brighter than dark ground', () => {
     fc.assert(
-      fc.property(lights, sheets, (clear, sheet) => {
-        expect(cloudyIrradiance(clear, none, sheet, 1)).toBeCloseTo(clear.plane, 12)
+      fc.property(lights, decks, (clear, deck) => {
+        expect(cloudyIrradiance(clear, none, deck, 1)).toBeCloseTo(clear.plane, 12)
         const dark = { ...clear, albedo: 0.05, ground: 0.05 * clear.all }
-        const up = cloudyIrradiance({ ...dark, plane: dark.ground }, none, sheet, -1)
-        if (Math.max(sheet.diffuse, sheet.direct) < 0.9) expect(up).toBeGreaterThan(dark.ground)
+        const up = cloudyIrradiance({ ...dark, plane: dark.ground }, none, deck, -1)
+        if (Math.max(deck.diffuse, deck.direct) < 0.9) expect(up).toBeGreaterThan(dark.ground)
       })
     )
   })
@@ -162,7 +164,7 @@ describe('cloudyIrradiance', () => {
       plane: 0.12,
       albedo: 0.2
     }
-    const deck = stackSheets([{ thickness: 12, cover: 1 }], 0.85, diffusing)
+    const deck = stackDecks([{ thickness: 12, cover: 1 }], 0.85, oneMinusAsymmetry)
     const light = cloudyIrradiance(clear, deck, none, 1)
     expect(light).toBeGreaterThan(0.12)
     expect(light).toBeLessThan(0.3 * 0.92)

@@ -108,7 +108,7 @@ describe('aureole', () => {
   })
 })
 
-const puff = { depthToEye: 0, layered: 0, cosSun: 1, cosView: 1, cosViewSun: 1 }
+const isolated = { depthToEye: 0, layered: 0, cosLight: 1, cosView: 1, cosViewLight: 1 }
 
 describe('lateral leak', () => {
   it('gives balls the light that Monte Carlo gives them, for phase functions between those fitted', () => {
@@ -124,9 +124,9 @@ describe('lateral leak', () => {
       for (let ring = 0; ring < RINGS; ring++) {
         const depthThrough = diameter * Math.sqrt(1 - (ring + 0.5) / RINGS)
         for (let step = 0; step < STEPS; step++) {
-          const depthToSun = ((step + 0.5) / STEPS) * depthThrough
-          const [{ s00 }] = solver.slab(depthThrough, [depthToSun]).fromSun(1)
-          const sample = { ...puff, depthToSun, depthThrough, depthAcross: diameter }
+          const depthToLight = ((step + 0.5) / STEPS) * depthThrough
+          const [{ s00 }] = solver.slab(depthThrough, [depthToLight]).fromSun(1)
+          const sample = { ...isolated, depthToLight, depthThrough, depthAcross: diameter }
           const source = sources[ring * STEPS + step]
           error += Math.abs(s00 * lateralLeak(sample, 1 - chi1) - source)
           total += source
@@ -140,22 +140,22 @@ describe('lateral leak', () => {
 describe('cloudSource', () => {
   it('knows no leak and no width in layers', () => {
     const sample = {
-      ...puff,
+      ...isolated,
       layered: 1,
-      depthToSun: 1,
+      depthToLight: 1,
       depthThrough: 4,
-      cosSun: 0.5,
+      cosLight: 0.5,
       cosView: 0.3
     }
-    const narrow = cloudSource(phase, table, { ...sample, cosViewSun: 0.2, depthAcross: 1 })
-    const wide = cloudSource(phase, table, { ...sample, cosViewSun: 0.2, depthAcross: 1e3 })
+    const narrow = cloudSource(phase, table, { ...sample, cosViewLight: 0.2, depthAcross: 1 })
+    const wide = cloudSource(phase, table, { ...sample, cosViewLight: 0.2, depthAcross: 1e3 })
     expect(narrow).toBe(wide)
   })
 
   it('is the same from below under a sun below the horizon as from above', () => {
-    const sample = { ...puff, layered: 1, depthToSun: 1, depthThrough: 4, depthAcross: 1 }
-    const above = { ...sample, cosSun: 0.2, cosView: 0.5, cosViewSun: 0.3 }
-    const below = { ...sample, cosSun: -0.2, cosView: -0.5, cosViewSun: 0.3 }
+    const sample = { ...isolated, layered: 1, depthToLight: 1, depthThrough: 4, depthAcross: 1 }
+    const above = { ...sample, cosLight: 0.2, cosView: 0.5, cosViewLight: 0.3 }
+    const below = { ...sample, cosLight: -0.2, cosView: -0.5, cosViewLight: 0.3 }
     expect(cloudSource(phase, table, below)).toBeCloseTo(cloudSource(phase, table, above), 12)
   })
 })

@@ -2,7 +2,7 @@ import { Atmosphere } from '@welkin/atmosphere'
 import { OrthographicCamera, PerspectiveCamera, Scene } from 'three'
 import { float, pass, vec4 } from 'three/tsl'
 import { describe, expect, test } from 'vitest'
-import { cloudOverlay, cloudQualities, CloudLayers, cloudShadow, clouds } from '../../src'
+import { cloudEnvironment, cloudQualities, CloudLayers, cloudShadow, clouds } from '../../src'
 
 const atmosphere = new Atmosphere()
 const [color, depth, camera] = [vec4(0), float(0), new PerspectiveCamera()]
@@ -73,11 +73,11 @@ describe('CloudsNode', () => {
   })
 })
 
-describe('cloudOverlay', () => {
+describe('cloudEnvironment', () => {
   test('refuses options that it does not know', () => {
     const node = make()
-    expect(() => cloudOverlay(node, { sise: 64 } as never)).toThrow(
-      "CloudOverlay: unknown option 'sise', did you mean 'size'?"
+    expect(() => cloudEnvironment(node, { sise: 64 } as never)).toThrow(
+      "CloudEnvironment: unknown option 'sise', did you mean 'size'?"
     )
     node.dispose()
   })

@@ -104,7 +104,7 @@ test('serves all cascades in turn while everything changes', () => {
     sky.layers.at(0).set({ coverage: 0.3 + i * 1e-3 })
     expect(sky.frames(1)).toBe(1 / STRIPS)
   }
-  const orders = sky.shadows.nodes.cascades.map(({ square }) => square.value)
+  const orders = sky.shadows.nodes.cascades.map(({ atlasTile }) => atlasTile.value)
   expect(new Set(orders).size).toBe(3)
 })
 
@@ -112,7 +112,7 @@ test('drifts with the clouds instead of being drawn anew', () => {
   const sky = new Sky('fairWeather')
   sky.frames(1)
   const place = sky.up.multiplyScalar(radius + 1500)
-  const [turn] = sky.field.turns
+  const [turn] = sky.field.rotations
   // Of the noise, which the clouds take along.
   const noise = place.clone().applyQuaternion(turn)
   const before = sky.texelOf(0, place)

@@ -4,7 +4,7 @@ export function distanceToTop(radius: number, cosView: number, topRadius: number
   return Math.max(-radius * cosView + Math.sqrt(Math.max(discriminant, 0)), 0)
 }
 
-/** Whether a ray from outside the planet meets the ground: it looks down and passes within it. */
+/** True if a ray from outside the planet meets the ground: it looks down and passes within it. */
 export function hitsGround(radius: number, cosView: number, bottomRadius: number): boolean {
   return cosView < 0 && radius * Math.sqrt(1 - cosView ** 2) <= bottomRadius
 }
@@ -13,4 +13,15 @@ export function hitsGround(radius: number, cosView: number, bottomRadius: number
 export function distanceToGround(radius: number, cosView: number, bottomRadius: number): number {
   const discriminant = radius ** 2 * (cosView ** 2 - 1) + bottomRadius ** 2
   return Math.max(-radius * cosView - Math.sqrt(Math.max(discriminant, 0)), 0)
+}
+
+/**
+ * Distance from a point above the air to where a ray enters it. Lengths [m].
+ *
+ * @returns Null if the ray misses the air.
+ */
+export function distanceToAir(radius: number, cosView: number, topRadius: number): number | null {
+  const discriminant = topRadius ** 2 - radius ** 2 * (1 - cosView ** 2)
+  if (cosView >= 0 || discriminant <= 0) return null
+  return -radius * cosView - Math.sqrt(discriminant)
 }

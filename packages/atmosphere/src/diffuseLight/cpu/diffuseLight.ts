@@ -1,7 +1,7 @@
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
 
 /**
- * How the columns of the diffuse-light table spread over the sun's cosine μ_s: evenly in
+ * Spacing of the columns of the diffuse-light table over the sun's cosine μ_s: evenly in
  * asinh((μ_s − centre)/width), from `min` (22° below the horizon) to 1.
  */
 export const diffuseSunCosine = { centre: -0.035, width: 0.12, min: -0.375 } as const

@@ -10,7 +10,7 @@ import { discTransmittance, visibleSun } from '../../transmittance/cpu/transmitt
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const PER_CELL = 4 * DIFFUSE_TILES
 
-/** How finely light is gathered. The defaults are those of the shaders. */
+/** Resolution with which light is gathered. The defaults are those of the shaders. */
 export interface DiffuseLightQuality {
   /** Directions above and below the horizon each, over half a turn, and steps, for sunlight. */
   sun: { elevations: number; azimuths: number; steps: number }

@@ -35,7 +35,7 @@ const LOWEST_ALTITUDE = 1
 /** Nearest to the zenith that the sun gets, so that moments can be divided by sin θ_s. */
 const HIGHEST_SUN = 0.9998
 
-/** How many directions light is gathered from, and the nodes of the rule for elevations. */
+/** Directions that light is gathered from: their number, and the quadrature rule of elevations. */
 export interface Directions {
   /** Nodes above and below the horizon each. */
   elevations: Int

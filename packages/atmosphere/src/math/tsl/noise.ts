@@ -2,7 +2,7 @@ import { Fn, float, mix, uint, uvec3, vec3 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { loop, type Vec3 } from '../../tsl-types'
 
-/** What `@types/three` lacks of unsigned vectors. */
+/** Operations on unsigned vectors that `@types/three` lacks. */
 interface Words extends Node {
   x: Words
   y: Words

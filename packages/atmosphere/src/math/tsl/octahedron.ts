@@ -7,7 +7,7 @@ const signs = (of: Vec2): Vec2 =>
 const fold = (point: Vec2): Vec2 => vec2(point.y, point.x).abs().oneMinus().mul(signs(point))
 
 /**
- * Where a direction is on a square map of all directions, the net of an octahedron: the upper half in a
+ * Point of a direction on a square map of all directions, the net of an octahedron: the upper half in a
  * diamond, the lower half folded out into the corners.
  *
  * @param direction - Not zero, of any length.

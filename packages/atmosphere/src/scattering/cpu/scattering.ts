@@ -1,5 +1,5 @@
 import { spectrumOf, type AtmosphereParameters } from '../../parameters/AtmosphereParameters'
-import { distanceToGround, distanceToTop, hitsGround } from '../../air/cpu/boundary'
+import { distanceToAir, distanceToGround, distanceToTop, hitsGround } from '../../air/cpu/boundary'
 import { sampleDiffuseLight, type DiffuseLightData } from '../../diffuseLight/cpu/diffuseLight'
 import { densities, extinction } from '../../air/cpu/medium'
 import { applyMoments } from '../../diffuseLight/cpu/moments'
@@ -26,9 +26,8 @@ export interface RayNumbers {
 export function enterAir(p: AtmosphereParameters, ray: RayNumbers): RayNumbers | null {
   if (ray.radius <= p.topRadius) return ray
   const { radius, cosView, cosSun, cosViewSun } = ray
-  const discriminant = p.topRadius ** 2 - radius ** 2 * (1 - cosView ** 2)
-  if (cosView >= 0 || discriminant <= 0) return null
-  const entry = -radius * cosView - Math.sqrt(discriminant)
+  const entry = distanceToAir(radius, cosView, p.topRadius)
+  if (entry === null) return null
   return {
     radius: p.topRadius,
     cosView: (radius * cosView + entry) / p.topRadius,

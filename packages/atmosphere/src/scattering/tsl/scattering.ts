@@ -33,16 +33,16 @@ export interface Ray {
 
 /** Light scattered towards a ray's origin, for unit irradiance of the sun, times `RADIANCE_SCALE`. */
 export interface Scattered {
-  /** By molecules, and by aerosols what was scattered before [1/sr]. */
+  /** Light by molecules, and by aerosols what was scattered before [1/sr]. */
   molecular: Vec4
-  /** By aerosols straight from the sun, without its phase function [1]. */
+  /** Light by aerosols straight from the source, without the phase function [1]. */
   aerosol: Vec4
 }
 
 /** Legendre coefficient χ₂ of Rayleigh scattering; χ₁ is 0. */
 const RAYLEIGH_MOMENT_2 = 1 / 10
 
-/** Which light a march takes into account. */
+/** Parts of the light that a march takes into account. */
 export interface LightSources {
   sun: boolean
   diffuse: boolean
@@ -163,7 +163,7 @@ export function scatterSegment(
   }
 }
 
-/** How much faster than the density of molecules the steps of a march grow. */
+/** Growth of a march's steps over that of the scale height of molecules: larger puts more steps low. */
 const STEP_GROWTH = 0.3
 
 /**

@@ -12,6 +12,7 @@ import {
 } from 'three/tsl'
 import type { Node, NodeBuilder, Renderer } from 'three/webgpu'
 import { WebGLCoordinateSystem } from 'three'
+import { offsetPoint } from '@welkin/geo'
 import type { Bool, Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
 import type { Air } from '../../scattering/tsl/scattering'
@@ -51,17 +52,15 @@ export interface Way extends ShellRay {
 
 /** Height above the ground, distance from the centre, and zenith of where a ray starts. */
 function rayStart({ uniforms }: Air, place: ShellPlace, origin: Vec3, isOrthographic: Bool) {
-  const eyeRadius = uniforms.bottomRadius.add(place.height).toConst() as Float
   const height = place.height.toVar()
-  const radius = eyeRadius.max(1).toVar()
+  const radius = uniforms.bottomRadius.add(place.height).max(1).toVar()
   const up = place.up.toVar()
   If(isOrthographic, () => {
-    // h' = h + (2 r o·up + o²)/(r' + r) for the point beside the camera.
     const offset = place.viewToMapped.mul(origin).toConst() as Vec3
-    const rise = offset.dot(place.up).mul(eyeRadius).mul(2).add(offset.dot(offset)).toConst()
-    radius.assign(eyeRadius.mul(eyeRadius).add(rise).max(1).sqrt())
-    height.addAssign(rise.div(radius.add(eyeRadius)))
-    up.assign(place.up.mul(eyeRadius).add(offset).div(radius))
+    const beside = offsetPoint(offset, place.up, place.height, uniforms.bottomRadius)
+    height.assign(beside.height)
+    radius.assign(beside.radius)
+    up.assign(beside.up)
   })
   return {
     height: height.max(1).toConst() as Float,

@@ -5,7 +5,7 @@ import type { ViewNodes } from '../../view/ViewNodes'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
 import { placeInVolume, radianceBetween, rayLimits } from '../../skyVolume/tsl/skyVolume'
 
-/** What the air between the eye and a point does to light from there. */
+/** Effect of the air between the viewpoint and a point on light from there. */
 export interface AerialPerspective {
   /** Factors for linear-sRGB components. */
   transmittance: Vec3

@@ -32,11 +32,11 @@ export interface VolumeTextures {
   depth: TextureNode
 }
 
-/** Where a ray from the eye enters and leaves the air, or meets the ground. */
+/** Limits of a view ray: where it enters and leaves the air, or meets the ground. */
 export interface RayLimits {
   /** Distance to where the air begins: 0 inside it [m]. */
   start: Float
-  /** From there to the ground or out of the air; 0 if the ray misses the air [m]. */
+  /** Distance from there to the ground or out of the air; 0 if the ray misses the air [m]. */
   length: Float
   hitsGround: Bool
 }
@@ -63,7 +63,7 @@ export function rayLimits(eye: Eye, cosView: Float, forcedGround?: Bool): RayLim
 }
 
 /**
- * Where an elevation lies in its half (below or above the horizon), in [0, 1] from the horizon:
+ * Position of an elevation in its half (below or above the horizon), in [0, 1] from the horizon:
  * √tan(α/2), α the angle from it.
  *
  * @param cosView - μ, ray against the zenith of the eye.
@@ -217,9 +217,9 @@ function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
 
 /** A row of the sky volumes. */
 export interface Elevation {
-  /** Whether the ground is in the way. */
+  /** True if the ray meets the ground. */
   hitsGround: Bool
-  /** Where the elevation lies in its half, below or above the horizon. */
+  /** Position of the elevation in its half, below or above the horizon, in [0, 1] from the horizon. */
   elevation: Float
 }
 
@@ -280,7 +280,7 @@ export function aimAt(
   return { cosView, sinView, hitsGround, elevation }
 }
 
-/** Where in the atlas the texel of a direction lies for a tile. */
+/** Texture coordinates of a view ray in a tile of the atlas. */
 function tileReader(
   uniforms: AtmosphereUniforms,
   eye: Eye,
@@ -383,7 +383,7 @@ export function sampleVolume(
   }
 }
 
-/** Which rays from an eye meet the ground, and which the air at all. */
+/** Tests of a view ray against ground and air. */
 export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsAir: Bool } {
   const radial = eye.radius.mul(cosView)
   const square = radial.mul(radial).toConst()
@@ -421,7 +421,7 @@ export interface Sight {
   sinView: Float
   /** ν, against the sun. */
   cosViewSun: Float
-  /** Whether the ground is behind. */
+  /** True if the ground is behind. */
   hitsGround: Bool
   /** Of the way through the air, to the ground or out of it [m]. */
   length: Float

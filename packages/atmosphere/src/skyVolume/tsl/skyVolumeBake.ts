@@ -34,7 +34,7 @@ const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 const [DEPTH_COLUMNS, DEPTH_ROWS] = DEPTH_SIZE
 
-/** What the two attachments of a target receive. */
+/** Values for the two attachments of a target. */
 interface Parts {
   molecular: Vec4
   aerosol: Vec4

@@ -1,5 +1,5 @@
 import type { AtmosphereParameters } from '../../parameters/AtmosphereParameters'
-import { distanceToTop } from '../../air/cpu/boundary'
+import { distanceToAir, distanceToTop } from '../../air/cpu/boundary'
 import { densities, extinction } from '../../air/cpu/medium'
 import { gaussLegendre } from '../../math/cpu/quadrature'
 
@@ -55,9 +55,8 @@ export function visibleSun(p: AtmosphereParameters, radius: number, cosSun: numb
 function depthToSpace(p: AtmosphereParameters, radius: number, cosView: number): number[] {
   let [r, mu] = [radius, cosView]
   if (r > p.topRadius) {
-    const discriminant = p.topRadius ** 2 - r ** 2 * (1 - mu ** 2)
-    if (mu >= 0 || discriminant <= 0) return [0, 0, 0, 0]
-    const entry = -r * mu - Math.sqrt(discriminant)
+    const entry = distanceToAir(r, mu, p.topRadius)
+    if (entry === null) return [0, 0, 0, 0]
     ;[r, mu] = [p.topRadius, (r * mu + entry) / p.topRadius]
   }
   return opticalDepth(p, r, mu, distanceToTop(r, mu, p.topRadius))

@@ -23,7 +23,7 @@ export function horizonCosine(uniforms: AtmosphereUniforms, altitude: Float): Fl
 }
 
 /**
- * Where in the table a ray to the top of the air is kept. Texels crowd at the horizon.
+ * Texture coordinates of a ray to the top of the air. Texels crowd at the horizon.
  *
  * @param altitude - Ray origin above the ground, in [0, thickness] [m].
  * @param cosView - μ, not below the horizon.

@@ -2,7 +2,7 @@ import type { AtmosphereParameters } from '../../parameters/AtmosphereParameters
 import type { EyeScalars } from '../tsl/eye'
 import { homogeneousHeight } from '../../air/cpu/medium'
 
-/** How much faster than the density of molecules the steps grow along a ray. */
+/** Growth of the slices along a ray over that of the scale height of molecules: larger puts more slices low. */
 const STEP_GROWTH = 0.4
 
 /** Eyes lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */

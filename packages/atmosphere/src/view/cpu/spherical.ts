@@ -10,7 +10,7 @@ export class SphericalSpace {
   /** World to mapped space. */
   readonly #matrix = new Matrix4()
   readonly #linear = new Matrix3()
-  /** Whether every position lies above the world's origin, at height y. */
+  /** True if every position lies above the world's origin, at height y: a flat world. */
   flat = false
 
   /**

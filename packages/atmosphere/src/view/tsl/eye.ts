@@ -7,7 +7,7 @@ import type { Float } from '../../tsl-types'
 export interface EyeScalars<T> {
   /** h of the eye, at least 1 m; may be above the air [m]. */
   altitude: T
-  /** From the planet's centre [m]. */
+  /** Distance from the planet's centre [m]. */
   radius: T
   /** Square of the distance to the horizon, h (2 r_ground + h) [m²]. */
   toHorizon: T

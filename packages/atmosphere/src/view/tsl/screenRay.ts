@@ -5,7 +5,7 @@ import type { Bool, Mat4, Vec3 } from '../../tsl-types'
 export interface ScreenRay {
   /** Direction, not of unit length. */
   direction: Vec3
-  /** Where it starts: the eye, or for an orthographic camera a point beside it. */
+  /** Start: the viewpoint, or for an orthographic camera a point beside it. */
   origin: Vec3
   isOrthographic: Bool
 }

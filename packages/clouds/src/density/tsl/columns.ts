@@ -1,9 +1,9 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
-import { asideFactor, spreadDepth } from './density'
+import { slantCoverFactor, effectiveOpticalDepth } from './unresolved'
 import { forLayers, layerAt } from './layer'
-import { footOffset, type CloudSample } from './sample'
+import { subpointOffset, type CloudSample } from './sample'
 import { weatherAt } from './weather'
 
 /**
@@ -11,13 +11,13 @@ import { weatherAt } from './weather'
  *
  * @param sample - Any altitude: that is not looked at, but `offset` must agree with it.
  */
-export function cloudColumn(field: CloudField, sample: CloudSample): Float {
-  const foot = footOffset(field, sample).toConst()
+export function verticalOpticalDepth(field: CloudField, sample: CloudSample): Float {
+  const subpoint = subpointOffset(field, sample).toConst()
   const sum = float(0).toVar()
   forLayers(field, index => {
     const layer = layerAt(field, index)
-    const weather = weatherAt(field, layer, foot, sample)
-    sum.addAssign(spreadDepth(field, layer, weather))
+    const weather = weatherAt(field, layer, subpoint, sample)
+    sum.addAssign(effectiveOpticalDepth(field, layer, weather))
   })
   return sum
 }
@@ -31,7 +31,7 @@ const LOWEST_COSINE = 0.1
  *
  * @param toLight - Direction to the source of light, in the mapped space.
  */
-export function columnTowards(field: CloudField, sample: CloudSample, toLight: Vec3): Float {
+export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLight: Vec3): Float {
   const { view } = field
   const sum = float(0).toVar()
   const cosSun = sample.up.dot(toLight).toConst() as Float
@@ -46,9 +46,11 @@ export function columnTowards(field: CloudField, sample: CloudSample, toLight: V
       const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
       const { altitude, up } = view.place(offset)
       const there = { offset, altitude, up, distance: sample.distance }
-      const foot = footOffset(field, there).toConst()
-      const weather = weatherAt(field, layer, foot, there)
-      sum.addAssign(spreadDepth(field, layer, weather).mul(above).mul(asideFactor(layer, slope)))
+      const subpoint = subpointOffset(field, there).toConst()
+      const weather = weatherAt(field, layer, subpoint, there)
+      sum.addAssign(
+        effectiveOpticalDepth(field, layer, weather).mul(above).mul(slantCoverFactor(layer, slope))
+      )
     })
   })
   return sum

@@ -2,7 +2,7 @@ import { int, vec3 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { LAYER_STRIDE } from '../../layers/layerUniforms'
-import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 
 /** A vector turned by a constant rotation. */
 export const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
@@ -53,7 +53,7 @@ export interface LayerNodes {
   shapeAnchor: Vec3
   detailAnchor: Vec3
   /** Displacements in the mapped space to the frame that drifts with the layer. */
-  turn: (displacement: Vec3) => Vec3
+  mappedToLayer: (displacement: Vec3) => Vec3
 }
 
 /** Reads a layer; `CloudField` writes what this reads. */
@@ -95,12 +95,20 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     sharpness: read(4).w,
     coarseness: detail.w,
     anvil: fields.w,
-    turn: v => {
+    mappedToLayer: v => {
       const [x, y, z] = [3, 4, 5].map(row => read(row).xyz.dot(v))
       return vec3(x, y, z)
     }
   }
 }
+
+/** Height in a layer, from 0 at its base to 1 at its top. */
+export const heightIn = (layer: LayerNodes, altitude: Float): Float =>
+  altitude.sub(layer.baseAltitude).mul(layer.perThickness).toConst()
+
+/** Whether a height is within a layer that covers anything. */
+export const isWithin = (layer: LayerNodes, height: Float): Bool =>
+  height.greaterThan(0).and(height.lessThan(1)).and(layer.coverage.greaterThan(0))
 
 /** Layers that follow each other: from the first one to before the last. */
 export interface LayerRange {

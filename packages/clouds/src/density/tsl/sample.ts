@@ -1,23 +1,27 @@
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
 
-/** A place in the air, as seen from the field's camera. */
+/** A place in the air, as seen from the field's camera. Vectors are in the mapped space. */
 export interface CloudSample {
-  /** From the camera, in the mapped space [m]. */
+  /** Displacement from the camera [m]. */
   offset: Vec3
-  /** Above the sphere [m]: `ViewNodes.place(offset).altitude`. */
+  /** Altitude above the sphere: `ViewNodes.place(offset).altitude` [m]. */
   altitude: Float
   /** Zenith there, unit length. */
   up: Vec3
-  /** From the camera [m]: sets the level of detail. */
+  /** Distance from the camera, which sets the level of detail [m]. */
   distance: Float
 }
 
+/** Width of what a sample stands for: a pixel's, or more [m]. */
+export const footprintOf = (field: CloudField, { distance }: CloudSample): Float =>
+  distance.mul(field.pixelAngle).toConst()
+
 /**
- * From the point of the ground below the camera to that below a sample, in the mapped space [m]:
- * (d − (h − h_c) u_c) R/r, which does not cancel.
+ * Displacement from the camera's subpoint to a sample's, in the mapped space [m]. A subpoint is the point
+ * of the sphere straight below. (d − (h − h_c) u_c) R/r, which does not cancel.
  */
-export function footOffset(field: CloudField, { offset, altitude }: CloudSample): Vec3 {
+export function subpointOffset(field: CloudField, { offset, altitude }: CloudSample): Vec3 {
   const { up, height } = field.view
   const rise = altitude.sub(height)
   const scale = field.radius.div(field.radius.add(altitude))

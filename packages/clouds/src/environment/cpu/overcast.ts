@@ -1,14 +1,14 @@
-/** What light does to an infinite slab, or to several at once: parts of unit flux. */
-export interface CloudSheet {
-  /** Of diffuse light that passes. Clouds absorb nothing: the rest is reflected. */
+/** Transmittances of a cloud deck, or of several at once: parts of unit flux. */
+export interface CloudDeck {
+  /** Diffuse light that passes. Clouds absorb nothing: the rest is reflected. */
   readonly diffuse: number
-  /** Of the sun's rays that passes, diffusely or not. */
+  /** Sunlight that passes, scattered or not. */
   readonly direct: number
-  /** Of the sun's rays that passes without scattering, but into the forward peak. */
+  /** Sunlight that passes unscattered, or scattered within the forward peak. */
   readonly beam: number
 }
 
-/** A layer of clouds of the same optical depth that cover a part of the sky. */
+/** Broken layer: clouds of one optical depth over a part of the sky. */
 export interface CloudCover {
   /** Scaled optical thickness. */
   readonly thickness: number
@@ -16,51 +16,53 @@ export interface CloudCover {
   readonly cover: number
 }
 
-/** A sun lower than this is as good as that. */
-export const LOWEST_OVERCAST_SUN = 0.05
+/** Cosine of the lowest light; one below it counts as this. */
+export const LOWEST_COSINE = 0.05
 
 /**
- * Part of the sun's light that a cloud passes that does not absorb, in Eddington's approximation.
+ * Transmittance of a cloud that absorbs nothing for light from one direction, in Eddington's approximation.
  *
  * @param thickness - Scaled optical thickness.
- * @param cosSun - μ_s, in (0, 1].
- * @param diffusing - 1 − χ′₁.
- * @see King & Harshvardhan 1986, "Comparative accuracy of selected multiple scattering approximations"
+ * @param cosLight - μ_s, in (0, 1].
+ * @param oneMinusAsymmetry - 1 − g′.
+ * @see King & Harshvardhan 1986, "Comparative accuracy of selected multiple scattering approximations", §2
  */
 export function eddingtonTransmittance(
   thickness: number,
-  cosSun: number,
-  diffusing: number
+  cosLight: number,
+  oneMinusAsymmetry: number
 ): number {
-  const beam = Math.exp(-thickness / cosSun)
-  return (2 + 3 * cosSun + (2 - 3 * cosSun) * beam) / (4 + 3 * diffusing * thickness)
+  const beam = Math.exp(-thickness / cosLight)
+  return (2 + 3 * cosLight + (2 - 3 * cosLight) * beam) / (4 + 3 * oneMinusAsymmetry * thickness)
 }
 
-/** The same for light from all of the sky: 1/(1 + ¾ (1 − χ′₁) τ′). */
-export function eddingtonDiffuse(thickness: number, diffusing: number): number {
-  return 4 / (4 + 3 * diffusing * thickness)
+/** Transmittance for diffuse light: 1/(1 + ¾ (1 − g′) τ′). */
+export function eddingtonDiffuse(thickness: number, oneMinusAsymmetry: number): number {
+  return 4 / (4 + 3 * oneMinusAsymmetry * thickness)
 }
 
 /**
- * Layers one above the other, each broken. Between sheets that absorb nothing, light goes to and fro until
- * 1/t − 1 add up, in whatever order.
+ * Transmittances of broken layers one above the other. Light between decks that absorb nothing goes to and
+ * fro until 1/t − 1 add up, in whatever order.
  */
-export function stackSheets(
+export function stackDecks(
   layers: readonly CloudCover[],
-  cosSun: number,
-  diffusing: number
-): CloudSheet {
-  const mu = Math.max(cosSun, LOWEST_OVERCAST_SUN)
+  cosLight: number,
+  oneMinusAsymmetry: number
+): CloudDeck {
+  const mu = Math.max(cosLight, LOWEST_COSINE)
   const mean = (cover: number, through: number): number => 1 - cover + cover * through
   const series = (parts: number[]): number =>
     1 / parts.reduce((sum, part) => sum + 1 / part, 1 - parts.length)
   return {
     diffuse: series(
-      layers.map(({ cover, thickness }) => mean(cover, eddingtonDiffuse(thickness, diffusing)))
+      layers.map(({ cover, thickness }) =>
+        mean(cover, eddingtonDiffuse(thickness, oneMinusAsymmetry))
+      )
     ),
     direct: series(
       layers.map(({ cover, thickness }) =>
-        mean(cover, eddingtonTransmittance(thickness, mu, diffusing))
+        mean(cover, eddingtonTransmittance(thickness, mu, oneMinusAsymmetry))
       )
     ),
     beam: layers.reduce(
@@ -94,8 +96,8 @@ export interface ClearLight {
  */
 export function cloudyIrradiance(
   clear: ClearLight,
-  above: CloudSheet,
-  below: CloudSheet,
+  above: CloudDeck,
+  below: CloudDeck,
   cosNormal: number
 ): number {
   const { sun, sky, albedo } = clear

@@ -3,15 +3,15 @@ import type { SkyLitPlane } from '@welkin/atmosphere'
 import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
-import { LOWEST_OVERCAST_SUN } from '../cpu/overcast'
+import { LOWEST_COSINE } from '../cpu/overcast'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { columnFill } from '../../density/tsl/density'
+import { meanColumnDensity } from '../../density/tsl/unresolved'
 import { forLayers, layerAt } from '../../density/tsl/layer'
-import { footOffset } from '../../density/tsl/sample'
+import { subpointOffset } from '../../density/tsl/sample'
 import { weatherAt } from '../../density/tsl/weather'
 
 /** What light does to clouds one above the other: parts of unit flux. Twin: cpu/overcast.ts */
-export interface CloudSheetNodes {
+export interface CloudDeckNodes {
   /** Of diffuse light that passes. */
   diffuse: Float
   /** Of the sun's rays that passes, diffusely or not. */
@@ -21,7 +21,7 @@ export interface CloudSheetNodes {
 }
 
 /** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
-export type PlacedSheet = CloudSheetNodes & { top: Float }
+export type PlacedDeck = CloudDeckNodes & { top: Float }
 
 /** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
 const REACH_HEIGHTS = 2
@@ -31,10 +31,10 @@ const LEAST_REACH = 1500
 export function eddington(
   thickness: Float,
   cosSun: Float,
-  diffusing: Float
+  oneMinusAsymmetry: Float
 ): { diffuse: Float; direct: Float; beam: Float } {
   const beam = thickness.div(cosSun).negate().exp().toConst() as Float
-  const diffuse = diffusing.mul(thickness).mul(0.75).add(1).reciprocal().toConst() as Float
+  const diffuse = oneMinusAsymmetry.mul(thickness).mul(0.75).add(1).reciprocal().toConst() as Float
   const direct = cosSun
     .mul(0.75)
     .add(0.5)
@@ -51,15 +51,15 @@ export function eddington(
  *
  * @param offset - From the field's camera, in the mapped space [m].
  */
-export function sheetsAbout(
+export function decksAround(
   field: CloudField,
   light: CloudLight,
   offset: Vec3,
   altitude: Float,
   up: Vec3,
   cosSun: Float
-): { above: PlacedSheet; below: PlacedSheet } {
-  const mu = cosSun.max(LOWEST_OVERCAST_SUN).toConst() as Float
+): { above: PlacedDeck; below: PlacedDeck } {
+  const mu = cosSun.max(LOWEST_COSINE).toConst() as Float
   const distance = offset.length().toConst() as Float
   /** Sums of 1/t − 1 for diffuse light and the sun's, and of tops by the first. */
   const above = vec3(0).toVar() as Vec3
@@ -72,18 +72,18 @@ export function sheetsAbout(
       const footprint = rise.mul(REACH_HEIGHTS).max(LEAST_REACH)
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
-      const foot = footOffset(field, sample).toConst()
-      const weather = weatherAt(field, layer, foot, sample)
-      const { cover } = weather
+      const subpoint = subpointOffset(field, sample).toConst()
+      const weather = weatherAt(field, layer, subpoint, sample)
+      const { filteredCoverage } = weather
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
       const depth = layer.density
-        .mul(columnFill(layer, weather))
+        .mul(meanColumnDensity(layer, weather))
         .mul(light.depthScale)
         .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
-      const passing = (part: Float): Float => cover.mul(part.sub(1)).add(1)
+      const passing = (part: Float): Float => filteredCoverage.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {
-        const through = eddington(depth.mul(length), mu, light.diffusing)
+        const through = eddington(depth.mul(length), mu, light.oneMinusAsymmetry)
         const series = passing(through.diffuse).reciprocal().sub(1).toConst() as Float
         const direct = passing(through.direct).reciprocal().sub(1)
         sum.addAssign(vec3(series, direct, series.mul(place)))
@@ -93,7 +93,7 @@ export function sheetsAbout(
       add(below, layer.thickness.sub(over), top.min(altitude))
     })
   })
-  const sheet = (sum: Vec3, through: Float): PlacedSheet => ({
+  const deck = (sum: Vec3, through: Float): PlacedDeck => ({
     diffuse: sum.x.add(1).reciprocal().toConst(),
     direct: sum.y.add(1).reciprocal().toConst(),
     beam: through,
@@ -102,7 +102,7 @@ export function sheetsAbout(
       .select(sum.z.div(sum.x.max(1e-6)), altitude)
       .toConst()
   })
-  return { above: sheet(above, beam), below: sheet(below, float(1)) }
+  return { above: deck(above, beam), below: deck(below, float(1)) }
 }
 
 /** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
@@ -123,8 +123,8 @@ export interface ClearLightNodes {
  */
 export function cloudyIrradiance(
   { sun, sky, ground, plane, albedo }: ClearLightNodes,
-  above: CloudSheetNodes,
-  below: CloudSheetNodes,
+  above: CloudDeckNodes,
+  below: CloudDeckNodes,
   cosNormal: Float
 ): Vec4 {
   const reflected = below.diffuse.oneMinus().toConst() as Float
@@ -165,7 +165,7 @@ export function overcastIrradiance(
   clear: Vec4
 ): Vec4 {
   const { uniforms, transmittance, diffuse } = view.air
-  const { above, below } = sheetsAbout(field, light, offset, altitude, up, cosSun)
+  const { above, below } = decksAround(field, light, offset, altitude, up, cosSun)
   const sunAt = (height: Float): Vec4 =>
     transmittanceToSun(uniforms, transmittance, height, cosSun).mul(cosSun.max(0)).toConst()
   const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosSun)

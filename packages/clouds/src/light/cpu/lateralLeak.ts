@@ -1,10 +1,11 @@
-// Exponent of the share of a slab's multiply scattered light that a ball keeps: a polynomial in the
-// sample's part of the way through the cloud along the sun's axis, x; in ln(1 + (1 − χ′₁) D), D the
-// ball's scaled optical diameter; and in the length of that way over the diameter, q.
+// Exponent of the lateral leak, the share of a slab's multiply scattered light that a sphere keeps: a
+// polynomial in the sample's part of the way through the cloud along the ray of light, x; in
+// ln(1 + (1 − g′) D), with D the sphere's scaled optical diameter; and in the length of that way over the
+// diameter, q.
 //
-// Fitted by scripts/fit-leak.ts to Monte-Carlo solutions of balls with D from 0.3 to 40 and χ′₁ from 0
-// to 0.61, against slabs of thickness qD with the sun at their zenith: within 9 % (root mean square,
-// weighted by the light), where slabs alone are off by factors of 2 to 10.
+// Fitted by scripts/fit-leak.ts to Monte-Carlo solutions of spheres with D from 0.3 to 40 and g′ from 0 to
+// 0.61, against slabs of thickness qD with the sun at their zenith: within 9 % (root mean square, weighted
+// by the light), where slabs alone are off by factors of 2 to 10.
 
 export const constant = 0.4876
 export const part = 0.2232
@@ -17,5 +18,5 @@ export const partDepth = -0.5389
 export const partChord = 0.0721
 export const depthChord = 0.8093
 
-/** Largest scaled optical diameter that the fit knows; beyond it the leak stays as it is there. */
-export const deepestPuff = 40
+/** Largest scaled optical diameter that the fit knows; the leak of larger ones is taken to be the same. */
+export const largestDiameter = 40

@@ -2,10 +2,10 @@ import { smoothstep } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { Bool, Float } from '../../tsl-types'
 
-/** Whether a place is lit by the moon: the sun's own light reaches no cloud there. */
-export const isSunk = ({ night }: CloudField, cosSun: Float): Bool =>
-  night.isSeen.greaterThan(0).and(cosSun.lessThan(night.sunk))
+/** Night of a place: the sun's own light reaches no cloud there, and the moon's is computed. */
+export const isNight = ({ night }: CloudField, cosSun: Float): Bool =>
+  night.isVisible.greaterThan(0).and(cosSun.lessThan(night.nightfall))
 
-/** How much of moonlight and night sky counts, from 0 where the sun has sunk to 1 a little later. */
+/** Share of moonlight and night sky that counts, from 0 where the sun has sunk to 1 a little later. */
 export const nightShare = ({ night }: CloudField, cosSun: Float): Float =>
-  smoothstep(night.dark, night.sunk, cosSun).oneMinus()
+  smoothstep(night.deepNight, night.nightfall, cosSun).oneMinus()

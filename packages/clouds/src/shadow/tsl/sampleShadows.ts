@@ -12,7 +12,7 @@ export interface CascadeNodes {
   /** 1 once it is drawn. */
   readonly isDrawn: UniformNode<'float', number>
   /** Which of the map's squares it is in. */
-  readonly square: UniformNode<'float', number>
+  readonly atlasTile: UniformNode<'float', number>
 }
 
 /** A shadow map as shaders see it. */
@@ -20,7 +20,7 @@ export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
   /** Of squares, one more than cascades. */
-  readonly count: number
+  readonly tileCount: number
   /** 1 if it is of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
   /** From the camera of the map to the one of the shader, if they are two [m]. */
@@ -28,9 +28,9 @@ export interface CloudShadows {
 }
 
 /** Optical depths on the sun ray through a place, not scaled. */
-export interface SunDepths {
+export interface LightDepths {
   /** From the place to the sun. */
-  toSun: Float
+  toLight: Float
   /** Of all clouds on the ray. */
   through: Float
   /** Of all that cast shadows, from the place to the sun. */
@@ -51,10 +51,10 @@ const FADE = 0.1
  * @param dither - Noise in [0, 1), in which cascades meet.
  */
 export function sampleShadows(
-  { map, cascades, count, shift }: CloudShadows,
+  { map, cascades, tileCount, shift }: CloudShadows,
   offset: Vec3,
   dither: Float
-): SunDepths {
+): LightDepths {
   const edge = dither
     .mul(-FADE)
     .add(0.5 - MARGIN)
@@ -62,7 +62,7 @@ export function sampleShadows(
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
   const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
   // From the widest to the narrowest: the last that fits stays.
-  for (const { u, v, w, isDrawn, square } of cascades.toReversed()) {
+  for (const { u, v, w, isDrawn, atlasTile } of cascades.toReversed()) {
     const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
     const at = vec2(row(u), row(v)).toConst() as Vec2
     const aside = at.sub(0.5).abs().toConst() as Vec2
@@ -73,13 +73,13 @@ export function sampleShadows(
       .and(above.abs().lessThan(edge.mul(2 * REACH)))
       .and(isDrawn.greaterThan(0))
     If(isInside, () => {
-      place.assign(vec4(at.x.add(square).div(count), at.y, above, 1))
+      place.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))
     })
   }
   const known = place.w.toConst() as Float
   const texel = map.sample(place.xy).level(0).mul(known).toConst() as Vec4
   // Front and half length come times the depth.
   const share = texel.x.sub(texel.z.mul(place.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
-  const toSun = texel.z.mul(share).toConst() as Float
-  return { toSun, through: texel.z, shadow: texel.w.mul(share).toConst(), known }
+  const toLight = texel.z.mul(share).toConst() as Float
+  return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), known }
 }

@@ -11,7 +11,7 @@ import {
   type Vec3,
   type Vec4
 } from '../../tsl-types'
-import { layerPair } from '../../density/tsl/density'
+import { sampleLayerPair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
 import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 
@@ -144,7 +144,7 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
             return { offset, ...view.place(offset), distance }
           }
           const [middle, first, second] = [1, 0.5, 1.5].map(sampleAt)
-          layerPair(field, layer, middle, [first, second], (extinction, i) => {
+          sampleLayerPair(field, layer, middle, [first, second], (extinction, i) => {
             found.addAssign(i === 0 ? vec2(extinction, 0) : vec2(0, extinction))
           })
           /** Of the two, the first in clouds, in steps; 2.5 if both are clear. */

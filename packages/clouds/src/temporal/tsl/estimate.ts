@@ -1,32 +1,34 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
-import { fitsCell, type Cell } from './cells'
-import { brightness, fits, LOOK_PARTS, type CloudPictures } from './pictures'
-import type { SightNodes } from '../../march/tsl/sight'
+import type { ViewRayNodes } from '../../march/tsl/viewRay'
+import { passesCellDepthTest, type Cell } from './cells'
+import { passesDepthTest } from './depthTest'
+import { SAMPLE_STEPS } from './packing'
+import { brightness, type CloudTargets } from './renderTargets'
+import type { Neighbourhood } from './varianceClip'
 
-/** Sharpness of the kernel that spreads marched pixels, per marched pixels squared. */
-const SPREADING = 7
+/** Sharpness s of the kernel e^{−s d²} that interpolates marched pixels, d in marched pixels. */
+const INTERPOLATION_SHARPNESS = 7
 
-/** Sharpness of the kernel that says how much a marched pixel counts, per pixels squared. */
-const LOOKING = 5
+/** Sharpness of the kernel by which a marched pixel's weight falls off around it, per pixel squared. */
+const WEIGHT_SHARPNESS = 5
 
-/** What pixels that no marched one is near to count nevertheless. */
-const LEAST_LOOK = 1 / LOOK_PARTS
+/** Least weight: that of pixels with no marched one near by. */
+const LEAST_WEIGHT = 1 / SAMPLE_STEPS
 
-/** What this frame's marched pixels say about a pixel. */
-export interface Estimate {
-  light: Vec4
-  /** What is around; a texture read where the whole cell fits. */
-  mean: () => Vec4
-  /** Means of brightness and transmittance around, and their standard deviations. */
-  around: Vec4
+/** Square of a distance beyond any corner [marched pixels²]. */
+const NO_CORNER = 100
+
+/** Estimate of a pixel from this frame's marched pixels alone. */
+export interface Estimate extends Neighbourhood {
+  readonly light: Vec4
   /** log₂ of the clouds' distance. */
-  distance: Float
-  /** How much it counts. */
-  look: Float
+  readonly distance: Float
+  /** Samples that it is worth, in (0, 1]: 1 at a marched pixel. */
+  readonly weight: Float
 }
 
-/** Where a pixel is between marched ones. */
+/** A pixel's place among marched ones. */
 export interface CellPlace {
   /** Index of the cell's first corner. */
   readonly corner: Vec2
@@ -35,84 +37,129 @@ export interface CellPlace {
 }
 
 /** The cell that a pixel is in. */
-export function cellPlace({ frame }: SightNodes, pixel: Vec2): CellPlace {
+export function cellPlace({ frame }: ViewRayNodes, pixel: Vec2): CellPlace {
   const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst() as Vec2
   const corner = at.floor().toConst() as Vec2
   return { corner, part: at.sub(corner).toConst() }
 }
 
+/** Variables that an estimate is gathered in. */
+interface Gathered {
+  light: Vec4
+  mean: Vec4
+  statistics: Vec4
+  distance: Float
+  /** Square of the distance to the nearest corner that passes [marched pixels²]. */
+  nearest: Float
+}
+
+/** Kernel over the corners of a cell, for one pixel in it. */
+interface CornerKernel {
+  /** Weights of the second corner along each axis. */
+  readonly blend: Vec2
+  /** Squares of the distances to the first and to the second corner along each axis [marched pixels²]. */
+  readonly first: Vec2
+  readonly second: Vec2
+}
+
+/** Weights e^{−s p²} and e^{−s (1−p)²} in proportion: as far as a bilinear look-up has to go. */
+function cornerKernel(part: Vec2): CornerKernel {
+  const steepness = part.mul(2).oneMinus().mul(INTERPOLATION_SHARPNESS)
+  const blend = steepness.exp().add(1).reciprocal().toConst() as Vec2
+  const first = part.mul(part).toConst() as Vec2
+  const second = part.oneMinus().mul(part.oneMinus()).toConst() as Vec2
+  return { blend, first, second }
+}
+
+/** Estimate from those corners of a cell that pass the depth test, one by one. */
+function gatherCorners(
+  gathered: Gathered,
+  { frame }: ViewRayNodes,
+  marched: CloudTargets,
+  corner: Vec2,
+  kernel: CornerKernel,
+  end: Float
+): void {
+  const { light, mean, statistics, distance, nearest } = gathered
+  const total = vec4(0).toVar() as Vec4
+  /** Sums of brightness and transmittance, and of their squares. */
+  const moments = vec4(0).toVar() as Vec4
+  /** Sums of weights; of corners that pass; of weighted distances, and of their weights. */
+  const sums = vec4(0).toVar() as Vec4
+  nearest.assign(NO_CORNER)
+  loop('corner', 4, index => {
+    const step = vec2(float(index.mod(2)), float(index.div(2))).toConst() as Vec2
+    const pixel = corner.add(step).clamp(vec2(0), frame.marchedSize.sub(1))
+    const at = pixel.add(0.5).div(frame.marchedSize).toConst() as Vec2
+    const color = marched.light.sample(at).level(0).toConst() as Vec4
+    const apart = marched.distances.sample(at).level(0).toConst() as Vec4
+    const passes = passesDepthTest(end, apart).toConst() as Float
+    const share = mix(kernel.blend.oneMinus(), kernel.blend, step).toConst() as Vec2
+    const weight = share.x.mul(share.y).mul(passes).toConst() as Float
+    const seen = weight.mul(color.w.oneMinus().add(1e-3)).toConst() as Float
+    const value = vec2(brightness(color), color.w).toConst() as Vec2
+    light.addAssign(color.mul(weight))
+    total.addAssign(color.mul(passes))
+    moments.addAssign(vec4(value, value.mul(value)).mul(passes))
+    sums.addAssign(vec4(weight, passes, apart.x.mul(seen), seen))
+    const square = mix(kernel.first, kernel.second, step).toConst() as Vec2
+    nearest.assign(nearest.min(passes.greaterThan(0).select(square.x.add(square.y), NO_CORNER)))
+  })
+  const count = sums.y.max(1)
+  // Nothing was marched as far as this pixel sees: what is in front of clouds sees none.
+  If(sums.y.greaterThan(0), () => {
+    mean.assign(total.div(count))
+  })
+  const average = moments.div(count).toConst() as Vec4
+  const variance = average.zw.sub(average.xy.mul(average.xy)).max(0)
+  statistics.assign(vec4(brightness(mean), mean.w, variance.sqrt()))
+  light.assign(sums.x.greaterThan(1e-6).select(light.div(sums.x.max(1e-7)), mean))
+  distance.assign(sums.w.greaterThan(0).select(sums.z.div(sums.w.max(1e-9)), end))
+}
+
 /**
- * What a pixel that sees as far as `end` may know from its cell: of all corners if they are alike, which
- * takes a single look-up, or else of those that fit.
+ * Estimate of a pixel from the marched pixels around it: from the whole cell, with one bilinear look-up,
+ * where the pixel passes its depth test; or else from those corners that it passes alone.
+ *
+ * @param end - log₂ of the distance at which the pixel ends.
+ * @see Kopf et al. 2007, "Joint bilateral upsampling", §3: weights by distance in the image and by depth
  */
 export function estimate(
-  { frame }: SightNodes,
-  marched: CloudPictures,
+  viewRays: ViewRayNodes,
+  marched: CloudTargets,
   { corner, part }: CellPlace,
   cell: Cell,
   end: Float
 ): Estimate {
-  // Weights e^{−s p²} and e^{−s (1−p)²}, in proportion: how far filtering has to go.
-  const blend = part.mul(2).oneMinus().mul(SPREADING).exp().add(1).reciprocal().toConst() as Vec2
-  const at = (index: Vec2): Vec2 => index.add(0.5).div(frame.marchedSize).toConst()
-  const squares = part.mul(part).toConst() as Vec2
-  const others = part.oneMinus().mul(part.oneMinus()).toConst() as Vec2
-  const nearest = squares.min(others).toConst() as Vec2
-
-  const isLike = fitsCell(end, cell.place).toConst() as Bool
-  const light = vec4(0).toVar() as Vec4
-  const mean = vec4(0, 0, 0, 1).toVar() as Vec4
-  const around = cell.light.toVar() as Vec4
-  const distance = cell.place.x.toVar() as Float
-  /** Square of the distance to the nearest that fits [marched pixels²]. */
-  const apart = nearest.x.add(nearest.y).toVar() as Float
-  If(isLike, () => {
-    light.assign(marched.light.sample(at(corner.add(blend))).level(0))
+  const { frame } = viewRays
+  const at = (pixel: Vec2): Vec2 => pixel.add(0.5).div(frame.marchedSize).toConst()
+  const kernel = cornerKernel(part)
+  const closest = kernel.first.min(kernel.second).toConst() as Vec2
+  const isWhole = passesCellDepthTest(end, cell.distances).toConst() as Bool
+  const gathered: Gathered = {
+    light: vec4(0).toVar(),
+    mean: vec4(0, 0, 0, 1).toVar(),
+    statistics: cell.light.toVar(),
+    distance: cell.distances.x.toVar(),
+    nearest: closest.x.add(closest.y).toVar()
+  }
+  const { light, mean, statistics, distance, nearest } = gathered
+  If(isWhole, () => {
+    light.assign(marched.light.sample(at(corner.add(kernel.blend))).level(0))
   }).Else(() => {
-    const first = vec4(0).toVar() as Vec4
-    const moments = vec4(0).toVar() as Vec4
-    /** Sums of weights; of what fits; of distances and their weights. */
-    const sums = vec4(0).toVar() as Vec4
-    apart.assign(100)
-    loop('corner', 4, index => {
-      const step = vec2(float(index.mod(2)), float(index.div(2))).toConst() as Vec2
-      const place = at(corner.add(step).clamp(vec2(0), frame.marchedSize.sub(1)))
-      const color = marched.light.sample(place).level(0).toConst() as Vec4
-      const about = marched.place.sample(place).level(0).toConst() as Vec4
-      const fit = fits(end, about).toConst() as Float
-      const share = mix(blend.oneMinus(), blend, step).toConst() as Vec2
-      const weight = share.x.mul(share.y).mul(fit).toConst() as Float
-      const seen = weight.mul(color.w.oneMinus().add(1e-3)).toConst() as Float
-      const value = vec2(brightness(color), color.w).toConst() as Vec2
-      light.addAssign(color.mul(weight))
-      first.addAssign(color.mul(fit))
-      moments.addAssign(vec4(value, value.mul(value)).mul(fit))
-      sums.addAssign(vec4(weight, fit, about.x.mul(seen), seen))
-      const square = mix(squares, others, step).toConst() as Vec2
-      apart.assign(apart.min(fit.greaterThan(0).select(square.x.add(square.y), 100)))
-    })
-    const count = sums.y.max(1)
-    // Nothing was marched as far as this pixel sees: what is in front of clouds sees none.
-    If(sums.y.greaterThan(0), () => {
-      mean.assign(first.div(count))
-    })
-    const average = moments.div(count).toConst() as Vec4
-    const variance = average.zw.sub(average.xy.mul(average.xy)).max(0)
-    around.assign(vec4(brightness(mean), mean.w, variance.sqrt()))
-    light.assign(sums.x.greaterThan(1e-6).select(light.div(sums.x.max(1e-7)), mean))
-    distance.assign(sums.w.greaterThan(0).select(sums.z.div(sums.w.max(1e-9)), end))
+    gatherCorners(gathered, viewRays, marched, corner, kernel, end)
   })
-  const look = apart.mul(frame.block).mul(frame.block).mul(-LOOKING).exp()
+  const weight = nearest.mul(frame.block).mul(frame.block).mul(-WEIGHT_SHARPNESS).exp()
   return {
     light,
     mean: () => {
-      If(isLike, () => {
+      If(isWhole, () => {
         mean.assign(marched.light.sample(at(corner.add(0.5))).level(0))
       })
       return mean
     },
-    around,
+    statistics,
     distance,
-    look: look.max(LEAST_LOOK).toConst()
+    weight: weight.max(LEAST_WEIGHT).toConst()
   }
 }

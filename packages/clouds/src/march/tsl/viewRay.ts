@@ -9,22 +9,22 @@ import {
 import type { CloudField } from '../../density/CloudField'
 import type { FrameUniforms } from '../FrameUniforms'
 import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../../tsl-types'
-import { FAR_AWAY, groundDistance } from './shells'
+import { FAR_AWAY, groundDistance } from './layerBoundaries'
 
-/** A line of sight through a pixel. */
-export interface Sight {
+/** View ray through a pixel. */
+export interface ViewRay {
   /** Normalized device coordinates of the pixel, and 1. */
-  place: Vec3
-  /** Length of `FrameUniforms.rays` times `place`, in the mapped space [m]. */
+  ndc: Vec3
+  /** Length of `FrameUniforms.rays` times `ndc`, in the mapped space [m]. */
   length: Float
   /** Unit length, in the mapped space. */
   direction: Vec3
-  /** The same in view space, for each metre of the mapped space [world units/m]. */
+  /** The same direction in view space, for each metre of the mapped space [world units/m]. */
   directionView: Vec3
 }
 
-/** How a camera's pixels are turned to lines of sight. */
-export interface SightNodes {
+/** Inputs from which view rays are made: the camera of a frame and the depth that it drew. */
+export interface ViewRayNodes {
   readonly field: CloudField
   readonly frame: FrameUniforms
   /** Depth as the renderer writes it. */
@@ -32,27 +32,27 @@ export interface SightNodes {
   readonly isLogarithmic: boolean
 }
 
-/** The line of sight of a place in the picture; to be called inside of a shader function. */
-export function sightAt({ field, frame }: SightNodes, uv: Vec2): Sight {
-  const place = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
-  const ray = (frame.rays as unknown as Mat3).mul(place).toConst() as Vec3
-  const mapped = field.view.toMapped(ray).toConst() as Vec3
+/** View ray through a point of the image; to be called inside of a shader function. */
+export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
+  const ndc = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
+  const rayView = (frame.rays as unknown as Mat3).mul(ndc).toConst() as Vec3
+  const mapped = field.view.toMapped(rayView).toConst() as Vec3
   const length = mapped.length().toConst() as Float
   const direction = mapped.div(length).toConst() as Vec3
-  return { place, length, direction, directionView: ray.div(length).toConst() }
+  return { ndc, length, direction, directionView: rayView.div(length).toConst() }
 }
 
 /**
- * Distance along a line of sight to what was drawn, or to the ground; `FAR_AWAY` where there is neither
- * [m]. To be called inside of a shader function.
+ * Distance along a view ray to what was drawn, or to the ground; `FAR_AWAY` where there is neither [m]. To
+ * be called inside of a shader function.
  *
- * @param isOpen - Where it holds, the ground is known not to be in sight.
+ * @param missesGround - Where it holds, the ground is known not to be in sight.
  */
-export function sightEnd(
-  { field, frame, depthAt, isLogarithmic }: SightNodes,
+export function viewRayEnd(
+  { field, frame, depthAt, isLogarithmic }: ViewRayNodes,
   uv: Vec2,
-  { direction, directionView }: Sight,
-  isOpen?: Bool
+  { direction, directionView }: ViewRay,
+  missesGround?: Bool
 ): Float {
   const depth = depthAt(uv).toConst() as Float
   const cosView = direction.dot(field.view.up).clamp(-1, 1).toConst() as Float
@@ -60,8 +60,8 @@ export function sightEnd(
   const findGround = (): void => {
     end.assign(groundDistance(field, cosView))
   }
-  if (isOpen === undefined) findGround()
-  else If(isOpen.not(), findGround)
+  if (missesGround === undefined) findGround()
+  else If(missesGround.not(), findGround)
   If(isBackgroundDepth(depth).not(), () => {
     const inverse = frame.projectionInverse as unknown as Mat4
     const viewZ = isLogarithmic

@@ -40,7 +40,7 @@ export function groundDistance(field: CloudField, cosView: Float): Float {
  * @param cosView - Ray against the zenith of the camera.
  * @returns Distance from the camera; `FAR_AWAY` if there is none [m].
  */
-export function nextShell(field: CloudField, cosView: Float, distance: Float): Float {
+export function nextLayerBoundary(field: CloudField, cosView: Float, distance: Float): Float {
   const next = float(FAR_AWAY).toVar()
   const consider = (at: Float): void => {
     next.assign(at.greaterThan(distance).select(next.min(at), next))
@@ -57,7 +57,7 @@ export function nextShell(field: CloudField, cosView: Float, distance: Float): F
 }
 
 /** The layers around an altitude, taken together. */
-export interface Surroundings {
+export interface LayersAt {
   /** Altitude of the lowest base; above `top` if no layer is there [m]. */
   base: Float
   /** Altitude of the highest top [m]. */
@@ -74,7 +74,7 @@ export interface Surroundings {
 const GROWING_TOGETHER = [0.35, 1] as const
 
 /** @param altitude - Above the sphere [m]. */
-export function surroundings(field: CloudField, altitude: Float): Surroundings {
+export function layersAt(field: CloudField, altitude: Float): LayersAt {
   const base = float(FAR_AWAY).toVar()
   const top = float(-FAR_AWAY).toVar()
   const coverage = float(0).toVar()

@@ -11,9 +11,9 @@ const _normal = new Vector3()
 const _offset = new Vector3()
 
 /** A cascade as it was drawn: in the planet's mapped space, which neither camera nor origin move. */
-export class ShadowDrawing {
+export class CascadeState {
   /** Of the map's squares. */
-  readonly square: number
+  readonly atlasTile: number
   halfWidth = 0
   readonly anchor = new Vector3()
   readonly light = new Vector3()
@@ -26,15 +26,15 @@ export class ShadowDrawing {
   /** Of the middle [m]. */
   readonly center = { u: 0, v: 0 }
   /** How the wind had turned the layers. */
-  readonly turns: readonly Quaternion[]
+  readonly rotations: readonly Quaternion[]
   /** What else it was drawn from. */
   inputs: readonly unknown[] = []
   /** Greater than those of what was drawn before. */
   order = 0
 
   constructor(square: number, turns: readonly Quaternion[]) {
-    this.square = square
-    this.turns = turns.map(turn => turn.clone())
+    this.atlasTile = square
+    this.rotations = turns.map(turn => turn.clone())
   }
 
   /** [m]. */
@@ -62,7 +62,7 @@ export class ShadowDrawing {
     this.light.copy(light)
     this.anchor.copy(anchor)
     this.halfWidth = halfWidth
-    this.turns.forEach((turn, i) => turn.copy(turns[i]))
+    this.rotations.forEach((turn, i) => turn.copy(turns[i]))
     // Level, but leant towards a low light.
     _normal.copy(anchor).normalize()
     across.crossVectors(light, _normal)

@@ -12,7 +12,7 @@ import type { Quaternion, RenderTarget } from 'three'
 import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
-import { CloudField, eyePosition } from '../density/CloudField'
+import { CloudField, viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import { nightGain } from '../light/NightLight'
 import {
@@ -21,16 +21,16 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from '../march/quality'
-import { withAirBefore } from '../march/tsl/airBefore'
+import { withAerialPerspective } from '../march/tsl/aerialPerspective'
 import { marchClouds } from '../march/tsl/march'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
-import { groundDistance } from '../march/tsl/shells'
+import { groundDistance } from '../march/tsl/layerBoundaries'
 import type { LevelTexture, Mat3, Mat4, Vec2, Vec3 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3 } from '../uniforms'
 
-/** Options of {@link cloudOverlay}. */
-export interface CloudOverlayOptions {
-  /** Pixels along an edge of the square picture of all directions, in [16, 2048]. */
+/** Options of {@link cloudEnvironment}. */
+export interface CloudEnvironmentOptions {
+  /** Edge of the square map of all directions, in [16, 2048] [pixels]. */
   size?: number
   /** How finely clouds are marched; by default `'low'`. */
   quality?: CloudQualityName | CloudQuality
@@ -38,13 +38,13 @@ export interface CloudOverlayOptions {
   drift?: number
 }
 
-/** Frames after which the clouds' shadow maps are those of the clouds as they are. */
+/** Frames that the clouds' shadow maps take to follow a change: the map is drawn after them. */
 const WAIT = 12
 
-/** Strips of the picture. */
+/** Strips that the map is drawn in, one a frame. */
 const STRIPS = 6
 
-/** Light of the default luminance scale, which half floats hold well by day. */
+/** Luminance scale of what is stored: by day, half floats hold it well. */
 const STORED_SCALE = 1e-4
 
 const _center = new Vector3()
@@ -53,45 +53,46 @@ const _pole = new Vector3(0, 0, 1)
 /** Change of the direction to the moon, or of its light's strength, that shows. */
 const MOON_CHANGE = 2e-3
 
-/** What clouds are like, by all that shows. */
+/** State of the clouds that a map shows; compared to tell whether it is out of date. */
 interface CloudState {
-  /** What has to stay as it is. */
-  readonly things: readonly unknown[]
+  /** Values that have to stay the same. */
+  readonly inputs: readonly unknown[]
+  /** Rotations of the layers by the wind. */
   readonly turns: readonly Quaternion[]
   /** Direction to the moon times its strength; 0 by day. */
   readonly moonlight: Vector3
 }
 
 /**
- * Clouds for a `skyEnvironment`: a picture of all directions about its place, an octahedron's net with
- * the nadir in the corners, marched as a cloud node's pictures are but drawn in six strips, one a frame,
- * when the clouds' shadow maps have followed.
+ * Cloud environment map: clouds in all directions about a `skyEnvironment`'s place, for materials to
+ * mirror. An octahedral map (`octahedralPoint`) with the nadir in its corners, marched as a `CloudsNode` marches its pixels,
+ * in six strips, one a frame, once the clouds' shadow maps have followed.
  *
  * ```ts
- * const overlay = cloudOverlay(cloudsNode)
+ * const overlay = cloudEnvironment(cloudsNode)
  * scene.environmentNode = skyEnvironment(atmosphere, { overlay })
  * ```
  *
  * It is drawn again with the environment, and when layers are changed or have drifted, or the moon that
  * lights them has moved. Use one per environment.
  */
-export class CloudOverlay implements SkyOverlay {
+export class CloudEnvironment implements SkyOverlay {
   readonly steps = WAIT + STRIPS
-  /** Whose clouds; shared, not owned. */
+  /** Node whose clouds it shows; shared, not owned. */
   readonly clouds: CloudsNode
   #drift = 200
   readonly #target: RenderTarget
-  readonly #picture: LevelTexture<Vec2>
+  readonly #map: LevelTexture<Vec2>
   readonly #quality = new QualityUniforms()
-  /** Axes of the picture, east, north and the zenith at its place, to those of the mapped space. */
+  /** Axes of the map, east, north and zenith at its place, to those of the mapped space. */
   readonly #axes = matrix4()
   /** Displacements in the mapped space to view space. */
   readonly #fromMapped = matrix3()
   /** Stored light per light. */
   readonly #gain = number(1)
-  /** The same without the luminance scale of then. */
-  #raised = STORED_SCALE
-  /** From the camera of the shadow maps [m]. */
+  /** The same for light without a luminance scale. */
+  #storedScale = STORED_SCALE
+  /** From the camera of the shadow maps to the environment's [m]. */
   readonly #shift = vector3()
   #field: CloudField | null = null
   #pass: FragmentPass | null = null
@@ -99,19 +100,19 @@ export class CloudOverlay implements SkyOverlay {
   #version = 0
 
   /** @throws If the clouds are missing, or an option is out of its range. */
-  constructor(clouds: CloudsNode, options: CloudOverlayOptions = {}) {
-    checkClouds('CloudOverlay', clouds)
-    checkOptions('CloudOverlay', options, 'size', 'quality', 'drift')
+  constructor(clouds: CloudsNode, options: CloudEnvironmentOptions = {}) {
+    checkClouds('CloudEnvironment', clouds)
+    checkOptions('CloudEnvironment', options, 'size', 'quality', 'drift')
     const { size = 256, quality = 'low', drift = 200 } = options
     if (!(Number.isInteger(size) && size >= 16 && size <= 2048)) {
-      fail('CloudOverlay', 'size must be an integer in [16, 2048]', size)
+      fail('CloudEnvironment', 'size must be an integer in [16, 2048]', size)
     }
     this.clouds = clouds
     this.drift = drift
-    this.#quality.set(resolveQuality('CloudOverlay', quality))
-    this.#target = tableTarget('Welkin.CloudOverlay', size, size)
+    this.#quality.set(resolveQuality('CloudEnvironment', quality))
+    this.#target = tableTarget('Welkin.CloudEnvironment', size, size)
     this.#target.scissorTest = true
-    this.#picture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+    this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
   }
 
   /** How far the wind may carry clouds before they are drawn again, > 0 [m]. */
@@ -120,7 +121,7 @@ export class CloudOverlay implements SkyOverlay {
   }
 
   set drift(value: number) {
-    checkPositive('CloudOverlay', 'drift', value)
+    checkPositive('CloudEnvironment', 'drift', value)
     this.#drift = value
   }
 
@@ -136,28 +137,28 @@ export class CloudOverlay implements SkyOverlay {
 
   #state(): CloudState {
     const { field, light, shadows } = this.clouds
-    const { direction, illuminance, irradiance } = field.night
+    const { moonDirection, illuminance, moonIrradiance } = field.night
     return {
-      things: [
+      inputs: [
         light.texture.version,
-        field.grown === 1,
+        field.fadeIn === 1,
         shadows.isDrawn,
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
-      turns: field.turns.map(turn => turn.clone()),
-      moonlight: direction.value.clone().multiplyScalar(irradiance.value.y)
+      turns: field.rotations.map(turn => turn.clone()),
+      moonlight: moonDirection.value.clone().multiplyScalar(moonIrradiance.value.y)
     }
   }
 
   #isAsDrawn(): boolean {
     if (this.#drawn === null) return false
-    const { things, turns, moonlight } = this.#drawn
+    const { inputs, turns, moonlight } = this.#drawn
     const now = this.#state()
-    const reach = this.drift / this.clouds.atmosphere.parameters.bottomRadius
+    const maxAngle = this.drift / this.clouds.atmosphere.parameters.bottomRadius
     return (
-      things.every((thing, i) => thing === now.things[i]) &&
-      turns.every((turn, i) => turn.angleTo(now.turns[i]) <= reach) &&
+      inputs.every((input, i) => input === now.inputs[i]) &&
+      turns.every((turn, i) => turn.angleTo(now.turns[i]) <= maxAngle) &&
       moonlight.distanceTo(now.moonlight) <= MOON_CHANGE * moonlight.length()
     )
   }
@@ -170,38 +171,38 @@ export class CloudOverlay implements SkyOverlay {
     const strip = step - WAIT
     if (strip < 0) return
     if (strip === 0) this.#begin(view, field)
-    this.#gain.value = this.#raised / atmosphere.luminanceScale
-    eyePosition(view, this.#shift.value).sub(shadows.camera)
+    this.#gain.value = this.#storedScale / atmosphere.luminanceScale
+    viewpointMapped(view, this.#shift.value).sub(shadows.camera)
     const { width: size } = this.#target
     const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
     this.#pass?.render(renderer, this.#target)
   }
 
-  /** Takes clouds, sun and place as they are for all steps. */
+  /** Takes clouds, sun and place as they are now, for all strips. */
   #begin(view: AtmosphereView, field: CloudField): void {
-    const { turns, night, depthScale } = this.clouds.field
+    const { rotations, night, depthScale } = this.clouds.field
     if (!this.#isAsDrawn()) this.#version++
     this.#drawn = this.#state()
-    turns.forEach((turn, i) => field.turns[i].copy(turn))
+    rotations.forEach((turn, i) => field.rotations[i].copy(turn))
     field.pixelAngle.value = 2 / this.#target.width
     field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance
     // On a clock that stands still: the turns are the other field's.
     field.update(view, 0)
-    this.#raised = STORED_SCALE * nightGain(view, field.radius.value)
+    this.#storedScale = STORED_SCALE * nightGain(view, field.radius.value)
     this.#fromMapped.value.copy(view.viewToMapped).invert()
     // East is across pole and zenith.
     this.#axes.value.lookAt(view.up, _center, _pole)
   }
 
-  /** Makes its field and shader, for the environment's camera. */
+  /** Makes field and shader for the environment's camera. */
   #build({ camera }: AtmosphereView): CloudField {
     const { atmosphere, field: source, light, shadows } = this.clouds
     const { layers, noise, worldMapTexture: worldMap } = source
     const view = viewNodes(atmosphere, camera)
     const field = new CloudField(atmosphere, layers, view, { noise, worldMap })
-    const picture = Fn(() => {
+    const draw = Fn(() => {
       const at = uv() as unknown as Vec2
       const local = octahedralDirection(at.mul(2).sub(1)).toConst()
       const direction = (this.#axes as unknown as Mat4).mul(vec4(local, 0)).xyz.toConst() as Vec3
@@ -215,26 +216,26 @@ export class CloudOverlay implements SkyOverlay {
         ray
       )
       const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
-      return withAirBefore(view, marched, directionView, this.#gain)
+      return withAerialPerspective(view, marched, directionView, this.#gain)
     })
     this.#pass?.dispose()
-    this.#pass = new FragmentPass('Welkin.CloudOverlay', picture())
+    this.#pass = new FragmentPass('Welkin.CloudEnvironment', draw())
     return (this.#field = field)
   }
 
   /** See `SkyOverlay.over`. */
   over(_view: ViewNodes, direction: Vec3, sky: Vec3): Vec3 {
     const { atmosphere } = this.clouds
-    const scale = uniform(1).onRenderUpdate(() => atmosphere.luminanceScale / this.#raised)
+    const scale = uniform(1).onRenderUpdate(() => atmosphere.luminanceScale / this.#storedScale)
     const local = transpose(this.#axes as unknown as Mat4)
       .mul(vec4(direction, 0))
       .xyz.toConst()
     const at = octahedralPoint(local).mul(0.5).add(0.5)
-    const clouds = this.#picture.sample(at).level(0).toConst()
+    const clouds = this.#map.sample(at).level(0).toConst()
     return sky.mul(clouds.a).add(clouds.rgb.mul(scale))
   }
 
-  /** Frees its picture. */
+  /** Frees the map. */
   dispose(): void {
     this.#target.dispose()
     this.#pass?.dispose()
@@ -243,6 +244,8 @@ export class CloudOverlay implements SkyOverlay {
   }
 }
 
-/** Clouds for a `skyEnvironment`: see {@link CloudOverlay}. */
-export const cloudOverlay = (clouds: CloudsNode, options: CloudOverlayOptions = {}): CloudOverlay =>
-  new CloudOverlay(clouds, options)
+/** Cloud environment map for a `skyEnvironment`: see {@link CloudEnvironment}. */
+export const cloudEnvironment = (
+  clouds: CloudsNode,
+  options: CloudEnvironmentOptions = {}
+): CloudEnvironment => new CloudEnvironment(clouds, options)

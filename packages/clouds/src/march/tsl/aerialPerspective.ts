@@ -5,12 +5,12 @@ import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import type { MarchedClouds } from './march'
 
 /**
- * Marched clouds as pictures have them: light with that of the air before them, times a gain, and
- * transmittance. To be called inside of a shader function.
+ * Marched clouds behind their air: linear light, dimmed by the air in front of them and with its
+ * in-scatter, times a gain; transmittance in alpha. To be called inside of a shader function.
  *
- * @param directionView - In view space, for each metre of the mapped space [world units/m].
+ * @param directionView - View ray in view space, for each metre of the mapped space [world units/m].
  */
-export function withAirBefore(
+export function withAerialPerspective(
   view: ViewNodes,
   { radiance, transmittance, distance }: MarchedClouds,
   directionView: Vec3,

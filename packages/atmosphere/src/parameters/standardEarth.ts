@@ -40,18 +40,18 @@ export const ANGSTROM_EXPONENT = 1.3
  *   clear, 0.4 hazy. `ozone` in [0, 1000] [Dobson units], default 300.
  * @throws If a number is out of its range.
  */
-export function standardAtmosphere(
+export function standardEarthParameters(
   options: { aerosolOpticalDepth?: number; ozone?: number } = {}
 ): AtmosphereParameters {
   const { aerosolOpticalDepth = 0.12, ozone = 300 } = checkOptions(
-    'standardAtmosphere',
+    'standardEarthParameters',
     options,
     'aerosolOpticalDepth',
     'ozone'
   )
-  checkRange('standardAtmosphere', 'aerosolOpticalDepth', aerosolOpticalDepth, 0, 5)
+  checkRange('standardEarthParameters', 'aerosolOpticalDepth', aerosolOpticalDepth, 0, 5)
   const { bottomRadius, wavelengths, mieScaleHeight, absorptionExtinction } =
-    AtmosphereParameters.earth({ ozone })
+    new AtmosphereParameters({ ozone })
   const mieExtinction = map(
     wavelengths,
     nm => (aerosolOpticalDepth / mieScaleHeight) * (nm / 550) ** -ANGSTROM_EXPONENT

@@ -1,0 +1,98 @@
+import { float, int, smoothstep, vec4 } from 'three/tsl'
+import { extinctionNearby } from '../../density/tsl/sampler'
+import { sampleShadows } from '../../shadow/tsl/sampleShadows'
+import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
+import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
+
+/** Cosine of the lowest light whose rays grow longer with its height. */
+const LOWEST_COSINE = 0.12
+
+/**
+ * Distance towards the light that is probed sample by sample: per distance from the camera, at least and
+ * at most [m]. Shorter: heads lose the shading of their own bumps; longer: few samples miss them. See the
+ * story "Cumulus from the ground".
+ */
+const PROBED_GROWTH = 0.02
+const LEAST_PROBED = 60
+const MOST_PROBED = 600
+
+/**
+ * Low light stays among clouds for longer: cosines between which it counts as low, the distance probed then
+ * [m], and how many steps more. Less: clouds glow through each other at sunset. See the story "Cirrus at dusk".
+ */
+const LOW_LIGHT = 0.35
+const LOWEST_LIGHT = 0.12
+const LOW_LIGHT_PROBED = 700
+const LOW_LIGHT_STEPS = 2
+
+/** Height at which the cloud above is probed, as a part of the way to the top. */
+const ABOVE = 0.35
+
+/** Optical depths around a sample, not delta-scaled. */
+export interface LocalDepths {
+  /** From the sample to the light. */
+  toLight: Float
+  /** Of all clouds on the ray of light through the sample. */
+  through: Float
+  above: Float
+  below: Float
+}
+
+/**
+ * Optical depths around a sample: a few steps near it, which see what is smaller than the shadow map's
+ * texels, and the map beyond. Where there is no map, the cloud is taken to be as dense as it is near.
+ */
+export function localDepths(
+  { field, shadows, quality }: ShadingContext,
+  { sample, weather, dither, layers: { base, top } }: ShadedSample,
+  { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
+): LocalDepths {
+  const rise = top.sub(sample.altitude).max(1).toConst()
+  const fall = sample.altitude.sub(base).max(1).toConst()
+  const slant = cosLight.abs().max(LOWEST_COSINE).reciprocal().toConst()
+  const toTop = cosLight.greaterThan(0).select(rise, fall).mul(slant).toConst() as Float
+  const lowness = smoothstep(-LOW_LIGHT, -LOWEST_LIGHT, cosLight.abs().negate()).toConst() as Float
+  const probed = sample.distance
+    .mul(PROBED_GROWTH)
+    .clamp(LEAST_PROBED, MOST_PROBED)
+    .max(lowness.mul(LOW_LIGHT_PROBED))
+    .min(toTop)
+    .toConst() as Float
+  /** Extinction at the sample, optical depth towards the light, extinction above. */
+  const found = vec4(0).toVar() as Vec4
+  const more = lowness.mul(LOW_LIGHT_STEPS).ceil().toInt()
+  const count = quality.lightSteps.add(more).toConst() as Int
+  // The density function is inlined once for both directions: shaders stay short.
+  loop('probe', count.add(int(1)), index => {
+    const isUpwards = index.equal(count).toConst()
+    // Steps grow from the sample on: (i/n)² of the way.
+    const from = float(index).div(float(count)).toConst() as Float
+    const to = float(index).add(1).div(float(count)).toConst() as Float
+    const [start, end] = [from.mul(from).mul(probed), to.mul(to).mul(probed)]
+    const middle = isUpwards.select(rise.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
+    const direction = isUpwards.select(sample.up, toLight) as Vec3
+    const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
+    const { altitude, up } = field.view.place(offset)
+    const { distance } = sample
+    const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
+    found.addAssign(
+      isUpwards.select(
+        vec4(0, 0, extinction, 0),
+        vec4(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+      )
+    )
+  })
+  const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
+  const far = sampleShadows(shadows, beyond, dither)
+  const known = far.known.mul(isMapped).toConst() as Float
+  // Where no map is: as near, thinning out towards the top.
+  const density = found.y.div(probed).toConst()
+  const guess = density.mul(toTop.sub(probed)).toConst()
+  const depthToLight = found.y.add(known.mix(guess, far.toLight)).toConst() as Float
+  const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
+  const through = known
+    .mix(depthToLight.add(behind), far.through.max(depthToLight))
+    .toConst() as Float
+  const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))
+  return { toLight: depthToLight, through, above, below: fall.mul(found.x).mul(0.7) }
+}

@@ -1,0 +1,40 @@
+import type { CloudField } from '../../density/CloudField'
+import type { CloudSample } from '../../density/tsl/sample'
+import type { WeatherCache } from '../../density/tsl/sampler'
+import type { QualityUniforms } from '../../march/quality'
+import type { LayersAt } from '../../march/tsl/layerBoundaries'
+import type { CloudShadows } from '../../shadow/tsl/sampleShadows'
+import type { Float, Vec3 } from '../../tsl-types'
+import type { CloudLight } from '../CloudLightTable'
+
+/** Inputs of shading that are the same for all rays of a picture. */
+export interface ShadingContext {
+  readonly field: CloudField
+  readonly light: CloudLight
+  readonly shadows: CloudShadows
+  readonly quality: QualityUniforms
+}
+
+/** Place in the clouds that is to be shaded. */
+export interface ShadedSample {
+  readonly sample: CloudSample
+  readonly weather: WeatherCache
+  /** Direction of the view ray on which it is seen, unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** Transmittance of the clouds between it and the camera, in [0, 1]. */
+  readonly transmittance: Float
+  /** Noise in [0, 1), in which cascades of the shadow map meet. */
+  readonly dither: Float
+  /** The layers around it. */
+  readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered'>
+}
+
+/** Light source that clouds are shaded for: sun or moon. */
+export interface ShadingLight {
+  /** Direction to it, unit length, in the mapped space. */
+  readonly direction: Vec3
+  /** 1 if the shadow maps are of this light, else 0. */
+  readonly isMapped: Float
+  /** Cosine between it and the zenith. */
+  readonly cosine: Float
+}

@@ -1,0 +1,84 @@
+import { exp2, vec2, vec4 } from 'three/tsl'
+import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { ViewRay, ViewRayNodes } from '../../march/tsl/viewRay'
+import { passesDepthTest, SAME_DISTANCE } from './depthTest'
+import { clampDistance, unpack } from './packing'
+import type { CloudTargets } from './renderTargets'
+
+/**
+ * Motion below which history is read at the pixel's own texel, so that filtering does not blur a picture
+ * that stands still [pixels]. Greater: slow drifts stutter; 0: still clouds lose their detail. See the story
+ * "Fair weather".
+ */
+const STILL_MOTION = 0.02
+
+/** Motion after which history is no more than a stopgap [pixels], and what it is worth then [samples]. */
+const FAST_MOTION = 10
+const FAST_SAMPLES = 0.1
+
+/** Error of the reprojection at which history is rejected: clouds at another distance than this pixel's [pixels]. */
+const MAX_PARALLAX = 4
+
+/** Reprojected history of a pixel. */
+export interface ReprojectedHistory {
+  /** Light at this frame's gain, and transmittance. */
+  readonly light: Vec4
+  /** Accumulated samples that it is worth; 0 where it is rejected. */
+  readonly samples: Float
+  /** Stationarity: 1 where neither clouds nor what was drawn have moved, falling to 0 at a pixel's motion. */
+  readonly stationarity: Float
+}
+
+/**
+ * Reads history where a pixel's clouds were in the last frame, by their distance and by the wind of their
+ * layer, and rejects it where it is outside of the picture, fails the depth test, or held clouds at another
+ * distance.
+ *
+ * @param end - log₂ of the distance at which the pixel ends.
+ * @param distance - log₂ of the distance of its clouds.
+ * @param origin - Element of `FrameUniforms.origins` of their layer.
+ * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §3.2 (reprojection), §4.1 (rejection)
+ */
+export function reprojectHistory(
+  { frame }: ViewRayNodes,
+  history: CloudTargets,
+  pixel: Vec2,
+  { ndc, length }: ViewRay,
+  end: Float,
+  distance: Float,
+  origin: Vec3
+): ReprojectedHistory {
+  const raysBefore = frame.raysBefore as unknown as Mat3
+  const clipped = raysBefore
+    .mul(ndc)
+    .add(origin.mul(length.div(exp2(distance))))
+    .toConst() as Vec3
+  const uvBefore = clipped.xy.div(clipped.z.max(1e-9)).mul(vec2(0.5, -0.5)).add(0.5)
+  const motion = uvBefore.mul(frame.size).sub(0.5).sub(pixel).toConst() as Vec2
+  const isStill = motion.x.abs().max(motion.y.abs()).lessThan(STILL_MOTION)
+  const from = pixel
+    .add(isStill.select(vec2(0), motion))
+    .add(0.5)
+    .toConst() as Vec2
+  const isInside = from.clamp(vec2(0), frame.size).equal(from).all().and(clipped.z.greaterThan(0))
+  const nearest = from.floor().add(0.5).div(frame.size)
+  const apart = unpack(history.distances.sample(nearest).level(0))
+  const clampedEnd = clampDistance(end).toConst() as Float
+  const light = history.light.sample(from.div(frame.size)).level(0).toConst() as Vec4
+  // Clouds at history's distance would have moved by another way: by that ratio of this one.
+  const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
+  const way = motion.length().toConst() as Float
+  const parallax = ratio.mul(way).div(MAX_PARALLAX).oneMinus().clamp()
+  const validity = isInside.select(passesDepthTest(clampedEnd, apart), 0).mul(parallax)
+  const { gainChange, maxSamples } = frame
+  const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
+  return {
+    light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
+    stationarity: isSameEnd.select(way.oneMinus().max(0), 0),
+    samples: apart.z
+      .abs()
+      .min(maxSamples.mul(way.div(FAST_MOTION).oneMinus()).max(FAST_SAMPLES))
+      .mul(validity)
+      .toConst()
+  }
+}
