@@ -7,6 +7,8 @@ import { timeFrame } from './frame'
 import { benchScene, type Path } from './scene'
 import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
+import { measureCloudMemory } from './memory'
+import { measureShaders } from './shaders'
 import { median } from './statistics'
 
 const { values } = parseArgs({
@@ -71,6 +73,10 @@ for (const { model, outsideMs, insideMs } of shells) {
   )
 }
 
+function megabytes(bytes: number): string {
+  return `${(bytes / 1e6).toFixed(2)} MB`
+}
+
 /** GPU time of a bake, one step a frame: in all, and the most in a frame. */
 async function timeBake(): Promise<{ total: number; most: number; bytes: number }> {
   const runs: { total: number; most: number; bytes: number }[] = []
@@ -118,12 +124,20 @@ const bake = await timeBake()
 const environment = await timeEnvironment(device, size, 10)
 const noise = await timeNoise(device)
 const cloudCosts = await timeClouds(device, size, Math.min(frames, 10))
-for (const { view, quality, ms, passes, psnr } of cloudCosts) {
+for (const { name, quality, ms, passes, psnr } of cloudCosts) {
   const each = passes.map(pass => pass.toFixed(2)).join(' ')
   log(
-    `clouds, ${view.padEnd(7)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})   PSNR ${psnr.toFixed(1)} dB`
+    `clouds, ${name.padEnd(12)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})   PSNR ${psnr.toFixed(1)} dB`
   )
 }
+const cloudMemory = await measureCloudMemory(device, size)
+for (const { quality, renderTargets, shadowMaps, noise } of cloudMemory) {
+  log(
+    `clouds' memory, ${quality.padEnd(7)} render targets ${megabytes(renderTargets)}   shadow maps ${megabytes(shadowMaps)}   noise ${megabytes(noise)}`
+  )
+}
+log('\nshaders, vertex + fragment')
+const shaders = await measureShaders(device, log)
 const result = {
   device: device.name,
   cases,
@@ -136,12 +150,14 @@ const result = {
   environment,
   clouds: cloudCosts,
   cloudNoise: noise,
+  cloudMemory,
+  shaders,
   cpuMsPerFrame: median(cpuCosts)
 }
 log(`
 bake           ${bake.total.toFixed(2)} ms in all, ${bake.most.toFixed(2)} ms at most in a frame
 clouds' noise  ${noise.total.toFixed(2)} ms in all, ${noise.most.toFixed(2)} ms at most in a frame
-GPU memory     ${(bake.bytes / 1e6).toFixed(2)} MB
+GPU memory     ${megabytes(bake.bytes)}, tables
 first frame    ${firstFrameMs.toFixed(0)} ms at 320×180
 environment    ${environment.totalMs.toFixed(3)} ms in all, ${environment.mostMs.toFixed(3)} ms at most in a frame; CPU ${environment.submitMs.toFixed(2)} ms
 CPU            ${result.cpuMsPerFrame.toFixed(2)} ms a frame while the volume is updated`)

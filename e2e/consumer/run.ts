@@ -81,30 +81,68 @@ function install(app: string): string {
 /** Three's word about its fallback from WebGPU, which the app without it is meant to take. */
 const fallback = /WebGPU is not available, running under WebGL2 backend/
 
-/** Runs in the page: the next frame as a PNG data URL, taken in the task that draws it. */
-function takeFrame(): Promise<string> {
+/** A frame of the page, and when it was drawn. */
+interface Frame {
+  /** PNG as a data URL. */
+  url: string
+  /** Since the navigation [ms]. */
+  time: number
+  /** Since the canvas was made, as the renderer's constructor does [ms]. */
+  age: number
+}
+
+/** Runs in the page before its scripts: notes when a canvas is made. */
+function noteCanvas(): void {
+  const create = document.createElementNS.bind(document)
+  const noted = (namespace: string, name: string): Element => {
+    if (name === 'canvas') document.documentElement.dataset.canvasTime ??= `${performance.now()}`
+    return create(namespace, name)
+  }
+  document.createElementNS = noted as typeof document.createElementNS
+}
+
+/** Runs in the page: the next frame, taken in the task that draws it. */
+function takeFrame(): Promise<Frame> {
   return new Promise(resolve => {
     // The renderer's own request came first, and so it draws first.
-    requestAnimationFrame(() => resolve(document.querySelector('canvas')!.toDataURL('image/png')))
+    requestAnimationFrame(() => {
+      const url = document.querySelector('canvas')!.toDataURL('image/png')
+      const time = performance.now()
+      const age = time - Number(document.documentElement.dataset.canvasTime)
+      resolve({ url, time, age })
+    })
   })
 }
 
 /** Frames after the first that is not blank in which what takes several to draw must have come. */
 const patience = 60
 
-/** The app's first frame that is as it should be, or the last of those that it is given time for. */
-async function firstFrame(page: Page, wrongWith: (png: PNG) => string[]): Promise<PNG> {
+/**
+ * The app's first frame that is as it should be, or the last of those that it is given time for; and when
+ * the first came that was not blank.
+ */
+async function firstFrame(
+  page: Page,
+  wrongWith: (png: PNG) => string[]
+): Promise<{ png: PNG; first: Frame }> {
+  let first: Frame | undefined
   for (let seen = 0; ;) {
-    const png = PNG.sync.read(Buffer.from((await page.evaluate(takeFrame)).split(',')[1], 'base64'))
-    if (!isBlank(png)) seen++
-    if (seen > patience || (seen > 0 && wrongWith(png).length === 0)) return png
+    const frame = await page.evaluate(takeFrame)
+    const png = PNG.sync.read(Buffer.from(frame.url.split(',')[1], 'base64'))
+    if (isBlank(png)) continue
+    first ??= frame
+    seen++
+    if (seen > patience || wrongWith(png).length === 0) return { png, first }
   }
 }
+
+const seconds = (ms: number): string => `${(ms / 1000).toFixed(1)} s`
 
 async function look(browser: Browser, origin: string, name: string, backend: Backend) {
   const label = `the app's ${name} page draws what it should [${backend}]`
   const page = await browser.newPage({ viewport: { width: 320, height: 180 } })
   const errors: string[] = []
+  let note = ''
   page.on('pageerror', error => errors.push(String(error)))
   page.on('console', message => {
     const text = message.text()
@@ -115,9 +153,11 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
     if (backend === 'webgl') {
       await page.addInitScript(() => Object.defineProperty(navigator, 'gpu', { value: undefined }))
     }
+    await page.addInitScript(noteCanvas)
     await page.goto(`${origin}/${name}.html`)
     await page.waitForSelector('canvas', { state: 'attached', timeout: 60_000 })
-    const png = await withLimit(firstFrame(page, expectations[name]), 120)
+    const { png, first } = await withLimit(firstFrame(page, expectations[name]), 120)
+    note = `first frame ${seconds(first.time)} from navigation, ${seconds(first.age)} from the renderer's creation`
     const wrong = expectations[name](png)
     if (wrong.length > 0) {
       const file = join(outputFolder, `consumer-${name}.${backend}.png`)
@@ -128,7 +168,7 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
     errors.push(String(error))
   }
   await page.close()
-  if (errors.length === 0) report.pass(label)
+  if (errors.length === 0) report.pass(label, note)
   else report.fail(label, errors.join('\n'))
 }
 

@@ -13,6 +13,17 @@ interface Budget {
   onTopOf?: Record<string, string[] | '*'>
   /** Most bytes, minified and gzipped, with three left out. */
   budget: number
+  /** Where the root README states the size: what is before and after the number of kB. */
+  stated?: [before: string, after: string]
+}
+
+/** Difference of a stated size that goes as rounding [kB]. */
+const ROUNDING = 0.1
+
+/** The size that a page states between two words [kB]; NaN where there is none. */
+function statedSize(page: string, [before, after]: [string, string]): number {
+  const start = page.indexOf(before) + before.length
+  return Number(page.slice(start, page.indexOf(after, start)))
 }
 
 const kilobytes = (bytes: number): string => `${(bytes / 1000).toFixed(2)} kB`
@@ -63,7 +74,8 @@ const file = new URL('budgets.json', import.meta.url)
 const budgets = JSON.parse(readFileSync(file, 'utf8')) as Budget[]
 const report = new Report()
 
-for (const { name, imports, onTopOf = {}, budget } of budgets) {
+const readme = readFileSync(new URL('../../README.md', import.meta.url), 'utf8')
+for (const { name, imports, onTopOf = {}, budget, stated } of budgets) {
   try {
     const added = async (external: string[]): Promise<number> =>
       (await gzippedSize([onTopOf, imports], external)) - (await gzippedSize([onTopOf], external))
@@ -74,6 +86,14 @@ for (const { name, imports, onTopOf = {}, budget } of budgets) {
       name,
       `${kilobytes(total)} of ${kilobytes(budget)} gzipped, of which astronomy-engine ${kilobytes(total - own)}`
     )
+    if (stated !== undefined) {
+      const size = statedSize(readme, stated)
+      report.check(
+        Math.abs(size - total / 1000) <= ROUNDING,
+        `README states the size of: ${name}`,
+        `${size} kB stated, ${kilobytes(total)} found`
+      )
+    }
   } catch (error) {
     report.fail(name, error instanceof Error ? error.message : String(error))
   }

@@ -168,16 +168,18 @@ export const stills: readonly Still[] = [
 ]
 
 /**
- * Stills by name or prefix, in their own order; all for none.
+ * Stills by name, or by prefix where none has the name, in their own order; all for no words.
  *
- * @throws Error with the list if one matches none.
+ * @throws Error with the list if a word matches none.
  */
 export function selectStills(words: readonly string[]): readonly Still[] {
-  const unknown = words.find(word => stills.every(({ name }) => !name.startsWith(word)))
-  if (unknown !== undefined) {
-    const names = stills.map(({ name }) => name).join(', ')
-    throw new Error(`stills: no scene's name begins with '${unknown}'; there are ${names}`)
-  }
   if (words.length === 0) return stills
-  return stills.filter(({ name }) => words.some(word => name.startsWith(word)))
+  const wanted = words.map(word => {
+    const named = stills.filter(({ name }) => name === word)
+    const found = named.length > 0 ? named : stills.filter(({ name }) => name.startsWith(word))
+    if (found.length > 0) return found
+    const names = stills.map(({ name }) => name).join(', ')
+    throw new Error(`stills: no scene's name begins with '${word}'; there are ${names}`)
+  })
+  return stills.filter(still => wanted.some(found => found.includes(still)))
 }

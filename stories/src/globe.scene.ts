@@ -12,7 +12,7 @@ export interface GlobeArgs extends RendererArgs, TimeArgs {
 /** The city is smaller than a pixel from higher up [m]. */
 const CITY_CEILING = 60_000
 
-/** The Earth from a street to 20,000 km: streamed imagery and terrain in a world that is ECEF, in metres. */
+/** The Earth from a street to 20,000 km: pictures of all of it and terrain of one valley, in tiles, in a world that is ECEF, in metres. */
 export const createGlobe = (
   canvas: HTMLCanvasElement,
   args: GlobeArgs

@@ -58,7 +58,7 @@ interface Tiling {
 }
 
 /**
- * Earth's surface as streamed tiles: Natural Earth's images, on geometry that goes on dividing where the images end.
+ * Earth's surface in tiles that load as one comes near: Natural Earth's images, on geometry that goes on dividing where the images end.
  *
  * Without that the surface would be flat pieces of 3°, as much as 2 km below the ellipsoid.
  */

@@ -14,7 +14,7 @@ import type { Place } from './places'
 import { aimShadow, prepareShadow } from './sunShadow'
 import { createTerrain } from './terrain'
 
-/** The Earth's streamed imagery and terrain under a sky, and a camera that moves about it. */
+/** The Earth in tiles, pictures of all of it and terrain of one valley, under a sky, and a camera that moves about it. */
 export interface Land {
   readonly renderer: WebGPURenderer
   readonly scene: Scene
