@@ -9,13 +9,13 @@ export interface EyePlace {
   /** Above the ground [m]. */
   altitude: number
   /** Sun against zenith. */
-  cosSun: number
+  cosLight: number
 }
 
 /** A ray from an eye. */
 export interface RayRequest extends EyePlace {
   cosView: number
-  cosViewSun: number
+  cosViewLight: number
   /** Length of a segment; absent for the whole ray [m]. */
   distance?: number
 }
@@ -60,12 +60,12 @@ export function rayFromAngles(
   azimuth: number
 ): RayRequest {
   const cosView = cosDegrees(viewZenith)
-  const cosSun = cosDegrees(sunZenith)
+  const cosLight = cosDegrees(sunZenith)
   const level = sinDegrees(viewZenith) * sinDegrees(sunZenith)
   return {
     altitude: 1000 * heightKm,
-    cosSun,
+    cosLight,
     cosView,
-    cosViewSun: cosView * cosSun + level * cosDegrees(azimuth)
+    cosViewLight: cosView * cosLight + level * cosDegrees(azimuth)
   }
 }

@@ -67,12 +67,13 @@ gpuTest('has the error function and the multiple scattering of their twins', asy
   const values = await t.evaluate(inputs, input => erfcx(input.x))
   const light = await t.evaluate(inputs, ({ y, z, w }) => multipleScattering(y, y.add(z), w))
   const mass = await t.evaluate(inputs, ({ w }) => airMass(float(1e5), w))
-  inputs.forEach(([x, above, below, cosSun], i) => {
+  inputs.forEach(([x, above, below, cosLight], i) => {
     expectClose(values[4 * i], twin.erfcx(x), { relative: 2e-5 }, `erfcx ${x}`)
-    const expected = twin.multipleScattering(above, above + below, cosSun)
+    const expected = twin.multipleScattering(above, above + below, cosLight)
     expectClose(light[4 * i], expected, { absolute: 2e-6, relative: 1e-4 }, `light ${i}`)
     // The sphere hardly counts away from the horizon.
-    if (cosSun > 0.1) expectClose(mass[4 * i], 1 / cosSun, { relative: 2e-3 }, `mass ${cosSun}`)
+    if (cosLight > 0.1)
+      expectClose(mass[4 * i], 1 / cosLight, { relative: 2e-3 }, `mass ${cosLight}`)
   })
 })
 

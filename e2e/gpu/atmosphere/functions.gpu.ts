@@ -10,7 +10,7 @@ import { densities as densitiesTwin } from '../../../packages/atmosphere/src/air
 import * as phaseTwin from '../../../packages/atmosphere/src/air/cpu/phase'
 import { skyIrradiance as skyIrradianceTwin } from '../../../packages/atmosphere/src/diffuseLight/cpu/skyIrradiance'
 import { solveDiffuseLight } from '../../../packages/atmosphere/src/diffuseLight/cpu/solveDiffuseLight'
-import { sunTransmittance as sunTransmittanceTwin } from '../../../packages/atmosphere/src/transmittance/cpu/transmittance'
+import { lightTransmittance as lightTransmittanceTwin } from '../../../packages/atmosphere/src/transmittance/cpu/transmittance'
 import {
   altitudeAlong,
   distanceToGround,
@@ -20,7 +20,7 @@ import {
 import { densities } from '../../../packages/atmosphere/src/air/tsl/medium'
 import { miePhase, rayleighPhase } from '../../../packages/atmosphere/src/air/tsl/phase'
 import { skyIrradiance } from '../../../packages/atmosphere/src/diffuseLight/tsl/skyIrradiance'
-import { sunTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
+import { lightTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
 import { viewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
@@ -141,9 +141,9 @@ gpuTest('reads sunlight within 0.2 % of the sun from the transmittance table', a
       return [height, Math.sin(low + (Math.PI / 2 - low) * spread(i, 1) ** 2)]
     })
     const results = await evaluateOnGpu(renderer, inputs, input =>
-      sunTransmittance(uniforms, transmittance, input.x, input.y)
+      lightTransmittance(uniforms, transmittance, input.x, input.y)
     )
-    const expected = inputs.flatMap(([h, mu]) => sunTransmittanceTwin(air, bottom + h, mu))
+    const expected = inputs.flatMap(([h, mu]) => lightTransmittanceTwin(air, bottom + h, mu))
     expectClose(results, expected, { absolute })
     atmosphere.dispose()
   }
@@ -156,10 +156,10 @@ gpuTest('gathers sky light on planes as float64 does', async t => {
   const data = atmosphere.tables.data!
   const { uniforms, diffuse } = viewNodes(atmosphere).air
   const inputs = table(i => {
-    const [cosNormal, cosSun] = [2 * spread(i, 0) - 1, 1.2 * spread(i, 1) - 0.2]
-    const across = Math.sqrt((1 - cosNormal ** 2) * (1 - cosSun ** 2))
-    const cosNormalSun = cosNormal * cosSun + across * Math.cos(2 * Math.PI * spread(i, 2))
-    return [thickness * spread(i, 3) ** 2, cosNormal, cosSun, cosNormalSun]
+    const [cosNormal, cosLight] = [2 * spread(i, 0) - 1, 1.2 * spread(i, 1) - 0.2]
+    const across = Math.sqrt((1 - cosNormal ** 2) * (1 - cosLight ** 2))
+    const cosNormalLight = cosNormal * cosLight + across * Math.cos(2 * Math.PI * spread(i, 2))
+    return [thickness * spread(i, 3) ** 2, cosNormal, cosLight, cosNormalLight]
   })
   const results = await evaluateOnGpu(renderer, inputs, input =>
     skyIrradiance(uniforms, diffuse!, input.x, input.y, input.z, input.w)
@@ -195,8 +195,8 @@ async function comparesBake(
   let worst = 0
   for (const altitude of [0, 0.05, 0.3, 0.9]) {
     for (let column = 30; column < 96; column += 5) {
-      const cosSun = diffuseColumnCosine(column)
-      const [got, want] = [baked, solved].map(data => sampleDiffuseLight(data, altitude, cosSun))
+      const cosLight = diffuseColumnCosine(column)
+      const [got, want] = [baked, solved].map(data => sampleDiffuseLight(data, altitude, cosLight))
       // Density of light and irradiances; the other moments cross zero.
       for (const tile of [0, 6, 7]) {
         got[tile].forEach((value, k) => {

@@ -139,12 +139,12 @@ gpuTest('puts the ground where float64 does, from 2 m to 20,000 km', async t => 
         const foot = origin.clone().addScaledVector(ray, distance)
         const longitude = Math.atan2(foot.y, foot.x)
         const column = (longitude / (2 * Math.PI) + 0.5) * columns
-        const cosSun = atmosphere.ellipsoid
+        const cosLight = atmosphere.ellipsoid
           .surfaceNormal(foot)
           .dot(atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF))
-        if (cosSun < 0.05) continue
+        if (cosLight < 0.05) continue
         const isLight = Math.floor(column) % 2 === 1
-        const value = luminance(picture.at(x, y)) / cosSun
+        const value = luminance(picture.at(x, y)) / cosLight
         const white =
           luminance(atmosphere.query(camera.position).linearSRGB([1, 1, 1, 1])) / Math.PI
         const looksLight = value > 0.5 * white * atmosphere.luminanceScale

@@ -25,19 +25,19 @@ class MarchedHazeNode extends AtmosphereNode {
 
   override setup(): Node {
     return Fn(() => {
-      const { air, eye, up, sunDirection } = this.view
+      const { air, viewpoint, up, lightDirection } = this.view
       const offset = this.view.toMapped(positionView).toConst()
       const distance = offset.length().toConst()
       const direction = offset.div(distance).toConst()
       const ray = {
-        altitude: eye.altitude,
+        altitude: viewpoint.altitude,
         cosView: direction.dot(up),
-        cosSun: eye.cosSun,
-        cosViewSun: direction.dot(sunDirection)
+        cosLight: viewpoint.cosLight,
+        cosViewLight: direction.dot(lightDirection)
       }
       const rise = pointAlong(air, ray, distance).altitude.sub(ray.altitude)
       const light = scattering(air, ray, distance, rise, 12)
-      const radiance = scatteredRadiance(air.uniforms, light, ray.cosViewSun)
+      const radiance = scatteredRadiance(air.uniforms, light, ray.cosViewLight)
       return vec4(linearSRGB(air.uniforms, radiance), 1)
     })()
   }
@@ -71,8 +71,8 @@ gpuTest('scatters in a shader of the app as float64 does without a GPU', async t
     const ray = {
       radius: parameters.bottomRadius + 3000,
       cosView: dy / length,
-      cosSun: sun.y,
-      cosViewSun: (dx * sun.x + dy * sun.y - sun.z) / length
+      cosLight: sun.y,
+      cosViewLight: (dx * sun.x + dy * sun.y - sun.z) / length
     }
     const perIrradiance = inScatter(parameters, data, ray, 40_000 * length)
     const radiance = perIrradiance.map((value, i) => value * parameters.solarIrradiance[i])

@@ -19,7 +19,7 @@ import {
   distanceToTop,
   groundDiscriminant
 } from '../../../packages/atmosphere/src/air/tsl/boundary'
-import type { Air } from '../../../packages/atmosphere/src/scattering/tsl/scattering'
+import type { Air } from '../../../packages/atmosphere/src/scattering/tsl/ray'
 import type { AirSegment } from '../../../packages/atmosphere/src/shell/tsl/shellMarch'
 import { singleScatteringLight } from '../../../packages/atmosphere/src/shell/tsl/singleScattering'
 import { random } from '../harness/atmosphere'
@@ -72,7 +72,7 @@ gpuTest('knows how much air is between a point and the sun without a table', asy
 
 /** The way of a ray of altitude, μ, μ_s and ν, from within the air. */
 function wayOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'>): AirSegment {
-  const { x: altitude, y: cosView, z: cosSun, w: cosViewSun } = ray
+  const { x: altitude, y: cosView, z: cosLight, w: cosViewLight } = ray
   const radius = bottomRadius.add(altitude).toConst()
   const discriminant = groundDiscriminant(altitude, cosView, bottomRadius).toConst()
   const meetsGround = discriminant.greaterThanEqual(0).and(cosView.lessThan(0)).toConst()
@@ -81,8 +81,8 @@ function wayOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'
     altitude,
     radius,
     radiusCosView: radius.mul(cosView).toConst(),
-    radiusCosSun: radius.mul(cosSun).toConst(),
-    cosViewSun,
+    radiusCosSun: radius.mul(cosLight).toConst(),
+    cosViewLight,
     lowestAltitude: meetsGround.select(0, cosView.lessThan(0).select(nearest, altitude)).toConst(),
     hitsGround: meetsGround,
     length: meetsGround
@@ -110,10 +110,10 @@ gpuTest('scatters once as float64 has it, with few points', async t => {
       // From the ground, from within the air, and from its top, where rays from space come in.
       const altitude = [2, 2 + 2e4 * next() ** 2, topRadius - bottomRadius][i % 3]
       const cosView = i % 3 === 2 ? -0.2 - 0.8 * next() : (i % 2 ? 1 : -1) * (0.01 + 0.99 * next())
-      const cosSun = sunRange[0] + (sunRange[1] - sunRange[0]) * next()
-      const [sinView, sinSun] = [cosView, cosSun].map(x => Math.sqrt(1 - x * x))
-      const cosViewSun = cosView * cosSun + sinView * sinSun * Math.cos(Math.PI * next())
-      return [altitude, i % 3 === 0 ? Math.abs(cosView) : cosView, cosSun, cosViewSun].map(
+      const cosLight = sunRange[0] + (sunRange[1] - sunRange[0]) * next()
+      const [sinView, sinLight] = [cosView, cosLight].map(x => Math.sqrt(1 - x * x))
+      const cosViewLight = cosView * cosLight + sinView * sinLight * Math.cos(Math.PI * next())
+      return [altitude, i % 3 === 0 ? Math.abs(cosView) : cosView, cosLight, cosViewLight].map(
         Math.fround
       )
     })
@@ -122,12 +122,12 @@ gpuTest('scatters once as float64 has it, with few points', async t => {
       return singleScatteringLight({ uniforms } as Air, constants, wayOf(uniforms, ray)).radiance
     })
     const errors: number[] = []
-    rays.forEach(([altitude, cosView, cosSun, cosViewSun], i) => {
+    rays.forEach(([altitude, cosView, cosLight, cosViewLight], i) => {
       const radius = bottomRadius + altitude
       const length = hitsGround(radius, cosView, bottomRadius)
         ? distanceToGround64(radius, cosView, bottomRadius)
         : distanceToTop64(radius, cosView, topRadius)
-      const ray = { radius, cosView, cosSun, cosViewSun }
+      const ray = { radius, cosView, cosLight, cosViewLight }
       const [, green] = inScatter(parameters, null, ray, length)
       if (green > 1e-5) errors.push(Math.abs(results[4 * i + 1] / green - 1))
     })

@@ -40,8 +40,8 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
   const shadows = { map, cascades: [], count: 1, isMoonlit: number() } as unknown as CloudShadows
   const material = new NodeMaterial()
   material.fragmentNode = Fn(() => {
-    const { up, sunDirection } = field.view
-    const across = up.cross(sunDirection).normalize().toConst()
+    const { up, lightDirection } = field.view
+    const across = up.cross(lightDirection).normalize().toConst()
     const ahead = up.cross(across).toConst()
     const middle = ahead.mul(tilt.sin()).sub(up.mul(tilt.cos())).toConst()
     const at = screenCoordinate.xy

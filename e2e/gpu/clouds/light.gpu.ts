@@ -32,7 +32,7 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
     const light = new CloudLightTable(parameters)
     light.bake()
     const table = solveCloudLight(light.phase)
-    for (const [layered, cosSun] of [
+    for (const [layered, cosLight] of [
       [1, 0.7],
       [1, 0.03],
       [1, -0.2],
@@ -42,9 +42,9 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
       const inputs = rows(200, i => {
         const through = depthAt(spread(i, 0))
         const cosView = 2 * spread(i, 2) - 1
-        const sines = Math.sqrt((1 - cosView ** 2) * (1 - cosSun ** 2))
-        const cosViewSun = cosView * cosSun + sines * Math.cos(2 * Math.PI * spread(i, 3))
-        return [through * spread(i, 1), through, cosView, cosViewSun]
+        const sines = Math.sqrt((1 - cosView ** 2) * (1 - cosLight ** 2))
+        const cosViewLight = cosView * cosLight + sines * Math.cos(2 * Math.PI * spread(i, 3))
+        return [through * spread(i, 1), through, cosView, cosViewLight]
       })
       const results = await evaluateOnGpu(renderer, inputs, input =>
         vec4(
@@ -54,7 +54,7 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
             depthAcross: input.y.mul(1.3),
             depthToEye: float(0.3),
             layered: float(layered),
-            cosLight: float(cosSun),
+            cosLight: float(cosLight),
             cosView: input.z,
             cosViewLight: input.w
           })
@@ -67,14 +67,14 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
           depthAcross: 1.3 * depthThrough,
           depthToEye: 0.3,
           layered,
-          cosLight: cosSun,
+          cosLight: cosLight,
           cosView,
           cosViewLight
         })
       )
       // Texels are half floats, and filtered at their positions' 1/256.
       const found = inputs.map((_, i) => results[4 * i])
-      expectClose(found, expected, { absolute: 3e-4, relative: 0.01 }, `${layered} ${cosSun}`)
+      expectClose(found, expected, { absolute: 3e-4, relative: 0.01 }, `${layered} ${cosLight}`)
     }
     light.dispose()
   }
@@ -137,7 +137,7 @@ gpuTest('gives no NaN at the ends of its domain', async t => {
     ends.flatMap(through => [-1, 0, 1].map(cosView => [toSun, through, cosView, cosView]))
   )
   for (const layered of [0, 1]) {
-    for (const cosSun of [-1, 0, 1]) {
+    for (const cosLight of [-1, 0, 1]) {
       const results = await evaluateOnGpu(renderer, inputs, input => {
         const sample = { layered: float(layered), cosView: input.z }
         const ambient = cloudAmbient(
@@ -152,7 +152,7 @@ gpuTest('gives no NaN at the ends of its domain', async t => {
           depthThrough: input.y,
           depthAcross: input.y,
           depthToEye: input.x,
-          cosLight: float(cosSun),
+          cosLight: float(cosLight),
           cosViewLight: input.w
         })
         return vec4(source, ambient.x, 0, 0)

@@ -72,7 +72,7 @@ gpuTest('clouds cast their shadows on the ground', async t => {
     const length = 3500 / STEPS
     loop('step', STEPS, index => {
       const way = float(index).add(0.5).mul(length)
-      const offset = start.add(field.view.sunDirection.mul(way)).toConst() as Vec3
+      const offset = start.add(field.view.lightDirection.mul(way)).toConst() as Vec3
       const { altitude, up } = field.view.place(offset)
       const sample = { offset, altitude, up, distance: float(1000).toConst() }
       depth.addAssign(cloudExtinction(field, sample, false).mul(length))
@@ -133,7 +133,7 @@ gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
       // Steps grow on the way.
       const [from, to] = [float(index), float(index).add(1)].map(at => at.mul(at).mul(0.5))
       const way = from.add(to).mul(0.5)
-      const offset = start.add(field.view.sunDirection.mul(way)).toConst() as Vec3
+      const offset = start.add(field.view.lightDirection.mul(way)).toConst() as Vec3
       const sample = { offset, ...field.view.place(offset), distance: float(15_000).toConst() }
       marched.addAssign(cloudExtinction(field, sample, false).mul(to.sub(from)))
     })

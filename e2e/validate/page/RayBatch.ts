@@ -21,7 +21,7 @@ const COLUMNS = 64
 /** A ray, as the shader sees it. */
 export interface RayNodes {
   cosView: Float
-  cosViewSun: Float
+  cosViewLight: Float
   distance: Float
 }
 
@@ -41,8 +41,8 @@ export class RayBatch {
   constructor(rays: (RayRequest & { eye: number })[], body: (ray: RayNodes) => Vec4) {
     const rows = Math.max(Math.ceil(rays.length / COLUMNS), 1)
     const texels = new Float32Array(4 * COLUMNS * rows).fill(-1)
-    rays.forEach(({ cosView, cosViewSun, distance = 0, eye }, i) =>
-      texels.set([cosView, cosViewSun, distance, eye], 4 * i)
+    rays.forEach(({ cosView, cosViewLight, distance = 0, eye }, i) =>
+      texels.set([cosView, cosViewLight, distance, eye], 4 * i)
     )
     this.#count = rays.length
     this.#eyes = new Set(rays.map(ray => ray.eye))
@@ -62,7 +62,7 @@ export class RayBatch {
         return vec4(
           body({
             cosView: ray.x,
-            cosViewSun: ray.y,
+            cosViewLight: ray.y,
             distance: ray.z
           })
         )

@@ -2,17 +2,16 @@ import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { vec4 } from 'three/tsl'
 import type { Node, WebGPURenderer } from 'three/webgpu'
-import { eyeScalars } from '../../../packages/atmosphere/src/view/cpu/eye'
+import { viewpointScalars } from '../../../packages/atmosphere/src/view/cpu/viewpoint'
 import { groundIrradiance } from '../../../packages/atmosphere/src/diffuseLight/tsl/diffuseLight'
 import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/scattering/tsl/marchedAir'
+import { rayLimits, rayTargets } from '../../../packages/atmosphere/src/skyVolume/tsl/rayLimits'
 import {
-  rayLimits,
-  rayTargets,
-  aimAt,
+  viewRay,
   sampleSky,
   sampleVolume
 } from '../../../packages/atmosphere/src/skyVolume/tsl/skyVolume'
-import { sunTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
+import { lightTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { createContext } from '../../gpu/harness/context'
@@ -31,29 +30,35 @@ declare global {
 /** Steps of the marched path. */
 const MARCH_STEPS = 12
 
-function skyRadiance({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes): Vec4 {
-  const { cosView, cosViewSun } = ray
+function skyRadiance({ air, viewpoint, volume }: ViewNodes, path: Path, ray: RayNodes): Vec4 {
+  const { cosView, cosViewLight } = ray
   const { uniforms } = air
   if (path === 'volume') {
-    const { hitsGround, meetsAir } = rayTargets(eye, cosView)
-    const light = sampleSky(uniforms, volume, eye, aimAt(eye, cosView, hitsGround), cosViewSun)
+    const { hitsGround, meetsAir } = rayTargets(viewpoint, cosView)
+    const light = sampleSky(
+      uniforms,
+      volume,
+      viewpoint,
+      viewRay(viewpoint, cosView, hitsGround),
+      cosViewLight
+    )
     return light.mul(meetsAir.select(1, 0))
   }
-  const limits = rayLimits(eye, cosView)
-  return marchedSky(air, eye, cosView, cosViewSun, limits, MARCH_STEPS)
+  const limits = rayLimits(viewpoint, cosView)
+  return marchedSky(air, viewpoint, cosView, cosViewLight, limits, MARCH_STEPS)
 }
 
-function airInSegment({ air, eye, volume }: ViewNodes, path: Path, ray: RayNodes) {
-  const { cosView, cosViewSun, distance } = ray
-  const limits = rayLimits(eye, cosView)
+function airInSegment({ air, viewpoint, volume }: ViewNodes, path: Path, ray: RayNodes) {
+  const { cosView, cosViewLight, distance } = ray
+  const limits = rayLimits(viewpoint, cosView)
   return path === 'volume'
-    ? sampleVolume(air.uniforms, volume, eye, cosView, cosViewSun, limits, distance)
-    : marchedAir(air, eye, cosView, cosViewSun, limits, distance, MARCH_STEPS)
+    ? sampleVolume(air.uniforms, volume, viewpoint, cosView, cosViewLight, limits, distance)
+    : marchedAir(air, viewpoint, cosView, cosViewLight, limits, distance, MARCH_STEPS)
 }
 
 /** The eyes of rays, each once, with the numbers of the eyes of all rays. */
 function distinctEyes(rays: EyePlace[]): { eyes: EyePlace[]; eyeOf: (ray: EyePlace) => number } {
-  const key = (ray: EyePlace): string => `${ray.altitude} ${ray.cosSun}`
+  const key = (ray: EyePlace): string => `${ray.altitude} ${ray.cosLight}`
   const eyes = [...new Map(rays.map(ray => [key(ray), ray])).values()]
   const numbers = new Map(eyes.map((eye, i) => [key(eye), i]))
   return { eyes, eyeOf: ray => numbers.get(key(ray))! }
@@ -78,11 +83,11 @@ async function evaluateRays(
     inscatter: batch(segments, ray => airInSegment(view, path, ray).radiance),
     transmittance: batch(segments, ray => airInSegment(view, path, ray).depth.negate().exp())
   }
-  eyes.forEach(({ altitude, cosSun }, i) => {
-    const scalars = eyeScalars(parameters, altitude, cosSun)
+  eyes.forEach(({ altitude, cosLight }, i) => {
+    const scalars = viewpointScalars(parameters, altitude, cosLight)
     const volume =
       path === 'volume' ? tables.volumes.volumeFor(renderer, scalars, tables.version) : null
-    view.eye.set(scalars, volume)
+    view.viewpoint.set(scalars, volume)
     for (const part of Object.values(batches)) part.render(renderer, i)
   })
   return {
@@ -99,16 +104,16 @@ async function evaluateGrounds(
 ): Promise<Pick<EvaluationResult, 'skyIrradiance' | 'sunIrradiance'>> {
   if (cosines.length === 0) return { skyIrradiance: [], sunIrradiance: [] }
   const { uniforms, transmittance, diffuse } = viewNodes(atmosphere).air
-  const evaluate = async (body: (cosSun: Float) => Vec4): Promise<number[]> => {
+  const evaluate = async (body: (cosLight: Float) => Vec4): Promise<number[]> => {
     const run = (input: Node<'vec4'>): Node => body(input.x)
     const inputs = cosines.map(cosine => [cosine])
     return [...(await evaluateOnGpu(renderer, inputs, run))]
   }
   const ground = vec4(0).x as Float
   return {
-    skyIrradiance: await evaluate(cosSun => groundIrradiance(uniforms, diffuse!, cosSun)),
-    sunIrradiance: await evaluate(cosSun =>
-      sunTransmittance(uniforms, transmittance, ground, cosSun).mul(cosSun.max(0))
+    skyIrradiance: await evaluate(cosLight => groundIrradiance(uniforms, diffuse!, cosLight)),
+    sunIrradiance: await evaluate(cosLight =>
+      lightTransmittance(uniforms, transmittance, ground, cosLight).mul(cosLight.max(0))
     )
   }
 }

@@ -11,7 +11,7 @@ import { AtmosphereParameters, type SpectralMatrix } from '../src/parameters/Atm
 import type { Triple } from '../src/air/cpu/color'
 import { groundRadiance, skyRadiance } from '../src/scattering/cpu/scattering'
 import { solveDiffuseLight } from '../src/diffuseLight/cpu/solveDiffuseLight'
-import { sunTransmittance } from '../src/transmittance/cpu/transmittance'
+import { lightTransmittance } from '../src/transmittance/cpu/transmittance'
 import { earthAt, spectrumToXYZ, sunlight, wavelengths } from './spectra'
 
 /** Weight of a sample of sunlight over that of a sky: there are few of them, and they must be right. */
@@ -81,7 +81,7 @@ const cosDegrees = (degrees: number): number => Math.cos((degrees * Math.PI) / 1
 
 /** Sunlight that has come down to an altitude [m], the sun at a zenith angle [°]. */
 const sun = (zenith: number, altitude: number, weight: number): Sample =>
-  sample(weight, ({ p }) => sunTransmittance(p, p.bottomRadius + altitude, cosDegrees(zenith)))
+  sample(weight, ({ p }) => lightTransmittance(p, p.bottomRadius + altitude, cosDegrees(zenith)))
 
 const sunAbove = (weight: number): Sample => sample(weight, () => [1, 1, 1, 1])
 

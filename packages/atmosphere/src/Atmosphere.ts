@@ -271,7 +271,7 @@ export class Atmosphere extends ScenePlanet {
    * @returns Linear sRGB [lx].
    */
   sunIlluminanceAt(position: Vector3): Triple {
-    return this.query(position).sunIlluminance(position)
+    return this.query(position).directIlluminance(position)
   }
 
   /**

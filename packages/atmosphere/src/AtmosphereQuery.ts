@@ -5,7 +5,7 @@ import { spectralToLinearSRGB, type Triple } from './air/cpu/color'
 import type { DiffuseLightData } from './diffuseLight/cpu/diffuseLight'
 import { skyIrradiance } from './diffuseLight/cpu/skyIrradiance'
 import type { SphericalSpace } from './view/cpu/spherical'
-import { sunTransmittance } from './transmittance/cpu/transmittance'
+import { lightTransmittance } from './transmittance/cpu/transmittance'
 
 export const clampCosine = (value: number): number => Math.min(Math.max(value, -1), 1)
 
@@ -16,7 +16,7 @@ export class AtmosphereQuery {
   readonly #data: DiffuseLightData | null
   /** Irradiance of the source, over the bare sun's. */
   readonly #irradiance: Spectrum
-  readonly sun: Vector3
+  readonly lightDirection: Vector3
 
   constructor(
     parameters: AtmosphereParameters,
@@ -29,7 +29,7 @@ export class AtmosphereQuery {
     this.#space = space
     this.#data = data
     this.#irradiance = irradiance
-    this.sun = space.direction(sunWorld, new Vector3())
+    this.lightDirection = space.direction(sunWorld, new Vector3())
   }
 
   /** Place of a position [world] in the mapped space. */
@@ -40,7 +40,7 @@ export class AtmosphereQuery {
     checkDirection('Atmosphere', 'position', up)
     const radius = Math.max(up.length(), this.parameters.bottomRadius)
     up.normalize()
-    return { up, radius, cosSun: clampCosine(up.dot(this.sun)) }
+    return { up, radius, cosLight: clampCosine(up.dot(this.lightDirection)) }
   }
 
   /** A direction [world] in the mapped space. */
@@ -64,20 +64,20 @@ export class AtmosphereQuery {
     return spectralToLinearSRGB(this.parameters, values as unknown as Spectrum)
   }
 
-  sunIlluminance(position: Vector3): Triple {
-    const { radius, cosSun } = this.place(position)
-    return this.linearSRGB(sunTransmittance(this.parameters, radius, cosSun))
+  directIlluminance(position: Vector3): Triple {
+    const { radius, cosLight } = this.place(position)
+    return this.linearSRGB(lightTransmittance(this.parameters, radius, cosLight))
   }
 
   skyIlluminance(position: Vector3, normal: Vector3): Triple {
     const data = this.table('Atmosphere.skyIlluminanceAt')
-    const { up, radius, cosSun } = this.place(position)
+    const { up, radius, cosLight } = this.place(position)
     const n = this.direction('normal', normal)
     const altitude = radius - this.parameters.bottomRadius
     const cosNormal = clampCosine(n.dot(up))
-    const cosNormalSun = clampCosine(n.dot(this.sun))
+    const cosNormalLight = clampCosine(n.dot(this.lightDirection))
     return this.linearSRGB(
-      skyIrradiance(this.parameters, data, altitude, cosNormal, cosSun, cosNormalSun)
+      skyIrradiance(this.parameters, data, altitude, cosNormal, cosLight, cosNormalLight)
     )
   }
 }

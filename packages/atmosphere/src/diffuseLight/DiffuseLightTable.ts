@@ -7,7 +7,7 @@ import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { TableAtlas, type Table, type TableRegion } from '../tables/TableAtlas'
 import { DIFFUSE_LAYOUT, DIFFUSE_SIZE } from '../tables/tableSizes'
 import { BAKE_ROWS, bakeRays, reduceRays, sumOrders } from './tsl/diffuseLightBake'
-import type { Air } from '../scattering/tsl/scattering'
+import type { Air } from '../scattering/tsl/ray'
 import { sampleLevel0, vec4Array } from '../tsl-types'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE

@@ -41,7 +41,7 @@ export class DrawnSky {
     this.#scale = this.#atmosphere.luminanceScale
     this.#layers = [...this.#atmosphere.layers]
     this.#versions = this.#layers.map(({ version }) => version)
-    this.#sun.copy(view.sunDirection)
+    this.#sun.copy(view.lightDirection)
     this.#up.copy(view.up)
     this.#axes.copy(this.#axesOf(view))
     view.irradiance.forEach((value, i) => (this.#irradiance[i] = value))
@@ -59,7 +59,7 @@ export class DrawnSky {
         (layer, i) => layer === this.#layers[i] && layer.version === this.#versions[i]
       ) &&
       Math.abs(Math.log(luminanceScale / this.#scale)) <= Math.log(RESCALING) &&
-      this.#sun.distanceTo(view.sunDirection) <= reach &&
+      this.#sun.distanceTo(view.lightDirection) <= reach &&
       this.#up.distanceTo(view.up) <= reach &&
       this.#axes.elements.every((value, i) => Math.abs(value - axes[i]) <= reach * scale) &&
       Math.abs(view.height - this.#height) <= climb * Math.max(Math.abs(this.#height), LOW) &&

@@ -71,7 +71,7 @@ export class SkyCube {
   #sky(): Node<'vec4'> {
     return Fn(() => {
       const direction = positionWorldDirection.toConst() as Vec3
-      const height = direction.dot(this.#up).sub(this.#view.eye.cosHorizon).toConst()
+      const height = direction.dot(this.#up).sub(this.#view.viewpoint.cosHorizon).toConst()
       const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / this.#size))
       // With the world's axes a direction in view space is one in world space.
       const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
@@ -117,7 +117,7 @@ export class SkyCube {
    */
   draw(renderer: Renderer, isWhole: boolean): boolean {
     const view = this.#atmosphere.viewOf(this.camera)
-    if (this.#drawn === null || view === undefined || view.eye === null) return false
+    if (this.#drawn === null || view === undefined || view.viewpoint === null) return false
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     const isPresenting = renderer.xr.enabled
     renderer.xr.enabled = false
@@ -147,7 +147,7 @@ export class SkyCube {
   #prepare(renderer: Renderer, view: AtmosphereView): void {
     const { layers, luminanceScale, tables } = this.#atmosphere
     // Another camera may have taken the sky volume since the last face.
-    view.volume = tables.volumes.volumeFor(renderer, view.eye!, tables.version)
+    view.volume = tables.volumes.volumeFor(renderer, view.viewpoint!, tables.version)
     for (const layer of layers) layer.prepare?.(renderer, view)
     this.#view.update({ camera: this.camera })
     for (const layer of layers) layer.update?.(view)

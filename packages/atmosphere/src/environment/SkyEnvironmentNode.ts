@@ -132,7 +132,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
 
   #follow(renderer: Renderer, camera: Camera, frameId: number): void {
     const view = this.atmosphere.viewOf(camera)
-    if (view === undefined || view.eye === null) return
+    if (view === undefined || view.viewpoint === null) return
     // The first camera of a frame leads: a mirror's may be below ground.
     const isLed = frameId === this.#frame && camera !== this.#camera
     if (isLed && this.redraws > 0) return

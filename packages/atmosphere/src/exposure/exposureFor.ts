@@ -5,7 +5,7 @@ import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import { clampCosine } from '../AtmosphereQuery'
 import { sampleDiffuseLight } from '../diffuseLight/cpu/diffuseLight'
-import { sunTransmittance } from '../transmittance/cpu/transmittance'
+import { lightTransmittance } from '../transmittance/cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../night/cpu/twilight'
 import { checkSources, type LightSource } from '../view/LightSource'
 import { luminanceOf } from '../parameters/photometry'
@@ -94,7 +94,7 @@ function groundIlluminance(
     const bySun = almanacIlluminance(elevation) - almanacIlluminance(-90)
     return bySun * (luminanceOf(parameters, irradiance) / SUN_ILLUMINANCE)
   }
-  const direct = sunTransmittance(parameters, parameters.bottomRadius, cosLight)
+  const direct = lightTransmittance(parameters, parameters.bottomRadius, cosLight)
   const diffuse = sampleDiffuseLight(tables.data, 0, cosLight)[6]
   const values = irradiance.map(
     (value, i) => value * (direct[i] * Math.max(cosLight, 0) + Math.max(diffuse[i], 0))

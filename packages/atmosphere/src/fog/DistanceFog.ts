@@ -2,8 +2,9 @@ import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import { setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
-import type { Sightline, SkyLayer, Veil } from '../view/SkyLayer'
-import { aimAt, sampleSky } from '../skyVolume/tsl/skyVolume'
+import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
+import { viewRay, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Bool, Float } from '../tsl-types'
 
 /** Options of {@link DistanceFog}. */
@@ -77,38 +78,41 @@ export class DistanceFog implements SkyLayer {
     this.#density.value = this.density * (1 - x * x * (3 - 2 * x))
   }
 
-  veil({ view, cosView, cosViewSun, distance }: Sightline, air: Veil): Veil {
+  medium({ view, cosView, cosViewLight, distance }: LayerRay, air: MediumSegment): MediumSegment {
     if (distance === undefined) return air
     const depth = vec4(air.depth).toVar()
-    const light = vec4(air.light).toVar()
+    const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
       const { uniforms } = view.air
-      const { eye, source } = view
+      const { viewpoint, source } = view
       // The same azimuth, raised to just above the horizon if the ray is lower.
-      const cosRaised = cosView.max(eye.cosHorizon.add(HORIZON_MARGIN)).min(1).toConst() as Float
+      const cosRaised = cosView
+        .max(viewpoint.cosHorizon.add(HORIZON_MARGIN))
+        .min(1)
+        .toConst() as Float
       const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
       const scale = sine(cosRaised).div(sine(cosView).max(1e-4))
-      const cosRaisedSun = cosRaised
-        .mul(eye.cosSun)
-        .add(cosViewSun.sub(cosView.mul(eye.cosSun)).mul(scale))
+      const cosRaisedLight = cosRaised
+        .mul(viewpoint.cosLight)
+        .add(cosViewLight.sub(cosView.mul(viewpoint.cosLight)).mul(scale))
         .clamp(-1, 1)
         .toConst() as Float
       const isGround = float(0).greaterThan(1) as Bool
       const sky = sampleSky(
         uniforms,
         view.volume,
-        eye,
-        aimAt(eye, cosRaised, isGround),
-        cosRaisedSun
+        viewpoint,
+        viewRay(viewpoint, cosRaised, isGround),
+        cosRaisedLight
       )
       const color = sky.mul(source.irradiance)
       const root = distance.mul(this.#density)
       const fog = root.mul(root).min(80).toConst()
       const through = fog.negate().exp().toConst()
-      light.assign(air.light.mul(through).add(color.mul(through.oneMinus())))
+      light.assign(air.radiance.mul(through).add(color.mul(through.oneMinus())))
       depth.addAssign(fog)
     })
-    return { depth: depth, light: light }
+    return { depth: depth, radiance: light }
   }
 }
 

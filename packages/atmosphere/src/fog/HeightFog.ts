@@ -6,13 +6,15 @@ import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
 import { checkSources, type LightSource } from '../view/LightSource'
-import type { Sightline, SkyLayer, Veil } from '../view/SkyLayer'
+import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { diffuseMoments } from '../diffuseLight/tsl/diffuseLight'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from '../diffuseLight/tsl/moments'
-import { rayLimits, sampleVolume } from '../skyVolume/tsl/skyVolume'
-import { sunTransmittance } from '../transmittance/tsl/transmittance'
+import { rayLimits } from '../skyVolume/tsl/rayLimits'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../tsl-types'
 
 /** Options of {@link HeightFog}. */
@@ -132,17 +134,17 @@ export class HeightFog implements SkyLayer {
     }
   }
 
-  veil(line: Sightline, air: Veil): Veil {
+  medium(ray: LayerRay, air: MediumSegment): MediumSegment {
     const depth = vec4(air.depth).toVar()
-    const light = vec4(air.light).toVar()
+    const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const { uniforms } = line.view.air
-      const { eye, source } = line.view
-      const limits = rayLimits(eye, line.cosView, line.hitsGround)
-      const distance = line.distance ?? limits.length
-      const radius = uniforms.bottomRadius.add(line.view.height).toConst() as Float
+      const { uniforms } = ray.view.air
+      const { viewpoint, source } = ray.view
+      const limits = rayLimits(viewpoint, ray.cosView, ray.hitsGround)
+      const distance = ray.distance ?? limits.length
+      const radius = uniforms.bottomRadius.add(ray.view.height).toConst() as Float
       const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
-      const fog = fogDepth(layer, this.#height, radius, line.cosView, distance)
+      const fog = fogDepth(layer, this.#height, radius, ray.cosView, distance)
       const through = exp(fog.depth.negate()).toConst()
 
       // Point behind half of the fog's visible depth, as if altitude changed linearly along the ray.
@@ -158,30 +160,38 @@ export class HeightFog implements SkyLayer {
       const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, MAX_ALTITUDE).toConst() as Float
 
       // The light of the air in front of that point stays; fog dims the rest.
-      const { volume } = line.view
-      const { cosView, cosViewSun } = line
-      const ahead = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, middleDistance)
-      const front = ahead.radiance.mul(source.irradiance).min(air.light).toConst()
-      const sample = { line, radius, middle }
-      let inScatter = this.#light(sample, eye.cosSun, cosViewSun).mul(source.irradiance)
+      const { volume } = ray.view
+      const { cosView, cosViewLight } = ray
+      const ahead = sampleVolume(
+        uniforms,
+        volume,
+        viewpoint,
+        cosView,
+        cosViewLight,
+        limits,
+        middleDistance
+      )
+      const front = ahead.radiance.mul(source.irradiance).min(air.radiance).toConst()
+      const sample = { ray, radius, middle }
+      let inScatter = this.#light(sample, viewpoint.cosLight, cosViewLight).mul(source.irradiance)
       for (const { directionMapped, irradiance } of this.#lights) {
-        const cosLight = line.view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
-        const cosViewLight = line.direction.dot(directionMapped).clamp(-1, 1).toConst() as Float
+        const cosLight = ray.view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
+        const cosViewLight = ray.direction.dot(directionMapped).clamp(-1, 1).toConst() as Float
         inScatter = inScatter.add(this.#light(sample, cosLight, cosViewLight).mul(irradiance))
       }
       inScatter = inScatter
         .mul(this.#albedo)
         .mul(through.oneMinus())
         .mul(ahead.depth.negate().exp())
-      light.assign(air.light.sub(front).mul(through).add(front).add(inScatter))
+      light.assign(air.radiance.sub(front).mul(through).add(front).add(inScatter))
       depth.addAssign(fog.depth)
     })
-    return { depth: depth, light: light }
+    return { depth: depth, radiance: light }
   }
 
   /** Light of a source that fog scatters to the camera, as if all of it were at one point [1/sr]. */
-  #light({ line, radius, middle }: FogSample, cosLight: Float, cosViewLight: Float): Vec4 {
-    const { view, cosView } = line
+  #light({ ray, radius, middle }: FogSample, cosLight: Float, cosViewLight: Float): Vec4 {
+    const { view, cosView } = ray
     const { air } = view
     const { uniforms } = air
     const rise = middle.mul(this.#falloff).sub(this.#height)
@@ -196,7 +206,7 @@ export class HeightFog implements SkyLayer {
       above.mul(slant).negate().exp()
     )
     const often = multipleScattering(above, total, cosSlant)
-    const sun = sunTransmittance(uniforms, air.transmittance, altitude, cosLight).mul(
+    const sun = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).mul(
       once.add(often)
     )
     const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
@@ -217,7 +227,7 @@ interface FogLight {
 
 /** Point that stands for all fog on a view ray. */
 interface FogSample {
-  line: Sightline
+  ray: LayerRay
   /** Planet's centre to the camera [m]. */
   radius: Float
   /** Altitude above the base, in falloff heights. */

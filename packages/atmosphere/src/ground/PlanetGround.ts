@@ -8,8 +8,9 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, withDefaults } from '../check'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { groundIrradiance } from '../diffuseLight/tsl/diffuseLight'
-import { rayLimits, sampleVolume } from '../skyVolume/tsl/skyVolume'
-import { sunTransmittance } from '../transmittance/tsl/transmittance'
+import { rayLimits } from '../skyVolume/tsl/rayLimits'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import { meanGroundAlbedo } from './meanGroundAlbedo'
 import { groundHit, type GroundHit } from './tsl/groundHit'
 import { landRadiance, seaAlbedo, seaRadiance } from './tsl/groundLight'
@@ -192,15 +193,15 @@ export class PlanetGround implements SkyLayer {
   }
 
   ground(ray: SkyRay, model: Vec4): Vec4 {
-    const { view, cosView, cosViewSun, hitsGround } = ray
+    const { view, cosView, cosViewLight, hitsGround } = ray
     const { uniforms } = view.air
     const radiance = model.toVar()
     If(hitsGround, () => {
-      const limits = rayLimits(view.eye, cosView, hitsGround)
+      const limits = rayLimits(view.viewpoint, cosView, hitsGround)
       const distance = limits.start.add(limits.length).toConst() as Float
       const light = this.#radiance(ray, groundHit(ray, distance, this.#flattening))
-      const { volume, eye, source } = view
-      const air = sampleVolume(uniforms, volume, eye, cosView, cosViewSun, limits, distance)
+      const { volume, viewpoint, source } = view
+      const air = sampleVolume(uniforms, volume, viewpoint, cosView, cosViewLight, limits, distance)
       const transmittance = air.depth.negate().exp()
       radiance.assign(air.radiance.mul(source.irradiance).add(light.mul(transmittance)))
     })
@@ -210,7 +211,7 @@ export class PlanetGround implements SkyLayer {
   /** Radiance of the ground without the air in front of it [1/sr]. */
   #radiance({ view }: SkyRay, { angles, normal, footprint, ...hit }: GroundHit): Vec4 {
     const { uniforms, transmittance, diffuse } = view.air
-    const { cosSun } = angles
+    const { cosLight } = angles
     const read = (source: Texture): Vec4 =>
       (texture(source) as unknown as GradientSampler)
         .sample(hit.uv)
@@ -218,17 +219,17 @@ export class PlanetGround implements SkyLayer {
         .toConst()
     const { color, water } = this.#surfaceAt(normal, footprint, read)
     const illumination = {
-      sun: sunTransmittance(uniforms, transmittance, float(0), cosSun)
+      sun: lightTransmittance(uniforms, transmittance, float(0), cosLight)
         .mul(view.source.irradiance)
         .toConst(),
-      sky: groundIrradiance(uniforms, diffuse!, cosSun).mul(view.source.irradiance).toConst()
+      sky: groundIrradiance(uniforms, diffuse!, cosLight).mul(view.source.irradiance).toConst()
     }
     const land = landRadiance(illumination, angles, this.#albedoOf(color), this.#roughness)
     const sea = seaRadiance(illumination, angles, this.#variance)
     const radiance = land.mul(water.oneMinus()).add(sea.mul(water)).toVar()
     const { nightLights } = this.#options
     if (nightLights !== null) {
-      const isNight = smoothstep(-0.12, 0.02, cosSun).oneMinus()
+      const isNight = smoothstep(-0.12, 0.02, cosLight).oneMinus()
       const lamps = spectrumOfColor(this.#radianceColumns, read(nightLights).xyz).max(0)
       radiance.addAssign(lamps.mul(this.#nightLuminance).mul(isNight))
     }

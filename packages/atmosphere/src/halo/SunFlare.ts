@@ -1,6 +1,6 @@
 import { renderGroup, uniform } from 'three/tsl'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { visibleSun } from '../transmittance/cpu/transmittance'
+import { visibleDisc } from '../transmittance/cpu/transmittance'
 import { Flare, type FlareOptions } from './Flare'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { addHalo } from './tsl/halo'
@@ -36,15 +36,15 @@ export class SunFlare extends Flare implements SkyLayer {
   update(view: AtmosphereView): void {
     const { parameters } = view.atmosphere
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
-    this.#visibleFraction.value = visibleSun(parameters, radius, view.up.dot(view.sunDirection))
+    this.#visibleFraction.value = visibleDisc(parameters, radius, view.up.dot(view.lightDirection))
     this.updateReach(this.#visibleFraction.value > 0)
   }
 
-  beyond(ray: SkyRay, farther: Vec4): Vec4 {
-    const { direction, cosViewSun, view } = ray
+  background(ray: SkyRay, farther: Vec4): Vec4 {
+    const { direction, cosViewLight, view } = ray
     const light = farther.toVar()
     const irradiance = view.source.irradiance.mul(this.#visibleFraction)
-    addHalo(light, this.uniforms, irradiance, direction, view.sunDirection, cosViewSun)
+    addHalo(light, this.uniforms, irradiance, direction, view.lightDirection, cosViewLight)
     return light
   }
 }

@@ -22,7 +22,7 @@ export interface SkyLitPlane {
   /** Zenith there. */
   readonly up: Vec3
   /** μ_s. */
-  readonly cosSun: Float
+  readonly cosLight: Float
   /** Its normal against the zenith. */
   readonly cosNormal: Float
 }
@@ -99,7 +99,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
       const view = this.#view
       const { air } = view
       const offset = view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosSun, up } = view.place(offset)
+      const { altitude, cosLight, up } = view.place(offset)
       const normal = view.toMapped(normalView).normalize().toConst()
       const cosNormal = normal.dot(up)
       const clear = skyIrradiance(
@@ -107,10 +107,10 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
         air.diffuse!,
         altitude,
         cosNormal,
-        cosSun,
-        normal.dot(view.sunDirection)
+        cosLight,
+        normal.dot(view.lightDirection)
       )
-      const plane = { view, offset, altitude, up, cosSun, cosNormal }
+      const plane = { view, offset, altitude, up, cosLight, cosNormal }
       const received = this.#light.overcast?.(plane, clear) ?? clear
       return linearSRGB(air.uniforms, received.mul(view.source.irradiance)).mul(
         (this as unknown as { colorNode: Vec3 }).colorNode

@@ -7,7 +7,7 @@ import type { Atmosphere } from '../Atmosphere'
 import { checkSource, type LightSource } from '../view/LightSource'
 import { linearSRGB } from '../air/tsl/color'
 import { coveredPosition } from '../view/tsl/coveredPosition'
-import { sunTransmittance } from '../transmittance/tsl/transmittance'
+import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
@@ -93,8 +93,8 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
     node.colorNode = Fn(() => {
       const { uniforms, transmittance } = this.#view.air
       const offset = this.#view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosSun } = this.#view.place(offset)
-      const sunlight = sunTransmittance(uniforms, transmittance, altitude, cosSun)
+      const { altitude, cosLight } = this.#view.place(offset)
+      const sunlight = lightTransmittance(uniforms, transmittance, altitude, cosLight)
       return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
     })()
   }

@@ -24,7 +24,7 @@ import { MoonSurfaceMap } from './MoonSurfaceMap'
 import { MoonlitAir } from './MoonlitAir'
 import { MoonUniforms } from './MoonUniforms'
 import { SunMoonEphemeris } from './sunMoonEphemeris'
-import type { HazeLine, SkyLayer, SkyRay } from '../view/SkyLayer'
+import type { PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
 import { moonSky } from './tsl/moonSky'
 import type { Vec4 } from '../tsl-types'
 import { checkAtmosphere } from '../view/ViewNodes'
@@ -258,7 +258,7 @@ export class Moon implements SkyLayer {
    */
   illuminanceAt(position: Vector3): Triple {
     const { atmosphere, source } = this.#inHome()
-    return atmosphere.query(position, source).sunIlluminance(position)
+    return atmosphere.query(position, source).directIlluminance(position)
   }
 
   /**
@@ -345,7 +345,7 @@ export class Moon implements SkyLayer {
     this.#home?.air?.update(view)
   }
 
-  beyond(ray: SkyRay, background: Vec4): Vec4 {
+  background(ray: SkyRay, background: Vec4): Vec4 {
     const map = texture(this.#surface.target.texture)
     return moonSky(this.#uniforms, map, this.flare.uniforms, ray, background)
   }
@@ -354,8 +354,8 @@ export class Moon implements SkyLayer {
     return this.#inHome().air?.glow(ray, without) ?? without
   }
 
-  haze(line: HazeLine, without: Vec4): Vec4 {
-    return this.#inHome().air?.haze(line, without) ?? without
+  inScatter(ray: PointRay, without: Vec4): Vec4 {
+    return this.#inHome().air?.inScatter(ray, without) ?? without
   }
 
   /** Frees GPU memory and leaves the atmosphere. The moon can be added again. */

@@ -3,7 +3,7 @@ import { renderGroup, uniform } from 'three/tsl'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { Flare } from '../halo/Flare'
-import { visibleSun } from '../transmittance/cpu/transmittance'
+import { visibleDisc } from '../transmittance/cpu/transmittance'
 import { CORONA_LIGHT } from './cpu/eclipse'
 import { earthshine, moonIrradiance } from './cpu/moonIrradiance'
 import { surfacePhaseFactor } from './cpu/moonPhaseLaw'
@@ -80,7 +80,7 @@ export class MoonUniforms {
     this.sunlit.value.fromArray(full.map(value => 2 * value * phaseFactor))
     this.earthlit.value.fromArray(full.map((value, i) => value * shine[i]))
     const eyeRadius = parameters.bottomRadius + Math.max(view.height, 0)
-    const visible = visibleSun(parameters, eyeRadius, view.up.dot(this.directionMapped.value))
+    const visible = visibleDisc(parameters, eyeRadius, view.up.dot(this.directionMapped.value))
     this.irradiance.value.set(...moon.irradiance).multiplyScalar(visible)
     halo.updateReach(this.irradiance.value.y > 0)
     this.cosNearSun.value = cosWidened(CORONA_RADII * parameters.sunAngularRadius)

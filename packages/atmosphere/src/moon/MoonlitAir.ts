@@ -4,7 +4,7 @@ import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
-import type { HazeLine, SkyRay } from '../view/SkyLayer'
+import type { PointRay, SkyRay } from '../view/SkyLayer'
 import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
 import { viewNodes, type ViewNodes } from '../view/ViewNodes'
@@ -40,7 +40,7 @@ export class MoonlitAir {
   #canBeSeen(view: AtmosphereView): boolean {
     const { parameters, space } = this.atmosphere
     if (view.height > parameters.topRadius - parameters.bottomRadius) return true
-    if (view.up.dot(view.sunDirection) > MAX_COS_SUN) return false
+    if (view.up.dot(view.lightDirection) > MAX_COS_SUN) return false
     _position.setFromMatrixPosition(view.camera.matrixWorld)
     this.source.direction(_direction, _position)
     return view.up.dot(space.direction(_direction, _position)) > MIN_COS_MOON
@@ -55,21 +55,21 @@ export class MoonlitAir {
 
   glow(ray: SkyRay, without: Vec4): Vec4 {
     const light = without.toVar()
-    const { air, volume, eye, sunDirection: moonDirection } = this.#nodes(ray.view)
+    const { air, volume, viewpoint, lightDirection: moonDirection } = this.#nodes(ray.view)
     If(this.#isVisible.greaterThan(0).and(ray.meetsAir), () => {
       const cosViewMoon = ray.direction.dot(moonDirection).toConst() as Float
-      const sky = sampleSky(air.uniforms, volume, eye, ray, cosViewMoon)
+      const sky = sampleSky(air.uniforms, volume, viewpoint, ray, cosViewMoon)
       light.addAssign(sky.mul(this.source.irradiance))
     })
     return light
   }
 
-  haze({ view, direction, place }: HazeLine, without: Vec4): Vec4 {
+  inScatter({ view, direction, segment }: PointRay, without: Vec4): Vec4 {
     const light = without.toVar()
-    const { air, volume, eye, sunDirection: moonDirection } = this.#nodes(view)
+    const { air, volume, viewpoint, lightDirection: moonDirection } = this.#nodes(view)
     If(this.#isVisible.greaterThan(0), () => {
       const cosViewMoon = direction.dot(moonDirection).toConst() as Float
-      const between = radianceBetween(air.uniforms, volume, eye, place, cosViewMoon)
+      const between = radianceBetween(air.uniforms, volume, viewpoint, segment, cosViewMoon)
       light.addAssign(between.mul(this.source.irradiance))
     })
     return light

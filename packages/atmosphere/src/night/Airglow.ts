@@ -4,7 +4,7 @@ import { checkNonNegative, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, checkSpectrum } from '../check'
-import { DROWNS, type HazeLine, type SkyLayer, type SkyRay } from '../view/SkyLayer'
+import { MASKING_RATIO, type PointRay, type SkyLayer, type SkyRay } from '../view/SkyLayer'
 import { scaleToLuminance } from '../parameters/photometry'
 import { vanRhijnFactors, thinLayerVanRhijnFactor } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
@@ -154,7 +154,7 @@ export class Airglow implements SkyLayer {
     const values = this.#spectrum.map((value, i) => value / (parameters.solarIrradiance[i] || 1))
     const luminance = this.luminance * this.intensity
     this.#radiance.value.fromArray(scaleToLuminance(parameters, values, luminance))
-    this.#maskingRadiance.value = this.#radiance.value.y * DROWNS
+    this.#maskingRadiance.value = this.#radiance.value.y * MASKING_RATIO
     const { altitude, width } = this.#layer
     this.#isClose.value = height < altitude.value - THIN_LAYER_SIGMAS * width.value ? 0 : 1
   }
@@ -174,7 +174,7 @@ export class Airglow implements SkyLayer {
   }
 
   /** Light of the layer where the ray leaves it upwards, beyond the air below it. */
-  beyond({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
+  background({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
     const light = farther.toVar()
     If(this.#isVisible(airlight), () => {
       const gain = float(0).toVar()
@@ -212,7 +212,7 @@ export class Airglow implements SkyLayer {
     }
   }
 
-  haze({ view, cosView, distance }: HazeLine, without: Vec4): Vec4 {
+  inScatter({ view, cosView, distance }: PointRay, without: Vec4): Vec4 {
     const light = without.toVar()
     // Seen from below, the layer is behind everything.
     If(this.#isClose.greaterThan(0), () => {

@@ -8,7 +8,7 @@ import { checkOrientation } from '../check'
 import { CelestialFrame } from './CelestialFrame'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { checkOwner } from '../view/renderers'
-import { DROWNS, type SkyLayer, type SkyRay } from '../view/SkyLayer'
+import { MASKING_RATIO, type SkyLayer, type SkyRay } from '../view/SkyLayer'
 import { starIrradiance } from '../stars/starBrightness'
 import { CELESTIAL_TO_GALACTIC, milkyWayMap } from './tsl/milkyWay'
 import { octahedralPoint } from '../math/tsl/octahedron'
@@ -115,10 +115,10 @@ export class MilkyWay implements SkyLayer {
     const luminance = MAP_LUMINANCE * this.intensity
     const color = starIrradiance(view.atmosphere.parameters, COLOR_INDEX, luminance)
     this.#color.value.fromArray(color)
-    this.#maskingRadiance.value = this.#color.value.y * DROWNS
+    this.#maskingRadiance.value = this.#color.value.y * MASKING_RATIO
   }
 
-  beyond(ray: SkyRay, farther: Vec4): Vec4 {
+  background(ray: SkyRay, farther: Vec4): Vec4 {
     const sum = farther.toVar()
     // By day the sky masks it.
     If(ray.airlight.y.lessThan(this.#maskingRadiance), () => {

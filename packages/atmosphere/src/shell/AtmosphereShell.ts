@@ -15,17 +15,17 @@ import type { Atmosphere } from '../Atmosphere'
 import { checkParameters, type AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
-import { eyeScalars } from '../view/cpu/eye'
+import { viewpointScalars } from '../view/cpu/viewpoint'
 import { checkRenderer } from '../view/renderers'
 import { giveTablesBack, takeTables } from '../tables/sharedTables'
-import { EyeUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
+import { ViewpointUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
 import { TableAtlas } from '../tables/TableAtlas'
 import { circumscribedSphere } from './circumscribedSphere'
 import { ShellNode } from './ShellNode'
 import { isAtmosphere, isShellSun, SHELL_SCALE, sunlightAt, type ShellSun } from './ShellSun'
 import { isOrthographic, ShellUniforms } from './ShellUniforms'
 import { ProfileUniforms } from './tsl/chapman'
-import type { Air } from '../scattering/tsl/scattering'
+import type { Air } from '../scattering/tsl/ray'
 import { shellFragment } from './tsl/shell'
 import { marchedShellLight, sampledShellLight, type ShellLight } from './tsl/shellMarch'
 import { singleScatteringLight } from './tsl/singleScattering'
@@ -120,7 +120,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   #uniforms = new AtmosphereUniforms()
   /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
-  readonly #eye = new EyeUniforms()
+  readonly #eye = new ViewpointUniforms()
   readonly #isMarched = uniform(1)
   readonly #profile = new ProfileUniforms()
   #version = -1
@@ -302,8 +302,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const isMarched = isOrthographic(camera) || isFar || tablesVersion === 0
     this.#isMarched.value = isMarched ? 1 : 0
     if (isMarched) return
-    const cosSun = this.#view.up.value.dot(this.#view.sunDirectionMapped.value)
-    const eye = eyeScalars(parameters, height, Math.min(Math.max(cosSun, -1), 1))
+    const cosLight = this.#view.up.value.dot(this.#view.sunDirectionMapped.value)
+    const eye = viewpointScalars(parameters, height, Math.min(Math.max(cosLight, -1), 1))
     this.#eye.set(eye, volumes.volumeFor(renderer, eye, tablesVersion))
   }
 

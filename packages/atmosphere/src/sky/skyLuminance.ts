@@ -22,13 +22,13 @@ export function skyLuminanceAt(
   checkAtmosphere('skyLuminanceAt', atmosphere)
   const query = atmosphere.query(position)
   const data = query.table('skyLuminanceAt')
-  const { up, radius, cosSun } = query.place(position)
+  const { up, radius, cosLight } = query.place(position)
   const v = query.direction('direction', direction)
   const ray = {
     radius,
     cosView: clampCosine(v.dot(up)),
-    cosSun,
-    cosViewSun: clampCosine(v.dot(query.sun))
+    cosLight,
+    cosViewLight: clampCosine(v.dot(query.lightDirection))
   }
   return query.linearSRGB(skyRadiance(query.parameters, data, ray))
 }

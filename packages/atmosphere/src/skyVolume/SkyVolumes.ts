@@ -5,8 +5,8 @@ import type { Renderer, UniformNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { GAP, type TableAtlas } from '../tables/TableAtlas'
 import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tables/tableSizes'
-import type { EyeScalars } from '../view/tsl/eye'
-import type { Air } from '../scattering/tsl/scattering'
+import type { ViewpointScalars } from '../view/tsl/viewpoint'
+import type { Air } from '../scattering/tsl/ray'
 import { bakeDepth, bakeSegments, sumSegments } from './tsl/skyVolumeBake'
 
 const [AZIMUTHS, ELEVATIONS] = VOLUME_SIZE
@@ -31,14 +31,14 @@ export interface VolumeOrigins {
   readonly depth: Vector2
 }
 
-/** Uniforms of an eye and its volume, and a way to set them all. */
-export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
+/** Uniforms of a viewpoint and its volume, and a way to set them all. */
+export class ViewpointUniforms implements ViewpointScalars<UniformNode<'float', number>> {
   readonly altitude = scalar()
   readonly radius = scalar()
   readonly toHorizon = scalar()
   readonly toTop = scalar()
-  readonly cosSun = scalar()
-  readonly sinSun = scalar()
+  readonly cosLight = scalar()
+  readonly sinLight = scalar()
   readonly cosHorizon = scalar()
   readonly sinHorizon = scalar()
   readonly belowScale = scalar()
@@ -52,8 +52,8 @@ export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
   readonly depthOrigin = vector()
 
   /** @param volume - Null for none. */
-  set(values: EyeScalars<number>, volume: VolumeOrigins | null): void {
-    for (const key of Object.keys(values) as (keyof EyeScalars<number>)[]) {
+  set(values: ViewpointScalars<number>, volume: VolumeOrigins | null): void {
+    for (const key of Object.keys(values) as (keyof ViewpointScalars<number>)[]) {
       this[key].value = values[key]
     }
     if (volume === null) return
@@ -65,7 +65,7 @@ export class EyeUniforms implements EyeScalars<UniformNode<'float', number>> {
 /** A volume's place in the atlas. */
 export interface SkyVolume extends VolumeOrigins {
   /** Viewpoint that it was computed for; null before the first time. */
-  eye: EyeScalars<number> | null
+  viewpoint: ViewpointScalars<number> | null
   /** Version of the tables that it was computed from. */
   tablesVersion: number
   /** Count of look-ups served by all volumes, when this one last served one. */
@@ -96,7 +96,7 @@ export class SkyVolumes {
   readonly #ownsSegments: boolean
   readonly #layout: AtlasLayout
   readonly #volumes: SkyVolume[] = []
-  readonly #eye = new EyeUniforms()
+  readonly #viewpoint = new ViewpointUniforms()
   readonly #depthPass: FragmentPass
   readonly #segmentPass: FragmentPass
   /** Of molecules and of aerosols. */
@@ -117,10 +117,10 @@ export class SkyVolumes {
     this.#layout = layout
     this.#ownsSegments = segments === undefined
     this.segments = segments ?? tableTarget('SkyVolume.segments', LIGHT_COLUMNS, LIGHT_ROWS, 2)
-    this.#depthPass = new FragmentPass('Welkin.SkyVolume.depth', bakeDepth(air, this.#eye))
+    this.#depthPass = new FragmentPass('Welkin.SkyVolume.depth', bakeDepth(air, this.#viewpoint))
     this.#segmentPass = new FragmentPass(
       'Welkin.SkyVolume.segments',
-      bakeSegments(air, this.#eye, atlas)
+      bakeSegments(air, this.#viewpoint, atlas)
     )
     this.#sumPasses = this.segments.textures.map(
       part => new FragmentPass('Welkin.SkyVolume.sum', sumSegments(texture(part)))
@@ -146,7 +146,7 @@ export class SkyVolumes {
         this.#volumes.push({
           light: new Vector2(i * (2 * LIGHT_COLUMNS + GAP), lightRow),
           depth: new Vector2(x, y),
-          eye: null,
+          viewpoint: null,
           tablesVersion: -1,
           lastUsed: 0
         })
@@ -158,21 +158,27 @@ export class SkyVolumes {
   }
 
   /**
-   * A volume for an eye: one that is there already, or the one least recently used, computed anew.
+   * A volume for a viewpoint: one that is there already, or the one least recently used, computed anew.
    *
    * @param tablesVersion - Version of the tables; volumes from others are stale.
    */
-  volumeFor(renderer: Renderer, eye: EyeScalars<number>, tablesVersion: number): SkyVolume {
+  volumeFor(
+    renderer: Renderer,
+    viewpoint: ViewpointScalars<number>,
+    tablesVersion: number
+  ): SkyVolume {
     const fits = (volume: SkyVolume): boolean =>
-      volume.eye !== null && volume.tablesVersion === tablesVersion && isSameEye(volume.eye, eye)
+      volume.viewpoint !== null &&
+      volume.tablesVersion === tablesVersion &&
+      isSameViewpoint(volume.viewpoint, viewpoint)
     let volume = this.#volumes.find(fits)
     if (volume === undefined) {
       volume = this.#volumes.reduce((oldest, other) =>
         other.lastUsed < oldest.lastUsed ? other : oldest
       )
-      volume.eye = eye
+      volume.viewpoint = viewpoint
       volume.tablesVersion = tablesVersion
-      this.#bake(renderer, volume, eye)
+      this.#bake(renderer, volume, viewpoint)
     }
     volume.lastUsed = ++this.#uses
     return volume
@@ -180,13 +186,13 @@ export class SkyVolumes {
 
   /** Forgets what was computed, on another renderer say. */
   invalidate(): void {
-    for (const volume of this.#volumes) volume.eye = null
+    for (const volume of this.#volumes) volume.viewpoint = null
   }
 
-  #bake(renderer: Renderer, volume: SkyVolume, eye: EyeScalars<number>): void {
+  #bake(renderer: Renderer, volume: SkyVolume, viewpoint: ViewpointScalars<number>): void {
     const { atlas } = this
     const { light, depth } = volume
-    this.#eye.set(eye, volume)
+    this.#viewpoint.set(viewpoint, volume)
     atlas.region(depth.x, depth.y, DEPTH_COLUMNS, DEPTH_ROWS).render(renderer, this.#depthPass)
     this.#segmentPass.render(renderer, this.segments)
     this.#sumPasses.forEach((pass, part) => {
@@ -209,9 +215,9 @@ export class SkyVolumes {
   }
 }
 
-function isSameEye(a: EyeScalars<number>, b: EyeScalars<number>): boolean {
+function isSameViewpoint(a: ViewpointScalars<number>, b: ViewpointScalars<number>): boolean {
   return (
     Math.abs(a.altitude - b.altitude) <= 1e-4 * (b.altitude + 10) &&
-    Math.abs(a.cosSun - b.cosSun) <= 1e-6
+    Math.abs(a.cosLight - b.cosLight) <= 1e-6
   )
 }

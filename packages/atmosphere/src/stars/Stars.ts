@@ -134,7 +134,7 @@ export class Stars implements SkyLayer {
     return starField(this.#textures, this.#palette, direction, ray.pixel)
   }
 
-  beyond(ray: SkyRay, farther: Vec4): Vec4 {
+  background(ray: SkyRay, farther: Vec4): Vec4 {
     if (this.overlay) return farther
     const light = farther.toVar()
     // By day the loop over stars is skipped.

@@ -18,7 +18,8 @@ import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import type { Stars } from './Stars'
 import { linearSRGB } from '../air/tsl/color'
 import { pixelAngle } from '../sky/tsl/sky'
-import { aimAt, rayTargets, skyTransmittance } from '../skyVolume/tsl/skyVolume'
+import { viewRay, skyTransmittance } from '../skyVolume/tsl/skyVolume'
+import { rayTargets } from '../skyVolume/tsl/rayLimits'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 
 const isOverlay = (layer: SkyLayer): layer is Stars =>
@@ -76,17 +77,17 @@ export class StarsOverlayNode extends AtmosphereNode {
       const added = vec3(0).toVar()
       If(isBackgroundDepth(depth), () => {
         const { uniforms } = this.view.air
-        const { volume, eye } = this.view
+        const { volume, viewpoint } = this.view
         const cosView = direction.dot(this.view.up).clamp(-1, 1).toConst() as Float
-        const cosViewSun = direction.dot(this.view.sunDirection).clamp(-1, 1).toConst() as Float
-        const { hitsGround, meetsAir } = rayTargets(eye, cosView)
+        const cosViewLight = direction.dot(this.view.lightDirection).clamp(-1, 1).toConst() as Float
+        const { hitsGround, meetsAir } = rayTargets(viewpoint, cosView)
         // `airlight` 0: overlaid layers are never masked by the sky here.
         const airlight = vec4(0) as Vec4
-        const aim = aimAt(eye, cosView, hitsGround)
-        const angles = { direction, cosViewSun, meetsAir, ...aim }
+        const aim = viewRay(viewpoint, cosView, hitsGround)
+        const angles = { direction, cosViewLight, meetsAir, ...aim }
         const ray = { view: this.view, ...angles, pixel, airlight }
         If(hitsGround.not(), () => {
-          const through = skyTransmittance(volume, eye, aim)
+          const through = skyTransmittance(volume, viewpoint, aim)
           added.assign(linearSRGB(uniforms, this.#light(ray).mul(through)))
         })
       })
@@ -101,8 +102,8 @@ export class StarsOverlayNode extends AtmosphereNode {
     for (const layer of this.atmosphere.layers) {
       if (isOverlay(layer)) {
         withStars = withStars.add(layer.light(ray)).toConst()
-      } else if (layer.isAdditive !== true && layer.beyond !== undefined) {
-        ;[withStars, without] = [layer.beyond(ray, withStars), layer.beyond(ray, without)]
+      } else if (layer.isAdditive !== true && layer.background !== undefined) {
+        ;[withStars, without] = [layer.background(ray, withStars), layer.background(ray, without)]
       }
     }
     return vec4(withStars.sub(without).max(0))

@@ -4,7 +4,9 @@ import type { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { FragmentPass } from '../tables/FragmentPass'
 import type { TableRegion } from '../tables/TableAtlas'
 import { distanceToTop } from '../air/tsl/boundary'
-import { march, segmentDepth, type Air } from '../scattering/tsl/scattering'
+import { march } from '../scattering/tsl/march'
+import { segmentDepth } from '../scattering/tsl/segment'
+import type { Air } from '../scattering/tsl/ray'
 import { horizonCosine, transmittanceRay } from './tsl/transmittance'
 import { sine } from '../math/tsl/trigonometry'
 import type { Float, Vec4 } from '../tsl-types'
@@ -25,7 +27,7 @@ const DISC = [1, 2, 3, 4].map(k => {
 function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
   const { bottomRadius, thickness } = air.uniforms
   const distance = distanceToTop(altitude, cosView, bottomRadius, thickness)
-  const ray = { altitude, cosView, cosSun: cosView, cosViewSun: cosView }
+  const ray = { altitude, cosView, cosLight: cosView, cosViewLight: cosView }
   const depth = vec4(0).toVar()
   march(air.uniforms, distance, thickness.sub(altitude), STEPS, (start, end) => {
     depth.addAssign(segmentDepth(air, ray, start, end).depth)

@@ -15,19 +15,19 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from './ViewNodes'
  *
  *   setup() {
  *     return Fn(() => {
- *       const { air, eye, up, sunDirection } = this.view
+ *       const { air, viewpoint, up, lightDirection } = this.view
  *       const offset = this.view.toMapped(positionView).toConst()
  *       const distance = offset.length().toConst()
  *       const direction = offset.div(distance).toConst()
  *       const ray = {
- *         altitude: eye.altitude, // in the air; `marchedAir` takes eyes anywhere
+ *         altitude: viewpoint.altitude, // in the air; `marchedAir` takes viewpoints anywhere
  *         cosView: direction.dot(up),
- *         cosSun: eye.cosSun,
- *         cosViewSun: direction.dot(sunDirection)
+ *         cosLight: viewpoint.cosLight,
+ *         cosViewLight: direction.dot(lightDirection)
  *       }
  *       const rise = pointAlong(air, ray, distance).altitude.sub(ray.altitude)
  *       const light = scattering(air, ray, distance, rise, 12)
- *       const radiance = scatteredRadiance(air.uniforms, light, ray.cosViewSun)
+ *       const radiance = scatteredRadiance(air.uniforms, light, ray.cosViewLight)
  *       return vec4(linearSRGB(air.uniforms, radiance), 1)
  *     })()
  *   }

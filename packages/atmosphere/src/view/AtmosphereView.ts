@@ -3,11 +3,11 @@ import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { Ellipsoid } from '@welkin/geo'
 import type { AtmosphereParameters, Spectrum } from '../parameters/AtmosphereParameters'
-import { eyeScalars } from './cpu/eye'
+import { viewpointScalars } from './cpu/viewpoint'
 import type { SphericalSpace } from './cpu/spherical'
 import type { LightSource } from './LightSource'
 import type { SkyVolumes, VolumeOrigins } from '../skyVolume/SkyVolumes'
-import type { EyeScalars } from './tsl/eye'
+import type { ViewpointScalars } from './tsl/viewpoint'
 
 /** Cosine of the source's zenith angle, 25° below the horizon. */
 const DEEP_NIGHT = -0.42
@@ -35,14 +35,14 @@ export class AtmosphereView {
   /** Zenith, unit length. */
   readonly up = new Vector3()
   /** Direction to the source of light, unit length. */
-  readonly sunDirection = new Vector3()
+  readonly lightDirection = new Vector3()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = new Matrix3()
   /** Irradiance of the source, over the bare sun's. */
   irradiance: Spectrum = [1, 1, 1, 1]
   /** True if the source can light any air that is seen. */
   isLit = true
-  eye: EyeScalars<number> | null = null
+  viewpoint: ViewpointScalars<number> | null = null
   /** Its sky volume; null if there is none. */
   volume: VolumeOrigins | null = null
   readonly atmosphere: ViewedAtmosphere
@@ -68,15 +68,15 @@ export class AtmosphereView {
     _position.setFromMatrixPosition(matrixWorld)
     this.irradiance = this.source.irradianceAt(_position)
     this.source.direction(_direction, _position)
-    space.direction(_direction, this.sunDirection)
+    space.direction(_direction, this.lightDirection)
     space.displacement(matrixWorld, this.viewToMapped)
-    const cosSun = Math.min(Math.max(this.up.dot(this.sunDirection), -1), 1)
+    const cosLight = Math.min(Math.max(this.up.dot(this.lightDirection), -1), 1)
     // From inside the air a line of sight gets 16° nearer to the sun at most, where dusk ends at −9°.
-    this.isLit = cosSun > DEEP_NIGHT || radius > parameters.topRadius
+    this.isLit = cosLight > DEEP_NIGHT || radius > parameters.topRadius
     // Then only the depth of the air counts, which one volume holds for all the night.
-    this.eye = eyeScalars(parameters, this.height, this.isLit ? cosSun : DEEP_NIGHT)
+    this.viewpoint = viewpointScalars(parameters, this.height, this.isLit ? cosLight : DEEP_NIGHT)
     // Before the first bake is done there is no light to compute a volume from.
     if (tables.version === 0 || !this.source.lightsAir) return
-    this.volume = tables.volumes.volumeFor(renderer, this.eye, tables.version)
+    this.volume = tables.volumes.volumeFor(renderer, this.viewpoint, tables.version)
   }
 }

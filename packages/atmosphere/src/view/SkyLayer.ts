@@ -5,19 +5,19 @@ import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView, ViewedAtmosphere } from './AtmosphereView'
 import type { LightSource } from './LightSource'
 import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
-import type { Aim, VolumePlace } from '../skyVolume/tsl/skyVolume'
+import type { MediumSegment, ViewRay, VolumeSegment } from '../skyVolume/tsl/skyVolume'
 import type { ViewUniforms } from './ViewUniforms'
 
 /** Air this many times as bright as something faint in the sky hides it: less than half a grey level. */
-export const DROWNS = 10_000
+export const MASKING_RATIO = 10_000
 
-/** A line of sight into the sky, as shader nodes. */
-export interface SkyRay extends Readonly<Aim> {
+/** View ray into the sky, as shader nodes. */
+export interface SkyRay extends Readonly<ViewRay> {
   readonly view: ViewUniforms
   /** Unit length, in the mapped space. */
   readonly direction: Vec3
-  /** Against the sun. */
-  readonly cosViewSun: Float
+  /** ν, against the source of light. */
+  readonly cosViewLight: Float
   /** True if there is air in this direction. */
   readonly meetsAir: Bool
   /** Angle that a pixel covers [rad]. */
@@ -26,26 +26,18 @@ export interface SkyRay extends Readonly<Aim> {
   readonly airlight: Vec4
 }
 
-/** A straight way from the eye, to a point, or into the sky as far as ground or air go, as shader nodes. */
-export interface Sightline extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewSun'> {
+/** View ray to a point, or into the sky as far as ground or air go, as shader nodes. */
+export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewLight'> {
   /** Distance to a point [m]; absent for the sky. */
   readonly distance?: Float
   /** For the sky: whether the planet is in the way. */
   readonly hitsGround?: Bool
 }
 
-/** A {@link Sightline} to a point, and where that is in the sky volumes of the eye. */
-export interface HazeLine extends Sightline {
+/** View ray to a point, with the part of the sky volumes up to it. */
+export interface PointRay extends LayerRay {
   readonly distance: Float
-  readonly place: VolumePlace
-}
-
-/** What all that is in the air does to light on a {@link Sightline}. */
-export interface Veil {
-  /** Optical depth; for the sky that of layers alone. */
-  readonly depth: Vec4
-  /** Light added; for the sky its own. */
-  readonly light: Vec4
+  readonly segment: VolumeSegment
 }
 
 /**
@@ -56,7 +48,7 @@ export interface Veil {
  * plane reflects is.
  */
 export interface SkyLayer {
-  /** Whether {@link beyond} only adds light and hides nothing. */
+  /** Whether {@link background} only adds light and hides nothing. */
   readonly isAdditive?: boolean
   /** Called before it is added. @throws If it cannot be added to this atmosphere. */
   attach?(atmosphere: ViewedAtmosphere): void
@@ -65,7 +57,7 @@ export interface SkyLayer {
   /** Part of the sun's light that it leaves at a position in world space. */
   eclipse?(position: Vector3): Spectrum
   /**
-   * Counts changes by hand to light other than {@link beyond}, such as an option's; what is drawn once and
+   * Counts changes by hand to light other than {@link background}, such as an option's; what is drawn once and
    * kept is drawn again. Not what follows camera, sun and date by itself.
    */
   readonly version?: number
@@ -74,10 +66,10 @@ export interface SkyLayer {
   /** Sets uniforms for the camera that renders. */
   update?(view: AtmosphereView): void
   /**
-   * Light from beyond the air, given what is farther; the air dims what is returned.
+   * Background: light from beyond the air, given what is farther; the air dims what is returned.
    * Called inside a branch in which the ray does not hit the ground: no derivatives.
    */
-  beyond?(ray: SkyRay, farther: Vec4): Vec4
+  background?(ray: SkyRay, farther: Vec4): Vec4
   /**
    * Sunlight from the whole way to the ground and the ground itself, given the model's of even albedo;
    * for rays that do not hit the ground what is given. Before `glow`; no derivatives.
@@ -90,16 +82,16 @@ export interface SkyLayer {
    * for in branches in which it or something beyond the air is, given the air's transmittance.
    */
   below?(ray: SkyRay): { isSeen: Bool; light: (transmittance: Vec4) => Vec4 }
-  /** Light that the air adds between the eye and a point, given that without this layer. */
-  haze?(line: HazeLine, without: Vec4): Vec4
-  /** Dims and lights a way, in front of the sky too, given what the air and the layers before do. */
-  veil?(line: Sightline, air: Veil): Veil
+  /** In-scattered light between the viewpoint and a point, given that without this layer. */
+  inScatter?(ray: PointRay, without: Vec4): Vec4
+  /** Medium along a ray, in front of the sky too, given what air and layers before are. */
+  medium?(ray: LayerRay, air: MediumSegment): MediumSegment
   /** Frees GPU memory. */
   dispose?(): void
 }
 
 /** One of which a layer has: nothing else changes the sky. */
-const EFFECTS = ['eclipse', 'beyond', 'ground', 'glow', 'below', 'haze', 'veil'] as const
+const EFFECTS = ['eclipse', 'background', 'ground', 'glow', 'below', 'inScatter', 'medium'] as const
 
 /** @throws If it is no layer. */
 export function checkLayer(where: string, layer: SkyLayer): void {

@@ -4,8 +4,8 @@ import type { UniformNode } from 'three/webgpu'
 import type { Camera } from 'three'
 import { offsetPoint } from '@welkin/geo'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
-import { EyeUniforms } from '../skyVolume/SkyVolumes'
-import type { Air } from '../scattering/tsl/scattering'
+import { ViewpointUniforms } from '../skyVolume/SkyVolumes'
+import type { Air } from '../scattering/tsl/ray'
 import type { Texels } from '../tables/TableAtlas'
 import type { Float, Mat3, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
@@ -21,7 +21,7 @@ export class ViewUniforms {
   readonly air: Air
   /** Where its sky volumes are kept. */
   readonly volume: Texels
-  readonly eye = new EyeUniforms()
+  readonly viewpoint = new ViewpointUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */
   readonly height = uniform(0).setGroup(renderGroup)
   /** 1 where light of the source can reach what the camera sees of the air, 0 deep in the night. */
@@ -29,7 +29,7 @@ export class ViewUniforms {
   /** Zenith at the camera, in the mapped space. */
   readonly up = vector()
   /** Direction to the source, in the mapped space. */
-  readonly sunDirection = vector()
+  readonly lightDirection = vector()
   /** Displacements in view space [world units] to the mapped space [m]. */
   readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
 
@@ -42,13 +42,13 @@ export class ViewUniforms {
 
   /** Takes the values of a view. */
   protected set(view: AtmosphereView): void {
-    if (view.eye === null) return
-    this.eye.set(view.eye, view.volume)
+    if (view.viewpoint === null) return
+    this.viewpoint.set(view.viewpoint, view.volume)
     this.source.irradiance.value.set(...view.irradiance)
     this.height.value = view.height
     this.isLit.value = view.isLit ? 1 : 0
     this.up.value.copy(view.up)
-    this.sunDirection.value.copy(view.sunDirection)
+    this.lightDirection.value.copy(view.lightDirection)
     this.viewToMapped.value.copy(view.viewToMapped)
   }
 
@@ -62,12 +62,12 @@ export class ViewUniforms {
    *
    * @param offset - From the camera, in the mapped space [m].
    */
-  place(offset: Vec3): { altitude: Float; cosSun: Float; up: Vec3 } {
+  place(offset: Vec3): { altitude: Float; cosLight: Float; up: Vec3 } {
     const { bottomRadius, thickness } = this.air.uniforms
     const { height, up } = offsetPoint(offset, this.up, this.height, bottomRadius)
     return {
       altitude: height.clamp(0, thickness).toConst(),
-      cosSun: up.dot(this.sunDirection).clamp(-1, 1).toConst(),
+      cosLight: up.dot(this.lightDirection).clamp(-1, 1).toConst(),
       up
     }
   }

@@ -61,24 +61,24 @@ describe('moments', () => {
         number(0, Math.PI),
         number(-2, 2),
         number(-2, 2),
-        (cosSun, cosView, azimuth, a1, a2) => {
-          const sinSun = Math.sqrt(1 - cosSun ** 2)
-          const nu = cosView * cosSun + Math.sqrt(1 - cosView ** 2) * sinSun * Math.cos(azimuth)
+        (cosLight, cosView, azimuth, a1, a2) => {
+          const sinLight = Math.sqrt(1 - cosLight ** 2)
+          const nu = cosView * cosLight + Math.sqrt(1 - cosView ** 2) * sinLight * Math.cos(azimuth)
           const [y0, y1] = [Math.sqrt(1 / (4 * Math.PI)), Math.sqrt(3 / (4 * Math.PI))]
           const y2 = Math.sqrt(5 / (16 * Math.PI))
           const moments = [
             y0,
-            y1 * cosSun,
+            y1 * cosLight,
             y1,
-            y2 * (3 * cosSun ** 2 - 1),
-            y2 * Math.sqrt(12) * cosSun,
+            y2 * (3 * cosLight ** 2 - 1),
+            y2 * Math.sqrt(12) * cosLight,
             y2 * Math.sqrt(3)
           ]
           const expected = [1, a1, a2].reduce(
             (sum, a, l) => sum + ((a * (2 * l + 1)) / (4 * Math.PI)) * legendre[l](nu),
             0
           )
-          const actual = applyMoments(moments, [1, a1, a2], cosView, cosSun, nu)
+          const actual = applyMoments(moments, [1, a1, a2], cosView, cosLight, nu)
           expect(Math.abs(actual - expected)).toBeLessThan(1e-9)
         }
       ),

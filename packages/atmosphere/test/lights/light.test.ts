@@ -10,7 +10,7 @@ import {
   xyzToLinearSRGB
 } from '../../src/air/cpu/color'
 import { diffuseColumn, diffuseColumnCosine } from '../../src/diffuseLight/cpu/diffuseLight'
-import { eyeScalars, LOWEST_EYE } from '../../src/view/cpu/eye'
+import { viewpointScalars, LOWEST_VIEWPOINT } from '../../src/view/cpu/viewpoint'
 import { skyIrradiance } from '../../src/diffuseLight/cpu/skyIrradiance'
 import { SphericalSpace } from '../../src/view/cpu/spherical'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../src/tables/tableSizes'
@@ -75,9 +75,9 @@ describe('colour', () => {
 describe('eye', () => {
   it('sees the horizon where geometry has it', () => {
     fc.assert(
-      fc.property(number(-1e5, 6e7), cosine, (altitude, cosSun) => {
-        const eye = eyeScalars(earth, altitude, cosSun)
-        const height = Math.max(altitude, LOWEST_EYE)
+      fc.property(number(-1e5, 6e7), cosine, (altitude, cosLight) => {
+        const eye = viewpointScalars(earth, altitude, cosLight)
+        const height = Math.max(altitude, LOWEST_VIEWPOINT)
         const { bottomRadius } = earth
         // From afar the radius is what float32 has, and all else is the geometry of that radius.
         const exact = bottomRadius + height

@@ -13,7 +13,7 @@ import { reflectanceColumns } from '../../src/ground/cpu/reflectance'
 import { spectralToLinearSRGB, whiteBalancedColumns } from '../../src/air/cpu/color'
 import { groundRadiance, skyRadiance } from '../../src/scattering/cpu/scattering'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
-import { sunTransmittance } from '../../src/transmittance/cpu/transmittance'
+import { lightTransmittance } from '../../src/transmittance/cpu/transmittance'
 
 const QUICK = {
   sun: { elevations: 8, azimuths: 8, steps: 6 },
@@ -22,7 +22,7 @@ const QUICK = {
 
 /** Part of the light of a sun at the zenith that arrives at the ground. */
 const transmittanceTo = (parameters: AtmosphereParameters): number[] =>
-  sunTransmittance(parameters, parameters.bottomRadius + 1, 1)
+  lightTransmittance(parameters, parameters.bottomRadius + 1, 1)
 
 /** Linear sRGB of the sky 2 m above the ground, by angles in degrees. */
 function skyColors(parameters: AtmosphereParameters) {
@@ -30,13 +30,13 @@ function skyColors(parameters: AtmosphereParameters) {
   const cos = (degrees: number): number => Math.cos((degrees * Math.PI) / 180)
   const sin = (degrees: number): number => Math.sin((degrees * Math.PI) / 180)
   return (elevation: number, azimuth: number, sunElevation: number): number[] => {
-    const cosViewSun =
+    const cosViewLight =
       sin(elevation) * sin(sunElevation) + cos(elevation) * cos(sunElevation) * cos(azimuth)
     const ray = {
       radius: parameters.bottomRadius + 2,
       cosView: sin(elevation),
-      cosSun: sin(sunElevation),
-      cosViewSun
+      cosLight: sin(sunElevation),
+      cosViewLight
     }
     const values = skyRadiance(parameters, light, ray)
     return spectralToLinearSRGB(
@@ -87,7 +87,7 @@ describe('planets', () => {
     expect(moon.isAirless).toBe(true)
     expect(marsParameters({ dust: 0 }).isAirless).toBe(false)
     const light = solveDiffuseLight(moon, QUICK)
-    const ray = { radius: moon.bottomRadius + 2, cosView: 0.3, cosSun: 0.5, cosViewSun: 0.6 }
+    const ray = { radius: moon.bottomRadius + 2, cosView: 0.3, cosLight: 0.5, cosViewLight: 0.6 }
     expect(skyRadiance(moon, light, ray)).toEqual([0, 0, 0, 0])
     groundRadiance(moon, light, 0.5).forEach((value, i) => {
       expect(value).toBeCloseTo((0.5 * moon.groundAlbedo[i]) / Math.PI, 10)

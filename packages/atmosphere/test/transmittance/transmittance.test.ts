@@ -6,8 +6,8 @@ import { readSkyReference } from '../../../../e2e/validate/reference'
 import { distanceToTop } from '../../src/air/cpu/boundary'
 import {
   opticalDepth,
-  sunTransmittance,
-  visibleSun
+  lightTransmittance,
+  visibleDisc
 } from '../../src/transmittance/cpu/transmittance'
 import { number, runs, spectrumIndex } from '../arbitraries'
 
@@ -60,8 +60,8 @@ describe('transmittance', () => {
   it('falls as the sun sinks', () => {
     fc.assert(
       fc.property(number(0, 60_000), number(-0.2, 1), number(-0.2, 1), (altitude, a, b) => {
-        const [low, high] = [Math.min(a, b), Math.max(a, b)].map(cosSun =>
-          sunTransmittance(earth, bottomRadius + altitude, cosSun)
+        const [low, high] = [Math.min(a, b), Math.max(a, b)].map(cosLight =>
+          lightTransmittance(earth, bottomRadius + altitude, cosLight)
         )
         for (const i of spectrumIndex) {
           expect(low[i]).toBeGreaterThanOrEqual(0)
@@ -77,12 +77,12 @@ describe('transmittance', () => {
     for (const height of [0, 1e4, 4e5, 2e7]) {
       const radius = bottomRadius + height
       const horizon = -Math.sqrt(1 - (bottomRadius / radius) ** 2)
-      expect(visibleSun(earth, radius, horizon)).toBeCloseTo(0.5, 9)
-      expect(visibleSun(earth, radius, horizon - 0.005)).toBe(0)
-      expect(visibleSun(earth, radius, horizon + 0.005)).toBe(1)
+      expect(visibleDisc(earth, radius, horizon)).toBeCloseTo(0.5, 9)
+      expect(visibleDisc(earth, radius, horizon - 0.005)).toBe(0)
+      expect(visibleDisc(earth, radius, horizon + 0.005)).toBe(1)
     }
-    expect(sunTransmittance(earth, 3 * bottomRadius, -1)).toEqual([0, 0, 0, 0])
-    expect(sunTransmittance(earth, 3 * bottomRadius, 0.5)).toEqual([1, 1, 1, 1])
+    expect(lightTransmittance(earth, 3 * bottomRadius, -1)).toEqual([0, 0, 0, 0])
+    expect(lightTransmittance(earth, 3 * bottomRadius, 0.5)).toEqual([1, 1, 1, 1])
   })
 
   it('averages the part of the disc above the horizon, wherever the sun stands', () => {
@@ -93,7 +93,7 @@ describe('transmittance', () => {
         const radius = bottomRadius + height
         const horizon = Math.PI - Math.asin(bottomRadius / radius)
         const elevation = Math.sign(e) * e ** 2 * (e < 0 ? 200 : 3)
-        const visible = visibleSun(p, radius, Math.cos(horizon - elevation))
+        const visible = visibleDisc(p, radius, Math.cos(horizon - elevation))
         const light = [0, 0, 0, 0]
         let area = 0
         for (let strip = 0; strip < strips; strip++) {
@@ -112,7 +112,7 @@ describe('transmittance', () => {
           area += width
           depth.forEach((value, i) => (light[i] += width * Math.exp(-value)))
         }
-        const actual = sunTransmittance(p, radius, Math.cos(horizon - elevation))
+        const actual = lightTransmittance(p, radius, Math.cos(horizon - elevation))
         for (const i of spectrumIndex) {
           const expected = area > 0 ? (visible * light[i]) / area : 0
           expect(Math.abs(actual[i] - expected)).toBeLessThan(1e-4)

@@ -24,8 +24,8 @@ const dip = (radius: number, altitude: number): number =>
   Math.acos(radius / (radius + Math.max(altitude, 0)))
 
 /** Elevation of the sun over the level [rad]. */
-const sunElevation = ({ up, sunDirection }: AtmosphereView): number =>
-  Math.asin(MathUtils.clamp(up.dot(sunDirection), -1, 1))
+const sunElevation = ({ up, lightDirection }: AtmosphereView): number =>
+  Math.asin(MathUtils.clamp(up.dot(lightDirection), -1, 1))
 
 /**
  * Gain of stored light, so that half floats hold that of nights as well.
@@ -87,8 +87,8 @@ export class NightLight {
   }
 
   /** Whether the moon lights the clouds where the camera is. */
-  isMoonlitAt({ up, sunDirection }: AtmosphereView): boolean {
-    const isNight = this.isVisible.value === 1 && up.dot(sunDirection) < this.nightfall.value
+  isMoonlitAt({ up, lightDirection }: AtmosphereView): boolean {
+    const isNight = this.isVisible.value === 1 && up.dot(lightDirection) < this.nightfall.value
     return isNight && this.moonIrradiance.value.y > 0
   }
 }

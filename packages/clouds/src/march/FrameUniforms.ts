@@ -162,7 +162,7 @@ export class FrameUniforms {
     this.hasHistory.value = isCut ? 0 : 1
     const isAtRest = this.#setReprojection(camera, view, field)
     const frames = ORDERS[block].length
-    this.#countForgetting(isCut, frames, view.sunDirection, cloudInputs(field, lightVersion))
+    this.#countForgetting(isCut, frames, view.lightDirection, cloudInputs(field, lightVersion))
     const matrices = [...view.viewToMapped.elements, ...camera.projectionMatrix.elements]
     const isStill = !isCut && isAtRest && this.#forgetting <= 0 && isSame(matrices, this.#matrices)
     this.maxSamples.value = isStill

@@ -137,7 +137,7 @@ export class CloudShadowMap {
     const isMoonlit = night.isMoonlitAt(view)
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
     this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
-    this.#light.copy(isMoonlit ? night.moonDirection.value : view.sunDirection)
+    this.#light.copy(isMoonlit ? night.moonDirection.value : view.lightDirection)
     if (view.height > HIGHEST) {
       for (const cascade of this.#cascades) cascade.isDrawn = false
       this.#current = null

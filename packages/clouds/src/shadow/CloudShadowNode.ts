@@ -92,7 +92,7 @@ export class CloudShadowNode extends Node<'float'> {
       If(known.mul(this.#isMapped).equal(0), () => {
         const distance = offset.length()
         const sample = { offset, ...field.view.place(offset), distance }
-        depth.assign(opticalDepthTowards(field, sample, this.#view.sunDirection))
+        depth.assign(opticalDepthTowards(field, sample, this.#view.lightDirection))
       })
       // What is scattered within the forward peak arrives with the sun.
       const passing = depth.mul(clouds.light.nodes.depthScale).negate().exp()

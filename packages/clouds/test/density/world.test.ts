@@ -29,7 +29,7 @@ const viewAt = (elevation: number, height = 2, world = atmosphere): AtmosphereVi
     camera,
     height,
     up: new Vector3(0, 0, 1),
-    sunDirection: new Vector3(Math.cos(angle), 0, Math.sin(angle))
+    lightDirection: new Vector3(Math.cos(angle), 0, Math.sin(angle))
   }
   return view as AtmosphereView
 }

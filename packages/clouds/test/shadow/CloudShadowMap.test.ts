@@ -45,9 +45,9 @@ class Sky {
 
   get #view(): AtmosphereView {
     const { atmosphere } = this.field
-    const { up, height, sun: sunDirection } = this
+    const { up, height, sun: lightDirection } = this
     const camera = new PerspectiveCamera()
-    const view: Partial<AtmosphereView> = { atmosphere, camera, up, height, sunDirection }
+    const view: Partial<AtmosphereView> = { atmosphere, camera, up, height, lightDirection }
     return view as AtmosphereView
   }
 

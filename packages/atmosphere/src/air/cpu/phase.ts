@@ -1,10 +1,10 @@
 /**
  * Phase function of molecules [1/sr].
  *
- * @param cosViewSun - ν, cosine of the scattering angle.
+ * @param cosViewLight - ν, cosine of the scattering angle.
  */
-export function rayleighPhase(cosViewSun: number): number {
-  return (3 / (16 * Math.PI)) * (1 + cosViewSun ** 2)
+export function rayleighPhase(cosViewLight: number): number {
+  return (3 / (16 * Math.PI)) * (1 + cosViewLight ** 2)
 }
 
 /** 3/(8π) (1 − g²)/(2 + g²): what is constant in the Cornette–Shanks phase function [1/sr]. */
@@ -16,12 +16,12 @@ export function cornetteShanksFactor(asymmetry: number): number {
  * Phase function of aerosols [1/sr].
  *
  * @param asymmetry - g, in (−1, 1).
- * @param cosViewSun - ν, cosine of the scattering angle.
+ * @param cosViewLight - ν, cosine of the scattering angle.
  * @see Cornette & Shanks 1992
  */
-export function cornetteShanksPhase(asymmetry: number, cosViewSun: number): number {
-  const squaredChord = 1 + asymmetry ** 2 - 2 * asymmetry * cosViewSun
-  return (cornetteShanksFactor(asymmetry) * (1 + cosViewSun ** 2)) / squaredChord ** 1.5
+export function cornetteShanksPhase(asymmetry: number, cosViewLight: number): number {
+  const squaredChord = 1 + asymmetry ** 2 - 2 * asymmetry * cosViewLight
+  return (cornetteShanksFactor(asymmetry) * (1 + cosViewLight ** 2)) / squaredChord ** 1.5
 }
 
 /**

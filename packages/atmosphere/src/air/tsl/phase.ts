@@ -5,11 +5,11 @@ import type { Float, Vec4 } from '../../tsl-types'
 /**
  * Phase function of molecules [1/sr].
  *
- * @param cosViewSun - ν, cosine of the scattering angle, in [−1, 1].
+ * @param cosViewLight - ν, cosine of the scattering angle, in [−1, 1].
  */
-export function rayleighPhase(cosViewSun: Float): Float {
-  return cosViewSun
-    .mul(cosViewSun)
+export function rayleighPhase(cosViewLight: Float): Float {
+  return cosViewLight
+    .mul(cosViewLight)
     .add(1)
     .mul(3 / (16 * Math.PI))
 }
@@ -17,15 +17,15 @@ export function rayleighPhase(cosViewSun: Float): Float {
 /**
  * Phase function of aerosols, per wavelength [1/sr].
  *
- * @param cosViewSun - ν, cosine of the scattering angle, in [−1, 1].
+ * @param cosViewLight - ν, cosine of the scattering angle, in [−1, 1].
  * @see Cornette & Shanks 1992. Twin: cpu/phase.ts
  */
-export function miePhase(uniforms: AtmosphereUniforms, cosViewSun: Float): Vec4 {
+export function miePhase(uniforms: AtmosphereUniforms, cosViewLight: Float): Vec4 {
   const { mieAsymmetry, mieIsGrey, miePhaseFactor } = uniforms
   const lobes = (asymmetry: Float | Vec4): Vec4 => {
-    const chord = (asymmetry as Float).mul((asymmetry as Float).sub(cosViewSun.mul(2))).add(1)
+    const chord = (asymmetry as Float).mul((asymmetry as Float).sub(cosViewLight.mul(2))).add(1)
     const root = chord.max(1e-4).inverseSqrt().toConst()
-    return vec4(root.mul(root).mul(root).mul(cosViewSun.mul(cosViewSun).add(1)))
+    return vec4(root.mul(root).mul(root).mul(cosViewLight.mul(cosViewLight).add(1)))
   }
   const phase = lobes(mieAsymmetry.x).toVar()
   If(mieIsGrey.equal(0), () => {

@@ -4,26 +4,26 @@ import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableS
  * Spacing of the columns of the diffuse-light table over the sun's cosine μ_s: evenly in
  * asinh((μ_s − centre)/width), from `min` (22° below the horizon) to 1.
  */
-export const diffuseSunCosine = { centre: -0.035, width: 0.12, min: -0.375 } as const
+export const diffuseLightCosine = { centre: -0.035, width: 0.12, min: -0.375 } as const
 
-const position = (cosSun: number): number =>
-  Math.asinh((cosSun - diffuseSunCosine.centre) / diffuseSunCosine.width)
+const position = (cosLight: number): number =>
+  Math.asinh((cosLight - diffuseLightCosine.centre) / diffuseLightCosine.width)
 
 /** asinh at the first column. */
-export const diffuseSunOrigin = /*#__PURE__*/ position(diffuseSunCosine.min)
+export const diffuseLightOrigin = /*#__PURE__*/ position(diffuseLightCosine.min)
 
 /** 1/(asinh at the last column − at the first). */
-export const diffuseSunSlope = /*#__PURE__*/ (() => 1 / (position(1) - diffuseSunOrigin))()
+export const diffuseLightSlope = /*#__PURE__*/ (() => 1 / (position(1) - diffuseLightOrigin))()
 
 /** Position of μ_s among the columns, in [0, 1]. */
-export function diffuseColumn(cosSun: number): number {
-  return Math.min(Math.max((position(cosSun) - diffuseSunOrigin) * diffuseSunSlope, 0), 1)
+export function diffuseColumn(cosLight: number): number {
+  return Math.min(Math.max((position(cosLight) - diffuseLightOrigin) * diffuseLightSlope, 0), 1)
 }
 
 /** μ_s of a column. */
 export function diffuseColumnCosine(column: number): number {
-  const x = column / (DIFFUSE_SIZE[0] - 1) / diffuseSunSlope + diffuseSunOrigin
-  return diffuseSunCosine.centre + diffuseSunCosine.width * Math.sinh(x)
+  const x = column / (DIFFUSE_SIZE[0] - 1) / diffuseLightSlope + diffuseLightOrigin
+  return diffuseLightCosine.centre + diffuseLightCosine.width * Math.sinh(x)
 }
 
 /** The diffuse-light table, read back. */
@@ -36,16 +36,16 @@ export interface DiffuseLightData {
  * Reads all tiles of the table, bilinearly.
  *
  * @param altitudePart - Altitude over the air's thickness, in [0, 1].
- * @param cosSun - μ_s.
+ * @param cosLight - μ_s.
  * @returns A four-value spectrum per tile, for unit irradiance of the sun.
  */
 export function sampleDiffuseLight(
   { values }: DiffuseLightData,
   altitudePart: number,
-  cosSun: number
+  cosLight: number
 ): number[][] {
   const [columns, rows] = DIFFUSE_SIZE
-  const x = diffuseColumn(cosSun) * (columns - 1)
+  const x = diffuseColumn(cosLight) * (columns - 1)
   const y = Math.sqrt(Math.min(Math.max(altitudePart, 0), 1)) * (rows - 1)
   const column = Math.min(Math.floor(x), columns - 2)
   const row = Math.min(Math.floor(y), rows - 2)

@@ -12,23 +12,23 @@ function harmonics(x: number, z: number): [number, number, number, number, numbe
  * @param moments - M₀₀, M₁₀, M₁₁/sin θ_s, M₂₀, M₂₁/sin θ_s, M₂₂/sin² θ_s.
  * @param weights - a₀, a₁, a₂.
  * @param cosView - v against the zenith.
- * @param cosSun - The sun against the zenith.
- * @param cosViewSun - v against the sun.
+ * @param cosLight - The sun against the zenith.
+ * @param cosViewLight - v against the sun.
  */
 export function applyMoments(
   moments: readonly number[],
   weights: readonly [number, number, number],
   cosView: number,
-  cosSun: number,
-  cosViewSun: number
+  cosLight: number,
+  cosViewLight: number
 ): number {
-  const sinSun = Math.max(Math.sqrt(Math.max(1 - cosSun ** 2, 0)), 1e-9)
-  const x = (cosViewSun - cosView * cosSun) / sinSun
+  const sinLight = Math.max(Math.sqrt(Math.max(1 - cosLight ** 2, 0)), 1e-9)
+  const x = (cosViewLight - cosView * cosLight) / sinLight
   const [y00, y10, y11, y20, y21, y22] = harmonics(x, cosView)
   const [m00, m10, m11, m20, m21, m22] = moments as [number, number, number, number, number, number]
   return (
     weights[0] * m00 * y00 +
-    weights[1] * (m10 * y10 + m11 * sinSun * y11) +
-    weights[2] * (m20 * y20 + m21 * sinSun * y21 + m22 * sinSun ** 2 * y22)
+    weights[1] * (m10 * y10 + m11 * sinLight * y11) +
+    weights[2] * (m20 * y20 + m21 * sinLight * y21 + m22 * sinLight ** 2 * y22)
   )
 }

@@ -13,26 +13,32 @@ export const COSINE_LOBE = [Math.PI, (2 * Math.PI) / 3, Math.PI / 4] as const
  *
  * @param altitude - [m].
  * @param cosNormal - Plane's normal against the zenith.
- * @param cosSun - μ_s.
- * @param cosNormalSun - Plane's normal against the sun.
+ * @param cosLight - μ_s.
+ * @param cosNormalLight - Plane's normal against the sun.
  */
 export function skyIrradiance(
   p: AtmosphereParameters,
   data: DiffuseLightData,
   altitude: number,
   cosNormal: number,
-  cosSun: number,
-  cosNormalSun: number
+  cosLight: number,
+  cosNormalLight: number
 ): number[] {
   const part = altitude / (p.topRadius - p.bottomRadius)
-  const tiles = sampleDiffuseLight(data, part, cosSun)
+  const tiles = sampleDiffuseLight(data, part, cosLight)
   return [0, 1, 2, 3].map(i => {
     const moments = tiles.map(tile => tile[i])
     const isUp = cosNormal >= 0
     const horizontal = isUp ? 1 : -1
     const exact = moments[isUp ? 6 : 7]
-    const approximate = applyMoments(moments, COSINE_LOBE, horizontal, cosSun, horizontal * cosSun)
-    const here = applyMoments(moments, COSINE_LOBE, cosNormal, cosSun, cosNormalSun)
+    const approximate = applyMoments(
+      moments,
+      COSINE_LOBE,
+      horizontal,
+      cosLight,
+      horizontal * cosLight
+    )
+    const here = applyMoments(moments, COSINE_LOBE, cosNormal, cosLight, cosNormalLight)
     return Math.max(here + cosNormal ** 2 * (exact - approximate), 0)
   })
 }

@@ -5,7 +5,7 @@ import { diffuseColumn, diffuseColumnCosine, type DiffuseLightData } from './dif
 import { densities, homogeneousHeight } from '../../air/cpu/medium'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from '../../air/cpu/phase'
 import { gaussLegendre } from '../../math/cpu/quadrature'
-import { discTransmittance, visibleSun } from '../../transmittance/cpu/transmittance'
+import { discTransmittance, visibleDisc } from '../../transmittance/cpu/transmittance'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const PER_CELL = 4 * DIFFUSE_TILES
@@ -80,15 +80,15 @@ class Sunlight {
     }
   }
 
-  transmittance(radius: number, cosSun: number, target: Float64Array): void {
-    const visible = visibleSun(this.#p, radius, cosSun)
+  transmittance(radius: number, cosLight: number, target: Float64Array): void {
+    const visible = visibleDisc(this.#p, radius, cosLight)
     if (visible === 0) {
       target.fill(0)
       return
     }
     const { bottomRadius, topRadius } = this.#p
     const horizon = Math.sqrt(Math.max(radius ** 2 - bottomRadius ** 2, 0))
-    const distance = distanceToTop(radius, Math.max(cosSun, -horizon / radius), topRadius)
+    const distance = distanceToTop(radius, Math.max(cosLight, -horizon / radius), topRadius)
     const shortest = topRadius - radius
     const x = (distance - shortest) / Math.max(horizon + this.#chord - shortest, 1)
     const [columns, rows] = [Sunlight.#columns, Sunlight.#rows]
@@ -119,10 +119,10 @@ class Gatherer {
   }
 
   /** Moments of light scattered before at a point, into the scratch cell. */
-  #lookUp(light: Float64Array, altitude: number, cosSun: number): void {
+  #lookUp(light: Float64Array, altitude: number, cosLight: number): void {
     const { topRadius, bottomRadius } = this.#p
     const part = Math.min(Math.max(altitude / (topRadius - bottomRadius), 0), 1)
-    const x = diffuseColumn(cosSun) * (COLUMNS - 1)
+    const x = diffuseColumn(cosLight) * (COLUMNS - 1)
     interpolate(light, COLUMNS, ROWS, PER_CELL, x, Math.sqrt(part) * (ROWS - 1), this.#cell)
   }
 
@@ -143,8 +143,8 @@ class Gatherer {
     light: Float64Array | null,
     radius: number,
     cosView: number,
-    cosSun: number,
-    cosViewSun: number,
+    cosLight: number,
+    cosViewLight: number,
     distance: number,
     endAltitude: number,
     steps: number
@@ -156,8 +156,8 @@ class Gatherer {
     const growth = Math.min(Math.max((0.3 * rise) / this.#height, -4), 4)
     const exponent = Math.abs(growth) < 0.05 ? 0.05 : growth
     const at = (x: number): number => (distance * Math.expm1(exponent * x)) / Math.expm1(exponent)
-    const molecularPhase = rayleighPhase(cosViewSun)
-    const aerosolPhases = spectrumOf(p.mieAsymmetry).map(g => cornetteShanksPhase(g, cosViewSun))
+    const molecularPhase = rayleighPhase(cosViewLight)
+    const aerosolPhases = spectrumOf(p.mieAsymmetry).map(g => cornetteShanksPhase(g, cosViewLight))
     for (let step = 0; step < steps; step++) {
       const start = at(step / steps)
       const half = (at((step + 1) / steps) - start) / 2
@@ -178,10 +178,10 @@ class Gatherer {
       const [first, second] = this.#extinctions
       for (const { t, r, altitude, density, node } of nodes) {
         const cosThere = (radius * cosView + t) / r
-        const sunThere = Math.min(Math.max((radius * cosSun + t * cosViewSun) / r, -1), 1)
+        const sunThere = Math.min(Math.max((radius * cosLight + t * cosViewLight) / r, -1), 1)
         if (light === null) this.#sunlight.transmittance(r, sunThere, this.#sun)
         else this.#lookUp(light, altitude, sunThere)
-        const basis = light === null ? [] : harmonics(cosThere, sunThere, cosViewSun)
+        const basis = light === null ? [] : harmonics(cosThere, sunThere, cosViewLight)
         for (let i = 0; i < 4; i++) {
           const byMolecules = p.rayleighScattering[i] * density[0]
           const byAerosols = p.mieScattering[i] * density[1]
@@ -202,12 +202,12 @@ class Gatherer {
   }
 
   /** Adds the Lambertian ground at the end of the last ray marched. */
-  addGround(light: Float64Array | null, cosSun: number): void {
+  addGround(light: Float64Array | null, cosLight: number): void {
     const p = this.#p
-    if (light === null) this.#sunlight.transmittance(p.bottomRadius, cosSun, this.#sun)
-    else this.#lookUp(light, 0, cosSun)
+    if (light === null) this.#sunlight.transmittance(p.bottomRadius, cosLight, this.#sun)
+    else this.#lookUp(light, 0, cosLight)
     for (let i = 0; i < 4; i++) {
-      const irradiance = light === null ? this.#sun[i] * Math.max(cosSun, 0) : this.#cell[24 + i]
+      const irradiance = light === null ? this.#sun[i] * Math.max(cosLight, 0) : this.#cell[24 + i]
       const reflected = (irradiance * p.groundAlbedo[i]) / Math.PI
       this.radiance[i] += reflected * Math.exp(-this.depth[i])
     }
@@ -215,9 +215,9 @@ class Gatherer {
 }
 
 /** The six basis functions that go with moments that were divided by powers of sin θ_s. */
-function harmonics(cosView: number, cosSun: number, cosViewSun: number): number[] {
-  const along = cosViewSun - cosView * cosSun
-  const squares = (1 - cosView ** 2) * (1 - cosSun ** 2)
+function harmonics(cosView: number, cosLight: number, cosViewLight: number): number[] {
+  const along = cosViewLight - cosView * cosLight
+  const squares = (1 - cosView ** 2) * (1 - cosLight ** 2)
   const [y1, y2] = [Math.sqrt(3 / (4 * Math.PI)), Math.sqrt(15 / (4 * Math.PI))]
   return [
     Math.sqrt(1 / (4 * Math.PI)),
@@ -241,8 +241,8 @@ function gatherOrder(
   for (let cell = 0; cell < COLUMNS * ROWS; cell++) {
     const part = Math.floor(cell / COLUMNS) / (ROWS - 1)
     const radius = p.bottomRadius + Math.max((p.topRadius - p.bottomRadius) * part ** 2, 1)
-    const cosSun = Math.min(diffuseColumnCosine(cell % COLUMNS), 0.9998)
-    const sinSun = Math.sqrt(1 - cosSun ** 2)
+    const cosLight = Math.min(diffuseColumnCosine(cell % COLUMNS), 0.9998)
+    const sinLight = Math.sqrt(1 - cosLight ** 2)
     const dip = Math.acos(p.bottomRadius / radius)
     for (let ray = 0; ray < 2 * elevations * azimuths; ray++) {
       const index = Math.floor(ray / azimuths)
@@ -256,24 +256,24 @@ function gatherOrder(
       const weight = (width * level * 2 * Math.PI) / azimuths
       const cosView = Math.sin(elevation)
       const towards = level * Math.cos((Math.PI * ((ray % azimuths) + 0.5)) / azimuths)
-      const cosViewSun = Math.min(Math.max(towards * sinSun + cosView * cosSun, -1), 1)
+      const cosViewLight = Math.min(Math.max(towards * sinLight + cosView * cosLight, -1), 1)
       const distance = up
         ? distanceToTop(radius, cosView, p.topRadius)
         : distanceToGround(radius, cosView, p.bottomRadius)
       const end = up ? p.topRadius - p.bottomRadius : 0
-      gatherer.march(light, radius, cosView, cosSun, cosViewSun, distance, end, steps)
+      gatherer.march(light, radius, cosView, cosLight, cosViewLight, distance, end, steps)
       if (!up) {
-        gatherer.addGround(light, (radius * cosSun + distance * cosViewSun) / p.bottomRadius)
+        gatherer.addGround(light, (radius * cosLight + distance * cosViewLight) / p.bottomRadius)
       }
       // The basis of `harmonics` has powers of sin θ_s in it that the moments must be rid of.
-      const basis = harmonics(cosView, cosSun, cosViewSun)
+      const basis = harmonics(cosView, cosLight, cosViewLight)
       const weights = [
         basis[0],
         basis[1],
-        basis[2] / sinSun ** 2,
+        basis[2] / sinLight ** 2,
         basis[3],
-        basis[4] / sinSun ** 2,
-        basis[5] / sinSun ** 4,
+        basis[4] / sinLight ** 2,
+        basis[5] / sinLight ** 4,
         Math.max(cosView, 0),
         Math.max(-cosView, 0)
       ]

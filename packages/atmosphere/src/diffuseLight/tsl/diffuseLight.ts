@@ -3,7 +3,7 @@ import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Table } from '../../tables/TableAtlas'
 import { DIFFUSE_LAYOUT, DIFFUSE_SIZE, RADIANCE_SCALE } from '../../tables/tableSizes'
 import type { Float, Vec4 } from '../../tsl-types'
-import { diffuseSunCosine, diffuseSunSlope, diffuseSunOrigin } from '../cpu/diffuseLight'
+import { diffuseLightCosine, diffuseLightSlope, diffuseLightOrigin } from '../cpu/diffuseLight'
 import type { Moments } from './moments'
 import { asinh, sinh } from '../../math/tsl/trigonometry'
 
@@ -13,18 +13,18 @@ const [TILE_COLUMNS, TILE_ROWS] = DIFFUSE_LAYOUT
 type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 
 /** asinh of the sun's cosine, as the table spaces its columns: they crowd about the horizon. */
-export function spreadSun(cosSun: Float): Float {
-  return asinh(cosSun.sub(diffuseSunCosine.centre).div(diffuseSunCosine.width).toConst())
+export function compressCosine(cosLight: Float): Float {
+  return asinh(cosLight.sub(diffuseLightCosine.centre).div(diffuseLightCosine.width).toConst())
 }
 
-/** The sun's cosine from {@link spreadSun} of it. */
-export function spreadCosine(x: Float): Float {
-  return sinh(x).mul(diffuseSunCosine.width).add(diffuseSunCosine.centre)
+/** The sun's cosine from {@link compressCosine} of it. */
+export function expandCosine(x: Float): Float {
+  return sinh(x).mul(diffuseLightCosine.width).add(diffuseLightCosine.centre)
 }
 
 /** Position of the sun's cosine among the columns, in [0, 1]. */
-function sunColumn(cosSun: Float): Float {
-  return spreadSun(cosSun).sub(diffuseSunOrigin).mul(diffuseSunSlope).clamp()
+function lightColumn(cosLight: Float): Float {
+  return compressCosine(cosLight).sub(diffuseLightOrigin).mul(diffuseLightSlope).clamp()
 }
 
 /** Position of an altitude among the rows, in [0, 1]. Rows crowd at the ground. */
@@ -37,9 +37,9 @@ export function diffuseLightReader(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
-  cosSun: Float
+  cosLight: Float
 ): (tile: number) => Vec4 {
-  const uv = vec2(sunColumn(cosSun), altitudeRow(uniforms, altitude))
+  const uv = vec2(lightColumn(cosLight), altitudeRow(uniforms, altitude))
     .mul(vec2(COLUMNS - 1, ROWS - 1))
     .add(0.5)
     .div(vec2(COLUMNS * TILE_COLUMNS, ROWS * TILE_ROWS))
@@ -58,15 +58,15 @@ export function diffuseLightReader(
  *
  * @param table - Diffuse-light table.
  * @param altitude - Above the ground, in [0, thickness] [m].
- * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ * @param cosLight - μ_s, cosine of the sun's zenith angle.
  */
 export function diffuseMoments(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
-  cosSun: Float
+  cosLight: Float
 ): Moments<Vec4> {
-  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  const read = diffuseLightReader(uniforms, table, altitude, cosLight)
   const [m00, m10, m11, m20, m21, m22] = [0, 1, 2, 3, 4, 5].map(tile =>
     read(tile).toConst()
   ) as unknown as SixTiles
@@ -77,8 +77,12 @@ export function diffuseMoments(
  * Diffuse irradiance on horizontal ground, for unit irradiance of the sun.
  *
  * @param table - Diffuse-light table.
- * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ * @param cosLight - μ_s, cosine of the sun's zenith angle.
  */
-export function groundIrradiance(uniforms: AtmosphereUniforms, table: Table, cosSun: Float): Vec4 {
-  return diffuseLightReader(uniforms, table, float(0), cosSun)(6).div(RADIANCE_SCALE)
+export function groundIrradiance(
+  uniforms: AtmosphereUniforms,
+  table: Table,
+  cosLight: Float
+): Vec4 {
+  return diffuseLightReader(uniforms, table, float(0), cosLight)(6).div(RADIANCE_SCALE)
 }

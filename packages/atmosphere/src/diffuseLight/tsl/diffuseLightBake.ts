@@ -1,107 +1,20 @@
 import { Discard, Fn, If, float, int, mix, uv, vec2, vec4 } from 'three/tsl'
-import type { Node, TextureNode } from 'three/webgpu'
-import { diffuseSunOrigin, diffuseSunSlope } from '../cpu/diffuseLight'
+import type { TextureNode } from 'three/webgpu'
 import { DIFFUSE_LAYOUT, DIFFUSE_SIZE, RADIANCE_SCALE } from '../../tables/tableSizes'
-import {
-  loop,
-  sampleLevel0,
-  type Float,
-  type Int,
-  type Vec2,
-  type Vec4,
-  type Vec4Array
-} from '../../tsl-types'
+import { loop, sampleLevel0, type Float, type Int, type Vec2, type Vec4 } from '../../tsl-types'
 import { distanceToGround, distanceToTop, groundDiscriminant } from '../../air/tsl/boundary'
-import { spreadCosine } from './diffuseLight'
 import { SH0, SH1, SH20, SH21, SH22 } from './moments'
-import {
-  groundRadiance,
-  pointAlong,
-  scatteredRadiance,
-  scattering,
-  type Air
-} from '../../scattering/tsl/scattering'
+import { groundRadiance, scatteredRadiance, scattering } from '../../scattering/tsl/scattering'
+import { pointAlong, type Air } from '../../scattering/tsl/ray'
 import type { Table } from '../../tables/TableAtlas'
+import { cell, direction, type Directions } from './gatherDirections'
 import { rowAndColumn } from '../../tables/tsl/texels'
-import { sine } from '../../math/tsl/trigonometry'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = DIFFUSE_LAYOUT
 
 /** Rows of the table that one pass over the rays covers. */
 export const BAKE_ROWS = 4
-
-/** Lowest altitude that rays are sent out from: on the ground itself the horizon has no width [m]. */
-const LOWEST_ALTITUDE = 1
-
-/** Nearest to the zenith that the sun gets, so that moments can be divided by sin θ_s. */
-const HIGHEST_SUN = 0.9998
-
-/** Directions that light is gathered from: their number, and the quadrature rule of elevations. */
-export interface Directions {
-  /** Nodes above and below the horizon each. */
-  elevations: Int
-  /** Nodes over half a turn. */
-  azimuths: Int
-  /** (x, weight, ·, ·) per elevation, the Gauss–Legendre rule on [0, 1]. */
-  rule: Vec4Array
-  /** Index of the first entry of the rule. */
-  offset: Int
-}
-
-/** Part of the spacing of elevations that is even; the rest crowds at the horizon. */
-const EVEN_SPACING = 0.3
-
-/** Altitude and sun of a cell, from its row (a float counted from the ground) and column. */
-function cell(air: Air, row: Float, column: Float) {
-  const { thickness } = air.uniforms
-  const rowPosition = row.div(ROWS - 1).toConst()
-  const altitude = thickness.mul(rowPosition).mul(rowPosition).max(LOWEST_ALTITUDE)
-  const x = column
-    .div(COLUMNS - 1)
-    .div(diffuseSunSlope)
-    .add(diffuseSunOrigin)
-    .toConst()
-  const cosSun = spreadCosine(x)
-  return {
-    altitude: altitude.toConst() as Float,
-    cosSun: cosSun.min(HIGHEST_SUN).toConst() as Float
-  }
-}
-
-/** Direction of a ray from a cell, by its number, with the solid angle that it stands for. */
-function direction(air: Air, altitude: Float, cosSun: Float, number: Int, at: Directions) {
-  const { bottomRadius } = air.uniforms
-  const elevationIndex = number.div(at.azimuths).toConst()
-  const up = elevationIndex.lessThan(at.elevations).toConst()
-  const ruleIndex = up.select(elevationIndex, elevationIndex.sub(at.elevations)).add(at.offset)
-  const entry = at.rule.element(ruleIndex).toConst()
-  const azimuthIndex = number.sub(elevationIndex.mul(at.azimuths))
-  const azimuth = float(azimuthIndex).add(0.5).div(float(at.azimuths)).mul(Math.PI)
-
-  const dip = bottomRadius.div(bottomRadius.add(altitude)).acos().toConst()
-  const span = up.select(dip.add(Math.PI / 2), float(Math.PI / 2).sub(dip)).toConst()
-  const x = entry.x.toConst()
-  const fromHorizon = span.mul(x.mul(EVEN_SPACING).add(x.mul(x).mul(1 - EVEN_SPACING)))
-  const elevation = up.select(fromHorizon, fromHorizon.negate()).sub(dip).toConst()
-  const cosElevation = elevation.cos().toConst()
-  const spacing = span.mul(x.mul(2 * (1 - EVEN_SPACING)).add(EVEN_SPACING)).mul(entry.y)
-  const solidAngle = spacing
-    .mul(cosElevation)
-    .mul(2 * Math.PI)
-    .div(float(at.azimuths))
-  const cosView = elevation.sin().toConst()
-  const towardsSun = cosElevation.mul(azimuth.cos()).toConst()
-  const cosViewSun = towardsSun.mul(sine(cosSun)).add(cosView.mul(cosSun)).clamp(-1, 1)
-  return {
-    up: up as Node<'bool'>,
-    cosView: cosView as Float,
-    towardsSun: towardsSun as Float,
-    cosElevation: cosElevation as Float,
-    cosViewSun: cosViewSun.toConst() as Float,
-    solidAngle: solidAngle as Float
-  }
-}
 
 /**
  * Shader of the first pass: a texel is a ray, a column its direction, a row its cell.
@@ -118,7 +31,7 @@ export function bakeRays(
   width: number,
   steps: number
 ): Vec4 {
-  const lights = { sun: air.diffuse === null, diffuse: air.diffuse !== null }
+  const lights = { direct: air.diffuse === null, diffuse: air.diffuse !== null }
   const { uniforms } = air
   return Fn(() => {
     const texel = uv() as Vec2
@@ -131,9 +44,9 @@ export function bakeRays(
       .floor()
       .toConst()
     const { row, column } = rowAndColumn(cellIndex, COLUMNS)
-    const { altitude, cosSun } = cell(air, row.add(float(firstRow)), column)
-    const towards = direction(air, altitude, cosSun, number, at)
-    const ray = { altitude, cosView: towards.cosView, cosSun, cosViewSun: towards.cosViewSun }
+    const { altitude, cosLight } = cell(air, row.add(float(firstRow)), column)
+    const towards = direction(air, altitude, cosLight, number, at)
+    const ray = { altitude, cosView: towards.cosView, cosLight, cosViewLight: towards.cosViewLight }
 
     const { bottomRadius, thickness } = uniforms
     const discriminant = groundDiscriminant(altitude, towards.cosView, bottomRadius)
@@ -145,12 +58,12 @@ export function bakeRays(
       .toConst() as Float
     const end = towards.up.select(thickness, float(0))
     const way = scattering(air, ray, length, end.sub(altitude), steps, lights)
-    const radiance = scatteredRadiance(uniforms, way, towards.cosViewSun)
+    const radiance = scatteredRadiance(uniforms, way, towards.cosViewLight)
       .mul(RADIANCE_SCALE)
       .toVar()
     If(towards.up.not(), () => {
       const target = pointAlong(air, ray, length)
-      const ground = groundRadiance(air, target.cosSun, lights).mul(RADIANCE_SCALE)
+      const ground = groundRadiance(air, target.cosLight, lights).mul(RADIANCE_SCALE)
       radiance.addAssign(ground.mul(way.depth.negate().exp()))
     })
     return radiance
@@ -189,9 +102,9 @@ export function reduceRays(
       .toConst()
     const { row: tileColumn, column } = rowAndColumn(x, COLUMNS)
     const tile = tileRow.mul(TILE_COLUMNS).add(tileColumn).toConst()
-    const { altitude, cosSun } = cell(air, row, column)
-    const sinSquaredSun = cosSun.mul(cosSun).oneMinus().toConst()
-    const inverseSinSun = sinSquaredSun.inverseSqrt().toConst()
+    const { altitude, cosLight } = cell(air, row, column)
+    const sinSquaredLight = cosLight.mul(cosLight).oneMinus().toConst()
+    const inverseSinLight = sinSquaredLight.inverseSqrt().toConst()
     const rayRow = rowInTarget
       .mul(COLUMNS)
       .add(column)
@@ -201,20 +114,20 @@ export function reduceRays(
 
     const sum = vec4(0).toVar()
     loop('ray', at.elevations.mul(at.azimuths).mul(2), ray => {
-      const { cosView, towardsSun, cosElevation, solidAngle } = direction(
+      const { cosView, towardsLight, cosElevation, solidAngle } = direction(
         air,
         altitude,
-        cosSun,
+        cosLight,
         ray,
         at
       )
       const mu = cosView
-      const along = towardsSun.mul(inverseSinSun).toConst()
-      const m22 = towardsSun
-        .mul(towardsSun)
+      const along = towardsLight.mul(inverseSinLight).toConst()
+      const m22 = towardsLight
+        .mul(towardsLight)
         .mul(2)
         .sub(cosElevation.mul(cosElevation))
-        .div(sinSquaredSun)
+        .div(sinSquaredLight)
       const weights = [
         float(SH0),
         mu.mul(SH1),

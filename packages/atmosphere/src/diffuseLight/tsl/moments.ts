@@ -28,16 +28,16 @@ export interface Moments<T> {
  * is at the zenith.
  *
  * @param cosView - μ, v against the zenith.
- * @param cosSun - μ_s, the sun against the zenith.
- * @param cosViewSun - ν, v against the sun.
+ * @param cosLight - μ_s, the sun against the zenith.
+ * @param cosViewLight - ν, v against the sun.
  */
 export function momentBasis(
   cosView: Float,
-  cosSun: Float,
-  cosViewSun: Float
+  cosLight: Float,
+  cosViewLight: Float
 ): Omit<Moments<Float>, 'm00'> {
-  const along = cosViewSun.sub(cosView.mul(cosSun)).toConst()
-  const sinSquares = cosView.mul(cosView).oneMinus().mul(cosSun.mul(cosSun).oneMinus())
+  const along = cosViewLight.sub(cosView.mul(cosLight)).toConst()
+  const sinSquares = cosView.mul(cosView).oneMinus().mul(cosLight.mul(cosLight).oneMinus())
   return {
     m10: cosView.mul(SH1),
     m11: along.mul(SH1),

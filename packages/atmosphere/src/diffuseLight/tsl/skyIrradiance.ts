@@ -19,8 +19,8 @@ const COSINE_2 = 1 / 4
  * @param table - Diffuse-light table.
  * @param altitude - In [0, thickness] [m].
  * @param cosNormal - Plane's normal against the zenith.
- * @param cosSun - μ_s.
- * @param cosNormalSun - Plane's normal against the sun.
+ * @param cosLight - μ_s.
+ * @param cosNormalLight - Plane's normal against the sun.
  * @see Sloan 2008, "Stupid spherical harmonics tricks". Twin: cpu/skyIrradiance.ts
  */
 export function skyIrradiance(
@@ -28,20 +28,22 @@ export function skyIrradiance(
   table: Table,
   altitude: Float,
   cosNormal: Float,
-  cosSun: Float,
-  cosNormalSun: Float
+  cosLight: Float,
+  cosNormalLight: Float
 ): Vec4 {
-  const moments = diffuseMoments(uniforms, table, altitude, cosSun)
-  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  const moments = diffuseMoments(uniforms, table, altitude, cosLight)
+  const read = diffuseLightReader(uniforms, table, altitude, cosLight)
   const facesUp = cosNormal.greaterThanEqual(0).toConst()
   const up = read(6).toConst()
   const down = read(7).toConst()
   const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
-  const lobe = (cosine: Float, cosineSun: Float): Vec4 =>
-    applyMoments(moments, momentBasis(cosine, cosSun, cosineSun), COSINE_1, COSINE_2).mul(Math.PI)
-  const approximate = lobe(horizontal, horizontal.mul(cosSun))
+  const lobe = (cosine: Float, cosineLight: Float): Vec4 =>
+    applyMoments(moments, momentBasis(cosine, cosLight, cosineLight), COSINE_1, COSINE_2).mul(
+      Math.PI
+    )
+  const approximate = lobe(horizontal, horizontal.mul(cosLight))
   const missing = facesUp.select(up, down).sub(approximate)
-  return lobe(cosNormal, cosNormalSun)
+  return lobe(cosNormal, cosNormalLight)
     .add(missing.mul(cosNormal.mul(cosNormal)))
     .max(0)
     .div(RADIANCE_SCALE)
@@ -52,15 +54,15 @@ export function skyIrradiance(
  *
  * @param table - Diffuse-light table.
  * @param altitude - In [0, thickness] [m].
- * @param cosSun - μ_s.
+ * @param cosLight - μ_s.
  * @returns On a plane that faces up, and on one that faces down.
  */
 export function horizontalIrradiance(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
-  cosSun: Float
+  cosLight: Float
 ): { up: Vec4; down: Vec4 } {
-  const read = diffuseLightReader(uniforms, table, altitude, cosSun)
+  const read = diffuseLightReader(uniforms, table, altitude, cosLight)
   return { up: read(6).div(RADIANCE_SCALE), down: read(7).div(RADIANCE_SCALE) }
 }

@@ -29,12 +29,12 @@ export interface GroundHit {
  * @param flattening - Polar over equatorial radius: geodetic normals from directions of the mapped sphere.
  */
 export function groundHit(
-  { view, direction, cosViewSun, pixel }: SkyRay,
+  { view, direction, cosViewLight, pixel }: SkyRay,
   distance: Float,
   flattening: Float
 ): GroundHit {
   const { bottomRadius } = view.air.uniforms
-  const hit = view.up.mul(bottomRadius.add(view.eye.altitude)).add(direction.mul(distance))
+  const hit = view.up.mul(bottomRadius.add(view.viewpoint.altitude)).add(direction.mul(distance))
   const up = hit.normalize().toConst() as Vec3
   const cosEye = direction.dot(up).negate().clamp(1e-3, 1).toConst() as Float
   // A pixel on the ground, in units of the radius: across the view ray and along it.
@@ -48,9 +48,9 @@ export function groundHit(
     .toConst() as Vec3
   return {
     angles: {
-      cosSun: up.dot(view.sunDirection).clamp(-1, 1).toConst(),
+      cosLight: up.dot(view.lightDirection).clamp(-1, 1).toConst(),
       cosEye,
-      cosSunEye: cosViewSun.negate()
+      cosLightEye: cosViewLight.negate()
     },
     normal,
     footprint: width.div(cosEye.max(0.1).sqrt()),

@@ -31,7 +31,7 @@ export function landRadiance(
   albedo: Vec4,
   roughness: Float
 ): Vec4 {
-  const direct = sun.mul(angles.cosSun.max(0)).mul(orenNayar(angles, roughness))
+  const direct = sun.mul(angles.cosLight.max(0)).mul(orenNayar(angles, roughness))
   return direct.add(sky).mul(albedo).div(Math.PI)
 }
 
@@ -46,7 +46,7 @@ export function seaRadiance(
   variance: Float
 ): Vec4 {
   const fromWater = sun
-    .mul(angles.cosSun.max(0))
+    .mul(angles.cosLight.max(0))
     .add(sky)
     .mul(vec4(...WATER_REFLECTANCE))
   const mirroredSky = sky.mul(skyReflectance(angles.cosEye, variance))

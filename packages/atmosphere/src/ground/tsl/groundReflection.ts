@@ -3,11 +3,11 @@ import type { Float } from '../../tsl-types'
 /** Cosines between the ground's normal, the sun and the camera. */
 export interface GroundAngles {
   /** Sun and normal. */
-  cosSun: Float
+  cosLight: Float
   /** Camera and normal, in (0, 1]. */
   cosEye: Float
   /** Sun and camera. */
-  cosSunEye: Float
+  cosLightEye: Float
 }
 
 /**
@@ -21,9 +21,9 @@ export function orenNayar(angles: GroundAngles, roughness: Float): Float {
   const variance = roughness.mul(roughness).toConst()
   const even = variance.mul(0.5).div(variance.add(0.33)).oneMinus()
   const uneven = variance.mul(0.45).div(variance.add(0.09))
-  const cosSun = angles.cosSun.max(0).toConst()
-  const along = angles.cosSunEye.sub(cosSun.mul(angles.cosEye)).toConst()
-  const longest = along.greaterThan(0).select(cosSun.max(angles.cosEye), 1).max(1e-3)
+  const cosLight = angles.cosLight.max(0).toConst()
+  const along = angles.cosLightEye.sub(cosLight.mul(angles.cosEye)).toConst()
+  const longest = along.greaterThan(0).select(cosLight.max(angles.cosEye), 1).max(1e-3)
   return along.div(longest).mul(uneven).add(even).max(0)
 }
 
@@ -70,18 +70,18 @@ export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 *
  * @see Cox & Munk 1954; shadowing Walter et al. 2007
  */
 export function sunGlint(angles: GroundAngles, variance: Float): Float {
-  const { cosSun, cosEye, cosSunEye } = angles
+  const { cosLight, cosEye, cosLightEye } = angles
   // Half vector h of unit length: |l + v|² = 2 (1 + l·v).
-  const length = cosSunEye.add(1).mul(2).max(1e-6).sqrt().toConst()
-  const cosTilt = cosSun.add(cosEye).div(length).clamp(1e-3, 1).toConst()
+  const length = cosLightEye.add(1).mul(2).max(1e-6).sqrt().toConst()
+  const cosTilt = cosLight.add(cosEye).div(length).clamp(1e-3, 1).toConst()
   const square = cosTilt.mul(cosTilt).toConst()
   const slopes = square.reciprocal().sub(1).div(variance).negate().exp()
   const distribution = slopes.div(variance.mul(Math.PI).mul(square).mul(square))
   const slope = variance.sqrt().toConst()
   // Shadowing keeps this positive where the camera's cosine is 0.
-  const visible = smithLambda(cosSun, slope).add(smithLambda(cosEye, slope)).add(1).mul(cosEye)
+  const visible = smithLambda(cosLight, slope).add(smithLambda(cosEye, slope)).add(1).mul(cosEye)
   const glint = waterFresnel(length.mul(0.5)).mul(distribution).div(visible.mul(4))
-  return cosSun.greaterThan(0).select(glint, 0)
+  return cosLight.greaterThan(0).select(glint, 0)
 }
 
 /**

@@ -37,8 +37,8 @@ export function moonSky(
   const { direction, pixel, view } = ray
   const { uniforms } = view.air
   const light = background.toVar()
-  If(ray.cosViewSun.greaterThan(moon.cosNearSun), () => {
-    const sunDistance = direction.sub(view.sunDirection).length().div(uniforms.sunAngularRadius)
+  If(ray.cosViewLight.greaterThan(moon.cosNearSun), () => {
+    const sunDistance = direction.sub(view.lightDirection).length().div(uniforms.sunAngularRadius)
     // In totality smoothed edges would let a thousandth of the disc through, which outshines the corona.
     const discRadius = pixel.mul(2).div(uniforms.sunAngularRadius).add(1)
     If(sunDistance.lessThan(discRadius), () => {

@@ -5,7 +5,7 @@ import { densities, extinction } from '../../air/cpu/medium'
 import { applyMoments } from '../../diffuseLight/cpu/moments'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from '../../air/cpu/phase'
 import { gaussLegendre } from '../../math/cpu/quadrature'
-import { opticalDepth, sunTransmittance } from '../../transmittance/cpu/transmittance'
+import { opticalDepth, lightTransmittance } from '../../transmittance/cpu/transmittance'
 
 const RULE = /*#__PURE__*/ gaussLegendre(6)
 const PIECES = 10
@@ -17,22 +17,22 @@ export interface RayNumbers {
   /** μ, ray against zenith. */
   cosView: number
   /** μ_s, sun against zenith. */
-  cosSun: number
+  cosLight: number
   /** ν, ray against sun. */
-  cosViewSun: number
+  cosViewLight: number
 }
 
 /** The same ray where it enters the air; null if it misses. */
 export function enterAir(p: AtmosphereParameters, ray: RayNumbers): RayNumbers | null {
   if (ray.radius <= p.topRadius) return ray
-  const { radius, cosView, cosSun, cosViewSun } = ray
+  const { radius, cosView, cosLight, cosViewLight } = ray
   const entry = distanceToAir(radius, cosView, p.topRadius)
   if (entry === null) return null
   return {
     radius: p.topRadius,
     cosView: (radius * cosView + entry) / p.topRadius,
-    cosSun: (radius * cosSun + entry * cosViewSun) / p.topRadius,
-    cosViewSun
+    cosLight: (radius * cosLight + entry * cosViewLight) / p.topRadius,
+    cosViewLight
   }
 }
 
@@ -49,10 +49,10 @@ export function inScatter(
   ray: RayNumbers,
   distance: number
 ): number[] {
-  const { radius, cosView, cosSun, cosViewSun } = ray
+  const { radius, cosView, cosLight, cosViewLight } = ray
   const asymmetries = spectrumOf(p.mieAsymmetry)
-  const molecularPhase = rayleighPhase(cosViewSun)
-  const aerosolPhases = asymmetries.map(g => cornetteShanksPhase(g, cosViewSun))
+  const molecularPhase = rayleighPhase(cosViewLight)
+  const aerosolPhases = asymmetries.map(g => cornetteShanksPhase(g, cosViewLight))
   const mie = asymmetries.map(asymmetryMoments)
   const sum = [0, 0, 0, 0]
   const thickness = p.topRadius - p.bottomRadius
@@ -61,7 +61,7 @@ export function inScatter(
   const visit = (t: number, weight: number): void => {
     const r = Math.sqrt(radius ** 2 + 2 * radius * cosView * t + t ** 2)
     const altitude = Math.max(r - p.bottomRadius, 0)
-    const [mu, muSun] = [(radius * cosView + t) / r, (radius * cosSun + t * cosViewSun) / r]
+    const [mu, muLight] = [(radius * cosView + t) / r, (radius * cosLight + t * cosViewLight) / r]
     const middle = (last + t) / 2
     const rMiddle = Math.sqrt(radius ** 2 + 2 * radius * cosView * middle + middle ** 2)
     const rLast = Math.sqrt(radius ** 2 + 2 * radius * cosView * last + last ** 2)
@@ -70,8 +70,8 @@ export function inScatter(
       extinction(p, densities(p, Math.max(x - p.bottomRadius, 0)))
     )
     const [molecules, aerosols] = densities(p, altitude)
-    const sun = sunTransmittance(p, r, muSun)
-    const tiles = data && sampleDiffuseLight(data, altitude / thickness, muSun)
+    const sun = lightTransmittance(p, r, muLight)
+    const tiles = data && sampleDiffuseLight(data, altitude / thickness, muLight)
     for (let i = 0; i < 4; i++) {
       depthBefore[i] += ((t - last) / 6) * (ends[0][i] + 4 * ends[1][i] + ends[2][i])
       const byMolecules = p.rayleighScattering[i] * molecules
@@ -79,8 +79,8 @@ export function inScatter(
       let source = (byMolecules * molecularPhase + byAerosols * aerosolPhases[i]) * sun[i]
       if (tiles) {
         const moments = tiles.map(tile => tile[i])
-        source += byMolecules * applyMoments(moments, [1, 0, 0.1], mu, muSun, cosViewSun)
-        source += byAerosols * applyMoments(moments, mie[i], mu, muSun, cosViewSun)
+        source += byMolecules * applyMoments(moments, [1, 0, 0.1], mu, muLight, cosViewLight)
+        source += byAerosols * applyMoments(moments, mie[i], mu, muLight, cosViewLight)
       }
       sum[i] += weight * source * Math.exp(-depthBefore[i])
     }
@@ -116,26 +116,30 @@ export function skyRadiance(
 ): number[] {
   const inside = enterAir(p, ray)
   if (inside === null) return [0, 0, 0, 0]
-  const { radius, cosView, cosSun, cosViewSun } = inside
+  const { radius, cosView, cosLight, cosViewLight } = inside
   if (!hitsGround(radius, cosView, p.bottomRadius)) {
     return inScatter(p, data, inside, distanceToTop(radius, cosView, p.topRadius))
   }
   const distance = distanceToGround(radius, cosView, p.bottomRadius)
   const air = inScatter(p, data, inside, distance)
   const depth = opticalDepth(p, radius, cosView, distance)
-  const ground = groundRadiance(p, data, (radius * cosSun + distance * cosViewSun) / p.bottomRadius)
+  const ground = groundRadiance(
+    p,
+    data,
+    (radius * cosLight + distance * cosViewLight) / p.bottomRadius
+  )
   return air.map((value, i) => value + ground[i] * Math.exp(-depth[i]))
 }
 
-/** Radiance of the Lambertian ground where the sun's zenith cosine is `cosSun` [1/sr]. */
+/** Radiance of the Lambertian ground where the sun's zenith cosine is `cosLight` [1/sr]. */
 export function groundRadiance(
   p: AtmosphereParameters,
   data: DiffuseLightData,
-  cosSun: number
+  cosLight: number
 ): number[] {
-  const direct = sunTransmittance(p, p.bottomRadius, cosSun)
-  const diffuse = sampleDiffuseLight(data, 0, cosSun)[6]
+  const direct = lightTransmittance(p, p.bottomRadius, cosLight)
+  const diffuse = sampleDiffuseLight(data, 0, cosLight)[6]
   return direct.map(
-    (value, i) => (p.groundAlbedo[i] / Math.PI) * (value * Math.max(cosSun, 0) + diffuse[i])
+    (value, i) => (p.groundAlbedo[i] / Math.PI) * (value * Math.max(cosLight, 0) + diffuse[i])
   )
 }

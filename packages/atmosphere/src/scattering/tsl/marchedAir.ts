@@ -1,35 +1,37 @@
 import { If } from 'three/tsl'
 import type { Float, Vec4 } from '../../tsl-types'
-import type { Eye } from '../../view/tsl/eye'
-import { groundRadiance, pointAlong, scatteredRadiance, scattering, type Air } from './scattering'
-import type { AirBetween, RayLimits } from '../../skyVolume/tsl/skyVolume'
+import type { Viewpoint } from '../../view/tsl/viewpoint'
+import { groundRadiance, scatteredRadiance, scattering } from './scattering'
+import { pointAlong, type Air } from './ray'
+import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
+import type { RayLimits } from '../../skyVolume/tsl/rayLimits'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 
 /**
- * Air between an eye and a point by marching the ray, where `sampleVolume` reads the sky volume.
+ * Air between a viewpoint and a point by marching the ray, where `sampleVolume` reads the sky volume.
  *
- * @param cosView - μ, ray against the zenith of the eye.
- * @param cosViewSun - ν, ray against sun.
+ * @param cosView - μ, ray against the zenith of the viewpoint.
+ * @param cosViewLight - ν, ray against sun.
  * @param limits - Of the same ray.
- * @param distance - From the eye; null for the whole ray [m].
+ * @param distance - From the viewpoint; null for the whole ray [m].
  * @param steps - Of the march.
  */
 export function marchedAir(
   air: Air,
-  eye: Eye,
+  viewpoint: Viewpoint,
   cosView: Float,
-  cosViewSun: Float,
+  cosViewLight: Float,
   limits: RayLimits,
   distance: Float | null,
   steps: number
-): AirBetween {
-  const { altitude, cosSun } = eye
-  const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
+): MediumSegment {
+  const { altitude, cosLight } = viewpoint
+  const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
   const inside = distance === null ? limits.length : distance.sub(limits.start).max(0)
   const length = inside.min(limits.length).toConst() as Float
   const end = pointAlong(air, ray, length)
   const light = scattering(air, ray, length, end.altitude.sub(ray.altitude), steps)
-  return { radiance: scatteredRadiance(air.uniforms, light, cosViewSun), depth: light.depth }
+  return { radiance: scatteredRadiance(air.uniforms, light, cosViewLight), depth: light.depth }
 }
 
 /**
@@ -41,18 +43,23 @@ export function marchedAir(
  */
 export function marchedSky(
   air: Air,
-  eye: Eye,
+  viewpoint: Viewpoint,
   cosView: Float,
-  cosViewSun: Float,
+  cosViewLight: Float,
   limits: RayLimits,
   steps: number
 ): Vec4 {
-  const between = marchedAir(air, eye, cosView, cosViewSun, limits, null, steps)
+  const between = marchedAir(air, viewpoint, cosView, cosViewLight, limits, null, steps)
   const radiance = between.radiance.toVar()
   If(limits.hitsGround, () => {
-    const ray = { altitude: eye.altitude, cosView, cosSun: eye.cosSun, cosViewSun }
+    const ray = {
+      altitude: viewpoint.altitude,
+      cosView,
+      cosLight: viewpoint.cosLight,
+      cosViewLight
+    }
     const ground = pointAlong(air, ray, limits.start.add(limits.length))
-    radiance.addAssign(groundRadiance(air, ground.cosSun).mul(between.depth.negate().exp()))
+    radiance.addAssign(groundRadiance(air, ground.cosLight).mul(between.depth.negate().exp()))
   })
   return radiance
 }

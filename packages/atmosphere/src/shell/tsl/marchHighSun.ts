@@ -24,9 +24,9 @@ export interface DenseEnd {
   /** r μ of the ray outwards [m]. */
   radiusCosView: Float
   /** μ_s. */
-  cosSun: Float
+  cosLight: Float
   /** μ_s at the other end. */
-  cosSunAbove: Float
+  cosLightAbove: Float
   /** The sun is high, and about as high all along the segment. */
   isSunny: Bool
   /** Both ends, and so all of the segment, are in the planet's shadow. */
@@ -35,11 +35,11 @@ export interface DenseEnd {
 
 export function denseEnd(
   { bottomRadius, thickness, sunAngularRadius }: AtmosphereUniforms,
-  { altitude, radius, radiusCosView, radiusCosSun, cosViewSun, hitsGround, length }: AirSegment
+  { altitude, radius, radiusCosView, radiusCosSun, cosViewLight, hitsGround, length }: AirSegment
 ): DenseEnd {
   const ceiling = hitsGround.select(0, thickness).toConst() as Float
   const first = radiusCosSun.div(radius).toConst() as Float
-  const along = cosViewSun.mul(length).add(radiusCosSun)
+  const along = cosViewLight.mul(length).add(radiusCosSun)
   const last = along.div(bottomRadius.add(ceiling)).toConst() as Float
   const least = first.min(last).toConst()
   const isSteady = first.max(last).lessThan(least.mul(2))
@@ -49,8 +49,8 @@ export function denseEnd(
   return {
     altitude: hitsGround.select(0, altitude).toConst(),
     radiusCosView: hitsGround.select(radiusCosView.add(length).negate(), radiusCosView).toConst(),
-    cosSun: hitsGround.select(last, first).toConst(),
-    cosSunAbove: hitsGround.select(first, last).toConst(),
+    cosLight: hitsGround.select(last, first).toConst(),
+    cosLightAbove: hitsGround.select(first, last).toConst(),
     isSunny: least.greaterThan(HIGH_SUN).and(isSteady).toConst(),
     isDark: first.max(last).add(dip).lessThan(sunAngularRadius.mul(-2)).toConst()
   }
@@ -85,10 +85,10 @@ export function marchHighSun(
     .reciprocal()
     .toConst() as Float
   const { inLayer } = profileAt(uniforms, constants, dense.altitude)
-  const lengths = lengthsToSpace(uniforms, constants, inLayer, dense.cosSun)
+  const lengths = lengthsToSpace(uniforms, constants, inLayer, dense.cosLight)
     .mul(COLUMN_UNIT)
     .toConst()
-  const change = dense.cosSunAbove.div(dense.cosSun).oneMinus().toConst()
+  const change = dense.cosLightAbove.div(dense.cosLight).oneMinus().toConst()
 
   const { nodes, weights } = gaussLegendre(5)
   const points = nodes.map(node => {

@@ -63,12 +63,14 @@ export function marchSingleScattering(
       )
       const densities = points.map(({ density }) => density)
       points.forEach((point, i) => {
-        const { altitude: height, cosSun, density, visibleSun } = point
-        If(visibleSun.greaterThan(0), () => {
-          const toSun = columnsToSpace(uniforms, constants, height, cosSun, point).mul(COLUMN_UNIT)
+        const { altitude: height, cosLight, density, visibleDisc } = point
+        If(visibleDisc.greaterThan(0), () => {
+          const toSun = columnsToSpace(uniforms, constants, height, cosLight, point).mul(
+            COLUMN_UNIT
+          )
           const before = weighted(densities, weightsTo(nodes, nodes[i])).mul(scaled).max(0)
           const columns = before.add(sums.columns).add(toSun).toConst() as Vec3
-          sums.scatter(columns, density.xy.mul(step.mul(visibleSun).mul(weights[i])).toConst())
+          sums.scatter(columns, density.xy.mul(step.mul(visibleDisc).mul(weights[i])).toConst())
         })
       })
       sums.columns.addAssign(weighted(densities, weights).mul(scaled))

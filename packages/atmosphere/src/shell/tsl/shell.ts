@@ -1,7 +1,7 @@
 import { Fn, If, dot, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
-import type { Air } from '../../scattering/tsl/scattering'
+import type { Air } from '../../scattering/tsl/ray'
 import type { Float, Vec4 } from '../../tsl-types'
 import { fragmentDepth } from './fragmentDepth'
 import type { ShellLight } from './shellMarch'

@@ -1,15 +1,12 @@
 import { float, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
-import type { Eye } from '../../view/tsl/eye'
-import {
-  scatterSegment,
-  scatteredRadiance,
-  stepExponent,
-  type Air,
-  type Ray
-} from '../../scattering/tsl/scattering'
-import { sampleAir, type Sight } from '../../skyVolume/tsl/skyVolume'
+import type { Viewpoint } from '../../view/tsl/viewpoint'
+import { scatterSegment } from '../../scattering/tsl/segment'
+import { scatteredRadiance } from '../../scattering/tsl/scattering'
+import { stepExponent } from '../../scattering/tsl/march'
+import type { Air, Ray } from '../../scattering/tsl/ray'
+import { sampleAir, type AirRay } from '../../skyVolume/tsl/skyVolume'
 import type { Texels } from '../../tables/TableAtlas'
 
 /** Light scattered towards the start of a segment [1/sr], and optical depth of the segment. */
@@ -29,7 +26,7 @@ export interface AirSegment {
   /** r μ_s at its start [m]. */
   radiusCosSun: Float
   /** ν, against the sun. */
-  cosViewSun: Float
+  cosViewLight: Float
   /** h of its lowest point [m]. */
   lowestAltitude: Float
   hitsGround: Bool
@@ -79,34 +76,34 @@ export function marchFromLowest(
  * @param steps - Number of steps, two evaluations each.
  */
 export function marchedShellLight(air: Air, segment: AirSegment, steps: number): ShellLight {
-  const { altitude, radius, radiusCosView, radiusCosSun, cosViewSun } = segment
+  const { altitude, radius, radiusCosView, radiusCosSun, cosViewLight } = segment
   const ray: Ray = {
     altitude,
     cosView: radiusCosView.div(radius).clamp(-1, 1).toConst(),
-    cosSun: radiusCosSun.div(radius).clamp(-1, 1).toConst(),
-    cosViewSun
+    cosLight: radiusCosSun.div(radius).clamp(-1, 1).toConst(),
+    cosViewLight
   }
   const molecular = vec4(0).toVar()
   const aerosol = vec4(0).toVar()
   const depth = vec4(0).toVar()
   const exponentOf = (rise: Float): Float => stepExponent(air.uniforms, rise)
   marchFromLowest(air.uniforms, segment, steps, exponentOf, (start, end) => {
-    const step = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
+    const step = scatterSegment(air, ray, start, end, { direct: true, diffuse: true })
     const transmittance = depth.negate().exp().toConst()
     molecular.addAssign(step.molecular.mul(transmittance))
     aerosol.addAssign(step.aerosol.mul(transmittance))
     depth.addAssign(step.depth)
   })
   const scattered = { molecular: molecular as unknown as Vec4, aerosol: aerosol as unknown as Vec4 }
-  return { radiance: scatteredRadiance(air.uniforms, scattered, cosViewSun), depth: depth }
+  return { radiance: scatteredRadiance(air.uniforms, scattered, cosViewLight), depth: depth }
 }
 
 /** Light of the air along a view ray from a sky volume, all orders of scattering. */
 export function sampledShellLight(
   uniforms: AtmosphereUniforms,
   atlas: Texels,
-  eye: Eye,
-  sight: Sight
+  eye: Viewpoint,
+  sight: AirRay
 ): ShellLight {
   return sampleAir(uniforms, atlas, eye, sight)
 }

@@ -1,5 +1,5 @@
 import { If } from 'three/tsl'
-import type { Air } from '../../scattering/tsl/scattering'
+import type { Air } from '../../scattering/tsl/ray'
 import type { ProfileConstants } from './chapman'
 import { denseEnd, marchHighSun, suitsHighSun } from './marchHighSun'
 import { marchSingleScattering } from './marchSingleScattering'
@@ -21,5 +21,5 @@ export function singleScatteringLight(
   If(suitsHighSun(uniforms, segment, dense), () => {
     marchHighSun(uniforms, constants, segment, dense, sums)
   }).Else(() => marchSingleScattering(uniforms, constants, segment, sums))
-  return sums.result(segment.cosViewSun)
+  return sums.result(segment.cosViewLight)
 }

@@ -40,10 +40,10 @@ export class SingleScatteringSums {
   }
 
   /** Radiance and optical depth of the whole segment. */
-  result(cosViewSun: Float): ShellLight {
+  result(cosViewLight: Float): ShellLight {
     const { rayleighScattering, mieScattering } = this.#uniforms
-    const byMolecules = this.molecular.mul(rayleighScattering).mul(rayleighPhase(cosViewSun))
-    const byAerosols = this.aerosol.mul(mieScattering).mul(miePhase(this.#uniforms, cosViewSun))
+    const byMolecules = this.molecular.mul(rayleighScattering).mul(rayleighPhase(cosViewLight))
+    const byAerosols = this.aerosol.mul(mieScattering).mul(miePhase(this.#uniforms, cosViewLight))
     return {
       radiance: byMolecules.add(byAerosols),
       depth: extinction(this.#uniforms, this.columns.mul(1 / COLUMN_UNIT))
@@ -56,9 +56,9 @@ export interface SunlitPoint extends Profile {
   /** h [m]. */
   altitude: Float
   /** μ_s, not below the horizon. */
-  cosSun: Float
+  cosLight: Float
   /** Fraction of the sun's disc above the horizon. */
-  visibleSun: Float
+  visibleDisc: Float
 }
 
 /** μ_s above which the whole disc of the sun is above the horizon at any altitude. */
@@ -68,7 +68,7 @@ const HIGH_SUN = 0.02
 export function sunlitPoint(
   uniforms: AtmosphereUniforms,
   constants: ProfileConstants,
-  { radius, radiusCosView, radiusCosSun, cosViewSun }: AirSegment,
+  { radius, radiusCosView, radiusCosSun, cosViewLight }: AirSegment,
   distance: Float
 ): SunlitPoint {
   const { bottomRadius, sunAngularRadius } = uniforms
@@ -77,19 +77,19 @@ export function sunlitPoint(
   const inverse = square.inverseSqrt().toConst() as Float
   // Rounded to metres: air does not change in a metre.
   const altitude = square.mul(inverse).sub(bottomRadius).max(0).toConst() as Float
-  const cosSun = distance.mul(cosViewSun).add(radiusCosSun).mul(inverse).clamp(-1, 1).toVar()
-  const visibleSun = float(1).toVar()
-  If(cosSun.lessThan(sunAngularRadius.max(HIGH_SUN)), () => {
+  const cosLight = distance.mul(cosViewLight).add(radiusCosSun).mul(inverse).clamp(-1, 1).toVar()
+  const visibleDisc = float(1).toVar()
+  If(cosLight.lessThan(sunAngularRadius.max(HIGH_SUN)), () => {
     const dip = altitude.mul(bottomRadius.mul(2).add(altitude)).sqrt().mul(inverse).toConst()
     const margin = bottomRadius.mul(inverse).mul(sunAngularRadius).max(1e-4)
-    visibleSun.assign(cosSun.add(dip).div(margin).mul(0.5).add(0.5).clamp())
-    cosSun.assign(cosSun.max(dip.negate()))
+    visibleDisc.assign(cosLight.add(dip).div(margin).mul(0.5).add(0.5).clamp())
+    cosLight.assign(cosLight.max(dip.negate()))
   })
   return {
     ...profileAt(uniforms, constants, altitude),
     altitude,
-    cosSun,
-    visibleSun
+    cosLight,
+    visibleDisc
   }
 }
 

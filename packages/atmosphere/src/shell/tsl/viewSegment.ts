@@ -1,7 +1,7 @@
 import { If, dot } from 'three/tsl'
 import { offsetPoint } from '@welkin/geo'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
-import type { Sight } from '../../skyVolume/tsl/skyVolume'
+import type { AirRay } from '../../skyVolume/tsl/skyVolume'
 import type { Bool, Float, Mat3, Vec2, Vec3 } from '../../tsl-types'
 import { screenRay } from '../../view/tsl/screenRay'
 import type { AirSegment } from './shellMarch'
@@ -25,7 +25,7 @@ export interface ShellView {
 /** Part of a fragment's view ray that is in the air of a shell. */
 export interface ViewSegment extends AirSegment {
   /** The same segment in terms of the camera. Its length is 0 if the ray misses the air. */
-  fromCamera: Sight
+  fromCamera: AirRay
   /**
    * Point whose depth the shell is drawn with, in view space [world units]: the middle of the segment to
    * the ground or the lowest point; from outside no farther than the nearest ground in the pixel.
@@ -70,7 +70,7 @@ function rayOrigin(
 }
 
 /** Chord of a view ray through the air, from its origin or where it enters the air. */
-interface AirChord extends Omit<AirSegment, 'radiusCosSun' | 'cosViewSun'> {
+interface AirChord extends Omit<AirSegment, 'radiusCosSun' | 'cosViewLight'> {
   /** μ at the ray's origin. */
   cosView: Float
   /** √(1 − μ²), more exact than from μ. */
@@ -172,19 +172,19 @@ export function viewSegment(uniforms: AtmosphereUniforms, view: ShellView): View
   const chord = airChord(uniforms, start, d)
   const { altitude, radius, radiusCosView, lowestAltitude, hitsGround, length } = chord
   const { cosView, sinView } = chord
-  const cosViewSun = dot(d, view.sunDirectionMapped).clamp(-1, 1).toConst() as Float
+  const cosViewLight = dot(d, view.sunDirectionMapped).clamp(-1, 1).toConst() as Float
   const nearestCosSun = dot(chord.nearest, view.sunDirectionMapped).mul(start.radius)
   const middle = middleDistance(uniforms, chord, view.pixel)
   return {
     altitude,
     radius,
     radiusCosView,
-    radiusCosSun: nearestCosSun.add(radiusCosView.mul(cosViewSun)).toConst(),
-    cosViewSun,
+    radiusCosSun: nearestCosSun.add(radiusCosView.mul(cosViewLight)).toConst(),
+    cosViewLight,
     lowestAltitude,
     hitsGround,
     length,
-    fromCamera: { cosView, sinView, cosViewSun, hitsGround, length },
+    fromCamera: { cosView, sinView, cosViewLight, hitsGround, length },
     middleView: origin.add(directionView.mul(middle.mul(perMeter)))
   }
 }

@@ -1,9 +1,11 @@
 import { If, vec4 } from 'three/tsl'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import type { Sightline, SkyLayer, Veil } from '../../view/SkyLayer'
+import type { LayerRay, SkyLayer } from '../../view/SkyLayer'
+import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 import type { ViewNodes } from '../../view/ViewNodes'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
-import { placeInVolume, radianceBetween, rayLimits } from '../../skyVolume/tsl/skyVolume'
+import { volumeSegment, radianceBetween } from '../../skyVolume/tsl/skyVolume'
+import { rayLimits } from '../../skyVolume/tsl/rayLimits'
 
 /** Effect of the air between the viewpoint and a point on light from there. */
 export interface AerialPerspective {
@@ -13,9 +15,13 @@ export interface AerialPerspective {
   inScatter: Vec3
 }
 
-/** What the layers of the atmosphere make of the air's veil. */
-export function veiled(layers: readonly SkyLayer[], line: Sightline, air: Veil): Veil {
-  return layers.reduce((veil, layer) => layer.veil?.(line, veil) ?? veil, air)
+/** Medium along a ray: the air, with what layers add to it. */
+export function withMedia(
+  layers: readonly SkyLayer[],
+  ray: LayerRay,
+  air: MediumSegment
+): MediumSegment {
+  return layers.reduce((medium, layer) => layer.medium?.(ray, medium) ?? medium, air)
 }
 
 /**
@@ -24,7 +30,7 @@ export function veiled(layers: readonly SkyLayer[], line: Sightline, air: Veil):
  * @param displacementView - From the camera to the point, in view space [world units].
  */
 export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
-  const { air, volume, eye } = view
+  const { air, volume, viewpoint } = view
   const { layers } = view.atmosphere
   const offset = view.toMapped(displacementView).toConst()
   const square = offset.dot(offset).max(1e-6).toConst() as Float
@@ -32,22 +38,22 @@ export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): Ae
   const distance = square.mul(inverse).toConst()
   const direction = offset.mul(inverse).toConst()
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
-  const cosViewSun = direction.dot(view.sunDirection).toConst() as Float
-  const limits = rayLimits(eye, cosView)
-  const place = placeInVolume(volume, eye, cosView, limits, distance)
+  const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+  const limits = rayLimits(viewpoint, cosView)
+  const segment = volumeSegment(volume, viewpoint, cosView, limits, distance)
   const sunlit = vec4(0).toVar()
   If(view.isLit.greaterThan(0), () => {
-    const between = radianceBetween(air.uniforms, volume, eye, place, cosViewSun)
+    const between = radianceBetween(air.uniforms, volume, viewpoint, segment, cosViewLight)
     sunlit.assign(between.mul(view.source.irradiance))
   })
-  const line = { view, direction, cosView, cosViewSun, distance, place }
-  const light = layers.reduce<Vec4>(
-    (without, layer) => layer.haze?.(line, without) ?? without,
+  const ray = { view, direction, cosView, cosViewLight, distance, segment }
+  const radiance = layers.reduce<Vec4>(
+    (without, layer) => layer.inScatter?.(ray, without) ?? without,
     sunlit
   )
-  const veil = veiled(layers, line, { depth: place.depth, light })
+  const medium = withMedia(layers, ray, { depth: segment.depth, radiance })
   return {
-    transmittance: transmittanceRGB(air.uniforms, veil.depth.negate().exp()),
-    inScatter: linearSRGB(air.uniforms, veil.light)
+    transmittance: transmittanceRGB(air.uniforms, medium.depth.negate().exp()),
+    inScatter: linearSRGB(air.uniforms, medium.radiance)
   }
 }

@@ -4,8 +4,9 @@ import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { SkyRay } from '../../view/SkyLayer'
 import type { ViewNodes } from '../../view/ViewNodes'
 import { linearSRGB } from '../../air/tsl/color'
-import { veiled } from './aerialPerspective'
-import { aimAt, rayTargets, sampleSky, skyTransmittance } from '../../skyVolume/tsl/skyVolume'
+import { withMedia } from './aerialPerspective'
+import { viewRay, sampleSky, skyTransmittance } from '../../skyVolume/tsl/skyVolume'
+import { rayTargets } from '../../skyVolume/tsl/rayLimits'
 import { sine } from '../../math/tsl/trigonometry'
 
 /**
@@ -59,32 +60,32 @@ export function pixelAngle(direction: Vec3): Float {
  * @returns Linear sRGB × `luminanceScale`.
  */
 export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null): Vec3 {
-  const { air, volume, eye } = view
+  const { air, volume, viewpoint } = view
   const { layers } = view.atmosphere
   const { uniforms } = air
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
-  const cosViewSun = direction.dot(view.sunDirection).toConst() as Float
-  const { hitsGround, meetsAir } = rayTargets(eye, cosView)
-  const aim = aimAt(eye, cosView, hitsGround)
+  const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+  const { hitsGround, meetsAir } = rayTargets(viewpoint, cosView)
+  const volumeRay = viewRay(viewpoint, cosView, hitsGround)
   const radiance = vec4(0).toVar()
   If(meetsAir.and(view.isLit.greaterThan(0)), () => {
-    const light = sampleSky(uniforms, volume, eye, aim, cosViewSun)
+    const light = sampleSky(uniforms, volume, viewpoint, volumeRay, cosViewLight)
     radiance.assign(light.mul(view.source.irradiance))
   })
-  const angles = { direction, cosViewSun, meetsAir, ...aim }
+  const angles = { direction, cosViewLight, meetsAir, ...volumeRay }
   const ray: SkyRay = { view, ...angles, pixel: pixel ?? float(0), airlight: radiance }
   for (const layer of layers) {
     if (layer.ground !== undefined) radiance.assign(layer.ground(ray, radiance))
     if (layer.glow !== undefined) radiance.assign(layer.glow(ray, radiance))
   }
-  const veil = veiled(layers, ray, { depth: vec4(0), light: radiance })
-  radiance.assign(veil.light)
+  const medium = withMedia(layers, ray, { depth: vec4(0), radiance })
+  radiance.assign(medium.radiance)
   const far = vec4(0).toVar()
   let isDimmed: Bool | null = null
   if (pixel !== null) {
     // cos x > 1 − x²/2, and no more than that by far.
     const reach = uniforms.sunAngularRadius.add(pixel).toConst()
-    const isNear = cosViewSun.greaterThan(
+    const isNear = cosViewLight.greaterThan(
       reach
         .mul(reach)
         .mul(-0.5)
@@ -92,11 +93,11 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
     )
     isDimmed = isNear.and(hitsGround.not()).toConst()
     If(isDimmed, () => {
-      far.assign(sunDisc(uniforms, direction, view.sunDirection, pixel))
+      far.assign(sunDisc(uniforms, direction, view.lightDirection, pixel))
     })
-    if (layers.some(layer => layer.beyond !== undefined)) {
+    if (layers.some(layer => layer.background !== undefined)) {
       If(hitsGround.not(), () => {
-        for (const layer of layers) far.assign(layer.beyond?.(ray, far) ?? far)
+        for (const layer of layers) far.assign(layer.background?.(ray, far) ?? far)
       })
       isDimmed = far.dot(vec4(1)).greaterThan(0)
     }
@@ -105,10 +106,10 @@ export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null):
   for (const { isSeen } of below) isDimmed = isDimmed?.or(isSeen) ?? isSeen
   if (isDimmed !== null) {
     If(isDimmed, () => {
-      const through = skyTransmittance(volume, eye, aim)
+      const through = skyTransmittance(volume, viewpoint, volumeRay)
       const first: Vec4 = far.mul(through)
       const light = below.reduce((sum, each) => sum.add(each.light(through)), first)
-      radiance.addAssign(light.mul(veil.depth.negate().exp()))
+      radiance.addAssign(light.mul(medium.depth.negate().exp()))
     })
   }
   return linearSRGB(uniforms, radiance).min(BRIGHTEST)

@@ -1,13 +1,14 @@
-import { If, float, mix, vec2 } from 'three/tsl'
+import { float, vec2 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Texels } from '../../tables/TableAtlas'
 import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
 import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
-import { spreadCosine, spreadSun } from '../../diffuseLight/tsl/diffuseLight'
-import type { Eye } from '../../view/tsl/eye'
+import type { Viewpoint } from '../../view/tsl/viewpoint'
 import { miePhase } from '../../air/tsl/phase'
 import { rowAndColumn } from '../../tables/tsl/texels'
 import { sine } from '../../math/tsl/trigonometry'
+import type { RayLimits } from './rayLimits'
+import { azimuthColumn, elevationPosition, elevationTexel, slicePosition } from './volumeMapping'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS] = VOLUME_TILES
@@ -16,206 +17,15 @@ const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
 /** Number of the tile that holds all the air along a ray and the ground behind it. */
 export const SKY_TILE = DISTANCES
 
-/** Limits of a view ray: where it enters and leaves the air, or meets the ground. */
-export interface RayLimits {
-  /** Distance to where the air begins: 0 inside it [m]. */
-  start: Float
-  /** Distance from there to the ground or out of the air; 0 if the ray misses the air [m]. */
-  length: Float
-  hitsGround: Bool
-}
-
-/**
- * @param cosView - μ, ray against the zenith of the eye.
- * @param forcedGround - Whether the ray meets the ground, where rounding must not decide.
- */
-export function rayLimits(eye: Eye, cosView: Float, forcedGround?: Bool): RayLimits {
-  const radial = eye.radius.mul(cosView).toConst()
-  const square = radial.mul(radial).toConst()
-  const ground = square.sub(eye.toHorizon).toConst()
-  const halfChord = square.add(eye.toTop).max(0).sqrt().toConst()
-  const start = radial.negate().sub(halfChord).max(0).toConst()
-  const top = halfChord.sub(radial).max(0)
-  const hitsGround = forcedGround ?? ground.greaterThanEqual(0).and(cosView.lessThan(0)).toConst()
-  // The near root as c / (−b + √D): the other form cancels close to the ground.
-  const bottom = eye.toHorizon.div(ground.max(0).sqrt().sub(radial).max(1e-3))
-  return {
-    start: start,
-    length: hitsGround.select(bottom, top).sub(start).max(0).toConst(),
-    hitsGround
-  }
-}
-
-/**
- * Position of an elevation in its half (below or above the horizon), in [0, 1] from the horizon:
- * √tan(α/2), α the angle from it.
- *
- * @param cosView - μ, ray against the zenith of the eye.
- * @param hitsGround - Which half.
- * @param sinView - √(1 − μ²), which from far away is better known than μ tells.
- */
-function elevationPosition(eye: Eye, cosView: Float, hitsGround: Bool, sinView: Float): Float {
-  const across = cosView.mul(eye.sinHorizon).sub(sinView.mul(eye.cosHorizon)).abs()
-  const along = sinView.mul(eye.sinHorizon).add(cosView.mul(eye.cosHorizon))
-  const scale = hitsGround.select(eye.belowScale, eye.aboveScale)
-  return across.div(along.add(1).max(1e-6)).mul(scale).clamp().sqrt()
-}
-
-/** Texel of a position among so many elevations, the lower half of them below the horizon. */
-function elevationTexel(position: Float, hitsGround: Bool, count: number): Float {
-  const half = count / 2
-  return position.mul(half - 1).add(hitsGround.select(0.5, half + 0.5))
-}
-
-/** Cosine of the zenith angle of an elevation, counted in whole texels. */
-export function elevationCosine(
-  eye: Eye,
-  texel: Float,
-  count: number
-): { cosView: Float; hitsGround: Bool; position: Float } {
-  const half = count / 2
-  const hitsGround = texel.lessThan(half).toConst()
-  const position = texel
-    .floor()
-    .sub(hitsGround.select(0, half))
-    .div(half - 1)
-    .toConst()
-  const scale = hitsGround.select(eye.belowScale, eye.aboveScale)
-  const tangent = position.mul(position).div(scale).toConst()
-  const square = tangent.mul(tangent).toConst()
-  const double = tangent.mul(hitsGround.select(-2, 2))
-  const cosView = eye.cosHorizon
-    .mul(square.oneMinus())
-    .add(eye.sinHorizon.mul(double))
-    .div(square.add(1))
-    .clamp(-1, 1)
-  return {
-    cosView: cosView.toConst(),
-    hitsGround: hitsGround,
-    position: position
-  }
-}
-
-/**
- * The sun's cosine where a ray from outside the air meets the ground or passes nearest to it:
- * the mean over azimuths, and the most that an azimuth adds or takes away.
- *
- * With b = r √(1 − μ²), the ray's distance from the planet's centre, the foot is half a chord
- * c = √(r_ground² − b²) before the nearest point, or that point.
- */
-function sunAtFoot(
-  uniforms: AtmosphereUniforms,
-  eye: Eye,
-  cosView: Float,
-  sinView: Float,
-  hitsGround: Bool
-) {
-  const { bottomRadius } = uniforms
-  const nearest = eye.radius.mul(sinView).toConst()
-  const square = bottomRadius.sub(nearest).mul(bottomRadius.add(nearest)).max(0)
-  const chord = hitsGround.select(square.sqrt(), 0).toConst()
-  const across = nearest.mul(cosView).add(chord.mul(sinView))
-  const along = nearest.mul(sinView).sub(chord.mul(cosView))
-  const inverse = hitsGround.select(bottomRadius, nearest.max(1)).reciprocal().toConst()
-  return {
-    mean: along.mul(inverse).mul(eye.cosSun).toConst() as Float,
-    swing: across.mul(inverse).mul(eye.sinSun).abs().max(1e-4).toConst() as Float
-  }
-}
-
-/**
- * Column of an azimuth φ from the sun, in texels.
- *
- * In the air: sin(φ/2), for the light is smooth in cos φ but changes most towards the sun. From outside
- * the azimuth sweeps over day, dusk and night: there columns crowd at dusk.
- *
- * @param cosView - μ.
- * @param cosViewSun - ν.
- */
-function azimuthColumn(
-  uniforms: AtmosphereUniforms,
-  eye: Eye,
-  cosView: Float,
-  sinView: Float,
-  cosViewSun: Float,
-  hitsGround: Bool
-): Float {
-  const sines = sinView.mul(eye.sinSun).max(1e-6)
-  const cosAzimuth = cosViewSun.sub(cosView.mul(eye.cosSun)).div(sines).clamp(-1, 1).toConst()
-  const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
-  If(eye.toTop.lessThan(0), () => {
-    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, sinView, hitsGround)
-    const first = spreadSun(mean.add(swing)).toConst()
-    const last = spreadSun(mean.sub(swing))
-    const here = spreadSun(mean.add(swing.mul(cosAzimuth)))
-    position.assign(first.sub(here).div(first.sub(last)).clamp())
-  })
-  return position.mul(AZIMUTHS - 1).add(0.5)
-}
-
-/** ν of a column, counted in whole texels: the inverse of {@link azimuthColumn}. */
-export function columnCosine(
-  uniforms: AtmosphereUniforms,
-  eye: Eye,
-  cosView: Float,
-  column: Float,
-  hitsGround: Bool
-): Float {
-  const sinView = sine(cosView).toConst() as Float
-  const position = column
-    .floor()
-    .div(AZIMUTHS - 1)
-    .toConst()
-  const cosAzimuth = position.mul(position).mul(2).oneMinus().toVar()
-  If(eye.toTop.lessThan(0), () => {
-    const { mean, swing } = sunAtFoot(uniforms, eye, cosView, sinView, hitsGround)
-    const first = spreadSun(mean.add(swing)).toConst()
-    const last = spreadSun(mean.sub(swing))
-    const x = mix(first, last, position).toConst()
-    cosAzimuth.assign(spreadCosine(x).sub(mean).div(swing).clamp(-1, 1))
-  })
-  const sines = sinView.mul(eye.sinSun)
-  return cosView.mul(eye.cosSun).add(sines.mul(cosAzimuth)).clamp(-1, 1).toConst()
-}
-
-/** 1/κ and e^κ − 1 of a ray's distances. */
-function spacing(eye: Eye, hitsGround: Bool): { stretch: Float; growth: Float } {
-  return {
-    stretch: hitsGround.select(eye.groundStretch, eye.skyStretch).toConst(),
-    growth: hitsGround.select(eye.groundGrowth, eye.skyGrowth).toConst()
-  }
-}
-
-/** Distance along a ray at a position x in [0, 1] among the slices [m]. */
-export function sliceDistance(eye: Eye, limits: RayLimits, position: Float): Float {
-  const { stretch, growth } = spacing(eye, limits.hitsGround)
-  return position.div(stretch).exp().sub(1).div(growth).mul(limits.length)
-}
-
-/** Position among the slices of a distance, the inverse of {@link sliceDistance}. */
-function slicePosition(eye: Eye, limits: RayLimits, distance: Float): Float {
-  const { stretch, growth } = spacing(eye, limits.hitsGround)
-  const part = distance.div(limits.length.max(1e-3)).clamp()
-  return part.mul(growth).add(1).log().mul(stretch).clamp()
-}
-
-/** An elevation of the sky volumes. */
-export interface Elevation {
-  /** True if the ray meets the ground. */
-  hitsGround: Bool
-  /** Position of the elevation in its half, below or above the horizon, in [0, 1] from the horizon. */
-  elevation: Float
-}
-
-/** Reads the eye's table of {@link DEPTH_SIZE} at a row, in texels. */
+/** Reads the viewpoint's table of {@link DEPTH_SIZE} at a row, in texels. */
 function readDepth(
   atlas: Texels,
-  eye: Eye,
+  viewpoint: Viewpoint,
   { elevation, hitsGround }: Elevation,
   row: Float
 ): Vec4 {
   const column = elevationTexel(elevation, hitsGround, DEPTH_ELEVATIONS)
-  return atlas.at(vec2(column, row).add(eye.depthOrigin))
+  return atlas.at(vec2(column, row).add(viewpoint.depthOrigin))
 }
 
 /**
@@ -227,60 +37,68 @@ function readDepth(
  */
 export function meanExtinction(
   atlas: Texels,
-  eye: Eye,
+  viewpoint: Viewpoint,
   elevation: Elevation,
   position: Float
 ): Vec4 {
-  return readDepth(atlas, eye, elevation, position.mul(DEPTH_DISTANCES).max(1).sub(0.5))
+  return readDepth(atlas, viewpoint, elevation, position.mul(DEPTH_DISTANCES).max(1).sub(0.5))
 }
 
 /** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
 export const EXTINCTION_SCALE = 1e5
 
-/** Light scattered between the eye and a point, with the optical depth between them. */
-export interface AirBetween {
-  /** For unit irradiance of the sun [1/sr]. */
+/** Medium between the viewpoint and a point: the light that it adds, and its optical depth. */
+export interface MediumSegment {
+  /** Light added, for unit irradiance of the source [1/sr]; of layers over `solarIrradiance` [1/sr]. */
   radiance: Vec4
+  /** Optical depth; in front of the sky that of layers alone. */
   depth: Vec4
 }
 
-/** A direction from an eye as its sky volumes have it, whatever lights them. */
-export interface Aim extends Elevation {
-  /** μ, against the zenith of the eye. */
+/** View ray as the sky volumes of its viewpoint have it, whatever lights them. */
+export interface ViewRay {
+  /** μ, against the zenith of the viewpoint. */
   cosView: Float
   /** √(1 − μ²). */
   sinView: Float
+  /** True if the ray meets the ground. */
+  hitsGround: Bool
+  /** Position of the elevation in its half, below or above the horizon, in [0, 1] from the horizon. */
+  elevation: Float
 }
 
-/** @param cosView - μ, direction against the zenith of the eye. */
-export function aimAt(
-  eye: Eye,
+/** Part of a view ray that tables without azimuths depend on. */
+type Elevation = Pick<ViewRay, 'hitsGround' | 'elevation'>
+
+/** @param cosView - μ, direction against the zenith of the viewpoint. */
+export function viewRay(
+  viewpoint: Viewpoint,
   cosView: Float,
   hitsGround: Bool,
   sinView: Float = sine(cosView).toConst()
-): Aim {
-  const elevation = elevationPosition(eye, cosView, hitsGround, sinView).toConst() as Float
+): ViewRay {
+  const elevation = elevationPosition(viewpoint, cosView, hitsGround, sinView).toConst() as Float
   return { cosView, sinView, hitsGround, elevation }
 }
 
 /** Texel of the atlas of a direction in a tile, of the light by molecules. */
 function tileReader(
   uniforms: AtmosphereUniforms,
-  eye: Eye,
-  { cosView, sinView, hitsGround, elevation }: Aim,
-  cosViewSun: Float
+  viewpoint: Viewpoint,
+  { cosView, sinView, hitsGround, elevation }: ViewRay,
+  cosViewLight: Float
 ): (tile: Float) => Vec2 {
   const row = elevationTexel(elevation, hitsGround, ELEVATIONS)
-  const column = azimuthColumn(uniforms, eye, cosView, sinView, cosViewSun, hitsGround)
-  const first = vec2(column, row).add(eye.lightOrigin).toConst()
+  const column = azimuthColumn(uniforms, viewpoint, cosView, sinView, cosViewLight, hitsGround)
+  const first = vec2(column, row).add(viewpoint.lightOrigin).toConst()
   return tile => {
     const { row: tileRow, column: tileColumn } = rowAndColumn(tile, TILE_COLUMNS)
     return vec2(tileColumn, tileRow).mul(vec2(AZIMUTHS, ELEVATIONS)).add(first).toConst()
   }
 }
 
-/** A point as an eye's sky volumes have it, whatever lights them. */
-export interface VolumePlace extends Aim {
+/** Part of a view ray up to a point, as the sky volumes of its viewpoint have it. */
+export interface VolumeSegment extends ViewRay {
   /** Among the distances of its ray, in [0, 1]. */
   position: Float
   /** Optical depth up to it. */
@@ -288,36 +106,36 @@ export interface VolumePlace extends Aim {
 }
 
 /**
- * @param cosView - μ, ray against the zenith of the eye.
+ * @param cosView - μ, ray against the zenith of the viewpoint.
  * @param limits - Of the same ray.
- * @param distance - From the eye [m].
+ * @param distance - From the viewpoint [m].
  */
-export function placeInVolume(
+export function volumeSegment(
   atlas: Texels,
-  eye: Eye,
+  viewpoint: Viewpoint,
   cosView: Float,
   limits: RayLimits,
   distance: Float
-): VolumePlace {
+): VolumeSegment {
   const { hitsGround, length } = limits
-  const aim = aimAt(eye, cosView, hitsGround)
+  const ray = viewRay(viewpoint, cosView, hitsGround)
   const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
-  const position = slicePosition(eye, limits, inAir).toConst() as Float
-  const mean = meanExtinction(atlas, eye, aim, position)
-  return { ...aim, position, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
+  const position = slicePosition(viewpoint, limits, inAir).toConst() as Float
+  const mean = meanExtinction(atlas, viewpoint, ray, position)
+  return { ...ray, position, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
 }
 
-/** Reads the light of the air between the eye and a point from the volume, for unit irradiance [1/sr]. */
+/** Reads the light of the air between the viewpoint and a point from the volume, for unit irradiance [1/sr]. */
 export function radianceBetween(
   uniforms: AtmosphereUniforms,
   atlas: Texels,
-  eye: Eye,
-  place: VolumePlace,
-  cosViewSun: Float
+  viewpoint: Viewpoint,
+  segment: VolumeSegment,
+  cosViewLight: Float
 ): Vec4 {
-  const fetch = tileReader(uniforms, eye, place, cosViewSun)
+  const fetch = tileReader(uniforms, viewpoint, segment, cosViewLight)
   // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
-  const slices = place.position.mul(DISTANCES).toConst()
+  const slices = segment.position.mul(DISTANCES).toConst()
   const grown = slices
     .min(1)
     .mul(1 / RADIANCE_SCALE)
@@ -328,7 +146,7 @@ export function radianceBetween(
     .min(DISTANCES - 2)
     .toConst() as Float
   const weight = slice.sub(near).mul(grown).toConst()
-  const phase = miePhase(uniforms, cosViewSun).toConst()
+  const phase = miePhase(uniforms, cosViewLight).toConst()
   const [from, to] = [near, near.add(1)].map(tile => readTile(atlas, fetch(tile), phase))
   return from.mul(grown.sub(weight)).add(to.mul(weight))
 }
@@ -341,38 +159,26 @@ function readTile(atlas: Texels, texel: Vec2, phase: Vec4): Vec4 {
 }
 
 /**
- * Reads the air between the eye and a point from the volume.
+ * Reads the air between the viewpoint and a point from the volume.
  *
- * @param cosView - μ, ray against the zenith of the eye.
- * @param cosViewSun - ν, ray against sun.
+ * @param cosView - μ, ray against the zenith of the viewpoint.
+ * @param cosViewLight - ν, ray against sun.
  * @param limits - Of the same ray.
- * @param distance - From the eye [m].
+ * @param distance - From the viewpoint [m].
  */
 export function sampleVolume(
   uniforms: AtmosphereUniforms,
   atlas: Texels,
-  eye: Eye,
+  viewpoint: Viewpoint,
   cosView: Float,
-  cosViewSun: Float,
+  cosViewLight: Float,
   limits: RayLimits,
   distance: Float
-): AirBetween {
-  const place = placeInVolume(atlas, eye, cosView, limits, distance)
+): MediumSegment {
+  const segment = volumeSegment(atlas, viewpoint, cosView, limits, distance)
   return {
-    radiance: radianceBetween(uniforms, atlas, eye, place, cosViewSun),
-    depth: place.depth
-  }
-}
-
-/** Tests of a view ray against ground and air. */
-export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsAir: Bool } {
-  const radial = eye.radius.mul(cosView)
-  const square = radial.mul(radial).toConst()
-  const looksDown = cosView.lessThan(0)
-  const crosses = square.add(eye.toTop).greaterThan(0).and(looksDown)
-  return {
-    hitsGround: square.greaterThanEqual(eye.toHorizon).and(looksDown).toConst(),
-    meetsAir: eye.toTop.greaterThanEqual(0).or(crosses)
+    radiance: radianceBetween(uniforms, atlas, viewpoint, segment, cosViewLight),
+    depth: segment.depth
   }
 }
 
@@ -380,50 +186,44 @@ export function rayTargets(eye: Eye, cosView: Float): { hitsGround: Bool; meetsA
  * Reads the light of all the air in a direction and of the ground behind it from the volume, for unit
  * irradiance [1/sr].
  *
- * @param aim - Direction, which meets the air.
- * @param cosViewSun - ν, direction against the sun.
+ * @param ray - View ray, which meets the air.
+ * @param cosViewLight - ν, direction against the sun.
  */
 export function sampleSky(
   uniforms: AtmosphereUniforms,
   atlas: Texels,
-  eye: Eye,
-  aim: Aim,
-  cosViewSun: Float
+  viewpoint: Viewpoint,
+  ray: ViewRay,
+  cosViewLight: Float
 ): Vec4 {
-  const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE))
-  return readTile(atlas, at, miePhase(uniforms, cosViewSun)).mul(1 / RADIANCE_SCALE)
+  const at = tileReader(uniforms, viewpoint, ray, cosViewLight)(float(SKY_TILE))
+  return readTile(atlas, at, miePhase(uniforms, cosViewLight)).mul(1 / RADIANCE_SCALE)
 }
 
-/** A line of sight from an eye that meets the air. */
-export interface Sight {
-  /** μ, against the zenith of the eye. */
-  cosView: Float
-  /** √(1 − μ²), better known than μ tells. */
-  sinView: Float
-  /** ν, against the sun. */
-  cosViewSun: Float
-  /** True if the ground is behind. */
-  hitsGround: Bool
-  /** Of the way through the air, to the ground or out of it [m]. */
+/** View ray through all of the air. */
+export interface AirRay extends Omit<ViewRay, 'elevation'> {
+  /** ν, against the source of light. */
+  cosViewLight: Float
+  /** Length through the air, to the ground or out of it [m]. */
   length: Float
 }
 
-/** Reads all the air along a line of sight from the volume, without what is behind it: 3 fetches. */
+/** Reads all the air along a view ray from the volume, without what is behind it: 3 fetches. */
 export function sampleAir(
   uniforms: AtmosphereUniforms,
   atlas: Texels,
-  eye: Eye,
-  { cosView, sinView, cosViewSun, hitsGround, length }: Sight
-): AirBetween {
-  const aim = aimAt(eye, cosView, hitsGround, sinView)
+  viewpoint: Viewpoint,
+  { cosView, sinView, cosViewLight, hitsGround, length }: AirRay
+): MediumSegment {
+  const ray = viewRay(viewpoint, cosView, hitsGround, sinView)
   // The slice before the ground's ends where the air does.
-  const at = tileReader(uniforms, eye, aim, cosViewSun)(float(SKY_TILE - 1))
-  const mean = meanExtinction(atlas, eye, aim, float(1))
-  const light = readTile(atlas, at, miePhase(uniforms, cosViewSun))
+  const at = tileReader(uniforms, viewpoint, ray, cosViewLight)(float(SKY_TILE - 1))
+  const mean = meanExtinction(atlas, viewpoint, ray, float(1))
+  const light = readTile(atlas, at, miePhase(uniforms, cosViewLight))
   return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }
 
 /** Transmittance of all the air in a direction; 1 where there is none. */
-export function skyTransmittance(atlas: Texels, eye: Eye, elevation: Elevation): Vec4 {
-  return readDepth(atlas, eye, elevation, float(DEPTH_DISTANCES + 0.5)).toConst()
+export function skyTransmittance(atlas: Texels, viewpoint: Viewpoint, elevation: Elevation): Vec4 {
+  return readDepth(atlas, viewpoint, elevation, float(DEPTH_DISTANCES + 0.5)).toConst()
 }

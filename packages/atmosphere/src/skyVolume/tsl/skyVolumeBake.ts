@@ -4,25 +4,13 @@ import type { TwoOutputs } from '../../tables/FragmentPass'
 import type { Texels } from '../../tables/TableAtlas'
 import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../../tsl-types'
-import type { Eye } from '../../view/tsl/eye'
-import {
-  groundRadiance,
-  pointAlong,
-  scatterSegment,
-  segmentDepth,
-  type Air,
-  type Ray
-} from '../../scattering/tsl/scattering'
-import {
-  EXTINCTION_SCALE,
-  SKY_TILE,
-  columnCosine,
-  meanExtinction,
-  rayLimits,
-  elevationCosine,
-  sliceDistance,
-  type RayLimits
-} from './skyVolume'
+import type { Viewpoint } from '../../view/tsl/viewpoint'
+import { groundRadiance } from '../../scattering/tsl/scattering'
+import { pointAlong, type Air, type Ray } from '../../scattering/tsl/ray'
+import { scatterSegment, segmentDepth } from '../../scattering/tsl/segment'
+import { EXTINCTION_SCALE, SKY_TILE, meanExtinction } from './skyVolume'
+import { columnCosine, elevationCosine, sliceDistance } from './volumeMapping'
+import { rayLimits, type RayLimits } from './rayLimits'
 import { rowAndColumn } from '../../tables/tsl/texels'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
@@ -57,8 +45,8 @@ export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
       .select(thickness, entry.altitude.min(thickness))
       .toConst(),
     cosView: entry.cosView,
-    cosSun: entry.cosSun,
-    cosViewSun: ray.cosViewSun
+    cosLight: entry.cosLight,
+    cosViewLight: ray.cosViewLight
   }
 }
 
@@ -66,14 +54,14 @@ export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
  * Shader of the table of mean extinction: columns are elevations, rows distances; the last row has the
  * transmittance of all the way.
  */
-export function bakeDepth(air: Air, eye: Eye): Vec4 {
+export function bakeDepth(air: Air, viewpoint: Viewpoint): Vec4 {
   return Fn(() => {
     const texel = uv() as Vec2
     const column = texel.x.mul(DEPTH_ELEVATIONS)
-    const { cosView, hitsGround } = elevationCosine(eye, column, DEPTH_ELEVATIONS)
-    const limits = rayLimits(eye, cosView, hitsGround)
-    const { altitude, cosSun } = eye
-    const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun: cosSun }, limits)
+    const { cosView, hitsGround } = elevationCosine(viewpoint, column, DEPTH_ELEVATIONS)
+    const limits = rayLimits(viewpoint, cosView, hitsGround)
+    const { altitude, cosLight } = viewpoint
+    const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight: cosLight }, limits)
     const start = float(0).toVar()
     const depth = vec4(0).toVar()
     const row = texel.y
@@ -82,7 +70,7 @@ export function bakeDepth(air: Air, eye: Eye): Vec4 {
       .toConst()
     loop('segment', int(row.add(1).min(DEPTH_DISTANCES)), segment => {
       const position = float(segment).add(1).div(DEPTH_DISTANCES)
-      const end = sliceDistance(eye, limits, position).toConst()
+      const end = sliceDistance(viewpoint, limits, position).toConst()
       depth.addAssign(segmentDepth(air, ray, start, end).depth)
       start.assign(end)
     })
@@ -113,32 +101,32 @@ function atlasPosition(texel: Vec2) {
 
 /**
  * Shader that fills the atlas with the light scattered between one slice and the next, as seen from
- * the eye; and the last tile with the light of the ground.
+ * the viewpoint; and the last tile with the light of the ground.
  *
- * @param atlas - Has the table of {@link bakeDepth} for the same eye.
+ * @param atlas - Has the table of {@link bakeDepth} for the same viewpoint.
  */
-export function bakeSegments(air: Air, eye: Eye, atlas: Texels): TwoOutputs {
+export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): TwoOutputs {
   return twoOutputs(() => {
     const { column, row, slice } = atlasPosition(uv())
-    const { cosView, hitsGround, position } = elevationCosine(eye, row, ELEVATIONS)
-    const limits = rayLimits(eye, cosView, hitsGround)
-    const cosViewSun = columnCosine(air.uniforms, eye, cosView, column, hitsGround)
-    const { altitude, cosSun } = eye
-    const ray = enterAir(air, { altitude, cosView, cosSun, cosViewSun }, limits)
-    const start = sliceDistance(eye, limits, slice.div(DISTANCES)).toConst() as Float
-    const end = sliceDistance(eye, limits, slice.add(1).div(DISTANCES)).toConst() as Float
+    const { cosView, hitsGround, position } = elevationCosine(viewpoint, row, ELEVATIONS)
+    const limits = rayLimits(viewpoint, cosView, hitsGround)
+    const cosViewLight = columnCosine(air.uniforms, viewpoint, cosView, column, hitsGround)
+    const { altitude, cosLight } = viewpoint
+    const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
+    const start = sliceDistance(viewpoint, limits, slice.div(DISTANCES)).toConst() as Float
+    const end = sliceDistance(viewpoint, limits, slice.add(1).div(DISTANCES)).toConst() as Float
     const reached = slice.div(DISTANCES) as Float
-    const before = meanExtinction(atlas, eye, { elevation: position, hitsGround }, reached)
+    const before = meanExtinction(atlas, viewpoint, { elevation: position, hitsGround }, reached)
     const through = before.mul(start.div(EXTINCTION_SCALE)).negate().exp().toConst()
     const molecular = vec4(0).toVar()
     const aerosol = vec4(0).toVar()
     If(slice.lessThan(SKY_TILE), () => {
-      const light = scatterSegment(air, ray, start, end, { sun: true, diffuse: true })
+      const light = scatterSegment(air, ray, start, end, { direct: true, diffuse: true })
       molecular.assign(light.molecular.mul(through))
       aerosol.assign(light.aerosol.mul(through))
     }).ElseIf(hitsGround, () => {
       const foot = pointAlong(air, ray, limits.length)
-      molecular.assign(groundRadiance(air, foot.cosSun).mul(through).mul(RADIANCE_SCALE))
+      molecular.assign(groundRadiance(air, foot.cosLight).mul(through).mul(RADIANCE_SCALE))
     })
     return { molecular: molecular, aerosol: aerosol }
   })

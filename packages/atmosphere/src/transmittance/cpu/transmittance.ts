@@ -43,11 +43,11 @@ export function opticalDepth(
 }
 
 /** Part of the sun's disc above the horizon, in [0, 1]; smoothstep stands for the cut disc's area. */
-export function visibleSun(p: AtmosphereParameters, radius: number, cosSun: number): number {
+export function visibleDisc(p: AtmosphereParameters, radius: number, cosLight: number): number {
   const sinHorizon = Math.min(p.bottomRadius / radius, 1)
   const cosHorizon = -Math.sqrt(1 - sinHorizon ** 2)
   const margin = sinHorizon * p.sunAngularRadius
-  const x = Math.min(Math.max((cosSun - cosHorizon + margin) / (2 * margin), 0), 1)
+  const x = Math.min(Math.max((cosLight - cosHorizon + margin) / (2 * margin), 0), 1)
   return x * x * (3 - 2 * x)
 }
 
@@ -73,15 +73,15 @@ const HIGH_SUN = 36
  * less than 0.02 %.
  *
  * @param radius - Planet's centre to the point [m]; outside the air as well.
- * @param cosSun - μ_s.
+ * @param cosLight - μ_s.
  */
 export function discTransmittance(
   p: AtmosphereParameters,
   radius: number,
-  cosSun: number
+  cosLight: number
 ): number[] {
   const horizon = Math.PI - Math.asin(Math.min(p.bottomRadius / radius, 1))
-  const elevation = (horizon - Math.acos(cosSun)) / p.sunAngularRadius
+  const elevation = (horizon - Math.acos(cosLight)) / p.sunAngularRadius
   const sum = [0, 0, 0, 0]
   let area = 0
   const add = (height: number, weight: number): void => {
@@ -105,14 +105,14 @@ export function discTransmittance(
  * part of the disc above the horizon, times that part.
  *
  * @param radius - Planet's centre to the point [m]; outside the air as well.
- * @param cosSun - μ_s.
+ * @param cosLight - μ_s.
  */
-export function sunTransmittance(
+export function lightTransmittance(
   p: AtmosphereParameters,
   radius: number,
-  cosSun: number
+  cosLight: number
 ): number[] {
-  const visible = visibleSun(p, radius, cosSun)
+  const visible = visibleDisc(p, radius, cosLight)
   if (visible === 0) return [0, 0, 0, 0]
-  return discTransmittance(p, radius, cosSun).map(value => visible * value)
+  return discTransmittance(p, radius, cosLight).map(value => visible * value)
 }

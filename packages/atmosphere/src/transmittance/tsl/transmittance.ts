@@ -92,20 +92,20 @@ export function transmittanceRay(
  *
  * @param table - Optical depth to the top of the air.
  * @param altitude - Above the ground, in [0, thickness] [m].
- * @param cosSun - μ_s, cosine of the sun's zenith angle.
+ * @param cosLight - μ_s, cosine of the sun's zenith angle.
  * @returns Four values in [0, 1].
  * @see Bruneton 2017, "Single scattering"; smoothstep stands for the area of a cut disc
  */
-export function sunTransmittance(
+export function lightTransmittance(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
-  cosSun: Float
+  cosLight: Float
 ): Vec4 {
   const { bottomRadius, sunAngularRadius } = uniforms
   const cosHorizon = horizonCosine(uniforms, altitude).toConst()
   const margin = bottomRadius.div(bottomRadius.add(altitude)).mul(sunAngularRadius).toConst()
-  const visible = smoothstep(margin.negate(), margin, cosSun.sub(cosHorizon))
-  const uv = transmittanceUV(uniforms, altitude, cosSun.max(cosHorizon))
+  const visible = smoothstep(margin.negate(), margin, cosLight.sub(cosHorizon))
+  const uv = transmittanceUV(uniforms, altitude, cosLight.max(cosHorizon))
   return table.sample(uv).negate().exp().mul(visible)
 }

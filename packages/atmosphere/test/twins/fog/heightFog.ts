@@ -75,12 +75,12 @@ export function fogDepth(
  *
  * @param above - Vertical depth above the point, scaled by 1 − g.
  * @param whole - Vertical depth of the layer, likewise.
- * @param cosSun - μ > 0.
+ * @param cosLight - μ > 0.
  */
-export function multipleScattering(above: number, whole: number, cosSun: number): number {
+export function multipleScattering(above: number, whole: number, cosLight: number): number {
   const e = 1 / (4 * Math.PI)
-  const particular = (depth: number): number => -3 * cosSun ** 2 * e * Math.exp(-depth / cosSun)
-  const particularSlope = (depth: number): number => 3 * cosSun * e * Math.exp(-depth / cosSun)
+  const particular = (depth: number): number => -3 * cosLight ** 2 * e * Math.exp(-depth / cosLight)
+  const particularSlope = (depth: number): number => 3 * cosLight * e * Math.exp(-depth / cosLight)
   // I − ⅔ I′ = 0 at the top, I + ⅔ I′ = 0 at the bottom, for I = a + b τ + particular.
   const top = -(particular(0) - (2 / 3) * particularSlope(0))
   const bottom = -(particular(whole) + (2 / 3) * particularSlope(whole))

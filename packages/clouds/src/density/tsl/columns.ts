@@ -34,12 +34,16 @@ const LOWEST_COSINE = 0.1
 export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLight: Vec3): Float {
   const { view } = field
   const sum = float(0).toVar()
-  const cosSun = sample.up.dot(toLight).toConst() as Float
-  const slope = cosSun.abs().max(LOWEST_COSINE).toConst() as Float
+  const cosLight = sample.up.dot(toLight).toConst() as Float
+  const slope = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
   forLayers(field, index => {
     const layer = layerAt(field, index)
     const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
-    const above = cosSun.greaterThan(0).select(height.oneMinus(), height).clamp().toConst() as Float
+    const above = cosLight
+      .greaterThan(0)
+      .select(height.oneMinus(), height)
+      .clamp()
+      .toConst() as Float
     If(above.mul(layer.shadow).mul(layer.coverage).greaterThan(0), () => {
       const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
       const way = middle.sub(sample.altitude).max(0).div(slope)

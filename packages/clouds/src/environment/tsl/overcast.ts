@@ -1,4 +1,4 @@
-import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
+import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
 import type { SkyLitPlane } from '@welkin/atmosphere'
 import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
@@ -30,15 +30,15 @@ const LEAST_REACH = 1500
 /** Transmittances of a cloud by Eddington's approximation. Twin: cpu/overcast.ts */
 export function eddington(
   thickness: Float,
-  cosSun: Float,
+  cosLight: Float,
   oneMinusAsymmetry: Float
 ): { diffuse: Float; direct: Float; beam: Float } {
-  const beam = thickness.div(cosSun).negate().exp().toConst() as Float
+  const beam = thickness.div(cosLight).negate().exp().toConst() as Float
   const diffuse = oneMinusAsymmetry.mul(thickness).mul(0.75).add(1).reciprocal().toConst() as Float
-  const direct = cosSun
+  const direct = cosLight
     .mul(0.75)
     .add(0.5)
-    .add(cosSun.mul(-0.75).add(0.5).mul(beam))
+    .add(cosLight.mul(-0.75).add(0.5).mul(beam))
     .mul(diffuse)
     .toConst() as Float
   return { diffuse, direct, beam }
@@ -57,9 +57,9 @@ export function decksAround(
   offset: Vec3,
   altitude: Float,
   up: Vec3,
-  cosSun: Float
+  cosLight: Float
 ): { above: PlacedDeck; below: PlacedDeck } {
-  const mu = cosSun.max(LOWEST_COSINE).toConst() as Float
+  const mu = cosLight.max(LOWEST_COSINE).toConst() as Float
   const distance = offset.length().toConst() as Float
   /** Sums of 1/t − 1 for diffuse light and the sun's, and of tops by the first. */
   const above = vec3(0).toVar() as Vec3
@@ -160,16 +160,16 @@ export function cloudyIrradiance(
 export function overcastIrradiance(
   field: CloudField,
   light: CloudLight,
-  { view, altitude, up, cosSun, cosNormal }: SkyLitPlane,
+  { view, altitude, up, cosLight, cosNormal }: SkyLitPlane,
   offset: Vec3,
   clear: Vec4
 ): Vec4 {
   const { uniforms, transmittance, diffuse } = view.air
-  const { above, below } = decksAround(field, light, offset, altitude, up, cosSun)
+  const { above, below } = decksAround(field, light, offset, altitude, up, cosLight)
   const sunAt = (height: Float): Vec4 =>
-    transmittanceToSun(uniforms, transmittance, height, cosSun).mul(cosSun.max(0)).toConst()
-  const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosSun)
-  const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosSun)
+    transmittanceToLight(uniforms, transmittance, height, cosLight).mul(cosLight.max(0)).toConst()
+  const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
+  const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosLight)
   const lights: ClearLightNodes = {
     sun: { above: sunAt(above.top), below: sunAt(below.top) },
     sky: { here: here.up.toConst(), below: onClouds.up.toConst() },

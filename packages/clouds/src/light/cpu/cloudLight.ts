@@ -70,13 +70,13 @@ export function cloudSource(
     layered * Math.sqrt(1 - sample.cosLight ** 2),
     layered * Math.abs(sample.cosLight) + 1 - layered
   )
-  const cosSun = clamp((layered * sign * sample.cosLight + 1 - layered) / length, 0, 1)
+  const cosLight = clamp((layered * sign * sample.cosLight + 1 - layered) / length, 0, 1)
   const cosView = (layered * sign * sample.cosView + (1 - layered) * cosViewLight) / length
-  const thickness = depthThrough * cosSun
-  const depth = clamp(depthToLight * cosSun, 0, thickness)
-  const m = sampleSunlitSlab(table, depth, thickness, cosSun)
-  const along = cosViewLight - cosView * cosSun
-  const sines = (1 - cosView ** 2) * (1 - cosSun ** 2)
+  const thickness = depthThrough * cosLight
+  const depth = clamp(depthToLight * cosLight, 0, thickness)
+  const m = sampleSunlitSlab(table, depth, thickness, cosLight)
+  const along = cosViewLight - cosView * cosLight
+  const sines = (1 - cosView ** 2) * (1 - cosLight ** 2)
   const diffuse =
     m.s00 +
     m.s10 * cosView +

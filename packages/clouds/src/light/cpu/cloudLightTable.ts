@@ -110,15 +110,19 @@ function sample(
  *
  * @param depth - Scaled depth below the slab's sunward face, along its normal.
  * @param thickness - Scaled optical thickness of the slab.
- * @param cosSun - μ_s against the slab's normal, in [0, 1].
+ * @param cosLight - μ_s against the slab's normal, in [0, 1].
  */
 export function sampleSunlitSlab(
   data: Float32Array,
   depth: number,
   thickness: number,
-  cosSun: number
+  cosLight: number
 ): SourceMoments {
-  const place: [number, number, number] = [slabColumn(depth, thickness), slabRow(thickness), cosSun]
+  const place: [number, number, number] = [
+    slabColumn(depth, thickness),
+    slabRow(thickness),
+    cosLight
+  ]
   const [s00, s10, s20, s11] = sample(data, place, 0)
   const [s21, s22] = sample(data, place, suns)
   return { s00, s10, s20, s11, s21, s22 }

@@ -119,15 +119,15 @@ class AzimuthMode {
     )
 
     return {
-      fromSun: cosSun => {
+      fromSun: cosLight => {
         // Where the beam resonates with a mode the solution is finite, but not by this formula.
         const resonates = (rate: number): boolean =>
           rates.some(mode => Math.abs(mode / rate - 1) < 1e-7)
-        let rate = 1 / cosSun
+        let rate = 1 / cosLight
         while (resonates(rate)) rate *= 1 + 3e-7
         // The solution that goes with the beam of sunlight, of unit irradiance on a plane across it.
         const azimuth = this.#m === 0 ? 1 : 2
-        const strength = polynomials.map(polynomial => (azimuth * polynomial(cosSun)) / Math.PI)
+        const strength = polynomials.map(polynomial => (azimuth * polynomial(cosLight)) / Math.PI)
         const [even, odd] = [0, 1].map(parity =>
           rates.map((_, j) =>
             this.#sources.reduce(
@@ -163,7 +163,7 @@ class AzimuthMode {
 
 /** Terms of the source by depth and l − m. */
 interface SlabMode {
-  fromSun: (cosSun: number) => number[][]
+  fromSun: (cosLight: number) => number[][]
   fromAbove: () => number[][]
 }
 
@@ -173,9 +173,9 @@ export interface Slab {
    * Source of light that was scattered at least once before, for unit irradiance of the sun on a
    * plane across its rays.
    *
-   * @param cosSun - μ_s, in (0, 1].
+   * @param cosLight - μ_s, in (0, 1].
    */
-  fromSun: (cosSun: number) => SourceMoments[]
+  fromSun: (cosLight: number) => SourceMoments[]
   /** Source of scattered light, all orders, under an isotropic sky of radiance 1 above the slab. */
   fromAbove: () => Pick<SourceMoments, 's00' | 's10' | 's20'>[]
 }
@@ -205,8 +205,8 @@ export class SlabSolver {
   slab(thickness: number, depths: readonly number[]): Slab {
     const modes = this.#modes.map(mode => mode.slab(thickness, depths))
     return {
-      fromSun: cosSun => {
-        const [zeroth, first, second] = modes.map(mode => mode.fromSun(cosSun))
+      fromSun: cosLight => {
+        const [zeroth, first, second] = modes.map(mode => mode.fromSun(cosLight))
         return zeroth.map(([s00, s10, s20], i) => {
           const [s11, s21] = first[i]
           return { s00, s10, s20, s11, s21, s22: second[i][0] }

@@ -1,4 +1,4 @@
-import { horizontalIrradiance, transmittanceToSun } from '@welkin/atmosphere'
+import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
 import { If } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudSample } from '../../density/tsl/sample'
@@ -23,8 +23,8 @@ export interface CloudShares {
 /** The light of a place: the moon where it is night, or else the sun. */
 function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample): ShadingLight {
   const { view, night } = field
-  const isMoonlit = isNight(field, up.dot(view.sunDirection)).toConst()
-  const direction = isMoonlit.select(night.moonDirection, view.sunDirection).toConst() as Vec3
+  const isMoonlit = isNight(field, up.dot(view.lightDirection)).toConst()
+  const direction = isMoonlit.select(night.moonDirection, view.lightDirection).toConst() as Vec3
   const isMapped = isMoonlit.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
   const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
   return { direction, isMapped, cosine }
@@ -72,13 +72,13 @@ export function shade(field: CloudField, { altitude, up }: CloudSample, shares: 
   const { night } = field
   const litFrom = (direction: Vec3): { cosine: Float; light: Vec4 } => {
     const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
-    const direct = transmittanceToSun(uniforms, transmittance, altitude, cosine).mul(shares.x)
+    const direct = transmittanceToLight(uniforms, transmittance, altitude, cosine).mul(shares.x)
     if (diffuse === null) return { cosine, light: direct }
     const irradiance = horizontalIrradiance(uniforms, diffuse, altitude, cosine)
     const ambient = irradiance.up.mul(shares.y).add(irradiance.down.mul(shares.z))
     return { cosine, light: direct.add(ambient.div(Math.PI)) }
   }
-  const sun = litFrom(view.sunDirection)
+  const sun = litFrom(view.lightDirection)
   const light = sun.light.mul(view.source.irradiance).toVar() as Vec4
   If(isNight(field, sun.cosine), () => {
     const moonlight = litFrom(night.moonDirection).light.mul(night.moonIrradiance)

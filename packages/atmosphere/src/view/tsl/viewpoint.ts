@@ -2,10 +2,10 @@ import type { Float, Vec2 } from '../../tsl-types'
 
 /**
  * What the sky volume needs to know of the place that it is seen from: scalars of the mapped,
- * spherical space. Values come from cpu/eye.ts.
+ * spherical space. Values come from cpu/viewpoint.ts.
  */
-export interface EyeScalars<T> {
-  /** h of the eye, at least 1 m; may be above the air [m]. */
+export interface ViewpointScalars<T> {
+  /** h of the viewpoint, at least 1 m; may be above the air [m]. */
   altitude: T
   /** Distance from the planet's centre [m]. */
   radius: T
@@ -14,9 +14,9 @@ export interface EyeScalars<T> {
   /** Square of that to the top of the air along the level; negative above the air [m²]. */
   toTop: T
   /** μ_s, sun against zenith. */
-  cosSun: T
+  cosLight: T
   /** √(1 − μ_s²). */
-  sinSun: T
+  sinLight: T
   /** Cosine of the zenith angle of the horizon, ≤ 0. */
   cosHorizon: T
   /** Its sine. */
@@ -35,8 +35,8 @@ export interface EyeScalars<T> {
   skyGrowth: T
 }
 
-/** {@link EyeScalars} as shader nodes, and where its sky volume is in the atlas. */
-export interface Eye extends EyeScalars<Float> {
+/** {@link ViewpointScalars} as shader nodes, and where its sky volume is in the atlas. */
+export interface Viewpoint extends ViewpointScalars<Float> {
   /** First texel of the volume's light. */
   lightOrigin: Vec2
   /** First texel of its table of mean extinction. */

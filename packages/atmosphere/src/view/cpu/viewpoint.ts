@@ -1,12 +1,12 @@
 import type { AtmosphereParameters } from '../../parameters/AtmosphereParameters'
-import type { EyeScalars } from '../tsl/eye'
+import type { ViewpointScalars } from '../tsl/viewpoint'
 import { homogeneousHeight } from '../../air/cpu/medium'
 
 /** Growth of the slices along a ray over that of the scale height of molecules: larger puts more slices low. */
 const STEP_GROWTH = 0.4
 
-/** Eyes lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */
-export const LOWEST_EYE = 1
+/** Viewpoints lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */
+export const LOWEST_VIEWPOINT = 1
 
 function exponent(rise: number, height: number): number {
   const value = Math.min(Math.max((STEP_GROWTH * rise) / height, -4), 4)
@@ -16,17 +16,17 @@ function exponent(rise: number, height: number): number {
 /**
  * Scalars that the sky volume is computed and read with.
  *
- * @param altitude - Of the eye in the mapped space [m].
- * @param cosSun - μ_s at the eye.
+ * @param altitude - Of the viewpoint in the mapped space [m].
+ * @param cosLight - μ_s at the viewpoint.
  */
-export function eyeScalars(
+export function viewpointScalars(
   parameters: AtmosphereParameters,
   altitude: number,
-  cosSun: number
-): EyeScalars<number> {
+  cosLight: number
+): ViewpointScalars<number> {
   const { bottomRadius, topRadius } = parameters
   const thickness = topRadius - bottomRadius
-  const h = Math.max(altitude, LOWEST_EYE)
+  const h = Math.max(altitude, LOWEST_VIEWPOINT)
   // From afar squares of distances cancel in shaders: all must be of the radius that these add up.
   const isFar = h > bottomRadius
   const radius = isFar ? Math.fround(bottomRadius + Math.fround(h)) : bottomRadius + h
@@ -44,8 +44,8 @@ export function eyeScalars(
     radius,
     toHorizon: height * (bottomRadius + radius),
     toTop: (thickness - height) * (topRadius + radius),
-    cosSun,
-    sinSun: Math.sqrt(Math.max(1 - cosSun ** 2, 0)),
+    cosLight,
+    sinLight: Math.sqrt(Math.max(1 - cosLight ** 2, 0)),
     cosHorizon: -Math.sin(dip),
     sinHorizon,
     belowScale: 1 / Math.tan((Math.PI / 2 - dip) / 2),
