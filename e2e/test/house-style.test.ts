@@ -18,7 +18,7 @@ const published = sources.filter(({ path }) => /^packages\/[^/]+\/src\//.test(pa
 /** Lines that a file may have: shader functions about 200, nodes about 350, anything 500. */
 function mostLines(path: string): number {
   if (!path.includes('/src/')) return 500
-  return path.includes('/tsl/') ? 220 : 360
+  return path.includes('/tsl/') ? 230 : 375
 }
 
 it('no file is longer than a reader takes in', () => {

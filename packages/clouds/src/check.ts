@@ -12,7 +12,7 @@ export function checkRanges<K extends string>(
   }
 }
 
-/** What a name stands for. @throws If it is none of the names. */
+/** Value that a name stands for. @throws If it is none of the names. */
 export function named<T extends object>(
   where: string,
   what: string,

@@ -112,7 +112,7 @@ class Workshop {
 export class DiffuseLightTable {
   /** Columns and rows of the table [texels]. */
   static readonly size = [WIDTH, HEIGHT] as const
-  /** Where the table is kept: tiles as `DIFFUSE_LAYOUT` has them; values × `RADIANCE_SCALE`. */
+  /** Region of the atlas that holds the table: tiles as `DIFFUSE_LAYOUT` has them; values × `RADIANCE_SCALE`. */
   readonly region: TableRegion
   readonly #uniforms: AtmosphereUniforms
   readonly #transmittance: Table

@@ -92,7 +92,7 @@ export class HeightFog implements SkyLayer {
     }))
   }
 
-  /** What lights it besides the sun. */
+  /** Sources of light besides the sun. */
   get sources(): readonly LightSource[] {
     return this.#options.sources
   }

@@ -122,7 +122,7 @@ export class PlanetGround implements SkyLayer {
     return this.#options.surface
   }
 
-  /** Where open water is; shared, not owned. */
+  /** Mask of open water; shared, not owned. */
   get water(): Texture | null {
     return this.#options.water
   }

@@ -26,7 +26,7 @@ export class Flare {
   declare innerStrength: number
   declare outerPower: number
   declare outerStrength: number
-  /** What shaders read. */
+  /** Strengths as shaders read them. */
   readonly uniforms = {
     innerPower: scalar(),
     innerStrength: scalar(),

@@ -157,7 +157,7 @@ const FIELDS: {
 
 const CLASS = 'AtmosphereParameters'
 
-/** What may be set. */
+/** Names of all options. */
 const NAMES = [...Object.keys(FIELDS), 'turbidity', 'ozone']
 
 /** Fields, with those that turbidity and ozone stand for. */

@@ -90,7 +90,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
     return passOf(this.colorNode) ?? passOf(this.depthNode)
   }
 
-  /** What was drawn, with the alpha that the pass left where effects in between have made it 1. */
+  /** Colour that was drawn, with the alpha that the pass left where effects in between have made it 1. */
   #color(): Vec4 {
     const color = vec4(this.colorNode as Vec4).toConst() as Vec4
     const pass = this.#pass

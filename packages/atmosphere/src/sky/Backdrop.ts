@@ -12,7 +12,7 @@ export function passOf(node: Node): PassNode | null {
   return (passNode as { isPassNode?: boolean } | undefined)?.isPassNode === true ? passNode! : null
 }
 
-/** What a pass's colour is where nothing was drawn, so that the sky can be put in its place. */
+/** Colour of a pass where nothing was drawn, so that the sky can be put in its place. */
 export class Backdrop {
   /** Linear colour as it is in the pass's texture, and alpha. */
   readonly color = uniform(new Vector4()).setGroup(renderGroup)

@@ -25,7 +25,7 @@ export const VOLUMES_WIDTH = ABREAST * (2 * LIGHT_COLUMNS + GAP)
 const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
 const vector = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
 
-/** Where a volume lies in its atlas: the first texels of its light and of its depth. */
+/** Place of a volume in its atlas: the first texels of its light and of its depth. */
 export interface VolumeOrigins {
   readonly light: Vector2
   readonly depth: Vector2
@@ -72,7 +72,7 @@ export interface SkyVolume extends VolumeOrigins {
   lastUsed: number
 }
 
-/** What else there is in the atlas of the volumes [texels]. */
+/** Room that other tables leave to volumes in the atlas [texels]. */
 export interface AtlasLayout {
   /** Row that volumes begin at. */
   readonly top: number
@@ -99,7 +99,7 @@ export class SkyVolumes {
   readonly #viewpoint = new ViewpointUniforms()
   readonly #depthPass: FragmentPass
   readonly #segmentPass: FragmentPass
-  /** Of molecules and of aerosols. */
+  /** Passes that sum segments: for molecules, and for aerosols. */
   readonly #sumPasses: readonly FragmentPass[]
   #uses = 0
 

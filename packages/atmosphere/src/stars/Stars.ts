@@ -18,7 +18,7 @@ const MASKING_RATIO = 100
 
 /** Options of {@link Stars}. */
 export interface StarsOptions {
-  /** What is drawn; by default the bright stars, which only `stars()` adds to a bundle. */
+  /** Stars to draw; by default the bright ones, which only `stars()` adds to a bundle. */
   catalogue?: readonly Star[]
   /** Leaves the drawing to `starsOverlay`, after post-processing. Default false. */
   overlay?: boolean

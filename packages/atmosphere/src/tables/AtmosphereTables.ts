@@ -17,7 +17,7 @@ import {
   VOLUME_SLOTS
 } from './tableSizes'
 
-/** Where the tables are in the atlas, in a row at its top, and where volumes find room beside them [texels]. */
+/** Layout of the atlas: tables in a row at its top, and room for volumes beside them [texels]. */
 const DIFFUSE_X = TRANSMITTANCE_SIZE[0] + GAP
 const DEPTH_X = DIFFUSE_X + DiffuseLightTable.size[0] + GAP
 const DEPTH_Y = DEPTH_SIZE[1] + 1 + GAP
@@ -39,7 +39,7 @@ export class AtmosphereTables {
     this.atlas.region(DIFFUSE_X, 0, ...DiffuseLightTable.size),
     this.transmittance.region
   )
-  /** What shaders read of the tables. */
+  /** Tables as shaders read them. */
   readonly air: Air = {
     uniforms: this.uniforms,
     transmittance: this.transmittance.region,
@@ -63,7 +63,7 @@ export class AtmosphereTables {
   #reading: Promise<void> | null = null
   /** Those besides the sun that there are volumes for. */
   readonly #sources = new Set<object>()
-  /** Whether the atlas grew since it was filled. */
+  /** True when the atlas grew since it was filled. */
   #isLost = false
 
   /**

@@ -43,7 +43,7 @@ function depthToTop(air: Air, altitude: Float, cosView: Float): Vec4 {
  * underflows, and is nearly linear between texels.
  */
 export class TransmittanceTable {
-  /** Where the table is kept. */
+  /** Region of the atlas that holds the table. */
   readonly region: TableRegion
   readonly #pass: FragmentPass
 

@@ -48,7 +48,7 @@ export interface PointRay extends LayerRay {
  * plane reflects is.
  */
 export interface SkyLayer {
-  /** Whether {@link background} only adds light and hides nothing. */
+  /** True if {@link background} only adds light and hides nothing. */
   readonly isAdditive?: boolean
   /** Called before it is added. @throws If it cannot be added to this atmosphere. */
   attach?(atmosphere: ViewedAtmosphere): void

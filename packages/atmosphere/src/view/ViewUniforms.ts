@@ -19,7 +19,7 @@ export class ViewUniforms {
   /** Camera of the view; null for whichever renders. */
   readonly camera: Camera | null
   readonly air: Air
-  /** Where its sky volumes are kept. */
+  /** Atlas of its sky volumes. */
   readonly volume: Texels
   readonly viewpoint = new ViewpointUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */

@@ -107,12 +107,12 @@ export class CloudLightTable {
     return this.#phase
   }
 
-  /** Whether the table is not yet that of the phase function. */
+  /** True while the table is not yet that of the phase function. */
   get isDirty(): boolean {
     return this.#steps !== null
   }
 
-  /** Whether there is a table, of this phase function or the one before. */
+  /** True once there is a table, of this phase function or the one before. */
   get isReady(): boolean {
     return this.texture.version > 1
   }

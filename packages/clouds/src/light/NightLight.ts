@@ -86,7 +86,7 @@ export class NightLight {
     this.skyRadiance.value.fromArray(values)
   }
 
-  /** Whether the moon lights the clouds where the camera is. */
+  /** True if the moon lights the clouds where the camera is. */
   isMoonlitAt({ up, lightDirection }: AtmosphereView): boolean {
     const isNight = this.isVisible.value === 1 && up.dot(lightDirection) < this.nightfall.value
     return isNight && this.moonIrradiance.value.y > 0

@@ -42,7 +42,7 @@ export interface CloudsOptions {
   light?: CloudLightTable
 }
 
-/** What the picture shows instead of clouds, for looking into them: white is most. */
+/** Quantity shown instead of clouds, for debugging: white is most. */
 export type CloudsDebug =
   /** How opaque they are, all along the line of sight. */
   | 'density'
@@ -78,7 +78,7 @@ export class CloudsNode extends AtmosphereNode {
     return 'CloudsNode'
   }
 
-  /** What was drawn, air and sky included: linear colour. */
+  /** Colour that was drawn, air and sky included; linear. */
   colorNode: Node
   /** Its depth, as the renderer writes it. */
   depthNode: Node
@@ -88,7 +88,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly light: CloudLightTable
   /** Optical depths towards the sun about the camera. */
   readonly shadows: CloudShadowMap
-  /** Whether pixels remember what was marched before; without, pictures are coarse. */
+  /** Temporal accumulation on or off; without it, pictures are coarse. */
   accumulates = true
   /** After `dispose`: it casts no shadows any more. */
   isDisposed = false
@@ -170,7 +170,7 @@ export class CloudsNode extends AtmosphereNode {
     this.light.bake()
   }
 
-  /** Whether there is noise to make clouds of. Before, the sky is clear; {@link bake} makes all at once. */
+  /** True once there is noise to make clouds of. Before, the sky is clear; {@link bake} makes all at once. */
   get isReady(): boolean {
     return this.field.noise.isReady
   }
@@ -199,7 +199,7 @@ export class CloudsNode extends AtmosphereNode {
     this.field.night.illuminance = illuminance
   }
 
-  /** What is shown instead of clouds; null, the default, for clouds. */
+  /** Debug view shown instead of clouds; null, the default, for clouds. */
   get debugView(): CloudsDebug | null {
     return debugViews[this.#debug.value]
   }
@@ -318,7 +318,7 @@ export class CloudsNode extends AtmosphereNode {
   }
 }
 
-/** Of a texture; or one for all pixels. */
+/** True for the depth of a texture, or one depth for all pixels. */
 function isDepth(node: Node): boolean {
   const value = (node as TextureNode | null)?.value as DepthTexture | number | undefined
   return typeof value === 'number' || value?.isDepthTexture === true
@@ -328,7 +328,7 @@ function isPerspective(camera: Camera): camera is PerspectiveCamera {
   return (camera as PerspectiveCamera | undefined)?.isPerspectiveCamera === true
 }
 
-/** Of what is drawn into [pixels]. */
+/** Size of the target that is drawn into [pixels]. */
 function sizeOf(renderer: Renderer): { width: number; height: number } {
   const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
   return { width: Math.max(width, 1), height: Math.max(height, 1) }

@@ -189,7 +189,7 @@ export class FrameUniforms {
     this.#count++
   }
 
-  /** Whether camera, light or clouds have jumped, so that history is of no use. */
+  /** True if camera, light or clouds have jumped, so that history is of no use. */
   #isCut(height: number, { drifts }: CloudField): boolean {
     const last = this.#camera
     const farthest = Math.max(CUT_HEIGHTS * Math.abs(height), CUT_METRES)

@@ -5,7 +5,7 @@ import type { Backdrop } from '../Backdrop'
 /** Linear colour below which a backdrop is as good as black. */
 const BLACK = 1e-4
 
-/** What was drawn in a pixel, without the backdrop. */
+/** Colour and coverage of a pixel's objects, without the backdrop. */
 export interface Foreground {
   /** Linear colour times {@link coverage}. */
   light: Vec3

@@ -1,8 +1,7 @@
 import type { Float, Vec2 } from '../../tsl-types'
 
 /**
- * What the sky volume needs to know of the place that it is seen from: scalars of the mapped,
- * spherical space. Values come from cpu/viewpoint.ts.
+ * Viewpoint of a sky volume: scalars of the mapped, spherical space. Values come from cpu/viewpoint.ts.
  */
 export interface ViewpointScalars<T> {
   /** h of the viewpoint, at least 1 m; may be above the air [m]. */

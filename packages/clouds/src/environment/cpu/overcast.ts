@@ -74,13 +74,13 @@ export function stackDecks(
 
 /** Light about a plane, of unit irradiance of the sun on a plane across its rays, at one wavelength. */
 export interface ClearLight {
-  /** Of the sun on level planes: at the plane, above the clouds over it, and on the clouds below it. */
+  /** Direct irradiance of level planes: above the clouds over the plane, and on the clouds below it. */
   readonly sun: { readonly above: number; readonly below: number }
-  /** Of the sky on level planes: there, and on the clouds below. */
+  /** Sky irradiance of level planes: there, and on the clouds below. */
   readonly sky: { readonly here: number; readonly below: number }
-  /** On a level plane that faces down there. */
+  /** Irradiance of a level plane there that faces down. */
   readonly ground: number
-  /** Of the plane itself. */
+  /** Sky irradiance of the plane itself. */
   readonly plane: number
   readonly albedo: number
 }
@@ -101,7 +101,7 @@ export function cloudyIrradiance(
   cosNormal: number
 ): number {
   const { sun, sky, albedo } = clear
-  /** What goes up of a flux down: by the clouds below, and by white ground among whose light it counts. */
+  /** Flux that goes up for a flux down: off the clouds below, and off white ground under them. */
   const reflect = (diffuse: number, beam: number): { clouds: number; ground: number } => {
     const clouds = diffuse * (1 - below.diffuse) + beam * (1 - below.direct)
     let ground = 0

@@ -10,13 +10,13 @@ import { forLayers, layerAt } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
 import { weatherAt } from '../../density/tsl/weather'
 
-/** What light does to clouds one above the other: parts of unit flux. Twin: cpu/overcast.ts */
+/** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: cpu/overcast.ts */
 export interface CloudDeckNodes {
-  /** Of diffuse light that passes. */
+  /** Part of diffuse light that passes. */
   diffuse: Float
-  /** Of the sun's rays that passes, diffusely or not. */
+  /** Part of direct light that passes, scattered or not. */
   direct: Float
-  /** Of the sun's rays that passes without scattering. */
+  /** Part of direct light that passes without scattering. */
   beam: Float
 }
 
@@ -128,7 +128,7 @@ export function cloudyIrradiance(
   cosNormal: Float
 ): Vec4 {
   const reflected = below.diffuse.oneMinus().toConst() as Float
-  /** Of light on the ground that leaves the clouds over it. */
+  /** Part of the light on the ground that leaves the clouds over it. */
   const escaping = albedo.mul(reflected).oneMinus().reciprocal().mul(below.diffuse)
   const whiteness = albedo.mul(escaping).mul(below.diffuse).add(reflected)
   const passing = sun.above.mul(above.direct).add(sky.here.mul(above.diffuse))
@@ -151,8 +151,8 @@ export function cloudyIrradiance(
 }
 
 /**
- * What clouds make of the light of sky and ground on a plane, for unit irradiance of the sun, or of
- * whichever source the plane is lit by.
+ * Irradiance of a plane by sky and ground under and over clouds, for unit irradiance of the source of
+ * light, sun or moon.
  *
  * @param offset - From the field's camera, in the mapped space [m].
  * @param clear - What it is without clouds.

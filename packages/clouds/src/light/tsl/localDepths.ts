@@ -32,7 +32,7 @@ const ABOVE = 0.35
 export interface LocalDepths {
   /** From the sample to the light. */
   toLight: Float
-  /** Of all clouds on the ray of light through the sample. */
+  /** Optical depth of all clouds on the ray of light through the sample. */
   through: Float
   above: Float
   below: Float

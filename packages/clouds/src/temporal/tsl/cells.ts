@@ -46,7 +46,7 @@ const CORNERS = [
   [1, 1]
 ] as const
 
-/** Whether no corner sees a cloud. */
+/** True if no corner sees a cloud. */
 export const isClear = ({ y: transmittance }: Vec4): Bool =>
   transmittance.greaterThan((ALL_CLEAR + NOT_CLEAR) / 2)
 
