@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import { NearestFilter, UnsignedByteType } from 'three'
-import type { RenderTarget } from 'three'
+import type { RenderTarget, Texture } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
@@ -32,6 +32,10 @@ function texturesOf({ textures }: RenderTarget): CloudTargets {
   const [light, distances] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
   return { light, distances }
 }
+
+/** A texture as a node whose `value` may be another one later. */
+const textureNode = (value: Texture): LevelTexture<Vec2> & { value: Texture } =>
+  texture(value) as unknown as LevelTexture<Vec2> & { value: Texture }
 
 /** Marches one pixel of each block: light with the air in front of it, and its distances. */
 function marchPixels(scene: CloudScene, emptyDistance: LevelTexture<Vec2>): TwoOutputs {
@@ -80,12 +84,15 @@ export class CloudRenderer {
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
-  /** Marched pixels of the latest frame. */
-  readonly marched = texturesOf(this.#marchedTarget)
-  /** Both accumulated targets: the shader chooses by {@link current}. */
-  readonly accumulated: readonly CloudTargets[] = this.#accumulatedTargets.map(texturesOf)
-  /** Index of the latest one. */
-  current = 0
+  readonly #marched = texturesOf(this.#marchedTarget)
+  /** Accumulated light of the latest frame: the node stays, its texture changes. */
+  readonly light = textureNode(this.#accumulatedTargets[0].textures[0])
+  /** Distances of the latest frame, for debug views: accumulated, or marched if {@link showsMarched}. */
+  readonly distances = textureNode(this.#accumulatedTargets[0].textures[1])
+  /** Choice of {@link distances}. */
+  showsMarched = false
+  /** Index of the accumulated target that was drawn last. */
+  #current = 0
 
   constructor(scene: CloudScene) {
     const { field, viewRays } = scene
@@ -94,7 +101,7 @@ export class CloudRenderer {
     const emptyDistance = texture(emptyDistances) as unknown as LevelTexture<Vec2>
     this.#conePrepass = new FragmentPass('Welkin.CloudsConePrepass', conePrepass(viewRays))
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, emptyDistance))
-    const { marched } = this
+    const marched = this.#marched
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, marched))
     const cells = texturesOf(this.#cellsTarget)
     this.#upscale = this.#accumulatedTargets.map((_, i) => {
@@ -145,8 +152,12 @@ export class CloudRenderer {
     }
     this.#march.render(renderer, this.#marchedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
-    this.current = 1 - this.current
-    this.#upscale[this.current].render(renderer, this.#accumulatedTargets[this.current])
+    this.#current = 1 - this.#current
+    const target = this.#accumulatedTargets[this.#current]
+    this.#upscale[this.#current].render(renderer, target)
+    const shown = this.showsMarched ? this.#marchedTarget : target
+    this.light.value = target.textures[0]
+    this.distances.value = shown.textures[1]
   }
 
   /** Frees the render targets. */

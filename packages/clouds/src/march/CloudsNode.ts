@@ -19,7 +19,6 @@ import {
   type CloudQualityName
 } from './quality'
 import { unpack } from '../temporal/tsl/packing'
-import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
@@ -99,7 +98,6 @@ export class CloudsNode extends AtmosphereNode {
   readonly #frame = new FrameUniforms()
   #drawnBy: Renderer | null = null
   #renderer: CloudRenderer | undefined
-  readonly #current = uniform(0)
   readonly #exposure = uniform(1)
   readonly #debug = uniform(0)
   #quality: CloudQuality
@@ -239,8 +237,8 @@ export class CloudsNode extends AtmosphereNode {
     this.#renderer.setSize(width, height, this.#quality.block)
     const { version } = light.texture
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
+    this.#renderer.showsMarched = this.debugView === 'steps'
     this.#renderer.render(renderer)
-    this.#current.value = this.#renderer.current
     this.#exposure.value = 1 / this.#frame.gain.value
   }
 
@@ -269,29 +267,22 @@ export class CloudsNode extends AtmosphereNode {
 
   override setup(builder: NodeBuilder): Node {
     this.#renderer ??= this.#createRenderer(builder.renderer)
-    const { marched, accumulated } = this.#renderer
+    const textures = this.#renderer
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
       const at = uv() as unknown as Vec2
-      const latest = (part: keyof CloudTargets): Vec4 => {
-        const value = vec4(0).toVar() as Vec4
-        const [first, second] = accumulated.map(target => () => {
-          value.assign(target[part].sample(at).level(0))
-        })
-        If(this.#current.equal(0), first).Else(second)
-        return value
-      }
-      const clouds = latest('light')
+      const clouds = textures.light.sample(at).level(0).toConst()
       const light = clouds.rgb.mul(this.#exposure)
       const result = vec4(
         color.rgb.mul(clouds.a).add(light),
         color.a.mul(clouds.a).add(clouds.a.oneMinus())
       ).toVar()
       If(this.#debug.greaterThan(0), () => {
-        const { x: distance, z: samples } = unpack(latest('distances'))
+        const distances = textures.distances.sample(at).level(0).toConst()
+        const { x: distance, z: samples } = unpack(distances)
         const views = [
           clouds.a.oneMinus(),
-          marched.distances.sample(at).level(0).w,
+          distances.w,
           exp2(distance).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
           samples.abs().div(32)
         ]
