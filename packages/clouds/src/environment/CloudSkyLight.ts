@@ -8,6 +8,9 @@ import { overcastIrradiance } from './tsl/overcast'
 import type { Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 
+/** Light that clouds give each probe now. */
+const _ofProbe = new WeakMap<SkyLightProbe, CloudSkyLight>()
+
 /**
  * Clouds in the light of the sky on surfaces: see {@link cloudSkyLight}.
  */
@@ -24,6 +27,9 @@ export class CloudSkyLight {
     if (probe?.overcast === undefined) {
       fail('CloudSkyLight', 'probe must be a SkyLightProbe', probe)
     }
+    // The light of clouds that are gone makes room by itself.
+    const before = _ofProbe.get(probe)
+    if (before?.clouds.isDisposed === true) before.dispose()
     if (probe.overcast !== null) {
       fail('CloudSkyLight', 'probe must have no other CloudSkyLight: dispose of that first', probe)
     }
@@ -34,6 +40,7 @@ export class CloudSkyLight {
     this.probe = probe
     this.clouds = clouds
     this.#overcast = probe.overcast = (plane, clear) => this.#light(plane, clear)
+    _ofProbe.set(probe, this)
   }
 
   /** How far clouds change the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */

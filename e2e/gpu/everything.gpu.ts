@@ -1,0 +1,275 @@
+import {
+  Atmosphere,
+  MoonDirectionalLight,
+  NightLightProbe,
+  SkyLightProbe,
+  Stars,
+  SunDirectionalLight,
+  aerialPerspective,
+  aerialPerspectiveFog,
+  airglow,
+  distanceFog,
+  heightFog,
+  milkyWay,
+  moon,
+  planetGround,
+  proceduralStars,
+  skyBackground,
+  skyEnvironment,
+  starsOverlay,
+  sunFlare
+} from '@welkin/atmosphere'
+import { cloudEnvironment, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudQuality } from '@welkin/clouds'
+import {
+  BoxGeometry,
+  DataTexture,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  Mesh,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  RepeatWrapping,
+  Scene
+} from 'three'
+import type { DirectionalLight, Light, Texture } from 'three'
+import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
+import { pass, shadow } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { drawForward, drawToFloat, expectLight, random } from './harness/atmosphere'
+import type { GpuContext } from './harness/context'
+import { expectTrue } from './harness/expect'
+import { gpuTest } from './harness/gpu-test'
+import { nextFrame } from './harness/graphics'
+import { watchFragmentShaders, type FragmentShader } from './harness/shaders'
+import { worldMap } from './harness/cloud-scene'
+
+const size = { width: 32, height: 18 }
+const coarse: CloudQuality = {
+  steps: 24,
+  stepGrowth: 0.1,
+  shortestStep: 60,
+  layerSteps: 4,
+  lightSteps: 1,
+  block: 2
+}
+
+/** Textures that a stage may sample on WebGPU's default limits and on WebGL2. */
+const LIMIT = 16
+/** Most that a pass of Welkin's own may sample, so that users have room. */
+const OWN_LIMIT = 14
+/** Name of the material that lights and shadows fall on. */
+const LIT = 'lit'
+
+/** A small picture, other than all others. */
+function picture(seed: number): DataTexture {
+  const next = random(seed)
+  const bytes = Uint8Array.from({ length: 4 * 16 * 8 }, () => 255 * next())
+  const made = new DataTexture(bytes, 16, 8)
+  made.wrapS = RepeatWrapping
+  made.minFilter = LinearMipmapLinearFilter
+  made.magFilter = LinearFilter
+  made.generateMipmaps = true
+  made.needsUpdate = true
+  return made
+}
+
+/** All that there is, in one scene. */
+class World {
+  readonly atmosphere = new Atmosphere().place({ longitude: 8, latitude: 46 })
+  readonly scene = new Scene()
+  readonly camera = new PerspectiveCamera(70, size.width / size.height, 1, 1e7)
+  readonly luna = moon({ mapSize: 64 })
+  readonly pictures: readonly Texture[] = Array.from({ length: 9 }, (_, i) => picture(i))
+  readonly cloudMap = worldMap()
+  readonly #pass = pass(this.scene, this.camera, { samples: 0 })
+  readonly #pipeline: RenderPipeline
+  readonly #clouds
+  readonly #cloudEnvironment
+  readonly #environment
+  readonly #owned: { dispose(): void }[] = []
+
+  /** @param isMapped - Whether clouds have a map of the world; else the lit material has six of its own. */
+  constructor(
+    readonly renderer: WebGPURenderer,
+    isMapped: boolean
+  ) {
+    const { atmosphere, camera, luna, pictures } = this
+    renderer.shadowMap.enabled = true
+    const [surface, water, nightLights] = pictures
+    const catalogue = proceduralStars({ count: 50 })
+    atmosphere.luminanceScale = 1e-4
+    atmosphere.add(
+      sunFlare(),
+      milkyWay(),
+      new Stars({ catalogue }),
+      new Stars({ catalogue, overlay: true }),
+      luna,
+      airglow(),
+      planetGround({ surface, water, nightLights }),
+      heightFog({ density: 1e-4, sources: [luna.source] }),
+      distanceFog({ density: 1e-5 })
+    )
+    const depth = this.#pass.getTextureNode('depth')
+    const air = aerialPerspective(this.#pass.getTextureNode(), depth, camera, atmosphere)
+    const layers = cloudPreset('mixed', 4)
+    layers.at(3).set({ baseAltitude: 6000, topAltitude: 6500, coverage: 0.3 })
+    this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
+      quality: coarse,
+      worldMap: isMapped ? this.cloudMap : null
+    })
+    this.#clouds.time = 0
+    this.#cloudEnvironment = cloudEnvironment(this.#clouds, { size: 16, quality: coarse })
+    this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 256 })
+    this.scene.environmentNode = this.#environment
+    this.#addLights()
+    this.#addThings(isMapped ? [] : this.pictures.slice(3))
+    this.#pipeline = new RenderPipeline(renderer)
+    this.#pipeline.outputColorTransform = false
+    this.#pipeline.outputNode = starsOverlay(this.#clouds, depth, camera, atmosphere)
+  }
+
+  #addLights(): void {
+    const { atmosphere, luna } = this
+    const sun = new SunDirectionalLight(atmosphere, 200)
+    const moonlight = new MoonDirectionalLight(atmosphere, luna, 200)
+    for (const light of [sun, moonlight] as DirectionalLight[]) {
+      light.castShadow = true
+      light.shadow.mapSize.setScalar(64)
+    }
+    const cascades = new CSMShadowNode(sun, { cascades: 4, maxFar: 400 })
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(this.#clouds, cascades) })
+    Object.assign(moonlight.shadow, {
+      shadowNode: cloudShadow(this.#clouds, shadow(moonlight), luna.source)
+    })
+    const probes = [new SkyLightProbe(atmosphere), new SkyLightProbe(atmosphere, luna.source)]
+    for (const probe of probes) cloudSkyLight(probe, this.#clouds)
+    const lights: Light[] = [sun, moonlight, ...probes, new NightLightProbe(atmosphere)]
+    this.scene.add(...lights)
+    this.#owned.push(sun, moonlight)
+  }
+
+  #addThings(maps: readonly Texture[]): void {
+    const material = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
+    const names = ['map', 'normalMap', 'roughnessMap', 'metalnessMap', 'aoMap', 'emissiveMap']
+    maps.forEach((map, i) => Object.assign(material, { [names[i]]: map }))
+    const box = new Mesh(new BoxGeometry(20, 20, 20), material)
+    box.position.set(0, 8, -60)
+    box.castShadow = true
+    const floor = new Mesh(new PlaneGeometry(400, 400), material)
+    floor.rotation.x = -Math.PI / 2
+    for (const mesh of [box, floor]) mesh.receiveShadow = true
+    this.scene.add(box, floor)
+    this.#owned.push(material, box.geometry, floor.geometry)
+  }
+
+  /** Looks at the horizon from an altitude, or down a little [m]. */
+  look(altitude: number): void {
+    this.camera.position.set(0, altitude, 40)
+    this.camera.lookAt(0, altitude > 1e5 ? -2e6 : altitude, -1e7)
+    this.camera.updateMatrixWorld()
+  }
+
+  /** Sun and moon by their elevations [°]; without the moon's, it is in front of the sun. */
+  setLights(sun: number, moonAt: number | null): void {
+    const { atmosphere, luna } = this
+    atmosphere.setSunAngles(moonAt ?? 0, 20)
+    luna.direction = atmosphere.sunDirection
+    atmosphere.setSunAngles(sun, 190)
+    if (moonAt === null) luna.direction = atmosphere.sunDirection
+  }
+
+  /** Draws some frames by the pipeline, of which the last is read back. */
+  async draw(frames: number) {
+    for (let i = 1; i < frames; i++) {
+      await nextFrame()
+      this.#pipeline.render()
+    }
+    await nextFrame()
+    return drawToFloat(this.renderer, () => this.#pipeline.render())
+  }
+
+  /** Draws the noise of the clouds, so that they are there from the first frame on. */
+  async prepare(): Promise<void> {
+    await this.#clouds.bake(this.renderer)
+  }
+
+  dispose(): void {
+    this.#environment.dispose()
+    this.#cloudEnvironment.dispose()
+    this.#clouds.dispose()
+    this.#pipeline.dispose()
+    this.#pass.dispose()
+    for (const each of [...this.#owned, ...this.pictures, this.cloudMap]) each.dispose()
+    this.atmosphere.dispose()
+  }
+}
+
+/** Fails if a fragment shader samples more textures than may be; says which sample the most. */
+function checkTextures(t: GpuContext, shaders: readonly FragmentShader[]): void {
+  const counted = shaders.map(({ name, textures, lines }) => ({
+    label: `${name || 'unnamed'}: ${textures} textures, ${lines} lines`,
+    textures,
+    limit: name === LIT ? LIMIT : OWN_LIMIT
+  }))
+  const most = counted.toSorted((a, b) => b.textures - a.textures)
+  t.note(
+    `most textures: ${most
+      .slice(0, 6)
+      .map(({ label }) => label)
+      .join('; ')}`
+  )
+  const over = counted.filter(({ textures, limit }) => textures > limit)
+  expectTrue(over.length === 0, `too many: ${over.map(({ label }) => label).join('; ')}`)
+}
+
+const situations = [
+  { name: 'by day on the ground', sun: 35, moon: 20, altitude: 2 },
+  { name: 'at dusk at 10 km', sun: -4, moon: 20, altitude: 10_000 },
+  { name: 'at night on the ground', sun: -30, moon: 40, altitude: 2 },
+  { name: 'in an eclipse on the ground', sun: 35, moon: null, altitude: 2 },
+  { name: 'by day in orbit', sun: 35, moon: 20, altitude: 400_000 },
+  { name: 'at night in orbit', sun: -60, moon: 60, altitude: 400_000 }
+] as const
+
+gpuTest(
+  'all that there is draws light at once, and no pass samples more than 14 textures',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const shaders = watchFragmentShaders(renderer)
+    const world = new World(renderer, true)
+    await world.prepare()
+    for (const { name, sun, moon: moonAt, altitude } of situations) {
+      world.setLights(sun, moonAt)
+      world.look(altitude)
+      const drawn = await world.draw(2)
+      expectLight(drawn, name)
+      const lit = drawn.data.filter((value, i) => i % 4 < 3 && value > 0).length
+      expectTrue(lit > 0.5 * size.width * size.height, `${name}: light in ${lit} numbers only`)
+    }
+    checkTextures(t, shaders)
+    world.dispose()
+  },
+  { timeoutSeconds: 300 }
+)
+
+gpuTest(
+  'a material with six maps takes haze, environment, shadows of sun, moon and clouds, and probes',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const shaders = watchFragmentShaders(renderer)
+    const world = new World(renderer, false)
+    world.setLights(35, 20)
+    world.look(20)
+    world.scene.backgroundNode = skyBackground(world.atmosphere)
+    world.scene.fogNode = aerialPerspectiveFog(world.atmosphere)
+    const drawn = await drawForward(renderer, world.scene, world.camera, world.atmosphere)
+    expectLight(drawn, 'forward')
+    const [red, green, blue] = drawn.at(size.width >> 1, size.height - 2)
+    expectTrue(red > 0 && green > 0 && blue > 0, `the ground is ${red}, ${green}, ${blue}`)
+    checkTextures(t, shaders)
+    world.dispose()
+  },
+  { timeoutSeconds: 180 }
+)
