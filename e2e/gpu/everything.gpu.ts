@@ -107,7 +107,10 @@ class World {
       new Stars({ catalogue, overlay: true }),
       luna,
       airglow(),
-      planetGround({ surface, water, nightLights }),
+      planetGround({ surface, water, nightLights })
+    )
+    // A moon has a source of light once it is in an atmosphere.
+    atmosphere.add(
       heightFog({ density: 1e-4, sources: [luna.source] }),
       distanceFog({ density: 1e-5 })
     )
