@@ -61,7 +61,13 @@ export function checkPlace(
   if (typeof place !== 'object' || place === null || Array.isArray(place)) {
     fail(where, `${name} must be { longitude, latitude, height } [degrees, metres]`, place)
   }
-  if (isPlain(place)) checkOptions(where, place, 'longitude', 'latitude', 'height')
+  // Places may have names and dates of their own, but no misspelt coordinates.
+  const names = ['longitude', 'latitude', 'height']
+  for (const name of isPlain(place) ? Object.keys(place) : []) {
+    if (!names.includes(name) && nearestName(name, names)) {
+      failUnknown(where, 'option', name, names)
+    }
+  }
   checkFinite(where, 'longitude', place.longitude)
   checkLatitude(where, place.latitude)
   checkFinite(where, 'height', place.height ?? 0)
@@ -118,6 +124,13 @@ export function checkOptions<T extends object>(
   return options
 }
 
+/** Name that another one was probably meant to be; undefined if none is near. */
+function nearestName(name: string, names: readonly string[]): string | undefined {
+  const edits = names.map(other => editsBetween(name.toLowerCase(), other.toLowerCase()))
+  const least = Math.min(...edits)
+  return least <= Math.max(2, name.length / 3) ? names[edits.indexOf(least)] : undefined
+}
+
 /** Says that a name is unknown, and which one was meant or what there are. */
 export function failUnknown(
   where: string,
@@ -125,12 +138,8 @@ export function failUnknown(
   name: string,
   names: readonly string[]
 ): never {
-  const edits = names.map(other => editsBetween(name.toLowerCase(), other.toLowerCase()))
-  const least = Math.min(...edits)
-  const isNear = least <= Math.max(2, name.length / 3)
-  const hint = isNear
-    ? `did you mean '${names[edits.indexOf(least)]}'?`
-    : `there are ${names.join(', ')}`
+  const nearest = nearestName(name, names)
+  const hint = nearest ? `did you mean '${nearest}'?` : `there are ${names.join(', ')}`
   fail(where, `unknown ${kind} '${name}', ${hint}`)
 }
 

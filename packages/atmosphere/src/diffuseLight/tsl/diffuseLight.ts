@@ -10,6 +10,12 @@ import { asinh, sinh } from '../../math/tsl/trigonometry'
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = DIFFUSE_LAYOUT
 
+/**
+ * Distance that look-ups keep from the middles of a tile's outermost texels [texels]: float32 rounds by
+ * less. Beside deepest night lies the next tile's noon, a hundred million times as bright.
+ */
+const INSET = 1 / 1024
+
 type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 
 /** asinh of the sun's cosine, as the table spaces its columns: they crowd about the horizon. */
@@ -40,8 +46,8 @@ export function diffuseLightReader(
   cosLight: Float
 ): (tile: number) => Vec4 {
   const uv = vec2(lightColumn(cosLight), altitudeRow(uniforms, altitude))
-    .mul(vec2(COLUMNS - 1, ROWS - 1))
-    .add(0.5)
+    .mul(vec2(COLUMNS - 1 - 2 * INSET, ROWS - 1 - 2 * INSET))
+    .add(0.5 + INSET)
     .div(vec2(COLUMNS * TILE_COLUMNS, ROWS * TILE_ROWS))
     .toConst()
   return tile => {
