@@ -58,9 +58,7 @@ const SETTINGS = [
 const FULL: Spectrum = [1, 1, 1, 1]
 
 /** The parameters' own figure, WGS84 where they are of the Earth's size, or a sphere. */
-function ellipsoidOf(parameters: AtmosphereParameters): Ellipsoid {
-  checkParameters('Atmosphere', parameters)
-  const { bottomRadius, ellipsoid } = parameters
+function ellipsoidOf({ bottomRadius, ellipsoid }: AtmosphereParameters): Ellipsoid {
   if (ellipsoid !== null) return ellipsoid
   return isNear(bottomRadius, Ellipsoid.WGS84) ? Ellipsoid.WGS84 : new Ellipsoid(bottomRadius)
 }
@@ -102,12 +100,10 @@ export class Atmosphere extends ScenePlanet {
     if (options instanceof AtmosphereParameters) {
       fail('Atmosphere', 'options must be an object: write new Atmosphere({ parameters })', options)
     }
-    const {
-      parameters = new AtmosphereParameters(),
-      ellipsoid = ellipsoidOf(parameters),
-      ...settings
-    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
+    checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
+    const { parameters = new AtmosphereParameters() } = options
     checkParameters('Atmosphere', parameters)
+    const { parameters: _, ellipsoid = ellipsoidOf(parameters), ...settings } = options
     checkEllipsoid('Atmosphere', ellipsoid)
     const { bottomRadius } = parameters
     if (!isNear(bottomRadius, ellipsoid)) {
