@@ -45,7 +45,7 @@ export async function readTexels<T extends Uint8Array | Uint16Array>(
 }
 
 async function keep(renderer: Renderer, region: TableRegion, key: string): Promise<void> {
-  const halves = Array.from(await region.read(renderer), DataUtils.toHalfFloat)
+  const halves = Array.from(await region.read(renderer), half => DataUtils.toHalfFloat(half))
   localStorage.setItem(key, halves.map(half => String.fromCharCode(half)).join(''))
 }
 

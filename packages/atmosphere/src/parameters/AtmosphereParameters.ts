@@ -259,7 +259,9 @@ export class AtmosphereParameters {
    * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
    */
   set(init: AtmosphereParametersInit): this {
-    checkOptions(CLASS, init instanceof AtmosphereParameters ? { ...init } : init, ...NAMES)
+    // Options are plain objects, and a clone's are parameters.
+    const options = init instanceof AtmosphereParameters ? Object.assign({}, init) : init
+    checkOptions(CLASS, options, ...NAMES)
     const next: AtmosphereParametersFields = {}
     for (const [name, value] of Object.entries(fieldsOf(init))) {
       if (value === undefined) continue
@@ -280,7 +282,7 @@ export class AtmosphereParameters {
       }
       Object.assign(next, { [name]: checkedCopy<unknown>(name, value, shape, least, most) })
     }
-    const { bottomRadius, topRadius, mieScattering, mieExtinction } = { ...this, ...next }
+    const { bottomRadius, topRadius, mieScattering, mieExtinction } = Object.assign({}, this, next)
     mieScattering.forEach((value, i) => check('mieScattering', value, 0, mieExtinction[i]))
     next.rayleighLayers?.reduce((below, [base], i) => {
       check(`rayleighLayers[${i}][0]`, base, below, 1e6)

@@ -105,7 +105,7 @@ export class TableRegion implements Table {
     const isBottomUp = backend.isWebGPUBackend !== true
     const first = isBottomUp ? target.height - y - height : y
     const read = await renderer.readRenderTargetPixelsAsync(target, x, first, width, height)
-    const values = Float32Array.from(read, DataUtils.fromHalfFloat)
+    const values = Float32Array.from(read, half => DataUtils.fromHalfFloat(half))
     if (!isBottomUp) return values
     const stride = 4 * width
     return values.map(
