@@ -1,5 +1,6 @@
 export { CloudLayer, type CloudLayerParameters, type CloudWind } from './layers/CloudLayer'
 export { CloudLayers } from './layers/CloudLayers'
+export { cloudLayersFromMETAR, type METAROptions } from './layers/metar'
 export { CloudField, type CloudFieldOptions } from './density/CloudField'
 export { CloudNoise } from './noise/CloudNoise'
 export { cloudPreset, cloudPresetNames, type CloudPresetName } from './layers/presets'

@@ -7,6 +7,7 @@ import {
   CloudLayers,
   CloudLightTable,
   cloudEnvironment,
+  cloudLayersFromMETAR,
   cloudPreset,
   clouds,
   CloudField,
@@ -55,11 +56,24 @@ const cases: [message: string, call: () => unknown][] = [
     () => (layer.wind = wrong({ est: 1, north: 0 }))
   ],
   [
+    "cloudLayersFromMETAR: unknown option 'stationElevaton', did you mean 'stationElevation'?",
+    () => cloudLayersFromMETAR('CAVOK', wrong({ stationElevaton: 0 }))
+  ],
+  [
     "CloudLightTable: unknown option 'forwardAsymetry', did you mean 'forwardAsymmetry'?",
     () => new CloudLightTable(wrong({ forwardAsymetry: 0 }))
   ],
 
   // One thing for another.
+  [
+    'cloudLayersFromMETAR: report must be a string, got undefined',
+    () => cloudLayersFromMETAR(wrong(undefined))
+  ],
+  ["cloudLayersFromMETAR: report must be a METAR, got 'fine'", () => cloudLayersFromMETAR('fine')],
+  [
+    'cloudLayersFromMETAR: stationElevation must be in [-500, 9000], got NaN',
+    () => cloudLayersFromMETAR('CAVOK', { stationElevation: NaN })
+  ],
   ['CloudsNode: layers must be CloudLayers, got a CloudLayer', () => make({}, wrong(layer))],
   [
     'CloudsNode: layers must be CloudLayers, got undefined',

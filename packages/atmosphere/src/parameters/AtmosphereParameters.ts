@@ -260,7 +260,8 @@ export class AtmosphereParameters {
    */
   set(init: AtmosphereParametersInit): this {
     // Options are plain objects, and a clone's are parameters.
-    const options = init instanceof AtmosphereParameters ? Object.assign({}, init) : init
+    const options: AtmosphereParametersInit =
+      init instanceof AtmosphereParameters ? Object.assign({}, init) : init
     checkOptions(CLASS, options, ...NAMES)
     const next: AtmosphereParametersFields = {}
     for (const [name, value] of Object.entries(fieldsOf(init))) {

@@ -1,0 +1,177 @@
+import { checkRange } from '@welkin/atmosphere'
+import { checkOptions, fail } from '@welkin/geo'
+import type { CloudLayerParameters, CloudWind } from './CloudLayer'
+import { CloudLayers } from './CloudLayers'
+import { cloudPreset, type CloudPresetName } from './presets'
+
+/** Options of {@link cloudLayersFromMETAR}. */
+export interface METAROptions {
+  /** Elevation of the aerodrome above the ellipsoid, in [−500, 9000] [m]; default 0. */
+  readonly stationElevation?: number
+  /** How many layers there are at least, to `copy` other reports later; default 1. */
+  readonly count?: number
+}
+
+type Parameters = Partial<CloudLayerParameters>
+
+const WHERE = 'cloudLayersFromMETAR'
+
+/** Where the report proper ends: trends and remarks. */
+const LATER = /\s(?:RMK|TEMPO|BECMG|INTER|NOSIG)\b/
+
+/** What tells a report: its time, or one of the words for a sky without clouds. */
+const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
+
+const WIND = /^(?:(\d{3})P?(\d{2,3})|VRB\d{2,3}|\/{5})(?:GP?\d{2,3})?(KT|MPS)$/
+const CLOUD = /^(FEW|SCT|BKN|OVC|VV|\/{3})([0-5]\d\d|\/{3})(CB|TCU|\/{3})?$/
+
+/** A group of which something is known. */
+const KNOWN = /[^/]/
+
+// What was meant as one of these two; SCTE and VNKT are aerodromes.
+const LIKE_WIND = /^(?:VRB|[\d/]).*(?:KT|MPS)$/
+const LIKE_CLOUD = /^(?:FEW|SCT|BKN|OVC|VV)(?![A-Z]+$)/
+
+/** One knot [m/s]. */
+const KNOT = 1852 / 3600
+
+/** Middles of the ranges of eighths that words stand for; of an unknown amount, SCT's. */
+const eighths: Readonly<Record<string, number>> = { FEW: 1.5, BKN: 6, OVC: 8, VV: 8 }
+const eighthsOf = ([, amount]: Group): number => eighths[amount] ?? 3.5
+
+/** A hundred feet [m]. */
+const HUNDRED_FEET = 30.48
+
+/** Base and vertical visibility where the report has none [hundreds of feet]. */
+const UNKNOWN_BASE = 30
+const UNKNOWN_VISIBILITY = 3
+
+/** Heights above the station at which medium and high clouds begin: WMO's étages of temperate regions [m]. */
+const MEDIUM = 2000
+const HIGH = 6000
+
+/** Thickness of towering cumulus [m]. */
+const TOWERING = 3500
+
+/** Height of a cumulonimbus' top, and its least thickness [m]. */
+const STORM_TOP = 11_000
+const STORM_THICKNESS = 6000
+
+/** Least thickness of other clouds [m]. */
+const LEAST_THICKNESS = 200
+
+/** Optical depth along what is just visible, for the least contrast of 0.05: WMO's visual range. */
+const VISUAL_DEPTH = 3
+
+/** A cloud group: amount, base, kind. */
+type Group = readonly [text: string, amount: string, base: string, kind?: string]
+
+const isTall = ([, , , kind]: Group): boolean => kind === 'CB' || kind === 'TCU'
+
+const preset = (name: CloudPresetName, index = 0): CloudLayerParameters =>
+  cloudPreset(name).at(index).parameters
+
+/** Fog from the ground on, even, in which one sees a distance up [m]. */
+const fog = (visibility: number): Parameters => ({
+  ...preset('overcast'),
+  density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET),
+  profileExponent: 0.3,
+  shapeAmount: 0.2
+})
+
+/** Well-known layer for a cloud at a height above the station [m]. */
+function layerOfKind(group: Group, height: number): Parameters {
+  if (isTall(group)) return preset('cumulonimbus')
+  if (height >= HIGH) return preset('cirrus')
+  const isMedium = height >= MEDIUM
+  const altocumulus = preset('mixed', 1)
+  const { density, wind } = altocumulus
+  const amount = eighthsOf(group)
+  if (amount === 8) return { ...preset('overcast'), ...(isMedium && { density, wind }) }
+  if (isMedium) return altocumulus
+  return preset(amount === 6 ? 'stratocumulus' : 'fairWeather')
+}
+
+function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): Parameters {
+  const [, amount, base, kind] = group
+  const isFog = amount === 'VV'
+  const unknown = isFog ? UNKNOWN_VISIBILITY : UNKNOWN_BASE
+  /** Of the base above the station, or how far one sees up in fog. */
+  const height = HUNDRED_FEET * (base === '///' ? unknown : Number(base))
+  const isLow = height < MEDIUM
+  const layer = isFog ? fog(height) : layerOfKind(group, height)
+  const { baseAltitude: from = 0, topAltitude: to = 0 } = layer
+  const baseAltitude = Math.max(elevation + (isFog ? 0 : height), 0)
+  // Clouds that begin low are shallow.
+  let thickness = isLow ? Math.min(Math.max(height, LEAST_THICKNESS), to - from) : to - from
+  if (kind === 'TCU') thickness = TOWERING
+  if (kind === 'CB') thickness = Math.max(STORM_TOP - baseAltitude, STORM_THICKNESS)
+  return {
+    ...layer,
+    ...(isLow && wind && { wind }),
+    coverage: eighthsOf(group) / 8,
+    baseAltitude,
+    topAltitude: Math.min(baseAltitude + thickness, 30_000)
+  }
+}
+
+/**
+ * Layers of the clouds in an aerodrome's routine report (METAR or SPECI, ICAO's or the USA's).
+ *
+ * ```ts
+ * const report = 'EDDM 221150Z 24008KT 9999 FEW018 SCT035TCU BKN080 10/04 Q1015'
+ * const layers = cloudLayersFromMETAR(report, { stationElevation: 453 })
+ * ```
+ *
+ * A layer per group, in the report's order. Amounts are the middle of their eighths (FEW 1–2, SCT 3–4,
+ * BKN 5–7, OVC 8), bases hundreds of feet above the station, tops guesses: reports have none. Below 2 km
+ * clouds are cumulus, from BKN on stratocumulus, and an overcast; below 6 km altocumulus or altostratus,
+ * above that cirrus. TCU are 3.5 km tall, CB reach 11 km. `VV002` is fog, so thick that one sees 200 ft up.
+ *
+ * The wind moves clouds below 2 km. Where it is variable or unknown, and above, they have their preset's.
+ * An unknown base (`///`) is 3000 ft, an unknown amount SCT; a group of which nothing is known is left out.
+ * Without clouds (`SKC`, `CLR`, `NSC`, `NCD`, `CAVOK`), one layer covers nothing. Of more groups than
+ * `CloudLayers.maxLayers`, those that cover least are left out, CB and TCU last. Trends (`TEMPO`, `BECMG`) and
+ * remarks (`RMK`) are not read.
+ *
+ * @param report - The whole report, or its cloud groups.
+ * @throws Error when it is no report, or a group of wind or clouds is malformed; the message has the group.
+ * @see WMO-No. 306, Manual on Codes, FM 15; FMH-1, Surface Weather Observations and Reports, §12
+ */
+export function cloudLayersFromMETAR(report: string, options: METAROptions = {}): CloudLayers {
+  checkOptions(WHERE, options, 'stationElevation', 'count')
+  const { stationElevation = 0, count = 1 } = options
+  checkRange(WHERE, 'stationElevation', stationElevation, -500, 9000)
+  if (typeof report !== 'string') fail(WHERE, 'report must be a string', report)
+  const groups: Group[] = []
+  let isReport = false
+  let wind: CloudWind | undefined
+  for (const text of report
+    .toUpperCase()
+    .split(LATER)[0]
+    .split(/[\s=$]+/)) {
+    const group = CLOUD.exec(text) as Group | null
+    if (group && KNOWN.test(text)) groups.push(group)
+    if (!group && LIKE_CLOUD.test(text)) fail(WHERE, "clouds must be like 'SCT035TCU'", text)
+    if (LIKE_WIND.test(text)) wind = windOf(text)
+    isReport ||= group !== null || TELLING.test(text)
+  }
+  if (!isReport || /\bNIL\b/i.test(report)) fail(WHERE, 'report must be a METAR', report)
+  const rank = (group: Group): number => eighthsOf(group) + (isTall(group) ? 8 : 0)
+  const ranked = groups.toSorted((a, b) => rank(b) - rank(a))
+  const layers = groups
+    .filter(group => ranked.indexOf(group) < CloudLayers.maxLayers)
+    .map(group => layerOf(group, stationElevation, wind))
+  return new CloudLayers(layers, Math.max(count, 1))
+}
+
+/** Wind of a group such as `24008G18KT`, from 240°; undefined where it is variable or unknown. */
+function windOf(text: string): CloudWind | undefined {
+  const found = WIND.exec(text)
+  const [, from, speed, unit] = found ?? []
+  if (!found || Number(from) > 360) fail(WHERE, "wind must be like '24008KT'", text)
+  if (from === undefined) return undefined
+  const angle = (Number(from) * Math.PI) / 180
+  const metres = -Number(speed) * (unit === 'KT' ? KNOT : 1)
+  return { east: metres * Math.sin(angle), north: metres * Math.cos(angle) }
+}

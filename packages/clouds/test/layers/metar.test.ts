@@ -1,0 +1,200 @@
+import fc from 'fast-check'
+import { describe, expect, it } from 'vitest'
+import { cloudLayersFromMETAR, cloudPreset, type CloudLayerParameters } from '../../src'
+
+const read = (report: string, options = {}): CloudLayerParameters[] =>
+  [...cloudLayersFromMETAR(report, options)].map(({ parameters }) => parameters)
+
+/** Amounts in eighths and bases in hundreds of feet, as a report has them. */
+const groupsOf = (report: string): [number, number][] =>
+  read(report).map(({ coverage, baseAltitude }) => [8 * coverage, Math.round(baseAltitude / 30.48)])
+
+const clear: [number, number][] = [[0, 33]]
+
+const reports: [report: string, groups: [number, number][]][] = [
+  [
+    'EDDM 221150Z 24008KT 9999 FEW018 SCT035TCU BKN080 10/04 Q1015',
+    [
+      [1.5, 18],
+      [3.5, 35],
+      [6, 80]
+    ]
+  ],
+  ['METAR EGLL 221150Z AUTO 21010KT 9999 OVC009 12/10 Q1009 NOSIG=', [[8, 9]]],
+  [
+    'KSFO 221156Z 28014G22KT 10SM FEW008 SCT200 BKN250 14/10 A2997 RMK AO2 SLP148 T01390100 OVC003',
+    [
+      [1.5, 8],
+      [3.5, 200],
+      [6, 250]
+    ]
+  ],
+  ['METAR KJFK 221151Z COR 00000KT 10SM CLR 10/04 A3012', clear],
+  ['LFPG 221200Z VRB02KT CAVOK 21/09 Q1023 NOSIG', clear],
+  ['ENGM 221150Z 01005KT 9999 NSC M02/M08 Q1031', clear],
+  ['EHAM 221155Z AUTO 24008KT 9999 NCD 10/04 Q1015', clear],
+  ['KXYZ 221156Z AUTO 24008KT 10SM 10/04 A2990 RMK AO2 CHINO', clear],
+  [
+    'LFBO 221130Z AUTO 14012KT 9999 FEW030/// BKN045TCU //////CB 18/12 Q1012 TEMPO 30025G45KT BKN012CB',
+    [
+      [1.5, 30],
+      [6, 45],
+      [3.5, 30]
+    ]
+  ],
+  ['EGPC 221150Z AUTO /////KT //// // ////// 10/04 Q1015', clear],
+  [
+    'LSZS 221150Z VRB01KT 9999 SCT/// ///120 02/M04 Q1021',
+    [
+      [3.5, 30],
+      [3.5, 120]
+    ]
+  ],
+  ['UUEE 221130Z 19004MPS 0150 R24C/0400N FG VV002 M01/M01 Q1024 R24C/290050 NOSIG', [[8, 0]]],
+  [
+    'SCTE 221200Z 35012KT 9000 -RA SCT008 BKN020 OVC060 11/10 Q1008',
+    [
+      [3.5, 8],
+      [6, 20],
+      [8, 60]
+    ]
+  ],
+  ['VNKT 221150Z 25006KT 6000 FEW015 20/12 Q1016', [[1.5, 15]]],
+  [
+    'feW018\n sct035tcu',
+    [
+      [1.5, 18],
+      [3.5, 35]
+    ]
+  ]
+]
+
+const malformed = [
+  'SCT35',
+  'SCT0355',
+  'BKN80CB',
+  'OVC',
+  'FEW018CBX',
+  'FEW999',
+  'VV2',
+  'OVCO30',
+  '24008GKT',
+  '999999KT',
+  '36508KT',
+  '240/08KT',
+  'VRBKT'
+]
+
+describe('cloudLayersFromMETAR', () => {
+  it.for(reports)('reads %s', ([report, groups]) => {
+    expect(groupsOf(report)).toEqual(groups)
+  })
+
+  it.for(malformed)('refuses %s', group => {
+    expect(() => read(`EDDM 221150Z 9999 ${group} 10/04 Q1015`)).toThrow(
+      new RegExp(`^cloudLayersFromMETAR: (clouds|wind) must be like .*, got '${group}'$`)
+    )
+  })
+
+  it('refuses what is no report', () => {
+    for (const report of ['', 'overcast', 'EDDM', 'EDDM 221150Z NIL']) {
+      expect(() => read(report)).toThrow(/^cloudLayersFromMETAR: report must .*, got '/)
+    }
+  })
+
+  it('makes clouds of their height and amount what they are in the presets', () => {
+    const [cumulus, altocumulus, cirrus] = cloudPreset('mixed')
+    const found = read('EDDM 221150Z FEW040 BKN100 SCT250')
+    for (const [i, { weatherWeights, density, profileExponent }] of [
+      cumulus,
+      altocumulus,
+      cirrus
+    ].entries()) {
+      expect(found[i]).toMatchObject({ weatherWeights, density, profileExponent })
+    }
+    const [deck] = read('EDDM 221150Z BKN030')
+    expect(deck.weatherWeights).toEqual(cloudPreset('stratocumulus').at(0).weatherWeights)
+    const [grey] = read('EDDM 221150Z OVC030')
+    expect(grey.shapeAmount).toBe(cloudPreset('overcast').at(0).shapeAmount)
+  })
+
+  it('makes TCU and CB tall', () => {
+    const [cumulus, towering, storm] = read('EDDM 221150Z FEW030 SCT030TCU BKN030CB')
+    const thickness = (layer: CloudLayerParameters): number =>
+      layer.topAltitude - layer.baseAltitude
+    expect(thickness(towering)).toBeGreaterThan(3 * thickness(cumulus))
+    expect(storm.topAltitude).toBe(11_000)
+    const [high] = read('SLLP 221150Z BKN030CB', { stationElevation: 4062 })
+    expect(thickness(high)).toBeGreaterThanOrEqual(6000)
+  })
+
+  it('has bases above the station, but not below the ellipsoid', () => {
+    const baseOf = (report: string, stationElevation: number): number =>
+      read(report, { stationElevation })[0].baseAltitude
+    expect(baseOf('EDDM 221150Z FEW010', 453)).toBeCloseTo(453 + 304.8, 9)
+    expect(baseOf('LLMZ 221150Z FEW010', -376)).toBe(0)
+    expect(baseOf('EDDM 221150Z VV001', 453)).toBe(453)
+  })
+
+  it('moves low clouds by the wind, and others by their own', () => {
+    const [low, high] = read('EDDM 221150Z 24010G25KT 9999 FEW018 SCT250')
+    expect(low.wind.east).toBeCloseTo(5.144 * Math.cos(Math.PI / 6), 3)
+    expect(low.wind.north).toBeCloseTo(5.144 / 2, 3)
+    expect(high.wind).toEqual(cloudPreset('cirrus').at(0).wind)
+    const windOf = (wind: string): unknown => read(`EDDM 221150Z ${wind} FEW018`)[0].wind
+    expect(windOf('09010MPS')).toEqual({ east: -10, north: expect.closeTo(0, 9) })
+    expect(windOf('36010MPS')).toEqual({ east: expect.closeTo(0, 9), north: -10 })
+    expect(windOf('18010KT 140V220')).toEqual({
+      east: expect.closeTo(0, 9),
+      north: expect.closeTo(5.144, 3)
+    })
+    const own = cloudPreset('fairWeather').at(0).wind
+    for (const wind of ['VRB03KT', '/////KT', '']) expect(windOf(wind)).toEqual(own)
+  })
+
+  it('has fog in which one sees as far as the report says', () => {
+    for (const [group, metres] of [
+      ['VV001', 30.48],
+      ['VV005', 152.4],
+      ['VV000', 30.48]
+    ] as const) {
+      const [fog] = read(`EDDM 221150Z 0200 FG ${group} 02/02 Q1030`)
+      expect(fog.density * metres).toBeCloseTo(3, 9)
+      expect(fog).toMatchObject({ baseAltitude: 0, coverage: 1 })
+    }
+  })
+
+  it('leaves out what covers least of more than four groups, CB and TCU last', () => {
+    const report = 'KDEN 221156Z FEW008 SCT015 FEW030CB BKN050 OVC120 SCT250'
+    expect(groupsOf(report)).toEqual([
+      [3.5, 15],
+      [1.5, 30],
+      [6, 50],
+      [8, 120]
+    ])
+  })
+
+  it('has layers for later reports', () => {
+    const layers = cloudLayersFromMETAR('LFPG 221200Z CAVOK', { count: 4 })
+    expect(layers.length).toBe(4)
+    layers.copy(cloudLayersFromMETAR('LFPG 221300Z FEW018 SCT035 BKN080 BKN200'))
+    expect(layers.at(3).coverage).toBe(0.75)
+  })
+
+  it('gives valid layers for every group', () => {
+    const group = fc
+      .tuple(
+        fc.constantFrom('FEW', 'SCT', 'BKN', 'OVC', 'VV', '///'),
+        fc.integer({ min: 0, max: 599 }),
+        fc.constantFrom('', 'CB', 'TCU', '///')
+      )
+      .map(([amount, base, kind]) => `${amount}${String(base).padStart(3, '0')}${kind}`)
+    const elevations = fc.double({ min: -500, max: 9000, noNaN: true })
+    fc.assert(
+      fc.property(fc.array(group, { maxLength: 6 }), elevations, (groups, stationElevation) => {
+        const layers = read(`EDDM 221150Z ${groups.join(' ')}`, { stationElevation })
+        expect(layers).toHaveLength(Math.min(Math.max(groups.length, 1), 4))
+      })
+    )
+  })
+})
