@@ -1,4 +1,4 @@
-import { NearestFilter, NearestMipmapNearestFilter, type CubeTexture } from 'three'
+import { Box3, NearestFilter, NearestMipmapNearestFilter, Vector3, type CubeTexture } from 'three'
 import { cubeTexture, pmremTexture, positionWorldDirection, uniform } from 'three/tsl'
 import { PMREMGenerator } from 'three/webgpu'
 import type { CubeRenderTarget, Node, Renderer } from 'three/webgpu'
@@ -15,6 +15,8 @@ interface Part {
 
 /** Texels of a level, of 256 samples each, that a part draws: 0.8 ms of an H100. */
 const TEXELS = 2 * 128 * 128
+
+const _faces = new Box3(new Vector3())
 
 /** The cheapest that has the GPU make a map. */
 const ALLOCATION: Part = { level: 0, from: 0, to: 1 }
@@ -94,11 +96,18 @@ export class PrefilteredCube {
   #finish(renderer: Renderer): void {
     this.#next = 0
     if (this.#maps === null) return
-    const [shown] = this.#maps
-    for (const level of shown.texture.mipmaps.keys()) {
+    const [shown, made] = this.#maps
+    const { isWebGPUBackend: canCopy } = renderer.backend as { isWebGPUBackend?: boolean }
+    shown.texture.mipmaps.forEach(({ width, height }, level) => {
+      if (canCopy) {
+        _faces.max.set(width, height, 6)
+        renderer.copyTextureToTexture(made.texture, shown.texture, _faces, null, level, level)
+        return
+      }
+      // three copies no cubes on WebGL.
       this.#level.value = level
       for (let face = 0; face < 6; face++) this.#copy.draw(renderer, shown, face, level)
-    }
+    })
   }
 
   #run(part: Part | null, target = this.#maps?.[1] ?? null): void {

@@ -97,8 +97,7 @@ export class SkyVolumes {
   readonly #viewpoint = new ViewpointUniforms()
   readonly #depthPass: FragmentPass
   readonly #segmentPass: FragmentPass
-  /** Passes that sum segments: for molecules, and for aerosols. */
-  readonly #sumPasses: readonly FragmentPass[]
+  readonly #sumPass: FragmentPass
   #uses = 0
 
   /**
@@ -120,8 +119,10 @@ export class SkyVolumes {
       'Welkin.SkyVolume.segments',
       bakeSegments(air, this.#viewpoint, atlas)
     )
-    this.#sumPasses = this.segments.textures.map(
-      part => new FragmentPass('Welkin.SkyVolume.sum', sumSegments(texture(part)))
+    const [molecular, aerosol] = this.segments.textures
+    this.#sumPass = new FragmentPass(
+      'Welkin.SkyVolume.sum',
+      sumSegments(texture(molecular), texture(aerosol))
     )
     this.reserve(VOLUME_SLOTS)
   }
@@ -193,10 +194,7 @@ export class SkyVolumes {
     this.#viewpoint.set(viewpoint, volume)
     atlas.region(depth.x, depth.y, DEPTH_COLUMNS, DEPTH_ROWS).render(renderer, this.#depthPass)
     this.#segmentPass.render(renderer, this.segments)
-    this.#sumPasses.forEach((pass, part) => {
-      const x = light.x + part * LIGHT_COLUMNS
-      atlas.region(x, light.y, LIGHT_COLUMNS, LIGHT_ROWS).render(renderer, pass)
-    })
+    atlas.region(light.x, light.y, 2 * LIGHT_COLUMNS, LIGHT_ROWS).render(renderer, this.#sumPass)
   }
 
   /** Size on the GPU of what is its own besides the atlas [bytes]. */
@@ -209,7 +207,7 @@ export class SkyVolumes {
   dispose(): void {
     this.invalidate()
     if (this.#ownsSegments) this.segments.dispose()
-    for (const pass of [this.#depthPass, this.#segmentPass, ...this.#sumPasses]) pass.dispose()
+    for (const pass of [this.#depthPass, this.#segmentPass, this.#sumPass]) pass.dispose()
   }
 }
 

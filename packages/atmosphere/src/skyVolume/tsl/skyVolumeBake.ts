@@ -132,17 +132,27 @@ export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Two
   })
 }
 
-/** Shader that sums the segments up to each slice, of one of the two outputs of {@link bakeSegments}. */
-export function sumSegments(segments: TextureNode): Vec4 {
+/**
+ * Shader that sums the segments up to each slice.
+ *
+ * @param molecular - First output of {@link bakeSegments}: its sums are the left half.
+ * @param aerosol - Second output: the right half.
+ */
+export function sumSegments(molecular: TextureNode, aerosol: TextureNode): Vec4 {
   return Fn(() => {
-    const { column, row, slice } = atlasPosition(uv())
+    const across = uv().x.mul(2).toConst()
+    const { column, row, slice } = atlasPosition(vec2(across.fract(), uv().y))
     const sum = vec4(0).toVar()
     const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
     loop('before', int(slice).add(1), index => {
       const tile = rowAndColumn(float(index).toConst(), TILE_COLUMNS)
       const corner = vec2(tile.column.mul(AZIMUTHS), tile.row.mul(ELEVATIONS))
       const at = vec2(column, row).add(corner).add(0.5).mul(size).toConst() as Vec2
-      sum.addAssign(sampleLevel0(segments, at))
+      If(across.lessThan(1), () => {
+        sum.addAssign(sampleLevel0(molecular, at))
+      }).Else(() => {
+        sum.addAssign(sampleLevel0(aerosol, at))
+      })
     })
     return sum
   })()
