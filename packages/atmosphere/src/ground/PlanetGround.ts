@@ -4,6 +4,7 @@ import { If, float, renderGroup, smoothstep, texture, uniform } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { fail, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
+import { nameTexture } from '../tables/AtlasTexture'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, withDefaults } from '../check'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
@@ -100,9 +101,9 @@ export class PlanetGround implements SkyLayer {
     const { surface, water, nightLights, nightLuminance, roughness, windSpeed, seed } =
       (this.#options = withDefaults('PlanetGround', DEFAULTS, options))
     for (const [name, value] of Object.entries({ surface, water, nightLights })) {
-      if (value !== null && !value.isTexture) {
-        fail('PlanetGround', `${name} must be a Texture or null`, value)
-      }
+      if (value === null) continue
+      if (!value.isTexture) fail('PlanetGround', `${name} must be a Texture or null`, value)
+      nameTexture(value, 'PlanetGround')
     }
     if (!Number.isFinite(seed)) fail('PlanetGround', 'seed must be finite', seed)
     this.set({ nightLuminance, roughness, windSpeed })

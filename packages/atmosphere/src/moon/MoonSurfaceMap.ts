@@ -22,7 +22,7 @@ export class MoonSurfaceMap {
       minFilter: LinearMipmapLinearFilter,
       magFilter: LinearFilter
     })
-    this.target.texture.name = 'MoonSurface'
+    this.target.texture.name = 'Welkin.Moon'
   }
 
   /** Draws the map unless this renderer has it already. */

@@ -50,7 +50,7 @@ export class MilkyWay implements SkyLayer {
   readonly isAdditive = true
   #intensity = 1
   readonly #frame = new CelestialFrame(new Matrix3().set(...CELESTIAL_TO_GALACTIC))
-  readonly #target: RenderTarget = tableTarget('MilkyWay', MAP_SIZE, MAP_SIZE)
+  readonly #target: RenderTarget = tableTarget('Welkin.MilkyWay', MAP_SIZE, MAP_SIZE)
   readonly #color = uniform(new Vector4()).setGroup(renderGroup)
   /** Radiance of the air in the green that masks it [1/sr]. */
   readonly #maskingRadiance = uniform(0).setGroup(renderGroup)

@@ -74,8 +74,8 @@ export class Stars implements SkyLayer {
     this.set(settings)
     const { cells, entries } = starCells(catalogue)
     this.#textures = {
-      cells: dataTexture('Stars.cells', cells, STAR_LEVELS[0].cells, RGFormat),
-      entries: dataTexture('Stars.entries', entries, ENTRY_COLUMNS, RGBAFormat)
+      cells: dataTexture('Welkin.Stars.cells', cells, STAR_LEVELS[0].cells, RGFormat),
+      entries: dataTexture('Welkin.Stars.entries', entries, ENTRY_COLUMNS, RGBAFormat)
     }
   }
 

@@ -1,9 +1,10 @@
 import type { RenderTarget } from 'three'
 import { DataUtils } from 'three'
-import { texture, vec2 } from 'three/tsl'
+import { vec2 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { sampleLevel0, type Vec2, type Vec4 } from '../tsl-types'
 import { vector2 } from '../uniforms'
+import { AtlasTexture } from './AtlasTexture'
 import { tableTarget, type FragmentPass } from './FragmentPass'
 
 /** A table as shaders read it, wherever it is kept. */
@@ -42,7 +43,7 @@ export class TableAtlas implements Texels {
 
   constructor(name: string, width: number, height: number) {
     this.target = tableTarget(name, width, height)
-    this.texture = texture(this.target.texture)
+    this.texture = new AtlasTexture(this.target.texture)
     this.setSize(width, height)
   }
 

@@ -1,6 +1,6 @@
 import { Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
 import type { Texture } from 'three'
-import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
+import { checkAtmosphere, nameTexture, viewNodes } from '@welkin/atmosphere'
 import { checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
 import { texture, texture3D } from 'three/tsl'
@@ -144,6 +144,7 @@ export class CloudField {
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
     this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
     this.worldMapTexture = worldMap
+    if (worldMap !== null) nameTexture(worldMap, 'worldMap of clouds')
     this.worldMap = worldMap === null ? null : (texture(worldMap) as unknown as LevelTexture<Vec2>)
     this.worldMapWidth = (worldMap?.image as { width?: number } | null)?.width ?? 2048
     const { x, z } = atmosphere.ellipsoid.radii

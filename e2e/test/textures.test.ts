@@ -1,0 +1,198 @@
+import {
+  Atmosphere,
+  SkyLightProbe,
+  SunDirectionalLight,
+  aerialPerspective,
+  aerialPerspectiveFog,
+  airglow,
+  distanceFog,
+  heightFog,
+  milkyWay,
+  moon,
+  planetGround,
+  skyEnvironment,
+  stars,
+  sunFlare
+} from '@welkin/atmosphere'
+import type { SkyLayer } from '@welkin/atmosphere'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudsNode } from '@welkin/clouds'
+import {
+  DataTexture,
+  Mesh,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  RepeatWrapping,
+  Scene
+} from 'three'
+import { pass, shadow } from 'three/tsl'
+import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
+import { readFileSync } from 'node:fs'
+import { expect, it } from 'vitest'
+import { recordingRenderer } from '../headless/recordingContext'
+import { traceShaders } from '../headless/traceShaders'
+
+// What three asks of a browser.
+Object.assign(globalThis, {
+  self: globalThis,
+  requestAnimationFrame: () => 0,
+  cancelAnimationFrame: () => undefined
+})
+
+/** Frames until a lit material and a pass have all that they sample. */
+const FRAMES = 4
+const LIT = 'lit'
+
+function picture(): DataTexture {
+  const made = new DataTexture(new Uint8Array(4), 1, 1)
+  made.wrapS = RepeatWrapping
+  return made
+}
+
+/** A lit plane under the sun. */
+class World {
+  readonly atmosphere = new Atmosphere().setSunAngles(40, 120)
+  readonly camera = new PerspectiveCamera(50, 16 / 9, 1, 1e5)
+  readonly scene = new Scene()
+  readonly material = new MeshStandardMaterial({ name: LIT })
+  readonly sun = new SunDirectionalLight(this.atmosphere, 50)
+  readonly sky = new SkyLightProbe(this.atmosphere)
+  readonly #pass = pass(this.scene, this.camera, { samples: 0 })
+  readonly depth = this.#pass.getTextureNode('depth')
+  readonly air = aerialPerspective(
+    this.#pass.getTextureNode(),
+    this.depth,
+    this.camera,
+    this.atmosphere
+  )
+
+  constructor() {
+    const ground = new Mesh(new PlaneGeometry(1, 1), this.material)
+    ground.receiveShadow = ground.castShadow = true
+    ground.frustumCulled = false
+    this.scene.add(ground, this.sun, this.sky)
+  }
+
+  clouds(worldMap: DataTexture | null = null): CloudsNode {
+    const { air, depth, camera, atmosphere } = this
+    return clouds(air, depth, camera, atmosphere, cloudPreset('mixed'), { worldMap })
+  }
+}
+
+/** Most textures that shaders of a name sample while something is drawn. */
+async function count(name: string, draw: (renderer: WebGPURenderer) => () => void) {
+  const renderer = await recordingRenderer(16, 9)
+  renderer.shadowMap.enabled = true
+  const built = traceShaders(renderer)
+  const frame = draw(renderer)
+  for (let i = 0; i < FRAMES; i++) frame()
+  await renderer.dispose()
+  return Math.max(...built.filter(each => each.name === name).map(each => each.fragment.textures))
+}
+
+/** Textures of the lit material, with something added. */
+const inLit = (add: (world: World) => void): Promise<number> =>
+  count(LIT, renderer => {
+    const world = new World()
+    add(world)
+    return () => renderer.render(world.scene, world.camera)
+  })
+
+/** Textures of a pass, by default the last, of a post effect made of the world. */
+const inPass = (effect: (world: World) => Node, name = 'RenderPipeline'): Promise<number> =>
+  count(name, renderer => {
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = effect(new World())
+    return () => pipeline.render()
+  })
+
+/** Textures of the last pass and of the lit material, with layers in the sky. */
+const withLayers = async (layers: () => SkyLayer[]): Promise<[number, number]> => [
+  await inPass(({ atmosphere, air }) => {
+    atmosphere.add(...layers())
+    return air
+  }),
+  await inLit(({ atmosphere, scene }) => {
+    atmosphere.add(...layers())
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+  })
+]
+
+/** First and second number of a README's row on a feature. */
+function stated(name: string, feature: string): [string, string] {
+  const url = new URL(`../../packages/${name}/README.md`, import.meta.url)
+  const section = readFileSync(url, 'utf8').split('\n## Textures\n')[1].split('\n## ')[0]
+  const row = section.split('\n').find(line => line.startsWith(`| ${feature}`))
+  if (row === undefined) throw new Error(`no row begins with: ${feature}`)
+  const [, , sky, lit] = row.split('|').map(cell => cell.trim())
+  return [sky, lit]
+}
+
+it('features of the atmosphere sample as many textures as its README says', async () => {
+  // Besides the pass itself: its colour, its depth and the air; and in the material three's own table.
+  const [inSky, inMaterial] = await withLayers(() => [])
+  expect([inSky, inMaterial]).toEqual([3, 2])
+  expect(stated('atmosphere', 'Air, sun and sky light')).toEqual(['1', '1'])
+  expect(stated('atmosphere', '`aerialPerspective`')).toEqual(['2', '0'])
+  expect(stated('atmosphere', "three's `MeshStandardMaterial`")).toEqual(['–', '1'])
+  const rows: [string, () => SkyLayer[]][] = [
+    ['`moon`', () => [moon()]],
+    ['`stars`', () => [stars()]],
+    ['`milkyWay`', () => [milkyWay()]],
+    ['`planetGround`', () => [planetGround({ surface: picture() })]],
+    ['`sunFlare`', () => [sunFlare(), airglow(), heightFog(), distanceFog(), planetGround()]]
+  ]
+  for (const [feature, layers] of rows) {
+    const [sky, lit] = await withLayers(layers)
+    const found = [feature, `${sky - inSky}`, `${lit - inMaterial}`]
+    expect(found).toEqual([feature, ...stated('atmosphere', feature)])
+  }
+  const environment = await inLit(({ scene, atmosphere }) => {
+    scene.environmentNode = skyEnvironment(atmosphere)
+  })
+  expect(['–', `${environment - inMaterial}`]).toEqual(stated('atmosphere', '`skyEnvironment`'))
+  const shadows = await inLit(({ sun }) => {
+    sun.castShadow = true
+  })
+  expect(['–', `${shadows - inMaterial}`]).toEqual(stated('atmosphere', 'Each shadow map'))
+})
+
+it('features of the clouds sample as many textures as their README says', async () => {
+  const air = await inPass(world => world.air)
+  const lit = await inLit(() => undefined)
+  const withClouds = await inPass(world => world.clouds())
+  expect([`${withClouds - air}`, '0']).toEqual(stated('clouds', '`clouds`'))
+  for (const worldMap of [null, picture()]) {
+    const shaded = await inLit(world => {
+      const { sun } = world
+      sun.castShadow = true
+      const shadowNode = cloudShadow(world.clouds(worldMap), shadow(sun))
+      Object.assign(sun.shadow, { shadowNode })
+    })
+    // The shadow map is one more.
+    const feature = worldMap === null ? '`cloudShadow`' : '`cloudShadow`, with a `worldMap`'
+    expect(['–', `${shaded - lit - 1}`]).toEqual(stated('clouds', `${feature} |`))
+  }
+  const march = await inPass(world => world.clouds(picture()), 'Welkin.CloudsMarch')
+  expect(march).toBe(9)
+  const dimmed = await inLit(world => {
+    cloudSkyLight(world.sky, world.clouds())
+  })
+  expect(['–', `${dimmed - lit}`]).toEqual(stated('clouds', '`cloudSkyLight`'))
+})
+
+it('a shader that samples too many textures throws in drawing, and says what samples them', async () => {
+  const [surface, water, nightLights] = [picture(), picture(), picture()]
+  const comet = (): SkyLayer => planetGround({ surface: picture() })
+  await expect(
+    inPass(({ atmosphere, air }) => {
+      atmosphere.add(stars(), moon(), planetGround({ surface, water, nightLights }))
+      for (let i = 0; i < 8; i++) atmosphere.add(comet())
+      return air
+    })
+  ).rejects.toThrow(
+    'Atmosphere: the shader of RenderPipeline must sample at most 16 textures: leave out 1 or more of ' +
+      'PlanetGround 11, Stars 2, '
+  )
+})

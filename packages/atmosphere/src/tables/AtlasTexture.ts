@@ -1,0 +1,88 @@
+import type { Material, Texture } from 'three'
+import { Node, NodeUpdateType, TextureNode } from 'three/webgpu'
+import type { NodeBuilder, Renderer } from 'three/webgpu'
+import { fail } from '@welkin/geo'
+
+const _features = new WeakMap<Texture, string>()
+const _limited = new WeakSet<NodeBuilder>()
+
+/** Has errors about too many textures name the feature that a user's texture was given to. */
+export function nameTexture(texture: Texture, feature: string): void {
+  _features.set(texture, feature)
+}
+
+/** Textures that a fragment shader may sample. */
+function mostTextures({ backend }: Renderer): number {
+  const { device, gl } = backend as { device?: GPUDevice; gl?: WebGL2RenderingContext }
+  return (
+    device?.limits.maxSampledTexturesPerShaderStage ??
+    (gl!.getParameter(gl!.MAX_TEXTURE_IMAGE_UNITS) as number)
+  )
+}
+
+/** @throws If the fragment shader samples more textures than may be: names what samples them, the most first. */
+function checkTextures({ uniforms, material, renderer }: BuiltShader): void {
+  const textures = uniforms.fragment
+    .map(({ node }) => node.value as Texture | null)
+    .filter(value => value?.isTexture === true) as Texture[]
+  const most = mostTextures(renderer)
+  if (textures.length <= most) return
+  const maps = Object.values(material)
+  const counts: Record<string, number> = {}
+  for (const texture of textures) {
+    const own = maps.includes(texture) ? 'maps of the material' : texture.name || 'unnamed'
+    const feature = _features.get(texture) ?? /^Welkin\.(\w+)/.exec(own)?.[1] ?? own
+    counts[feature] = (counts[feature] ?? 0) + 1
+  }
+  const list = Object.entries(counts)
+    .toSorted(([, a], [, b]) => b - a)
+    .map(([feature, count]) => `${feature} ${count}`)
+  const shader = `the shader of ${material.name || material.type}`
+  const leaveOut = `leave out ${textures.length - most} or more of ${list.join(', ')}`
+  fail('Atmosphere', `${shader} must sample at most ${most} textures: ${leaveOut}`, textures.length)
+}
+
+/** What types of a NodeBuilder lack. */
+type BuiltShader = NodeBuilder & {
+  uniforms: { fragment: { node: { value: unknown } }[] }
+  material: Material
+  addSequentialNode(node: Node): void
+}
+
+/** Throws as an object is drawn, before three makes a pipeline of its shader, which would draw black. */
+class TextureLimit extends Node {
+  static get type(): string {
+    return 'TextureLimit'
+  }
+
+  /** What builds the shader; null once it is known to be good. */
+  #builder: BuiltShader | null
+
+  constructor(builder: BuiltShader) {
+    super()
+    this.#builder = builder
+    this.updateBeforeType = NodeUpdateType.OBJECT
+  }
+
+  override updateBefore(): undefined {
+    if (this.#builder !== null) checkTextures(this.#builder)
+    this.#builder = null
+  }
+}
+
+/** Texture that every shader of an atmosphere samples: has drawing throw where a shader samples too many. */
+export class AtlasTexture extends TextureNode {
+  static get type(): string {
+    return 'AtlasTexture'
+  }
+
+  override setup(builder: NodeBuilder): undefined {
+    if (!_limited.has(builder)) {
+      _limited.add(builder)
+      // Its turn comes when the shader is complete: that three catches what is thrown while it builds one.
+      const built = builder as BuiltShader
+      built.addSequentialNode(new TextureLimit(built))
+    }
+    super.setup(builder)
+  }
+}
