@@ -77,6 +77,9 @@ function megabytes(bytes: number): string {
   return `${(bytes / 1e6).toFixed(2)} MB`
 }
 
+/** Size of a texel of the tables [bytes]. */
+const HALF_FLOATS = 8
+
 /** GPU time of a bake, one step a frame: in all, and the most in a frame. */
 async function timeBake(): Promise<{ total: number; most: number; bytes: number }> {
   const runs: { total: number; most: number; bytes: number }[] = []
@@ -96,7 +99,10 @@ async function timeBake(): Promise<{ total: number; most: number; bytes: number 
       steps.push((await gpuMilliseconds(renderer)) - still)
     }
     const total = steps.reduce((sum, value) => sum + value, 0)
-    runs.push({ total, most: Math.max(...steps), bytes: tables.bytes })
+    const bytes = [tables.atlas.target, tables.volumes.segments]
+      .map(({ width, height, textures }) => HALF_FLOATS * width * height * textures.length)
+      .reduce((sum, value) => sum + value, 0)
+    runs.push({ total, most: Math.max(...steps), bytes })
     scene.dispose()
     void renderer.dispose()
   }

@@ -13,7 +13,7 @@ import {
   checkParameters,
   type Spectrum
 } from './parameters/AtmosphereParameters'
-import { AtmosphereTables } from './tables/AtmosphereTables'
+import { AtmosphereTables, checkTables } from './tables/AtmosphereTables'
 import { AtmosphereView } from './view/AtmosphereView'
 import { checkCamera } from './check'
 import { LightSource } from './view/LightSource'
@@ -26,6 +26,11 @@ import { SphericalSpace } from './view/cpu/spherical'
 export interface AtmosphereOptions {
   /** Composition of the air; by default the Earth's. Shared, not copied. */
   parameters?: AtmosphereParameters
+  /**
+   * Tables of another atmosphere of the same air, to share: `other.tables`. `parameters`, `luminanceScale`
+   * and `bakeStepsPerFrame` are then those of both.
+   */
+  tables?: AtmosphereTables
   /** The planet's figure; by default that of the parameters. */
   ellipsoid?: Ellipsoid
   /** See {@link Atmosphere.flat}; by default false. */
@@ -81,10 +86,8 @@ export class Atmosphere extends ScenePlanet {
   readonly isAtmosphere = true
   /** Composition of the air. Change it with `parameters.set(…)`. */
   readonly parameters: AtmosphereParameters
-  #luminanceScale = 1e-4
-  #bakeStepsPerFrame = Infinity
-  /** Tables on the GPU. */
-  readonly tables = new AtmosphereTables()
+  /** Tables on the GPU, its own or shared; the last atmosphere or shell that is disposed of frees them. */
+  readonly tables: AtmosphereTables
   /** The sun as a source of light; its `irradiance` dims in an eclipse. */
   readonly sun = new LightSource(target => target.copy(this.sunDirection))
   readonly #layers: SkyLayer[] = []
@@ -94,13 +97,16 @@ export class Atmosphere extends ScenePlanet {
 
   /** @throws If an option is of the wrong kind. */
   constructor(options: AtmosphereOptions = {}) {
-    if (options instanceof AtmosphereParameters) {
-      fail('Atmosphere', 'options must be an object: write new Atmosphere({ parameters })', options)
-    }
-    checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
-    const { parameters = new AtmosphereParameters() } = options
+    checkOptions('Atmosphere', options, 'parameters', 'tables', 'ellipsoid', ...SETTINGS)
+    const { parameters = options.tables?.parameters ?? new AtmosphereParameters() } = options
     checkParameters('Atmosphere', parameters)
-    const { parameters: _, ellipsoid = ellipsoidOf(parameters), ...settings } = options
+    const {
+      parameters: _,
+      tables = new AtmosphereTables(parameters),
+      ellipsoid = ellipsoidOf(parameters),
+      ...settings
+    } = options
+    checkTables('Atmosphere', tables, parameters)
     checkEllipsoid('Atmosphere', ellipsoid)
     const { bottomRadius } = parameters
     if (!isNear(bottomRadius, ellipsoid)) {
@@ -108,6 +114,8 @@ export class Atmosphere extends ScenePlanet {
     }
     super(ellipsoid)
     this.parameters = parameters
+    this.tables = tables
+    tables.addSource(this)
     this.set(settings)
     this.sun.irradianceAt = position =>
       this.#layers.reduce<Spectrum>((light, layer) => {
@@ -127,12 +135,12 @@ export class Atmosphere extends ScenePlanet {
 
   /** Output of every node per luminance, > 0 [1/(cd/m²)]. */
   get luminanceScale(): number {
-    return this.#luminanceScale
+    return this.tables.luminanceScale
   }
 
   set luminanceScale(value: number) {
     checkPositive('Atmosphere', 'luminanceScale', value)
-    this.#luminanceScale = value
+    this.tables.luminanceScale = value
   }
 
   /**
@@ -141,14 +149,14 @@ export class Atmosphere extends ScenePlanet {
    * its table is ready; a bake that is under way is finished before the next one starts.
    */
   get bakeStepsPerFrame(): number {
-    return this.#bakeStepsPerFrame
+    return this.tables.bakeStepsPerFrame
   }
 
   set bakeStepsPerFrame(value: number) {
     if (value !== Infinity && !(Number.isInteger(value) && value >= 1)) {
       fail('Atmosphere', 'bakeStepsPerFrame must be a positive integer or Infinity', value)
     }
-    this.#bakeStepsPerFrame = value
+    this.tables.bakeStepsPerFrame = value
   }
 
   /** World space to the space in which the planet is a sphere, as it is now. */
@@ -166,7 +174,7 @@ export class Atmosphere extends ScenePlanet {
    * @param source - Whose light it is.
    */
   update(renderer: Renderer, camera: Camera, source: LightSource = this.sun): AtmosphereView {
-    this.tables.update(renderer, this.parameters, this.luminanceScale, this.bakeStepsPerFrame)
+    this.tables.update(renderer, this)
     let views = this.#views.get(source)
     if (views === undefined) this.#views.set(source, (views = new WeakMap()))
     let view = views.get(camera)
@@ -240,13 +248,16 @@ export class Atmosphere extends ScenePlanet {
   async bake(renderer: Renderer): Promise<void> {
     checkRenderer('Atmosphere', renderer)
     await renderer.init()
-    this.tables.update(renderer, this.parameters, this.luminanceScale, Infinity)
+    this.tables.update(renderer, this, Infinity)
     await this.tables.read()
   }
 
-  /** Frees all GPU memory. The atmosphere and its layers can be used again, from nothing. */
+  /**
+   * Frees all GPU memory, but for tables that others share. The atmosphere and its layers can be used
+   * again, from nothing.
+   */
   dispose(): void {
-    this.tables.dispose()
+    this.tables.release(this)
     // Out for now: a moon that is disposed removes itself.
     const layers = this.#layers.splice(0)
     for (const layer of layers) layer.dispose?.()

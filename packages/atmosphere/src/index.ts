@@ -1,6 +1,7 @@
 export { Atmosphere } from './Atmosphere'
 export type { AtmosphereOptions } from './Atmosphere'
 export type { AtmosphereFrame } from './ScenePlanet'
+export type { AtmosphereTables } from './tables/AtmosphereTables'
 export { AtmosphereParameters } from './parameters/AtmosphereParameters'
 export type {
   AtmosphereParametersFields,

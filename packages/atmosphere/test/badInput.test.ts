@@ -241,13 +241,13 @@ const cases: [message: string, call: () => unknown][] = [
       ] as [string, () => unknown]
   ),
   [
-    "Atmosphere: unknown option 'ocean', there are parameters, ellipsoid, flat, frame",
+    "Atmosphere: unknown option 'ocean', there are parameters, tables, ellipsoid, flat, frame",
     () => new Atmosphere(wrong({ ocean: 1 }))
   ],
 
   // One thing for another.
   [
-    'Atmosphere: options must be an object: write new Atmosphere({ parameters }), got an AtmosphereParameters',
+    'Atmosphere: options must be an object, got an AtmosphereParameters',
     () => new Atmosphere(wrong(marsParameters()))
   ],
   [
@@ -357,6 +357,25 @@ const cases: [message: string, call: () => unknown][] = [
   [
     'AtmosphereShell: bodyRadius must be positive and finite, got { radius: 1 }',
     () => new AtmosphereShell(parameters, wrong({ radius: 1 }))
+  ],
+  [
+    'AtmosphereShell: topRadius must be as in tables.parameters: share that object, got 6500000',
+    () =>
+      new AtmosphereShell(new AtmosphereParameters({ topRadius: 6_500_000 }), 1, {
+        tables: atmosphere.tables
+      })
+  ],
+  [
+    'Atmosphere: mieScaleHeight must be as in tables.parameters: share that object, got 900',
+    () =>
+      new Atmosphere({
+        tables: atmosphere.tables,
+        parameters: new AtmosphereParameters({ mieScaleHeight: 900 })
+      })
+  ],
+  [
+    "Atmosphere: tables must be an atmosphere's, got {}",
+    () => new Atmosphere({ tables: wrong({}) })
   ],
   ['skyLuminanceAt: there are no tables yet', () => skyLuminanceAt(atmosphere, zero, zero)],
   [

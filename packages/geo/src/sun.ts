@@ -67,7 +67,8 @@ const aberration = ((20.4898 / 3600) * Math.PI) / 180
  */
 export function sunPositionECEF(date: Date, target: Vector3 = new Vector3()): Vector3 {
   checkDate('sunPositionECEF', date)
-  return computeSunPosition(date, target)
+  const distance = series(distanceTerms, terrestrialMillennia(date))
+  return direction(date, distance, target).multiplyScalar(distance * astronomicalUnit)
 }
 
 /**
@@ -80,7 +81,8 @@ export function sunPositionECEF(date: Date, target: Vector3 = new Vector3()): Ve
  */
 export function sunDirectionECEF(date: Date, target: Vector3 = new Vector3()): Vector3 {
   checkDate('sunDirectionECEF', date)
-  return computeSunPosition(date, target).normalize()
+  // The true distance turns it by 0.3″ at most.
+  return direction(date, 1, target)
 }
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180
@@ -92,11 +94,24 @@ const radians = (degrees: number): number => (degrees * Math.PI) / 180
  */
 const terrestrialLag = (centuries: number): number => -20 + 32 * (centuries + 1.8) ** 2
 
-function computeSunPosition(date: Date, target: Vector3): Vector3 {
-  // Days and Julian centuries from J2000, UT.
-  const days = date.getTime() / 86_400_000 - 10_957.5
+/** Days from J2000, UT. */
+const universalDays = (date: Date): number => date.getTime() / 86_400_000 - 10_957.5
+
+/** Thousands of Julian years from J2000, TT. */
+function terrestrialMillennia(date: Date): number {
+  const days = universalDays(date)
+  return (days + terrestrialLag(days / 36_525) / 86_400) / 365_250
+}
+
+/**
+ * Apparent direction to the sun, unit length.
+ *
+ * @param distance - Of the sun, for the aberration [au].
+ */
+function direction(date: Date, distance: number, target: Vector3): Vector3 {
+  const days = universalDays(date)
+  // Julian centuries.
   const t = days / 36_525
-  const millennia = (days + terrestrialLag(t) / 86_400) / 365_250
 
   // Nutation by its two leading terms each; the rest is below 0.5″.
   const node = radians(125.04452 - 1934.136261 * t)
@@ -107,8 +122,8 @@ function computeSunPosition(date: Date, target: Vector3): Vector3 {
     radians(23.4392911 - 0.0130042 * t) +
     arcseconds * (9.2 * Math.cos(node) + 0.57 * Math.cos(twiceMeanLongitude))
 
-  const distance = series(distanceTerms, millennia)
-  const longitude = series(longitudeTerms, millennia) + Math.PI + nutation - aberration / distance
+  const longitude =
+    series(longitudeTerms, terrestrialMillennia(date)) + Math.PI + nutation - aberration / distance
   // The sun's ecliptic latitude stays below 1.2″ and is left out.
   const x = Math.cos(longitude)
   const y = Math.sin(longitude) * Math.cos(obliquity)
@@ -118,7 +133,7 @@ function computeSunPosition(date: Date, target: Vector3): Vector3 {
   const angle = meanSiderealTime + nutation * Math.cos(obliquity)
   const c = Math.cos(angle)
   const s = Math.sin(angle)
-  return target.set(c * x + s * y, c * y - s * x, z).multiplyScalar(distance * astronomicalUnit)
+  return target.set(c * x + s * y, c * y - s * x, z)
 }
 
 function series(powers: readonly (readonly Term[])[], millennia: number): number {

@@ -11,13 +11,12 @@ import {
 import { NodeMaterial } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
 import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
-import type { Atmosphere } from '../Atmosphere'
 import { checkParameters, type AtmosphereParameters } from '../parameters/AtmosphereParameters'
-import type { AtmosphereTables } from '../tables/AtmosphereTables'
+import { checkTables, type AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
 import { viewpointScalars } from '../view/cpu/viewpoint'
 import { checkRenderer } from '../view/renderers'
-import { giveTablesBack, takeTables } from '../tables/sharedTables'
+import { sharedTables } from '../tables/sharedTables'
 import { ViewpointUniforms, SkyVolumes } from '../skyVolume/SkyVolumes'
 import { TableAtlas } from '../tables/TableAtlas'
 import { circumscribedSphere } from './circumscribedSphere'
@@ -45,6 +44,11 @@ export interface AtmosphereShellOptions {
    * without any texture; skies are darker and bluer, and dark soon after sunset.
    */
   model?: 'tables' | 'single-scattering'
+  /**
+   * Tables of an atmosphere of the same `parameters` object, to share: `atmosphere.tables`. By default its
+   * own if it is the sun, else those of all shells of that object.
+   */
+  tables?: AtmosphereTables
   /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
   luminanceScale?: number
 }
@@ -111,9 +115,9 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   #luminanceScale: number
   /** See {@link AtmosphereShellOptions}. */
   readonly model: 'tables' | 'single-scattering'
-  /** Atmosphere whose tables the shell shares: its sun, if it has the same parameters. */
-  readonly #lender: Atmosphere | null
-  /** Tables of all shells of its parameters, or the lender's; null before drawing or without tables. */
+  /** Tables of an atmosphere; null for those of all shells of its parameters, and without tables. */
+  readonly #given: AtmosphereTables | null
+  /** Tables that it uses; null before drawing or without tables. */
   #tables: AtmosphereTables | null = null
   /** Sky volumes of its own: relative to its body the camera is elsewhere than in the lender's. */
   #volumes: SkyVolumes | null = null
@@ -139,7 +143,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const where = 'AtmosphereShell'
     checkParameters(where, parameters)
     checkPositive(where, 'bodyRadius', bodyRadius)
-    checkOptions(where, options, 'sun', 'model', 'luminanceScale')
+    checkOptions(where, options, 'sun', 'model', 'tables', 'luminanceScale')
     const {
       sun = new Vector3(1, Math.SQRT2, 1),
       model = 'tables',
@@ -159,8 +163,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.visible = !parameters.isAirless
 
     this.model = model
-    const lends = model === 'tables' && isAtmosphere(sun) && sun.parameters === parameters
-    this.#lender = lends ? sun : null
+    const lends = isAtmosphere(sun) && sun.parameters === parameters
+    const given = options.tables ?? (lends ? sun.tables : null)
+    if (given !== null) checkTables(where, given, parameters)
+    this.#given = model === 'tables' ? given : null
   }
 
   /** Acquires tables and volumes of a renderer, and builds the material from them. */
@@ -172,7 +178,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const tables =
       this.model === 'single-scattering'
         ? null
-        : (this.#lender?.tables ?? takeTables(this.parameters, renderer, this))
+        : (this.#given ?? sharedTables(this.parameters, renderer))
     this.#tables = tables
     if (tables !== null) this.#uniforms = tables.uniforms
     const uniforms = this.#uniforms
@@ -196,8 +202,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#volumes?.dispose()
     this.#volumes?.atlas.dispose()
     this.#volumes = null
-    if (this.#renderer === null || this.#tables === null) return
-    if (this.#lender === null) giveTablesBack(this.parameters, this.#renderer, this)
+    this.#tables?.release(this)
     this.#tables = null
   }
 
@@ -257,12 +262,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   bake(renderer: NonNullable<NodeFrame['renderer']>): void {
     const { parameters } = this
     this.#acquire(renderer)
-    if (this.#lender !== null) {
-      const { luminanceScale, bakeStepsPerFrame, tables } = this.#lender
-      tables.update(renderer, parameters, luminanceScale, bakeStepsPerFrame)
-    } else if (this.#tables !== null) {
-      this.#tables.update(renderer, parameters, SHELL_SCALE, Infinity)
-    } else if (this.#version !== parameters.version) {
+    if (this.#tables !== null) this.#tables.update(renderer, this)
+    else if (this.#version !== parameters.version) {
       this.#uniforms.update(parameters, SHELL_SCALE)
       this.#profile.update(parameters)
       this.#version = parameters.version
@@ -285,8 +286,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const tint = this.#view.tint.value
     _body.setFromMatrixPosition(this.matrixWorld)
     sunlightAt(sun, parameters, _body, luminanceScale, _sunDirection, tint)
-    // The lender's tables have its scale already.
-    if (sun === this.#lender) tint.setScalar(1)
+    // Tables have the scale of their atmosphere.
+    tint.multiplyScalar(SHELL_SCALE / (this.#tables?.luminanceScale ?? SHELL_SCALE))
     this.#view.setSun(_sunDirection, this.matrixWorld)
   }
 

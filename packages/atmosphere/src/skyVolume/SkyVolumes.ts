@@ -197,12 +197,6 @@ export class SkyVolumes {
     atlas.region(light.x, light.y, 2 * LIGHT_COLUMNS, LIGHT_ROWS).render(renderer, this.#sumPass)
   }
 
-  /** Size on the GPU of what is its own besides the atlas [bytes]. */
-  get bytes(): number {
-    const { width, height, textures } = this.segments
-    return this.#ownsSegments ? 8 * width * height * textures.length : 0
-  }
-
   /** Frees all but the atlas. */
   dispose(): void {
     this.invalidate()

@@ -37,9 +37,11 @@ function checkTextures({ uniforms, material, renderer }: BuiltShader): void {
   const list = Object.entries(counts)
     .toSorted(([, a], [, b]) => b - a)
     .map(([feature, count]) => `${feature} ${count}`)
-  const shader = `the shader of ${material.name || material.type}`
-  const leaveOut = `leave out ${textures.length - most} or more of ${list.join(', ')}`
-  fail('Atmosphere', `${shader} must sample at most ${most} textures: ${leaveOut}`, textures.length)
+  fail(
+    'Atmosphere',
+    `${material.name || material.type} must sample at most ${most} textures, leave out some of: ${list.join(', ')}`,
+    textures.length
+  )
 }
 
 /** What types of a NodeBuilder lack. */
@@ -51,10 +53,6 @@ type BuiltShader = NodeBuilder & {
 
 /** Throws as an object is drawn, before three makes a pipeline of its shader, which would draw black. */
 class TextureLimit extends Node {
-  static get type(): string {
-    return 'TextureLimit'
-  }
-
   /** What builds the shader; null once it is known to be good. */
   #builder: BuiltShader | null
 
@@ -72,10 +70,6 @@ class TextureLimit extends Node {
 
 /** Texture that every shader of an atmosphere samples: has drawing throw where a shader samples too many. */
 export class AtlasTexture extends TextureNode {
-  static get type(): string {
-    return 'AtlasTexture'
-  }
-
   override setup(builder: NodeBuilder): undefined {
     if (!_limited.has(builder)) {
       _limited.add(builder)

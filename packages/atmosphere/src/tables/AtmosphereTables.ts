@@ -1,6 +1,7 @@
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
+import { fail } from '@welkin/geo'
 import { DiffuseLightTable } from '../diffuseLight/DiffuseLightTable'
 import type { DiffuseLightData } from '../diffuseLight/cpu/diffuseLight'
 import type { Air } from '../scattering/tsl/ray'
@@ -17,10 +18,16 @@ const DEPTH_Y = DEPTH_SIZE[1] + 1 + GAP
 const VOLUMES_Y = 2 * DEPTH_Y
 
 /**
- * Tables of an atmosphere on the GPU: transmittance, diffuse light, and the sky volumes made from them, all
- * in one texture.
+ * Tables of some air on the GPU: transmittance, diffuse light, and the sky volumes made from them, all
+ * in one texture. Several atmospheres and shells can share them; the last that is disposed of frees them.
  */
 export class AtmosphereTables {
+  /** Composition of the air, shared. */
+  readonly parameters: AtmosphereParameters
+  /** Output of every node per luminance, > 0 [1/(cd/m²)]. */
+  luminanceScale = 1e-4
+  /** Most steps of baking in one frame, ≥ 1; a bake has 20. */
+  bakeStepsPerFrame = Infinity
   readonly uniforms = new AtmosphereUniforms()
   readonly atlas = new TableAtlas('Welkin.Atmosphere', VOLUMES_WIDTH, VOLUMES_Y)
   readonly transmittance = new TransmittanceTable(
@@ -54,18 +61,31 @@ export class AtmosphereTables {
   #scale = NaN
   #work: Generator<void, void, void> | null = null
   #reading: Promise<void> | null = null
-  /** Those besides the sun that there are volumes for. */
+  /** Sources of light that there is room for volumes for; an atmosphere stands for its sun. */
   readonly #sources = new Set<object>()
+  /** Atmospheres and shells that use the tables. */
+  readonly #users = new Set<object>()
   /** True when the atlas grew since it was filled. */
   #isLost = false
 
+  constructor(parameters: AtmosphereParameters) {
+    this.parameters = parameters
+  }
+
+  /** Frees the tables if nobody else has called {@link update} and not yet this. */
+  release(user: object): void {
+    this.#users.delete(user)
+    this.removeSource(user)
+    if (this.#users.size === 0) this.dispose()
+  }
+
   /**
-   * Makes room for the sky volumes of a source of light besides the sun. Where the tables were baked
-   * before, they are baked anew, at once.
+   * Makes room for the sky volumes of a source of light. Where the tables were baked before and there is
+   * no room left, they are baked anew, at once.
    */
   addSource(source: object): void {
     this.#sources.add(source)
-    if (!this.volumes.reserve(VOLUME_SLOTS * (1 + this.#sources.size))) return
+    if (!this.volumes.reserve(VOLUME_SLOTS * this.#sources.size)) return
     this.#isLost = this.version > 0
     this.#startAgain()
   }
@@ -85,15 +105,12 @@ export class AtmosphereTables {
   /**
    * Brings the tables up to date, or some steps nearer to it.
    *
+   * @param user - Atmosphere or shell that uses the tables from now on, until it calls {@link release}.
    * @param steps - Most steps of the solution to take; there are 20 in all.
    */
-  update(
-    renderer: Renderer,
-    parameters: AtmosphereParameters,
-    luminanceScale: number,
-    steps: number
-  ): void {
+  update(renderer: Renderer, user: object, steps = this.bakeStepsPerFrame): void {
     checkOwner('Atmosphere', this.#renderer, renderer)
+    this.#users.add(user)
     if (renderer !== this.#renderer) {
       // Textures went with the renderer before.
       this.#startAgain()
@@ -104,19 +121,19 @@ export class AtmosphereTables {
     for (let step = 0; step < most; step++) {
       // What changed during a bake is baked after it.
       if (this.#work === null) {
-        if (parameters.version === this.#parametersVersion) break
-        this.#parametersVersion = parameters.version
-        this.#setUniforms(parameters, luminanceScale)
+        if (this.parameters.version === this.#parametersVersion) break
+        this.#parametersVersion = this.parameters.version
+        this.#setUniforms()
         this.#work = this.#bake(renderer)
       }
       if (this.#work.next().done === true) this.#finish(renderer)
     }
-    if (luminanceScale !== this.#scale) this.#setUniforms(parameters, luminanceScale)
+    if (this.luminanceScale !== this.#scale) this.#setUniforms()
   }
 
-  #setUniforms(parameters: AtmosphereParameters, luminanceScale: number): void {
-    this.uniforms.update(parameters, luminanceScale)
-    this.#scale = luminanceScale
+  #setUniforms(): void {
+    this.uniforms.update(this.parameters, this.luminanceScale)
+    this.#scale = this.luminanceScale
   }
 
   *#bake(renderer: Renderer): Generator<void, void, void> {
@@ -147,11 +164,6 @@ export class AtmosphereTables {
     await this.#reading
   }
 
-  /** Bytes of GPU memory that the tables and volumes take. */
-  get bytes(): number {
-    return this.atlas.bytes + this.volumes.bytes
-  }
-
   /** Frees all of it. The next {@link update} starts from nothing. */
   dispose(): void {
     this.#work?.return()
@@ -163,4 +175,21 @@ export class AtmosphereTables {
       part.dispose()
     }
   }
+}
+
+/** @throws If they are no tables, or of other parameters. */
+export function checkTables(
+  where: string,
+  tables: AtmosphereTables,
+  parameters: AtmosphereParameters
+): void {
+  if (!(tables instanceof AtmosphereTables)) {
+    fail(where, "tables must be an atmosphere's", tables)
+  }
+  if (tables.parameters === parameters) return
+  const differs = Object.entries(parameters).find(
+    ([name, value]) => String(value) !== String(tables.parameters[name as 'topRadius'])
+  )
+  const [name, value] = differs ?? ['parameters', parameters]
+  fail(where, `${name} must be as in tables.parameters: share that object`, value)
 }

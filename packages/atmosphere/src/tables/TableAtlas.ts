@@ -62,11 +62,6 @@ export class TableAtlas implements Texels {
     return new TableRegion(this, x, y, width, height)
   }
 
-  /** Size on the GPU [bytes]. */
-  get bytes(): number {
-    return 8 * this.target.width * this.target.height
-  }
-
   dispose(): void {
     this.target.dispose()
   }

@@ -65,7 +65,6 @@ export class AtmosphereView {
     // At the very centre any direction is up.
     if (radius > 0) this.up.divideScalar(radius)
     else this.up.set(0, 0, 1)
-    _position.setFromMatrixPosition(matrixWorld)
     this.irradiance = this.source.irradianceAt(_position)
     this.source.direction(_direction, _position)
     space.direction(_direction, this.lightDirection)

@@ -27,8 +27,8 @@ export class ViewNodes extends ViewUniforms {
   update(frame: Pick<NodeFrame, 'camera'>): AtmosphereView | undefined {
     const camera = this.camera ?? frame.camera
     const view = camera === null ? undefined : this.atmosphere.viewOf(camera, this.source)
-    if (view === undefined || view.viewpoint === null) return undefined
-    this.set(view)
+    if (!view?.viewpoint) return undefined
+    this.set(view, view.viewpoint)
     return view
   }
 }

@@ -7,6 +7,7 @@ import type { Air } from '../scattering/tsl/ray'
 import type { Texels } from '../tables/TableAtlas'
 import type { Float, Mat3, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
+import type { ViewpointScalars } from './tsl/viewpoint'
 import type { LightSource } from './LightSource'
 
 /** Uniforms and textures of an atmosphere as a camera sees it in the light of one source. */
@@ -37,9 +38,8 @@ export class ViewUniforms {
   }
 
   /** Takes the values of a view. */
-  protected set(view: AtmosphereView): void {
-    if (view.viewpoint === null) return
-    this.viewpoint.set(view.viewpoint, view.volume)
+  protected set(view: AtmosphereView, viewpoint: ViewpointScalars<number>): void {
+    this.viewpoint.set(viewpoint, view.volume)
     this.source.irradiance.value.set(...view.irradiance)
     this.height.value = view.height
     this.isLit.value = view.isLit ? 1 : 0

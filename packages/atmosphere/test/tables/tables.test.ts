@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it } from 'vitest'
 import type { Renderer } from 'three/webgpu'
-import { AtmosphereParameters } from '@welkin/atmosphere'
+import { PerspectiveCamera } from 'three'
+import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
 import { diffuseTexel } from '../../src/diffuseLight/cpu/diffuseLight'
 import { AtmosphereTables } from '../../src/tables/AtmosphereTables'
 
@@ -37,8 +38,8 @@ describe('AtmosphereTables', () => {
 
   const baked = () => {
     const { renderer, reads } = fakeRenderer()
-    const tables = new AtmosphereTables()
-    tables.update(renderer, new AtmosphereParameters(), 1, Infinity)
+    const tables = new AtmosphereTables(new AtmosphereParameters())
+    tables.update(renderer, tables)
     expect(reads).toHaveLength(1)
     return { tables, read: reads[0] }
   }
@@ -79,16 +80,38 @@ describe('AtmosphereTables', () => {
 
   it('finishes a bake with what it began with, then bakes what changed meanwhile', () => {
     const { renderer, reads } = fakeRenderer()
-    const tables = new AtmosphereTables()
     const parameters = new AtmosphereParameters()
-    tables.update(renderer, parameters, 1, 3)
+    const tables = new AtmosphereTables(parameters)
+    tables.update(renderer, tables, 3)
     parameters.set({ mieScaleHeight: 900 })
-    tables.update(renderer, parameters, 1, 3)
+    tables.update(renderer, tables, 3)
     expect(tables.uniforms.mieScaleHeight.value).toBe(1200)
     expect(tables.version).toBe(0)
-    tables.update(renderer, parameters, 1, Infinity)
+    tables.update(renderer, tables)
     expect(tables.uniforms.mieScaleHeight.value).toBe(900)
     expect(tables.version).toBe(2)
+    expect(reads).toHaveLength(2)
+  })
+  it('are freed with the last who use them, and are there again for the next', async () => {
+    const { renderer, reads } = fakeRenderer()
+    const parameters = new AtmosphereParameters()
+    const first = new Atmosphere({ parameters })
+    const second = new Atmosphere({ tables: first.tables, luminanceScale: 2e-4 })
+    expect(second.parameters).toBe(parameters)
+    expect(first.luminanceScale).toBe(2e-4)
+    const { tables } = first
+    const camera = new PerspectiveCamera()
+    for (const each of [first, second, first, second]) each.update(renderer, camera)
+    expect(tables.version).toBe(1)
+    reads[0].resolve(new Uint16Array(4 * 96 * 16 * 8))
+    await tables.read()
+    first.dispose()
+    expect(tables.data).not.toBeNull()
+    second.update(renderer, camera)
+    expect(reads).toHaveLength(1)
+    second.dispose()
+    expect(tables.data).toBeNull()
+    first.update(renderer, camera)
     expect(reads).toHaveLength(2)
   })
 })
