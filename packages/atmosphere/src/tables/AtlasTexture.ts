@@ -44,7 +44,7 @@ function checkTextures({ uniforms, material, renderer }: BuiltShader): void {
   )
 }
 
-/** What types of a NodeBuilder lack. */
+/** A NodeBuilder with what its types lack. */
 type BuiltShader = NodeBuilder & {
   uniforms: { fragment: { node: { value: unknown } }[] }
   material: Material
@@ -53,7 +53,7 @@ type BuiltShader = NodeBuilder & {
 
 /** Throws as an object is drawn, before three makes a pipeline of its shader, which would draw black. */
 class TextureLimit extends Node {
-  /** What builds the shader; null once it is known to be good. */
+  /** Builder of the shader; null once that is known to be good. */
   #builder: BuiltShader | null
 
   constructor(builder: BuiltShader) {
