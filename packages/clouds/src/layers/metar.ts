@@ -16,10 +16,10 @@ type Parameters = Partial<CloudLayerParameters>
 
 const WHERE = 'cloudLayersFromMETAR'
 
-/** Where the report proper ends: trends and remarks. */
+/** Beginning of trends and remarks, where the report proper ends. */
 const LATER = /\s(?:RMK|TEMPO|BECMG|INTER|NOSIG)\b/
 
-/** What tells a report: its time, or one of the words for a sky without clouds. */
+/** Mark of a report: its time, or one of the words for a sky without clouds. */
 const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
 
 const WIND = /^(?:(\d{3})P?(\d{2,3})|VRB\d{2,3}|\/{5})(?:GP?\d{2,3})?(KT|MPS)$/
@@ -96,7 +96,7 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
   const [, amount, base, kind] = group
   const isFog = amount === 'VV'
   const unknown = isFog ? UNKNOWN_VISIBILITY : UNKNOWN_BASE
-  /** Of the base above the station, or how far one sees up in fog. */
+  /** Height of the base above the station; in fog, how far one sees up. */
   const height = HUNDRED_FEET * (base === '///' ? unknown : Number(base))
   const isLow = height < MEDIUM
   const layer = isFog ? fog(height) : layerOfKind(group, height)
