@@ -1,4 +1,12 @@
-import { Atmosphere, SkyLightProbe, skyLuminanceAt, SunDirectionalLight } from '@welkin/atmosphere'
+import {
+  Atmosphere,
+  skyBackground,
+  skyIlluminanceAt,
+  SkyLightProbe,
+  skyLuminanceAt,
+  SunDirectionalLight,
+  sunIlluminanceAt
+} from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import {
   CubeCamera,
@@ -13,7 +21,6 @@ import {
   SphereGeometry,
   Vector3
 } from 'three'
-import { skyBackground } from '@welkin/atmosphere'
 import { CubeRenderTarget } from 'three/webgpu'
 import { drawForward, expectLight } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
@@ -39,8 +46,8 @@ gpuTest('lights a white plane as float64 predicts, within 1 %', async t => {
     atmosphere.setSunAngles(elevation, 150)
     atmosphere.luminanceScale = elevation > 0 ? 1e-4 : 1e-1
     const picture = await t.render(renderer, scene, camera, small)
-    const sun = atmosphere.sunIlluminanceAt(new Vector3())
-    const sky = atmosphere.skyIlluminanceAt(new Vector3(), up)
+    const sun = sunIlluminanceAt(atmosphere, new Vector3())
+    const sky = skyIlluminanceAt(atmosphere, new Vector3(), up)
     const slope = Math.max(Math.sin((elevation * Math.PI) / 180), 0)
     const expected = sun.map((value, i) => (value * slope + sky[i]) / Math.PI)
     const predicted = luminance(expected) * atmosphere.luminanceScale

@@ -9,6 +9,7 @@ import {
   skyLuminanceAt,
   venusParameters
 } from '@welkin/atmosphere'
+import { LightQuery } from '../../../packages/atmosphere/src/queries/LightQuery'
 import { Ellipsoid } from '@welkin/geo'
 import {
   DataTexture,
@@ -146,7 +147,8 @@ gpuTest('puts the ground where float64 does, from 2 m to 20,000 km', async t => 
         const isLight = Math.floor(column) % 2 === 1
         const value = luminance(picture.at(x, y)) / cosLight
         const white =
-          luminance(atmosphere.query(camera.position).linearSRGB([1, 1, 1, 1])) / Math.PI
+          luminance(new LightQuery('test', atmosphere, camera.position).linearSRGB([1, 1, 1, 1])) /
+          Math.PI
         const looksLight = value > 0.5 * white * atmosphere.luminanceScale
         if (looksLight === isLight) continue
         // How far from the edge between two texels, on the ground.
@@ -265,7 +267,9 @@ gpuTest('shows a body without air: black sky, sun, sunlit ground', async t => {
   const reflected = parameters.groundAlbedo.map(
     albedo => (albedo * Math.sin(Math.PI / 18) * atmosphere.luminanceScale) / Math.PI
   )
-  const expected = luminance(atmosphere.query(camera.position).linearSRGB(reflected))
+  const expected = luminance(
+    new LightQuery('test', atmosphere, camera.position).linearSRGB(reflected)
+  )
   expectClose(luminance(picture.at(2, 34)), expected, { relative: 0.01 }, 'ground')
   atmosphere.dispose()
 })

@@ -1,4 +1,11 @@
-import { DataTexture, HalfFloatType, NearestFilter, RGBAFormat, type RenderTarget } from 'three'
+import {
+  DataTexture,
+  DataUtils,
+  HalfFloatType,
+  NearestFilter,
+  RGBAFormat,
+  type RenderTarget
+} from 'three'
 import { ivec2, textureLoad, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { AtmosphereTables } from '../../../packages/atmosphere/src/tables/AtmosphereTables'
@@ -38,8 +45,8 @@ export async function readTexels<T extends Uint8Array | Uint16Array>(
 }
 
 async function keep(renderer: Renderer, region: TableRegion, key: string): Promise<void> {
-  const halves = await region.read(renderer)
-  localStorage.setItem(key, Array.from(halves, half => String.fromCharCode(half)).join(''))
+  const halves = Array.from(await region.read(renderer), half => DataUtils.toHalfFloat(half))
+  localStorage.setItem(key, halves.map(half => String.fromCharCode(half)).join(''))
 }
 
 function restore(renderer: Renderer, region: TableRegion, kept: string): void {

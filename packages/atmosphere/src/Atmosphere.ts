@@ -1,4 +1,3 @@
-import { Vector3 } from 'three'
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
 import {
@@ -20,10 +19,8 @@ import { checkCamera } from './check'
 import { LightSource } from './view/LightSource'
 import { checkLayer, type SkyLayer } from './view/SkyLayer'
 import { checkRenderer } from './view/renderers'
-import { AtmosphereQuery } from './AtmosphereQuery'
 import { ScenePlanet, type AtmosphereFrame } from './ScenePlanet'
 import { SphericalSpace } from './view/cpu/spherical'
-import type { Triple } from './air/cpu/color'
 
 /** Options of {@link Atmosphere}. */
 export interface AtmosphereOptions {
@@ -58,9 +55,7 @@ const SETTINGS = [
 const FULL: Spectrum = [1, 1, 1, 1]
 
 /** The parameters' own figure, WGS84 where they are of the Earth's size, or a sphere. */
-function ellipsoidOf(parameters: AtmosphereParameters): Ellipsoid {
-  checkParameters('Atmosphere', parameters)
-  const { bottomRadius, ellipsoid } = parameters
+function ellipsoidOf({ bottomRadius, ellipsoid }: AtmosphereParameters): Ellipsoid {
   if (ellipsoid !== null) return ellipsoid
   return isNear(bottomRadius, Ellipsoid.WGS84) ? Ellipsoid.WGS84 : new Ellipsoid(bottomRadius)
 }
@@ -102,12 +97,10 @@ export class Atmosphere extends ScenePlanet {
     if (options instanceof AtmosphereParameters) {
       fail('Atmosphere', 'options must be an object: write new Atmosphere({ parameters })', options)
     }
-    const {
-      parameters = new AtmosphereParameters(),
-      ellipsoid = ellipsoidOf(parameters),
-      ...settings
-    } = checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
+    checkOptions('Atmosphere', options, 'parameters', 'ellipsoid', ...SETTINGS)
+    const { parameters = new AtmosphereParameters() } = options
     checkParameters('Atmosphere', parameters)
+    const { parameters: _, ellipsoid = ellipsoidOf(parameters), ...settings } = options
     checkEllipsoid('Atmosphere', ellipsoid)
     const { bottomRadius } = parameters
     if (!isNear(bottomRadius, ellipsoid)) {
@@ -240,7 +233,7 @@ export class Atmosphere extends ScenePlanet {
   }
 
   /**
-   * Bakes all tables now and reads back what {@link skyIlluminanceAt} and `skyLuminanceAt` need.
+   * Bakes all tables now and reads back what `skyIlluminanceAt` and `skyLuminanceAt` need.
    *
    * @param renderer - Is initialised first if it is not yet.
    */
@@ -249,41 +242,6 @@ export class Atmosphere extends ScenePlanet {
     await renderer.init()
     this.tables.update(renderer, this.parameters, this.luminanceScale, Infinity)
     await this.tables.read()
-  }
-
-  /**
-   * Answers questions about light, as things are now.
-   *
-   * @param position - World: where light is asked about; by default the origin.
-   * @param source - Whose light.
-   */
-  query(position = new Vector3(), source: LightSource = this.sun): AtmosphereQuery {
-    const { parameters, space, tables } = this
-    const direction = source.direction(new Vector3(), position)
-    const irradiance = source.irradianceAt(position)
-    return new AtmosphereQuery(parameters, space, direction, tables.data, irradiance)
-  }
-
-  /**
-   * Illuminance by the sun on a plane that faces it, reddened by the air and blocked by the planet.
-   *
-   * @param position - World.
-   * @returns Linear sRGB [lx].
-   */
-  sunIlluminanceAt(position: Vector3): Triple {
-    return this.query(position).directIlluminance(position)
-  }
-
-  /**
-   * Illuminance by sky and ground on a plane.
-   *
-   * @param position - World.
-   * @param normal - World, unit length: where the plane faces.
-   * @returns Linear sRGB [lx].
-   * @throws Before the tables were baked and read back: await {@link bake} first.
-   */
-  skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
-    return this.query(position).skyIlluminance(position, normal)
   }
 
   /** Frees all GPU memory. The atmosphere and its layers can be used again, from nothing. */

@@ -3,6 +3,7 @@ import {
   checkBoolean,
   checkChoice,
   checkDirection,
+  checkFinite,
   checkPlace,
   checkPositive,
   fail,
@@ -150,8 +151,7 @@ export class ScenePlanet extends EventDispatcher<{ dispose: object }> {
    */
   setSunAngles(elevation: number, azimuth: number): this {
     checkRange('Atmosphere.setSunAngles', 'elevation', elevation, -90, 90)
-    if (!Number.isFinite(azimuth))
-      fail('Atmosphere.setSunAngles', 'azimuth must be finite', azimuth)
+    checkFinite('Atmosphere.setSunAngles', 'azimuth', azimuth)
     const origin = _position.setFromMatrixPosition(this.worldToECEF)
     if (origin.length() < this.ellipsoid.radii.x / 2) {
       this.ellipsoid.geodeticToECEF(this.#place, origin)

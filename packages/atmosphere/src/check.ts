@@ -16,7 +16,7 @@ export function withDefaults<T extends object>(where: string, defaults: T, optio
 export function checkRange(
   where: string,
   name: string,
-  value: number,
+  value: unknown,
   min: number,
   max: number
 ): void {

@@ -25,7 +25,10 @@ import {
   skyBackground,
   skyEnvironment,
   SkyLightProbe,
+  moonIlluminanceAt,
+  skyIlluminanceAt,
   skyLuminanceAt,
+  sunIlluminanceAt,
   standardEarthParameters,
   Stars,
   stars,
@@ -356,6 +359,19 @@ const cases: [message: string, call: () => unknown][] = [
     () => new AtmosphereShell(parameters, wrong({ radius: 1 }))
   ],
   ['skyLuminanceAt: there are no tables yet', () => skyLuminanceAt(atmosphere, zero, zero)],
+  [
+    'skyLuminanceAt: source must be a LightSource',
+    () => skyLuminanceAt(atmosphere, zero, zero, wrong(null))
+  ],
+  [
+    'sunIlluminanceAt: atmosphere must be an Atmosphere, got undefined',
+    () => sunIlluminanceAt(wrong(undefined), zero)
+  ],
+  [
+    'skyIlluminanceAt: position must be a Vector3, got 1',
+    () => skyIlluminanceAt(atmosphere, wrong(1), zero)
+  ],
+  ['moonIlluminanceAt: moon must be a Moon, got null', () => moonIlluminanceAt(wrong(null), zero)],
 
   // Null is no options.
   [`Atmosphere: ${noOptions}`, () => new Atmosphere(wrong(null))],

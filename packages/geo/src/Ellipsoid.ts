@@ -64,12 +64,12 @@ export class Ellipsoid {
 
   /** Largest of the three radii [m]. */
   get maximumRadius(): number {
-    return Math.max(this.radii.x, this.radii.y, this.radii.z)
+    return Math.max(...this.radii)
   }
 
   /** Smallest of the three radii [m]. */
   get minimumRadius(): number {
-    return Math.min(this.radii.x, this.radii.y, this.radii.z)
+    return Math.min(...this.radii)
   }
 
   /**
@@ -80,7 +80,8 @@ export class Ellipsoid {
    */
   grown(height: number): Ellipsoid {
     checkFinite('Ellipsoid.grown', 'height', height)
-    return new Ellipsoid(this.radii.x + height, this.radii.y + height, this.radii.z + height)
+    const { x, y, z } = this.radii
+    return new Ellipsoid(x + height, y + height, z + height)
   }
 
   /**
@@ -119,16 +120,10 @@ export class Ellipsoid {
     checkVector('Ellipsoid.ecefToGeodetic', 'positionECEF', positionECEF)
     const { x, y, z } = positionECEF
     const normal = footPointNormal(positionECEF, this.radii, scratchNormal)
-    // The support function is the normal's distance from the centre to the tangent plane.
-    const support = Math.hypot(
-      this.radii.x * normal.x,
-      this.radii.y * normal.y,
-      this.radii.z * normal.z
-    )
     return target.set(
       Math.atan2(normal.y, normal.x) / degrees,
       Math.atan2(normal.z, Math.hypot(normal.x, normal.y)) / degrees,
-      x * normal.x + y * normal.y + z * normal.z - support
+      x * normal.x + y * normal.y + z * normal.z - this.support(normal)
     )
   }
 
@@ -152,11 +147,10 @@ export class Ellipsoid {
     checkVector('Ellipsoid.footPoint', 'positionECEF', positionECEF)
     const { x, y, z } = this.radii
     const normal = footPointNormal(positionECEF, this.radii, scratchNormal)
-    const support = Math.hypot(x * normal.x, y * normal.y, z * normal.z)
     return target
       .set(x * x, y * y, z * z)
       .multiply(normal)
-      .divideScalar(support)
+      .divideScalar(this.support(normal))
   }
 
   /**
@@ -179,8 +173,7 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   eastNorthUpFrame(positionECEF: Vector3, target: Matrix4 = new Matrix4()): Matrix4 {
-    checkVector('Ellipsoid.eastNorthUpFrame', 'positionECEF', positionECEF)
-    this.basis(positionECEF)
+    this.basis('Ellipsoid.eastNorthUpFrame', positionECEF)
     return target.makeBasis(scratchEast, scratchNorth, scratchNormal).setPosition(positionECEF)
   }
 
@@ -193,8 +186,7 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   localYUpFrame(positionECEF: Vector3, target: Matrix4 = new Matrix4()): Matrix4 {
-    checkVector('Ellipsoid.localYUpFrame', 'positionECEF', positionECEF)
-    this.basis(positionECEF)
+    this.basis('Ellipsoid.localYUpFrame', positionECEF)
     return target
       .makeBasis(scratchEast, scratchNormal, scratchNorth.negate())
       .setPosition(positionECEF)
@@ -311,16 +303,21 @@ export class Ellipsoid {
     const { x, y, z } = this.radii
     const weight = (foot.x / x / x) ** 2 + (foot.y / y / y) ** 2 + (foot.z / z / z) ** 2
     const value = radius ?? x * y * z * weight
-    if (!(value > 0 && value < Infinity)) {
-      fail('Ellipsoid.osculatingSphere', 'radius must be positive and finite', value)
-    }
+    checkPositive('Ellipsoid.osculatingSphere', 'radius', value)
     target.center.copy(foot).addScaledVector(scratchNormal, -value)
     target.radius = value
     return target
   }
 
+  /** The support function: distance from the centre to the tangent plane of a normal [m]. */
+  private support(normal: Vector3): number {
+    const { x, y, z } = this.radii
+    return Math.hypot(x * normal.x, y * normal.y, z * normal.z)
+  }
+
   /** Leaves east, north and up in the scratch vectors. */
-  private basis(positionECEF: Vector3): void {
+  private basis(where: string, positionECEF: Vector3): void {
+    checkVector(where, 'positionECEF', positionECEF)
     const up = footPointNormal(positionECEF, this.radii, scratchNormal)
     const horizontal = Math.hypot(up.x, up.y)
     if (horizontal > 0) scratchEast.set(-up.y / horizontal, up.x / horizontal, 0)

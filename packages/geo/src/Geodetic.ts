@@ -17,11 +17,11 @@ export interface GeodeticLike {
  */
 export class Geodetic implements GeodeticLike {
   /** East of the prime meridian [degrees]. Functions return (−180, 180] and accept any finite value. */
-  longitude: number
+  longitude!: number
   /** Angle from the equator to the ellipsoid's normal, positive to the north, in [−90, 90] [degrees]. */
-  latitude: number
+  latitude!: number
   /** Along the ellipsoid's normal, negative inside [m]. */
-  height: number
+  height!: number
 
   /**
    * @param longitude - [degrees], any finite value.
@@ -30,25 +30,25 @@ export class Geodetic implements GeodeticLike {
    * @throws Error if a value is not finite or the latitude is out of range.
    */
   constructor(longitude = 0, latitude = 0, height = 0) {
-    checkPlace('Geodetic', 'place', { longitude, latitude, height })
-    this.longitude = longitude
-    this.latitude = latitude
-    this.height = height
+    this.take('Geodetic', { longitude, latitude, height })
   }
 
   /** Sets all three values; the same ranges and errors as the constructor. */
   set(longitude: number, latitude: number, height = 0): this {
-    checkPlace('Geodetic.set', 'place', { longitude, latitude, height })
-    this.longitude = longitude
-    this.latitude = latitude
-    this.height = height
-    return this
+    return this.take('Geodetic.set', { longitude, latitude, height })
   }
 
   /** Copies another place; the same ranges and errors as the constructor. */
   copy(place: GeodeticLike): this {
-    checkPlace('Geodetic.copy', 'place', place)
-    return this.set(place.longitude, place.latitude, place.height)
+    return this.take('Geodetic.copy', place)
+  }
+
+  private take(where: string, place: GeodeticLike): this {
+    checkPlace(where, 'place', place)
+    this.longitude = place.longitude
+    this.latitude = place.latitude
+    this.height = place.height ?? 0
+    return this
   }
 
   clone(): Geodetic {

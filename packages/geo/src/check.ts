@@ -77,16 +77,15 @@ export function checkVector(where: string, name: string, vector: XYZ): void {
   if (typeof vector !== 'object' || vector === null || !('x' in vector)) {
     fail(where, `${name} must be a Vector3`, vector)
   }
-  if (!(Number.isFinite(vector.x) && Number.isFinite(vector.y) && Number.isFinite(vector.z))) {
+  if (![vector.x, vector.y, vector.z].every(Number.isFinite)) {
     fail(where, `${name} must have finite components`, vector)
   }
 }
 
 export function checkDirection(where: string, name: string, direction: XYZ): void {
   checkVector(where, name, direction)
-  if (direction.x === 0 && direction.y === 0 && direction.z === 0) {
-    fail(where, `${name} must not be zero`, direction)
-  }
+  const { x, y, z } = direction
+  if (!(x || y || z)) fail(where, `${name} must not be zero`, direction)
 }
 
 export function checkDate(where: string, date: Date): void {
@@ -154,28 +153,23 @@ export function setOptions<T extends object, O extends object>(
   ...names: readonly (keyof T & keyof O & string)[]
 ): T {
   checkOptions(where, options, ...names)
-  const properties = target as Record<string, unknown>
-  const before: Record<string, unknown> = {}
+  const given = Object.entries(options).filter(([, value]) => value !== undefined)
+  const before = given.map(([name]) => [name, target[name as keyof T]])
   try {
-    for (const [name, value] of Object.entries(options)) {
-      if (value === undefined) continue
-      before[name] = properties[name]
-      properties[name] = value
-    }
+    return Object.assign(target, Object.fromEntries(given))
   } catch (error) {
-    Object.assign(properties, before)
+    Object.assign(target, Object.fromEntries(before))
     throw error
   }
-  return target
 }
 
 /** Levenshtein distance: letters added, left out or replaced between two words. */
 function editsBetween(a: string, b: string): number {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j)
-  for (let i = 0; i < a.length; i++) {
-    const next = [i + 1]
+  for (const letter of a) {
+    const next = [row[0] + 1]
     for (let j = 0; j < b.length; j++) {
-      const replaced = row[j] + (a[i] === b[j] ? 0 : 1)
+      const replaced = row[j] + (letter === b[j] ? 0 : 1)
       next.push(Math.min(replaced, row[j + 1] + 1, next[j] + 1))
     }
     row = next
@@ -198,25 +192,19 @@ const LETTERS = 60
 
 function describe(value: unknown, isPart = false): string {
   if (typeof value === 'string') {
-    return `'${value.length > LETTERS ? `${value.slice(0, LETTERS)}…` : value}'`
+    return value.length > LETTERS ? `'${value.slice(0, LETTERS)}…'` : `'${value}'`
   }
   if (typeof value === 'function') return `the function ${value.name}`
   if (value instanceof Date || typeof value !== 'object' || value === null) return String(value)
-  if (Array.isArray(value)) {
-    return shown(
-      '[',
-      value.map(part => (): string => describe(part, true)),
-      ']',
-      isPart
-    )
-  }
-  if (isPlain(value)) {
-    const parts = Object.entries(value).map(
-      ([name, part]) =>
-        (): string =>
-          `${name}: ${describe(part, true)}`
-    )
-    return shown('{ ', parts, ' }', isPart)
+  const isArray = Array.isArray(value)
+  if (isArray || isPlain(value)) {
+    const parts = Object.entries(value)
+    const shown = parts
+      .slice(0, isPart ? 0 : SHOWN)
+      .map(([name, part]) => (isArray ? '' : `${name}: `) + describe(part, true))
+    if (parts.length > shown.length) shown.push('…')
+    const text = shown.join(', ')
+    return isArray ? `[${text}]` : text === '' ? '{}' : `{ ${text} }`
   }
   if ('isVector3' in value) {
     const { x, y, z } = value as unknown as XYZ
@@ -227,11 +215,4 @@ function describe(value: unknown, isPart = false): string {
   const type = name.length > 2 ? name : (value as { type?: unknown }).type
   if (typeof type !== 'string') return 'an object'
   return `${/^[AEIO]/.test(type) ? 'an' : 'a'} ${type}`
-}
-
-function shown(open: string, parts: (() => string)[], close: string, isPart: boolean): string {
-  if (parts.length === 0) return (open + close).replaceAll(' ', '')
-  if (isPart) return `${open}…${close}`
-  const texts = parts.slice(0, SHOWN).map(part => part())
-  return open + [...texts, ...(parts.length > SHOWN ? ['…'] : [])].join(', ') + close
 }

@@ -1,19 +1,16 @@
-import { Vector3, Vector4 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
+import type { Vector3 } from 'three'
 import type { UniformNode } from 'three/webgpu'
 import {
   spectrumOf,
   type AtmosphereParameters,
   type Spectrum
 } from '../parameters/AtmosphereParameters'
+import { number, vector3, vector4 } from '../uniforms'
 import { homogeneousHeight } from './cpu/medium'
 import { asymmetryMoments, cornetteShanksFactor } from './cpu/phase'
 import { linearSRGBColumns, whiteBalancedColumns } from './cpu/color'
 
-const number = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
-const spectrum = (): UniformNode<'vec4', Vector4> => uniform(new Vector4()).setGroup(renderGroup)
-const triple = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
-const columns = (): UniformNode<'vec3', Vector3>[] => [0, 1, 2, 3].map(triple)
+const columns = (): UniformNode<'vec3', Vector3>[] => [0, 1, 2, 3].map(vector3)
 
 /**
  * The parameters of an atmosphere as shader uniforms: changing a parameter recompiles nothing.
@@ -23,31 +20,31 @@ export class AtmosphereUniforms {
   readonly bottomRadius = number()
   /** Thickness of the air [m]. */
   readonly thickness = number()
-  readonly rayleighScattering = spectrum()
+  readonly rayleighScattering = vector4()
   readonly rayleighScaleHeight = number()
   /** Altitudes where the layers above the lowest begin [m]. */
-  readonly rayleighLayerBases = triple()
+  readonly rayleighLayerBases = vector3()
   /** 1/H of those layers less that of the layer below; 0 for layers that there are not [1/m]. */
-  readonly rayleighLayerSlopes = triple()
+  readonly rayleighLayerSlopes = vector3()
   /** Height of the homogeneous atmosphere of molecules [m]. */
   readonly homogeneousHeight = number()
-  readonly mieScattering = spectrum()
-  readonly mieExtinction = spectrum()
+  readonly mieScattering = vector4()
+  readonly mieExtinction = vector4()
   readonly mieScaleHeight = number()
-  readonly mieAsymmetry = spectrum()
+  readonly mieAsymmetry = vector4()
   /** 1 if the asymmetry is the same at the four wavelengths, else 0. */
   readonly mieIsGrey = number()
   /** 3/(8π) (1 − g²)/(2 + g²), what is constant in the Cornette–Shanks phase function [1/sr]. */
-  readonly miePhaseFactor = spectrum()
+  readonly miePhaseFactor = vector4()
   /** χ₁ and χ₂, first Legendre coefficients of the aerosols' phase function. */
-  readonly mieMoment1 = spectrum()
-  readonly mieMoment2 = spectrum()
-  readonly absorptionExtinction = spectrum()
+  readonly mieMoment1 = vector4()
+  readonly mieMoment2 = vector4()
+  readonly absorptionExtinction = vector4()
   readonly absorptionAltitude = number()
   readonly absorptionHalfWidth = number()
-  readonly groundAlbedo = spectrum()
+  readonly groundAlbedo = vector4()
   readonly sunAngularRadius = number()
-  readonly limbDarkening = spectrum()
+  readonly limbDarkening = vector4()
   /** Columns of the matrix from radiance per unit of solar irradiance [1/sr] to scaled linear sRGB. */
   readonly linearSRGB = columns()
   /** Columns of the matrix from spectral transmittance to that of sunlight seen as linear sRGB. */
@@ -77,18 +74,14 @@ export class AtmosphereUniforms {
     }
     const asymmetries = spectrumOf(parameters.mieAsymmetry)
     this.mieIsGrey.value = Number(new Set(asymmetries).size === 1)
-    asymmetries.forEach((asymmetry, i) => {
-      const [, moment1, moment2] = asymmetryMoments(asymmetry)
-      this.mieAsymmetry.value.setComponent(i, asymmetry)
-      this.miePhaseFactor.value.setComponent(i, cornetteShanksFactor(asymmetry))
-      this.mieMoment1.value.setComponent(i, moment1)
-      this.mieMoment2.value.setComponent(i, moment2)
-    })
-    linearSRGBColumns(parameters, luminanceScale).forEach((column, i) => {
-      this.linearSRGB[i].value.set(...column)
-    })
-    whiteBalancedColumns(parameters).forEach((column, i) => {
-      this.transmittanceRGB[i].value.set(...column)
-    })
+    const moments = asymmetries.map(asymmetryMoments)
+    this.mieAsymmetry.value.fromArray(asymmetries)
+    this.miePhaseFactor.value.fromArray(asymmetries.map(cornetteShanksFactor))
+    this.mieMoment1.value.fromArray(moments.map(([, first]) => first))
+    this.mieMoment2.value.fromArray(moments.map(([, , second]) => second))
+    const linearSRGB = linearSRGBColumns(parameters, luminanceScale)
+    this.linearSRGB.forEach((node, i) => node.value.fromArray(linearSRGB[i]))
+    const balanced = whiteBalancedColumns(parameters)
+    this.transmittanceRGB.forEach((node, i) => node.value.fromArray(balanced[i]))
   }
 }

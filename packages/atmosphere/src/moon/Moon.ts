@@ -10,7 +10,6 @@ import {
   fail,
   setOptions
 } from '@welkin/geo'
-import type { Triple } from '../air/cpu/color'
 import type { Atmosphere } from '../Atmosphere'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -248,30 +247,6 @@ export class Moon implements SkyLayer {
    */
   set(settings: Pick<MoonOptions, (typeof SETTINGS)[number]>): this {
     return setOptions('Moon', this, settings, ...SETTINGS)
-  }
-
-  /**
-   * Illuminance by the moon on a plane that faces it, reddened by the air and blocked by the planet.
-   *
-   * @param position - World.
-   * @returns Linear sRGB [lx].
-   */
-  illuminanceAt(position: Vector3): Triple {
-    const { atmosphere, source } = this.#inHome()
-    return atmosphere.query(position, source).directIlluminance(position)
-  }
-
-  /**
-   * Illuminance by moonlit sky and ground on a plane.
-   *
-   * @param position - World.
-   * @param normal - World, unit length: where the plane faces.
-   * @returns Linear sRGB [lx].
-   * @throws Before the tables were baked and read back: await `atmosphere.bake(renderer)` first.
-   */
-  skyIlluminanceAt(position: Vector3, normal: Vector3): Triple {
-    const { atmosphere, source } = this.#inHome()
-    return atmosphere.query(position, source).skyIlluminance(position, normal)
   }
 
   /**

@@ -1,5 +1,6 @@
-import { checkEllipsoid, fail, failUnknown } from '@welkin/geo'
+import { checkEllipsoid, checkOptions, fail } from '@welkin/geo'
 import type { Ellipsoid } from '@welkin/geo'
+import { checkRange } from '../check'
 
 /** Four numbers, one per wavelength, in the order of {@link AtmosphereParameters.wavelengths}. */
 export type Spectrum = readonly [number, number, number, number]
@@ -158,35 +159,31 @@ const FIELDS: {
 const CLASS = 'AtmosphereParameters'
 
 /** Names of all options. */
-const NAMES = [...Object.keys(FIELDS), 'turbidity', 'ozone']
+const NAMES = [...Object.keys(FIELDS), 'turbidity', 'ozone'] as (keyof AtmosphereParametersInit)[]
 
 /** Fields, with those that turbidity and ozone stand for. */
 function fieldsOf({ turbidity, ozone, ...fields }: AtmosphereParametersInit): object {
   const made: AtmosphereParametersFields = {}
-  const stand = (name: string, ...others: (keyof AtmosphereParametersFields)[]): void => {
-    const other = others.find(field => fields[field] !== undefined)
-    if (other) fail(CLASS, `${name} must not be given together with ${other}`)
-  }
   if (turbidity !== undefined) {
     check('turbidity', turbidity, 1, 20)
-    stand('turbidity', 'mieScattering', 'mieExtinction')
     const extinction = CLEAR_AEROSOL_EXTINCTION * (turbidity - 1)
     made.mieScattering = all(0.9 * extinction)
     made.mieExtinction = all(extinction)
   }
   if (ozone !== undefined) {
     check('ozone', ozone, 0, 1000)
-    stand('ozone', 'absorptionExtinction')
     made.absorptionExtinction = earthOzone(ozone)
+  }
+  for (const name of Object.keys(made) as (keyof Fields)[]) {
+    if (fields[name] === undefined) continue
+    const other = name.startsWith('mie') ? 'turbidity' : 'ozone'
+    fail(CLASS, `${other} must not be given together with ${name}`)
   }
   return { ...fields, ...made }
 }
 
-function check(name: string, value: unknown, min: number, max: number): void {
-  if (!(typeof value === 'number' && value >= min && value <= max)) {
-    fail(CLASS, `${name} must be a number in [${min}, ${max}]`, value)
-  }
-}
+const check = (name: string, value: unknown, min: number, max: number): void =>
+  checkRange(CLASS, name, value, min, max)
 
 /** Checked copy of a field's value, which must have the shape of the Earth's. */
 function checkedCopy<T>(name: string, value: T, earth: T, least: number, most: number): T {
@@ -262,12 +259,12 @@ export class AtmosphereParameters {
    * @throws If a field is unknown, of the wrong kind or out of its range; then nothing has changed.
    */
   set(init: AtmosphereParametersInit): this {
+    // Options are plain objects, and a clone's are parameters.
+    const options: AtmosphereParametersInit =
+      init instanceof AtmosphereParameters ? Object.assign({}, init) : init
+    checkOptions(CLASS, options, ...NAMES)
     const next: AtmosphereParametersFields = {}
-    if (typeof init !== 'object' || init === null || Array.isArray(init)) {
-      fail(CLASS, 'options must be an object', init)
-    }
     for (const [name, value] of Object.entries(fieldsOf(init))) {
-      if (!Object.hasOwn(FIELDS, name)) failUnknown(CLASS, 'option', name, NAMES)
       if (value === undefined) continue
       const field: readonly [unknown, number, number] = FIELDS[name as keyof Fields]
       const [earth, least, most] = field
@@ -286,8 +283,7 @@ export class AtmosphereParameters {
       }
       Object.assign(next, { [name]: checkedCopy<unknown>(name, value, shape, least, most) })
     }
-    const { bottomRadius = this.bottomRadius, topRadius = this.topRadius } = next
-    const { mieScattering = this.mieScattering, mieExtinction = this.mieExtinction } = next
+    const { bottomRadius, topRadius, mieScattering, mieExtinction } = Object.assign({}, this, next)
     mieScattering.forEach((value, i) => check('mieScattering', value, 0, mieExtinction[i]))
     next.rayleighLayers?.reduce((below, [base], i) => {
       check(`rayleighLayers[${i}][0]`, base, below, 1e6)

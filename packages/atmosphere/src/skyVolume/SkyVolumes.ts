@@ -1,10 +1,11 @@
 import type { RenderTarget } from 'three'
 import { Vector2 } from 'three'
-import { renderGroup, texture, uniform } from 'three/tsl'
+import { texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { GAP, type TableAtlas } from '../tables/TableAtlas'
 import { DEPTH_SIZE, VOLUME_SIZE, VOLUME_SLOTS, VOLUME_TILES } from '../tables/tableSizes'
+import { number, vector2 } from '../uniforms'
 import type { ViewpointScalars } from '../view/tsl/viewpoint'
 import type { Air } from '../scattering/tsl/ray'
 import { bakeDepth, bakeSegments, sumSegments } from './tsl/skyVolumeBake'
@@ -22,9 +23,6 @@ const DEPTH_ROWS = DEPTH_SIZE[1] + 1
 const ABREAST = 2
 export const VOLUMES_WIDTH = ABREAST * (2 * LIGHT_COLUMNS + GAP)
 
-const scalar = (): UniformNode<'float', number> => uniform(0).setGroup(renderGroup)
-const vector = (): UniformNode<'vec2', Vector2> => uniform(new Vector2()).setGroup(renderGroup)
-
 /** Place of a volume in its atlas: the first texels of its light and of its depth. */
 export interface VolumeOrigins {
   readonly light: Vector2
@@ -33,23 +31,23 @@ export interface VolumeOrigins {
 
 /** Uniforms of a viewpoint and its volume, and a way to set them all. */
 export class ViewpointUniforms implements ViewpointScalars<UniformNode<'float', number>> {
-  readonly altitude = scalar()
-  readonly radius = scalar()
-  readonly toHorizon = scalar()
-  readonly toTop = scalar()
-  readonly cosLight = scalar()
-  readonly sinLight = scalar()
-  readonly cosHorizon = scalar()
-  readonly sinHorizon = scalar()
-  readonly belowScale = scalar()
-  readonly aboveScale = scalar()
-  readonly groundStretch = scalar()
-  readonly groundGrowth = scalar()
-  readonly skyStretch = scalar()
-  readonly skyGrowth = scalar()
+  readonly altitude = number()
+  readonly radius = number()
+  readonly toHorizon = number()
+  readonly toTop = number()
+  readonly cosLight = number()
+  readonly sinLight = number()
+  readonly cosHorizon = number()
+  readonly sinHorizon = number()
+  readonly belowScale = number()
+  readonly aboveScale = number()
+  readonly groundStretch = number()
+  readonly groundGrowth = number()
+  readonly skyStretch = number()
+  readonly skyGrowth = number()
   /** First texels of its volume's light and depth in the atlas. */
-  readonly lightOrigin = vector()
-  readonly depthOrigin = vector()
+  readonly lightOrigin = vector2()
+  readonly depthOrigin = vector2()
 
   /** @param volume - Null for none. */
   set(values: ViewpointScalars<number>, volume: VolumeOrigins | null): void {

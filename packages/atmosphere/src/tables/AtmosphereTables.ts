@@ -1,4 +1,3 @@
-import { DataUtils } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
@@ -9,13 +8,7 @@ import { SkyVolumes, VOLUMES_WIDTH } from '../skyVolume/SkyVolumes'
 import { TransmittanceTable } from '../transmittance/TransmittanceTable'
 import { checkOwner } from '../view/renderers'
 import { GAP, TableAtlas } from './TableAtlas'
-import {
-  DEPTH_SIZE,
-  DIFFUSE_LAYOUT,
-  DIFFUSE_SIZE,
-  TRANSMITTANCE_SIZE,
-  VOLUME_SLOTS
-} from './tableSizes'
+import { DEPTH_SIZE, TRANSMITTANCE_SIZE, VOLUME_SLOTS } from './tableSizes'
 
 /** Layout of the atlas: tables in a row at its top, and room for volumes beside them [texels]. */
 const DIFFUSE_X = TRANSMITTANCE_SIZE[0] + GAP
@@ -141,12 +134,12 @@ export class AtmosphereTables {
 
   async #read(renderer: Renderer): Promise<void> {
     const version = this.version
-    const halves = await this.diffuseLight.region.read(renderer).catch((error: unknown) => {
+    const values = await this.diffuseLight.region.read(renderer).catch((error: unknown) => {
       // Nobody misses what was disposed of or baked anew meanwhile.
       if (version === this.version) throw error
     })
-    if (version !== this.version || halves === undefined) return
-    this.data = { values: sideBySide(halves) }
+    if (version !== this.version || values === undefined) return
+    this.data = { values }
   }
 
   /** Resolves when the tables that were last finished have been read back. */
@@ -170,22 +163,4 @@ export class AtmosphereTables {
       part.dispose()
     }
   }
-}
-
-/** The tiles of the diffuse-light table side by side, as numbers. */
-function sideBySide(halves: Uint16Array): Float32Array {
-  const [columns, rows] = DIFFUSE_SIZE
-  const [across, down] = DIFFUSE_LAYOUT
-  const values = new Float32Array(halves.length)
-  for (let y = 0; y < rows * down; y++) {
-    for (let x = 0; x < columns * across; x++) {
-      const tile = Math.floor(y / rows) * across + Math.floor(x / columns)
-      const from = y * columns * across + x
-      const to = ((y % rows) * across * down + tile) * columns + (x % columns)
-      for (let k = 0; k < 4; k++) {
-        values[4 * to + k] = DataUtils.fromHalfFloat(halves[4 * from + k])
-      }
-    }
-  }
-  return values
 }

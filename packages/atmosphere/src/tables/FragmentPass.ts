@@ -21,7 +21,6 @@ export function tableTarget(
   })
   target.textures.forEach((texture, i) => {
     texture.name = `${name}.${i}`
-    texture.generateMipmaps = false
   })
   return target
 }
@@ -48,8 +47,7 @@ export class FragmentPass {
       depthTest: false,
       depthWrite: false,
       toneMapped: false,
-      fog: false,
-      lights: false
+      fog: false
     })
     if ('color' in output) {
       this.material.colorNode = output.color
@@ -70,7 +68,6 @@ export class FragmentPass {
   render(renderer: Renderer, target: RenderTarget, slice = 0, level = 0): void {
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     renderer.autoClear = false
-    renderer.setMRT(null)
     renderer.setRenderTarget(target, slice, level)
     this.#quad.render(renderer)
     RendererUtils.restoreRendererState(renderer, state)

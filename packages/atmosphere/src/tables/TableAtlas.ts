@@ -1,8 +1,9 @@
 import type { RenderTarget } from 'three'
-import { Vector2 } from 'three'
-import { renderGroup, texture, uniform, vec2 } from 'three/tsl'
+import { DataUtils } from 'three'
+import { texture, vec2 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { sampleLevel0, type Vec2, type Vec4 } from '../tsl-types'
+import { vector2 } from '../uniforms'
 import { tableTarget, type FragmentPass } from './FragmentPass'
 
 /** A table as shaders read it, wherever it is kept. */
@@ -37,7 +38,7 @@ export class TableAtlas implements Texels {
   /** The texture, a node that all shaders share. */
   readonly texture: TextureNode
   /** Size of a texel in texture coordinates; a uniform, for the atlas may grow. */
-  readonly #texelSize = uniform(new Vector2()).setGroup(renderGroup)
+  readonly #texelSize = vector2()
 
   constructor(name: string, width: number, height: number) {
     this.target = tableTarget(name, width, height)
@@ -95,8 +96,8 @@ export class TableRegion implements Table {
     pass.render(renderer, target)
   }
 
-  /** Reads it back: half floats, four to a texel, row by row from the first. */
-  async read(renderer: Renderer): Promise<Uint16Array> {
+  /** Reads it back: four numbers to a texel, row by row from the first. */
+  async read(renderer: Renderer): Promise<Float32Array> {
     const { x, y, width, height } = this
     const { target } = this.atlas
     const backend = renderer.backend as { isWebGPUBackend?: boolean }
@@ -104,13 +105,11 @@ export class TableRegion implements Table {
     const isBottomUp = backend.isWebGPUBackend !== true
     const first = isBottomUp ? target.height - y - height : y
     const read = await renderer.readRenderTargetPixelsAsync(target, x, first, width, height)
-    const halves = read as Uint16Array
-    if (!isBottomUp) return halves
-    const flipped = new Uint16Array(halves.length)
+    const values = Float32Array.from(read, half => DataUtils.fromHalfFloat(half))
+    if (!isBottomUp) return values
     const stride = 4 * width
-    for (let row = 0; row < height; row++) {
-      flipped.set(halves.subarray(row * stride, (row + 1) * stride), (height - 1 - row) * stride)
-    }
-    return flipped
+    return values.map(
+      (_, i) => values[(height - 1 - Math.floor(i / stride)) * stride + (i % stride)]
+    )
   }
 }

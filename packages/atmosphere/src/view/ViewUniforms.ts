@@ -1,8 +1,6 @@
-import { Matrix3, Vector3 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
-import type { UniformNode } from 'three/webgpu'
 import type { Camera } from 'three'
 import { offsetPoint } from '@welkin/geo'
+import { matrix3, number, vector3 } from '../uniforms'
 import type { AtmosphereTables } from '../tables/AtmosphereTables'
 import { ViewpointUniforms } from '../skyVolume/SkyVolumes'
 import type { Air } from '../scattering/tsl/ray'
@@ -10,8 +8,6 @@ import type { Texels } from '../tables/TableAtlas'
 import type { Float, Mat3, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
-
-const vector = (): UniformNode<'vec3', Vector3> => uniform(new Vector3()).setGroup(renderGroup)
 
 /** Uniforms and textures of an atmosphere as a camera sees it in the light of one source. */
 export class ViewUniforms {
@@ -23,15 +19,15 @@ export class ViewUniforms {
   readonly volume: Texels
   readonly viewpoint = new ViewpointUniforms()
   /** Height of the camera above the ground, which may be negative [m]. */
-  readonly height = uniform(0).setGroup(renderGroup)
+  readonly height = number()
   /** 1 where light of the source can reach what the camera sees of the air, 0 deep in the night. */
-  readonly isLit = uniform(1).setGroup(renderGroup)
+  readonly isLit = number(1)
   /** Zenith at the camera, in the mapped space. */
-  readonly up = vector()
+  readonly up = vector3()
   /** Direction to the source, in the mapped space. */
-  readonly lightDirection = vector()
+  readonly lightDirection = vector3()
   /** Displacements in view space [world units] to the mapped space [m]. */
-  readonly viewToMapped = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly viewToMapped = matrix3()
 
   constructor(tables: AtmosphereTables, source: LightSource, camera: Camera | null) {
     this.source = source

@@ -7,7 +7,9 @@ import {
   DayCycle,
   exposureFor,
   exposureOfIlluminance,
-  standardEarthParameters
+  standardEarthParameters,
+  skyIlluminanceAt,
+  sunIlluminanceAt
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
@@ -313,9 +315,9 @@ describe('twilight', () => {
     const [place, up] = [new Vector3(), new Vector3(0, 1, 0)]
     return elevation => {
       atmosphere.setSunAngles(elevation, 30)
-      const sky = luminance(atmosphere.skyIlluminanceAt(place, up))
+      const sky = luminance(skyIlluminanceAt(atmosphere, place, up))
       const { y } = atmosphere.sunDirection
-      const sun = y > 0 ? y * luminance(atmosphere.sunIlluminanceAt(place)) : 0
+      const sun = y > 0 ? y * luminance(sunIlluminanceAt(atmosphere, place)) : 0
       return (sky + sun) / almanacIlluminance(elevation)
     }
   }

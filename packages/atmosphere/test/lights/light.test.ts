@@ -9,7 +9,11 @@ import {
   whiteBalancedColumns,
   xyzToLinearSRGB
 } from '../../src/air/cpu/color'
-import { diffuseColumn, diffuseColumnCosine } from '../../src/diffuseLight/cpu/diffuseLight'
+import {
+  diffuseColumn,
+  diffuseColumnCosine,
+  diffuseTexel
+} from '../../src/diffuseLight/cpu/diffuseLight'
 import { viewpointScalars, LOWEST_VIEWPOINT } from '../../src/view/cpu/viewpoint'
 import { skyIrradiance } from '../../src/diffuseLight/cpu/skyIrradiance'
 import { SphericalSpace } from '../../src/view/cpu/spherical'
@@ -23,10 +27,12 @@ describe('sky irradiance', () => {
     const [columns, rows] = DIFFUSE_SIZE
     const radiance = 0.3
     const values = new Float32Array(4 * columns * rows * DIFFUSE_TILES)
-    for (let texel = 0; texel < values.length / 4; texel++) {
-      const tile = Math.floor((texel % (columns * DIFFUSE_TILES)) / columns)
+    for (let tile = 0; tile < DIFFUSE_TILES; tile++) {
       const value = tile === 0 ? Math.sqrt(4 * Math.PI) : tile >= 6 ? Math.PI : 0
-      values.fill(value * radiance * RADIANCE_SCALE, 4 * texel, 4 * texel + 4)
+      for (let row = 0; row < rows; row++) {
+        const [first, end] = [0, columns].map(column => 4 * diffuseTexel(tile, column, row))
+        values.fill(value * radiance * RADIANCE_SCALE, first, end)
+      }
     }
     const data = { values }
     fc.assert(

@@ -17,7 +17,7 @@ const bad: [AtmosphereParametersInit, RegExp][] = [
         [1e4, 6e3]
       ]
     },
-    /AtmosphereParameters: rayleighLayers\[1\]\[0\] must be .* in \[40000, 1000000\], got 10000/
+    /AtmosphereParameters: rayleighLayers\[1\]\[0\] must be in \[40000, 1000000\], got 10000/
   ],
   [
     { rayleighLayers: [1, 2, 3, 4].map(i => [1e4 * i, 7e3] as const) },
@@ -97,7 +97,7 @@ describe('AtmosphereParameters', () => {
     const parameters = new AtmosphereParameters()
     const { version } = parameters
     expect(() => parameters.set({ mieScattering: [0, 0, 0, 1e-5] })).toThrow(
-      /mieScattering must be a number in \[0, 0\.0000044\d*\], got 0\.00001/
+      /mieScattering must be in \[0, 0\.0000044\d*\], got 0\.00001/
     )
     expect(parameters.version).toBe(version)
   })

@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it } from 'vitest'
 import type { Renderer } from 'three/webgpu'
 import { AtmosphereParameters } from '@welkin/atmosphere'
+import { diffuseTexel } from '../../src/diffuseLight/cpu/diffuseLight'
 import { AtmosphereTables } from '../../src/tables/AtmosphereTables'
 
 /** A renderer that draws nothing, and whose reads end when the test says so. */
@@ -66,11 +67,13 @@ describe('AtmosphereTables', () => {
     // Two tiles abreast and four down in the texture: the second row of the fourth begins with a 2.
     const [columns, rows, tiles] = [96, 16, 8]
     const texels = new Uint16Array(4 * columns * rows * tiles).fill(0x3c00)
-    texels[4 * ((rows + 1) * 2 * columns + columns)] = 0x4000
+    const texel = (rows + 1) * 2 * columns + columns
+    expect(diffuseTexel(3, 0, 1)).toBe(texel)
+    texels[4 * texel] = 0x4000
     read.resolve(texels)
     await tables.read()
     const values = new Float32Array(4 * columns * rows * tiles).fill(1)
-    values[4 * (columns * tiles + 3 * columns)] = 2
+    values[4 * texel] = 2
     expect(tables.data).toEqual({ values })
   })
 

@@ -1,4 +1,9 @@
-import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
+import {
+  DIFFUSE_LAYOUT,
+  DIFFUSE_SIZE,
+  DIFFUSE_TILES,
+  RADIANCE_SCALE
+} from '../../tables/tableSizes'
 
 /**
  * Spacing of the columns of the diffuse-light table over the sun's cosine μ_s: evenly in
@@ -28,8 +33,19 @@ export function diffuseColumnCosine(column: number): number {
 
 /** The diffuse-light table, read back. */
 export interface DiffuseLightData {
-  /** Texels of four values, row by row, tiles side by side; rows are altitudes, from the ground up. */
+  /**
+   * Texels of four values as they lie in the texture: row by row, tiles as `DIFFUSE_LAYOUT` has them. Rows of a
+   * tile are altitudes, from the ground up.
+   */
   values: Float32Array
+}
+
+/** Index of the texel at a column and row of a tile. */
+export function diffuseTexel(tile: number, column: number, row: number): number {
+  const [columns, rows] = DIFFUSE_SIZE
+  const across = DIFFUSE_LAYOUT[0]
+  const y = Math.floor(tile / across) * rows + row
+  return (y * across + (tile % across)) * columns + column
 }
 
 /**
@@ -59,8 +75,8 @@ export function sampleDiffuseLight(
   return Array.from({ length: DIFFUSE_TILES }, (_, tile) =>
     [0, 1, 2, 3].map(channel =>
       corners.reduce((sum, [i, j, weight]) => {
-        const texel = j * columns * DIFFUSE_TILES + tile * columns + i
-        return sum + (weight * values[4 * texel + channel]) / RADIANCE_SCALE
+        const value = values[4 * diffuseTexel(tile, i, j) + channel]
+        return sum + (weight * value) / RADIANCE_SCALE
       }, 0)
     )
   )

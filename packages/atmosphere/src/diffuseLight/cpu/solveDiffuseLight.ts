@@ -1,7 +1,12 @@
 import { spectrumOf, type AtmosphereParameters } from '../../parameters/AtmosphereParameters'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
 import { distanceToGround, distanceToTop } from '../../air/cpu/boundary'
-import { diffuseColumn, diffuseColumnCosine, type DiffuseLightData } from './diffuseLight'
+import {
+  diffuseColumn,
+  diffuseColumnCosine,
+  diffuseTexel,
+  type DiffuseLightData
+} from './diffuseLight'
 import { densities, homogeneousHeight } from '../../air/cpu/medium'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from '../../air/cpu/phase'
 import { gaussLegendre } from '../../math/cpu/quadrature'
@@ -308,12 +313,12 @@ export function solveDiffuseLight(
     if (order === orders - 1 && before !== null) addTail(total, before, light)
     before = light
   }
-  // To the layout of the texture: tiles side by side.
+  // To the layout of the texture.
   const values = new Float32Array(total.length)
   for (let cell = 0; cell < COLUMNS * ROWS; cell++) {
     for (let tile = 0; tile < DIFFUSE_TILES; tile++) {
       const row = Math.floor(cell / COLUMNS)
-      const texel = (row * DIFFUSE_TILES + tile) * COLUMNS + (cell % COLUMNS)
+      const texel = diffuseTexel(tile, cell % COLUMNS, row)
       for (let i = 0; i < 4; i++) {
         values[4 * texel + i] = RADIANCE_SCALE * total[cell * PER_CELL + 4 * tile + i]
       }

@@ -1,9 +1,9 @@
 import type { Vector3 } from 'three'
 import type { Atmosphere } from '../Atmosphere'
-import { checkAtmosphere } from '../view/ViewNodes'
-import { clampCosine } from '../AtmosphereQuery'
 import type { Triple } from '../air/cpu/color'
 import { skyRadiance } from '../scattering/cpu/scattering'
+import type { LightSource } from '../view/LightSource'
+import { clampCosine, LightQuery } from './LightQuery'
 
 /**
  * Luminance of the sky, or of the model's ground, in a direction, by a float64 march; without the
@@ -11,24 +11,24 @@ import { skyRadiance } from '../scattering/cpu/scattering'
  *
  * @param position - World.
  * @param direction - World, any length.
+ * @param source - Whose light in the sky; by default the sun's. A moon's is `moon.source`.
  * @returns Linear sRGB [cd/m²].
  * @throws Before the tables were baked and read back: await `atmosphere.bake(renderer)` first.
  */
 export function skyLuminanceAt(
   atmosphere: Atmosphere,
   position: Vector3,
-  direction: Vector3
+  direction: Vector3,
+  source?: LightSource
 ): Triple {
-  checkAtmosphere('skyLuminanceAt', atmosphere)
-  const query = atmosphere.query(position)
-  const data = query.table('skyLuminanceAt')
-  const { up, radius, cosLight } = query.place(position)
+  const query = new LightQuery('skyLuminanceAt', atmosphere, position, source)
+  const { parameters, data, up, radius, cosLight, lightDirection } = query
   const v = query.direction('direction', direction)
   const ray = {
     radius,
     cosView: clampCosine(v.dot(up)),
     cosLight,
-    cosViewLight: clampCosine(v.dot(query.lightDirection))
+    cosViewLight: clampCosine(v.dot(lightDirection))
   }
-  return query.linearSRGB(skyRadiance(query.parameters, data, ray))
+  return query.linearSRGB(skyRadiance(parameters, data, ray))
 }
