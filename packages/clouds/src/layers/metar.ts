@@ -17,7 +17,7 @@ type Parameters = Partial<CloudLayerParameters>
 const WHERE = 'cloudLayersFromMETAR'
 
 /** Beginning of trends and remarks, where the report proper ends. */
-const LATER = /\s(?:RMK|TEMPO|BECMG|INTER|NOSIG)\b/
+const LATER = /\s(?:RMK|TEMPO|BECMG|INTER)\b/
 
 /** Mark of a report: its time, or one of the words for a sky without clouds. */
 const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
@@ -28,9 +28,9 @@ const CLOUD = /^(FEW|SCT|BKN|OVC|VV|\/{3})([0-5]\d\d|\/{3})(CB|TCU|\/{3})?$/
 /** A group of which something is known. */
 const KNOWN = /[^/]/
 
-// What was meant as one of these two; SCTE and VNKT are aerodromes.
+// What was meant as one of these two; SCTE and VNKT are aerodromes, and NIL is no report.
 const LIKE_WIND = /^(?:VRB|[\d/]).*(?:KT|MPS)$/
-const LIKE_CLOUD = /^(?:FEW|SCT|BKN|OVC|VV)(?![A-Z]+$)/
+const LIKE_CLOUD = /^(?:FEW|SCT|BKN|OVC|VV)(?![A-Z]+$)|^NIL$/
 
 /** One knot [m/s]. */
 const KNOT = 1852 / 3600
@@ -156,7 +156,7 @@ export function cloudLayersFromMETAR(report: string, options: METAROptions = {})
     if (LIKE_WIND.test(text)) wind = windOf(text)
     isReport ||= group !== null || TELLING.test(text)
   }
-  if (!isReport || /\bNIL\b/i.test(report)) fail(WHERE, 'report must be a METAR', report)
+  if (!isReport) fail(WHERE, 'report must be a METAR', report)
   const rank = (group: Group): number => eighthsOf(group) + (isTall(group) ? 8 : 0)
   const ranked = groups.toSorted((a, b) => rank(b) - rank(a))
   const layers = groups
