@@ -188,7 +188,9 @@ export interface Slab {
  * symmetric eigenproblem that does not depend on the slab's thickness nor on the light; a slab is then
  * a small linear system.
  *
- * @see Stamnes & Swanson 1981; Nakajima & Tanaka 1986 (symmetric reduction)
+ * @see Stamnes & Swanson 1981, "A new look at the discrete ordinate method for radiative transfer
+ *   calculations in anisotropically scattering atmospheres"; Nakajima & Tanaka 1986, "Matrix formulations for
+ *   the transfer of solar radiation in a plane-parallel scattering atmosphere" (symmetric reduction)
  */
 export class SlabSolver {
   readonly #modes: AzimuthMode[]
