@@ -36,6 +36,7 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import * as twin from '../../../packages/clouds/test/twins/overcast'
 import { cloudyIrradiance, eddington } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { drawToFloat, random } from '../harness/atmosphere'
+import { coarse } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -43,15 +44,7 @@ import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 
 const size = { width: 24, height: 16 }
-/** Coarse: what is tested here does not depend on steps. */
-const quality: CloudQuality = {
-  steps: 48,
-  stepGrowth: 0.06,
-  shortestStep: 40,
-  layerSteps: 6,
-  lightSteps: 1,
-  block: 1
-}
+const quality: CloudQuality = { ...coarse, block: 1 }
 
 const mean = ({ data }: Picture, channel: number): number => {
   let sum = 0
