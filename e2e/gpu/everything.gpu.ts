@@ -20,7 +20,6 @@ import {
   sunFlare
 } from '@welkin/atmosphere'
 import { cloudEnvironment, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
-import type { CloudQuality } from '@welkin/clouds'
 import {
   BoxGeometry,
   DataTexture,
@@ -44,16 +43,9 @@ import { gpuTest } from './harness/gpu-test'
 import { nextFrame } from './harness/graphics'
 import { watchFragmentShaders, type FragmentShader } from './harness/shaders'
 import { worldMap } from './harness/cloud-scene'
+import { coarse } from './harness/cloud-view'
 
 const size = { width: 32, height: 18 }
-const coarse: CloudQuality = {
-  steps: 24,
-  stepGrowth: 0.1,
-  shortestStep: 60,
-  layerSteps: 4,
-  lightSteps: 1,
-  block: 2
-}
 
 /** Textures that a stage may sample on WebGPU's default limits and on WebGL2. */
 const LIMIT = 16

@@ -1,4 +1,5 @@
 import { readdirSync } from 'node:fs'
+import { availableParallelism } from 'node:os'
 import { join } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
@@ -9,6 +10,7 @@ import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
 import type { Backend } from '../harness/backend'
+import { filterSamplesPlugin } from './filterSamples'
 import type { TestListing, TestOutcome } from './page/main'
 
 const { values, positionals } = parseArgs({
@@ -76,17 +78,43 @@ async function runSuite(
 }
 
 const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${suite}.gpu.ts`)]))
-const bundle = await bundlePage(join(folder, 'page'), files)
+const bundle = await bundlePage(join(folder, 'page'), files, [filterSamplesPlugin()])
 const server = await serveStatic([{ path: '/', folder: bundle }])
-const browser = await launchChromium()
-// Pages of one context share what they store: baked tables.
-const context = await browser.newContext()
-try {
-  for (const suite of suites) {
-    for (const backend of backends) await runSuite(context, server.origin, suite, backend)
+const seconds: [suite: string, seconds: number][] = []
+/** Suites to come, by backend. */
+const queues = backends.map(backend => suites.map(suite => ({ suite, backend })))
+
+/**
+ * Runs the suites of a backend in a browser, and then the last ones of the other backend: its pages share
+ * the tables that they bake, which are of one backend. A software renderer draws pictures as small as the
+ * tests' on one core, so that two browsers take little longer than one.
+ */
+async function work(own: number): Promise<void> {
+  const browser = await launchChromium()
+  const context = await browser.newContext()
+  const next = () => queues[own].shift() ?? queues.find(queue => queue.length > 0)?.pop()
+  try {
+    for (let job = next(); job !== undefined; job = next()) {
+      const { suite, backend } = job
+      const start = performance.now()
+      await runSuite(context, server.origin, suite, backend)
+      seconds.push([`${suite} [${backend}]`, (performance.now() - start) / 1000])
+    }
+  } finally {
+    await browser.close()
   }
+}
+
+const start = performance.now()
+try {
+  const workers = Math.min(availableParallelism(), backends.length)
+  await Promise.all(Array.from({ length: workers }, (_, own) => work(own)))
 } finally {
-  await browser.close()
   await server.close()
+}
+const total = (performance.now() - start) / 1000
+console.log(`\n${total.toFixed(0)} s; the slowest suites took [s]:`)
+for (const [suite, time] of seconds.toSorted((a, b) => b[1] - a[1]).slice(0, 20)) {
+  console.log(`${time.toFixed(1).padStart(7)} ${suite}`)
 }
 report.finish()

@@ -15,3 +15,26 @@ export interface CloudFigures {
   sphere: CloudStatistics
   cases: CloudResult[]
 }
+
+/** Relative errors of a picture's blocks; fractions. */
+export interface CloudLightCase {
+  /** Elevation of the sun; azimuth and angle below the horizon of the view [°]. */
+  sun: number
+  view: { azimuth: number; down: number }
+  n: number
+  median: number
+  p90: number
+  /** Median of error with its sign: above 0 where the picture is too bright. */
+  bias: number
+  /** All light of the blocks over that of the reference. */
+  total: number
+}
+
+export interface CloudLightFigures {
+  n: number
+  median: number
+  p90: number
+  /** Median of the reference's own standard error over its radiance. */
+  stderr: number
+  cases: CloudLightCase[]
+}

@@ -1,4 +1,4 @@
-import type { CloudFigures } from './cloud-figures'
+import type { CloudFigures, CloudLightFigures } from './cloud-figures'
 import type { ColorFigures, SkyComparisons } from './figures'
 import type { Band, BandName, Comparison } from './score'
 
@@ -36,6 +36,9 @@ export const cloudGoals: Record<'slab' | 'sphere', CloudGoal> = {
   slab: { median: 0.03, p95: 0.15 },
   sphere: { median: 0.2, p90: 0.6 }
 }
+
+/** Of radiances out of a simulated cloud, and of the median of each picture. */
+export const cloudLightGoal = { median: 0.1, p90: 0.25, pictureMedian: 0.2 }
 
 /** The largest error of irradiance that has a goal; undefined if none has. */
 export function worstIrradiance(comparisons: readonly Comparison[]): Comparison | undefined {
@@ -83,4 +86,14 @@ export function missedCloudGoals(figures: CloudFigures): string[] {
       return [`${key} of cloud ${shape}s is ${figure.toPrecision(3)}, goal ${goal}`]
     })
   )
+}
+
+/** Names the goals that a simulated cloud misses, each with its figure. */
+export function missedCloudLightGoals({ median, p90, cases }: CloudLightFigures): string[] {
+  const pictureMedian = Math.max(...cases.map(picture => picture.median))
+  return Object.entries({ median, p90, pictureMedian }).flatMap(([key, figure]) => {
+    const goal = cloudLightGoal[key as keyof typeof cloudLightGoal]
+    if (figure <= goal) return [] // NaN meets no goal
+    return [`${key} of cloud light is ${figure.toPrecision(3)}, goal ${goal}`]
+  })
 }

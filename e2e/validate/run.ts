@@ -2,14 +2,20 @@ import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
 import type { Backend } from '../harness/backend'
-import { cloudPresetNames, type CloudPresetName } from '@welkin/clouds'
+import {
+  cloudPresetNames,
+  cloudQualities,
+  type CloudPresetName,
+  type CloudQualityName
+} from '@welkin/clouds'
 import { drawCloudFields, writeGrid } from './cloud-field'
+import { printCloudLight, validateCloudLight } from './cloud-light'
 import { printClouds, validateClouds } from './clouds'
 import { evaluateInBrowser } from './evaluate'
 import { colorRequest, compareColors, compareSky, compareSun, skyRequest } from './figures'
 import type { ColorFigures, SkyComparisons } from './figures'
 import { printForm, validateForm } from './form/run'
-import { missedCloudGoals, missedGoals } from './goals'
+import { missedCloudGoals, missedCloudLightGoals, missedGoals } from './goals'
 import { printColors, printQuantities, printSun, printWorst } from './print'
 import { readColorReference, readSkyReference } from './reference'
 import type { Path } from './request'
@@ -28,6 +34,8 @@ const usage = `npm run validate -- [options]
   --check                    exit with 1 if a goal is missed, with --json as without
   --form PRESET              instead: figures of the form of a cloud preset, as the GPU draws it;
                              --coverage C for another one than the preset's
+  --cloud-light [FILE]       instead: light of a simulated cloud, by default e2e/reference/cloud_light.json;
+                             --quality NAME of the march, by default high
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
                              --latitude [°], --coverage C
@@ -61,8 +69,17 @@ function input(named: string | undefined, standard: string): string | undefined 
   return existsSync(file) ? file : undefined
 }
 
+/** The arguments, with an empty file for the option that may go without. */
+function commandLine(): string[] {
+  const words = process.argv.slice(2)
+  const at = words.indexOf('--cloud-light')
+  if (at >= 0 && (words[at + 1] ?? '--').startsWith('--')) words.splice(at + 1, 0, '')
+  return words
+}
+
 async function main(): Promise<void> {
   const { values } = parseArgs({
+    args: commandLine(),
     options: {
       sky: { type: 'string' },
       spectral: { type: 'string' },
@@ -73,6 +90,8 @@ async function main(): Promise<void> {
       worst: { type: 'string', default: '0' },
       check: { type: 'boolean', default: false },
       form: { type: 'string' },
+      'cloud-light': { type: 'string' },
+      quality: { type: 'string', default: 'high' },
       'export-clouds': { type: 'string' },
       preset: { type: 'string', default: 'fairWeather' },
       size: { type: 'string', default: '6000' },
@@ -118,6 +137,18 @@ async function main(): Promise<void> {
     if (values.check && form.rows.some(row => !row.isMet)) process.exitCode = 1
     if (values.json) print(JSON.stringify({ form }, null, 2))
     else printForm(form)
+    return
+  }
+  if (values['cloud-light'] !== undefined) {
+    const file = input(values['cloud-light'] || undefined, 'cloud_light.json')
+    if (file === undefined) throw new Error('there is nothing to compare: name a file')
+    const names = Object.keys(cloudQualities) as CloudQualityName[]
+    const quality = choice('quality', values.quality, names)
+    const cloudLight = await validateCloudLight(file, where.backend, quality)
+    const missed = missedCloudLightGoals(cloudLight)
+    if (values.check && missed.length > 0) process.exitCode = 1
+    if (values.json) print(JSON.stringify({ cloudLight }, null, 2))
+    else printCloudLight(cloudLight)
     return
   }
 

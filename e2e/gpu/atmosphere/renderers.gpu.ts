@@ -81,6 +81,24 @@ gpuTest('says what to use in place of a WebGLRenderer', async t => {
   atmosphere.dispose()
 })
 
+gpuTest(
+  'says where sky and haze belong when they are set as background and fog',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const camera = makeCamera()
+    const atmosphere = new Atmosphere()
+    const scene = new Scene().add(new Mesh(new SphereGeometry(), new MeshStandardMaterial()))
+    const misplaced = Object.assign(scene, { background: skyBackground(atmosphere) })
+    expectError(() => renderer.render(scene, camera), /skyBackground: .* scene\.backgroundNode/)
+    Object.assign(misplaced, { background: null, fog: aerialPerspectiveFog(atmosphere) })
+    expectError(() => renderer.render(scene, camera), /aerialPerspectiveFog: .* scene\.fogNode/)
+    scene.fog = null
+    renderer.render(scene, camera)
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
 /** Ball, background, fog, lights and environment of one atmosphere. */
 function everything(atmosphere: Atmosphere): Scene {
   const ball = new Mesh(new SphereGeometry(), new MeshStandardMaterial({ metalness: 0.5 }))

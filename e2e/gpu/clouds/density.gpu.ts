@@ -125,78 +125,86 @@ gpuTest('puts clouds where float64 does, of a world map and where they blur', as
   map.dispose()
 })
 
-gpuTest('bounds the density from above, in every preset', async t => {
-  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
-    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
-    const inputs = offsets(scene.eye, 4096, 300_000, 3)
-    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
-      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-      const { altitude, up } = scene.field.view.place(offset)
-      const sample = { offset, altitude, up, distance: input.w }
-      const column = verticalOpticalDepth(scene.field, sample)
-      return vec4(
-        cloudBound(scene.field, sample),
-        cloudExtinction(scene.field, sample, true),
-        column,
-        1
-      )
-    })
-    let [clear, empty] = [0, 0]
-    inputs.forEach((_, i) => {
-      const [bound, extinction, column] = results.subarray(4 * i, 4 * i + 3)
-      expectTrue(bound > 0 || extinction === 0, `${name}: ${extinction} where the bound is 0`)
-      expectTrue(column >= 0 && column < 1000, `${name}: column of ${column}`)
-      if (bound === 0) clear++
-      if (extinction === 0) empty++
-    })
-    t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
-    scene.dispose()
-  }
-})
-
-gpuTest('has clear air as far as it says', async t => {
-  for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus'] as const) {
-    const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
-    const { field } = scene
-    const inputs = offsets(scene.eye, 2048, 30_000, 5, share => 3000 * share)
-    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
-      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-      const here = { offset, ...field.view.place(offset), distance: input.w }
-      const emptyDistance = emptyDistanceAt(field, here).toConst()
-      const most = float(0).toVar()
-      const count = 24
-      Loop(count, ({ i }) => {
-        // Spread over the ball.
-        const index = float(i)
-        const z = index
-          .add(0.5)
-          .mul(2 / count)
-          .oneMinus()
-          .toConst()
-        const across = z.mul(z).oneMinus().sqrt()
-        const angle = index.mul(2.399963)
-        const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
-        const radius = emptyDistance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
-        const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
-        most.assign(most.max(scene.extinction(there, input.w, true)))
+gpuTest(
+  'bounds the density from above, in every preset',
+  async t => {
+    for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
+      const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+      const inputs = offsets(scene.eye, 4096, 300_000, 3)
+      const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+        const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+        const { altitude, up } = scene.field.view.place(offset)
+        const sample = { offset, altitude, up, distance: input.w }
+        const column = verticalOpticalDepth(scene.field, sample)
+        return vec4(
+          cloudBound(scene.field, sample),
+          cloudExtinction(scene.field, sample, true),
+          column,
+          1
+        )
       })
-      return vec4(emptyDistance, most, scene.extinction(offset, input.w, true), 1)
-    })
-    let clear = 0
-    inputs.forEach((_, i) => {
-      const [emptyDistance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
-      expectTrue(emptyDistance >= 0, `${name}: an empty distance of ${emptyDistance}`)
-      expectTrue(
-        emptyDistance === 0 || most === 0,
-        `${name}: ${most} within ${emptyDistance} m of clear air`
-      )
-      if (emptyDistance > 100 && extinction === 0) clear++
-    })
-    t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
-    expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
-    scene.dispose()
-  }
-})
+      let [clear, empty] = [0, 0]
+      inputs.forEach((_, i) => {
+        const [bound, extinction, column] = results.subarray(4 * i, 4 * i + 3)
+        expectTrue(bound > 0 || extinction === 0, `${name}: ${extinction} where the bound is 0`)
+        expectTrue(column >= 0 && column < 1000, `${name}: column of ${column}`)
+        if (bound === 0) clear++
+        if (extinction === 0) empty++
+      })
+      t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
+      scene.dispose()
+    }
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'has clear air as far as it says',
+  async t => {
+    for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus'] as const) {
+      const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+      const { field } = scene
+      const inputs = offsets(scene.eye, 2048, 30_000, 5, share => 3000 * share)
+      const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+        const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+        const here = { offset, ...field.view.place(offset), distance: input.w }
+        const emptyDistance = emptyDistanceAt(field, here).toConst()
+        const most = float(0).toVar()
+        const count = 24
+        Loop(count, ({ i }) => {
+          // Spread over the ball.
+          const index = float(i)
+          const z = index
+            .add(0.5)
+            .mul(2 / count)
+            .oneMinus()
+            .toConst()
+          const across = z.mul(z).oneMinus().sqrt()
+          const angle = index.mul(2.399963)
+          const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
+          const radius = emptyDistance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
+          const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
+          most.assign(most.max(scene.extinction(there, input.w, true)))
+        })
+        return vec4(emptyDistance, most, scene.extinction(offset, input.w, true), 1)
+      })
+      let clear = 0
+      inputs.forEach((_, i) => {
+        const [emptyDistance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
+        expectTrue(emptyDistance >= 0, `${name}: an empty distance of ${emptyDistance}`)
+        expectTrue(
+          emptyDistance === 0 || most === 0,
+          `${name}: ${most} within ${emptyDistance} m of clear air`
+        )
+        if (emptyDistance > 100 && extinction === 0) clear++
+      })
+      t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
+      expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
+      scene.dispose()
+    }
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('follows a layer without compiling', async t => {
   const layers = new CloudLayers()

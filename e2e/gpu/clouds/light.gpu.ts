@@ -1,12 +1,9 @@
 import { CloudLightTable } from '@welkin/clouds'
 import { float, vec4 } from 'three/tsl'
-import * as twin from '../../../packages/clouds/src/light/cpu/cloudLight'
-import { solveCloudLight } from '../../../packages/clouds/src/light/cpu/cloudLightTable'
-import {
-  aureolePhase,
-  cloudPhase,
-  type CloudPhaseParameters
-} from '../../../packages/clouds/src/light/cpu/cloudPhase'
+import * as twin from '../../../packages/clouds/test/twins/cloudLight'
+import { solveCloudLight } from '../../../packages/clouds/test/twins/cloudLightTable'
+import { aureolePhase, cloudPhase } from '../../../packages/clouds/test/twins/cloudPhase'
+import type { CloudPhaseParameters } from '../../../packages/clouds/src/light/cpu/cloudPhase'
 import { cloudAmbient, cloudSource } from '../../../packages/clouds/src/light/tsl/cloudLight'
 import { singlePhase } from '../../../packages/clouds/src/light/tsl/cloudPhase'
 import { evaluateOnGpu } from '../harness/evaluate'

@@ -33,9 +33,10 @@ import {
 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import * as twin from '../../../packages/clouds/src/environment/cpu/overcast'
+import * as twin from '../../../packages/clouds/test/twins/overcast'
 import { cloudyIrradiance, eddington } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { drawToFloat, random } from '../harness/atmosphere'
+import { coarse } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -43,15 +44,7 @@ import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 
 const size = { width: 24, height: 16 }
-/** Coarse: what is tested here does not depend on steps. */
-const quality: CloudQuality = {
-  steps: 48,
-  stepGrowth: 0.06,
-  shortestStep: 40,
-  layerSteps: 6,
-  lightSteps: 1,
-  block: 1
-}
+const quality: CloudQuality = { ...coarse, block: 1 }
 
 const mean = ({ data }: Picture, channel: number): number => {
   let sum = 0
@@ -77,15 +70,15 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
     [20 * next() ** 2, 0.05 + 0.95 * next(), 20 * next() ** 2, 2 * next() - 1].map(Math.fround)
   )
   const oneMinusAsymmetry = 0.52
-  const [sun, sky, albedo] = [0.7, 0.2, 0.25]
+  const [direct, sky, albedo] = [0.7, 0.2, 0.25]
   const found = await evaluateOnGpu(renderer, rows, ({ x, y, z, w }) => {
     const above = eddington(x, y, float(oneMinusAsymmetry))
     const below = eddington(z, y, float(oneMinusAsymmetry))
     const light = cloudyIrradiance(
       {
-        sun: { above: vec4(sun).mul(y), below: vec4(sun * 0.9).mul(y) },
+        direct: { above: vec4(direct).mul(y), below: vec4(direct * 0.9).mul(y) },
         sky: { here: vec4(sky), below: vec4(sky * 1.1) },
-        ground: vec4(albedo).mul(y.mul(sun).add(sky)),
+        ground: vec4(albedo).mul(y.mul(direct).add(sky)),
         plane: vec4(sky / 2),
         albedo: vec4(albedo)
       },
@@ -100,9 +93,9 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
       twin.stackDecks([{ thickness, cover: 1 }], mu, oneMinusAsymmetry)
     const light = twin.cloudyIrradiance(
       {
-        sun: { above: sun * mu, below: 0.9 * sun * mu },
+        direct: { above: direct * mu, below: 0.9 * direct * mu },
         sky: { here: sky, below: 1.1 * sky },
-        ground: albedo * (sun * mu + sky),
+        ground: albedo * (direct * mu + sky),
         plane: sky / 2,
         albedo
       },

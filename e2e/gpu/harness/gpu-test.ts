@@ -4,10 +4,13 @@ import type { GpuContext } from './context'
 export interface GpuTest {
   name: string
   body: (context: GpuContext) => Promise<void> | void
-  backends: Backend[]
+  backends: readonly Backend[]
   timeoutSeconds: number
-  /** Whether atmospheres bake tables of their own; else they take those of earlier tests. */
-  bakes: boolean
+  /**
+   * Where tables and noise are baked and environments filtered as users have it: on all backends or on
+   * these. Elsewhere a test takes tables of earlier ones, and three's filter has few samples.
+   */
+  bakes: boolean | readonly Backend[]
 }
 
 /** Tests of the one suite that this page has loaded. */

@@ -3,6 +3,7 @@ import { createContext } from '../harness/context'
 import { registeredTests } from '../harness/gpu-test'
 import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../harness/reuse-noise'
+import { filterCoarsely } from '../harness/filter-samples'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
 
 export interface TestListing {
@@ -42,7 +43,10 @@ window.welkinTests = {
   async run(name, backend) {
     const test = registeredTests.find(candidate => candidate.name === name)
     if (test === undefined) throw new Error(`no test named ${name}`)
-    reuseTables(!test.bakes)
+    const { bakes } = test
+    const isWhole = typeof bakes === 'boolean' ? bakes : bakes.includes(backend)
+    reuseTables(!isWhole)
+    filterCoarsely(!isWhole)
     const { context, finish } = createContext(backend)
     const start = performance.now()
     const problems: string[] = []

@@ -20,6 +20,7 @@ import type { EvaluationRequest, EvaluationResult, EyePlace, Path, RayRequest } 
 import { RayBatch, type RayNodes } from './RayBatch'
 import './clouds'
 import './cloud-field'
+import './cloud-light'
 
 declare global {
   interface Window {

@@ -1,6 +1,5 @@
 import { Matrix4 } from 'three'
 import type { Camera } from 'three'
-import type { Node } from 'three/webgpu'
 import { checkOptions, fail } from '@welkin/geo'
 
 /** Defaults, and the options that are not undefined in place of them. */
@@ -57,11 +56,4 @@ export function checkOrientation(where: string, value: Matrix4 | null): void {
 /** @throws If it is no camera. */
 export function checkCamera(where: string, camera: Camera): void {
   if (!camera?.isCamera) fail(where, 'camera must be a Camera', camera)
-}
-
-/** Checks the arguments of every post effect. @throws If one is of another kind. */
-export function checkPostEffect(where: string, color: Node, depth: Node, camera: Camera): void {
-  if (!color?.isNode) fail(where, 'colorNode must be a node', color)
-  if (!depth?.isNode) fail(where, 'depthNode must be a node', depth)
-  checkCamera(where, camera)
 }

@@ -3,6 +3,7 @@ import { vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
   aerialPerspective,
+  aerialPerspectiveFog,
   airglow,
   airlessParameters,
   Atmosphere,
@@ -329,6 +330,14 @@ const cases: [message: string, call: () => unknown][] = [
   [
     'SkyEnvironmentNode: angle must be positive and finite, got 0',
     () => (skyEnvironment(atmosphere).angle = 0)
+  ],
+  [
+    'skyBackground: set it as scene.backgroundNode, not as scene.background',
+    () => skyBackground(atmosphere).isCubeTexture
+  ],
+  [
+    'aerialPerspectiveFog: set it as scene.fogNode, not as scene.fog',
+    () => aerialPerspectiveFog(atmosphere).isFogExp2
   ],
   [
     'AerialPerspectiveNode: colorNode must be a node, got a Scene',

@@ -1,8 +1,8 @@
-// Derives the coefficients of src/light/cpu/lateralLeak.ts from Monte-Carlo solutions of balls of cloud.
+// Derives the coefficients of src/light/cpu/lateralLeak.ts from Monte-Carlo solutions of spheres of cloud.
 // Run it with: npm run fit-leak
 import { factorize } from '../src/light/cpu/matrices'
 import { SlabSolver } from '../src/light/cpu/solveSlab'
-import { collisionsInBall, RINGS, STEPS } from './ball'
+import { sphereSource, RINGS, STEPS } from './sphere'
 
 /** χ′₁ and χ′₂ of phase functions from isotropic to Henyey–Greenstein's of 0.85. */
 const phases: [number, number][] = [
@@ -14,7 +14,7 @@ const phases: [number, number][] = [
 ]
 
 /** Scaled optical diameters, and how many photons each is worth. */
-const balls: [number, number][] = [
+const spheres: [number, number][] = [
   [0.3, 1_000_000],
   [0.6, 1_000_000],
   [1.2, 1_000_000],
@@ -42,7 +42,7 @@ const names = Object.keys(powers)
 
 interface Equation {
   terms: number[]
-  /** ln of a ball's source over a slab's. */
+  /** ln of a sphere's source over a slab's. */
   value: number
   weight: number
 }
@@ -50,11 +50,11 @@ interface Equation {
 const equations: Equation[] = []
 for (const [chi1, chi2] of phases) {
   const solver = new SlabSolver({ depthScale: 1, albedo: 0.99999, moments: [1, chi1, chi2] })
-  for (const [diameter, photons] of balls) {
+  for (const [diameter, photons] of spheres) {
     // Truncated to three terms this phase function is negative somewhere; weights of alternating sign
     // grow with each collision.
     if (chi1 > 0.5 && diameter > 20) continue
-    const sources = collisionsInBall(diameter, chi1, chi2, photons)
+    const sources = sphereSource(diameter, chi1, chi2, photons)
     for (let ring = 0; ring < RINGS; ring++) {
       const chord = Math.sqrt(1 - (ring + 0.5) / RINGS)
       const thickness = diameter * chord
@@ -63,7 +63,7 @@ for (const [chi1, chi2] of phases) {
         thickness,
         parts.map(part => part * thickness)
       )
-      slab.fromSun(1).forEach(({ s00 }, i) => {
+      slab.fromBeam(1).forEach(({ s00 }, i) => {
         const source = sources[ring * STEPS + i]
         if (!(source > 0)) return
         const variables = [parts[i], Math.log(1 + (1 - chi1) * diameter), chord]

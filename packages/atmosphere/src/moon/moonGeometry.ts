@@ -5,7 +5,7 @@ import type { SunMoonEphemeris } from './sunMoonEphemeris'
 
 /** Settings that override the date; null follows the date and the geometry. */
 export interface MoonSettings {
-  /** World, unit length. */
+  /** Direction to the moon, in world space, unit length. */
   readonly direction: Vector3 | null
   /** 0 new, 0.5 full, in [0, 1]. */
   readonly phase: number | null

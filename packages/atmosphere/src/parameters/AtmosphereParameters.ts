@@ -88,7 +88,7 @@ export interface AtmosphereParametersInit extends AtmosphereParametersFields {
 
 type Fields = Required<AtmosphereParametersFields>
 
-/** Rayleigh scattering of air at sea level times λ⁴ [µm⁴/m]. @see Bruneton 2017, after Penndorf 1957 */
+/** Rayleigh scattering of air at sea level times λ⁴ [µm⁴/m]. @see Bruneton 2017, demo/demo.cc `kRayleigh` */
 const RAYLEIGH_COEFFICIENT = 1.24062e-6
 
 /** Molecules in a column of one Dobson unit [1/m²]. */

@@ -1,3 +1,4 @@
+import { fail } from '@welkin/geo'
 import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
@@ -16,6 +17,11 @@ import { coveredPosition } from '../view/tsl/coveredPosition'
 export class AerialPerspectiveFogNode extends AtmosphereNode {
   static get type(): string {
     return 'AerialPerspectiveFogNode'
+  }
+
+  /** Asked by three of what is in `scene.fog` alone. @throws Always: a node does not belong there. */
+  get isFogExp2(): boolean {
+    return fail('aerialPerspectiveFog', 'set it as scene.fogNode, not as scene.fog')
   }
 
   override setup(_builder: NodeBuilder): Node {

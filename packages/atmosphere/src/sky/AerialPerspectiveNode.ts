@@ -13,9 +13,8 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, PassNode, Renderer } from 'three/webgpu'
-import { checkPostEffect } from '../check'
 import type { Atmosphere } from '../Atmosphere'
-import { AtmosphereNode } from '../view/AtmosphereNode'
+import { PostEffectNode } from '../view/PostEffectNode'
 import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
 import { pixelAngle, skyColor } from './tsl/sky'
@@ -44,35 +43,18 @@ import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
  * air of what is behind it; the fog node has no such limit. Knows standard, reversed and logarithmic
  * depth, perspective and orthographic cameras.
  */
-export class AerialPerspectiveNode extends AtmosphereNode {
+export class AerialPerspectiveNode extends PostEffectNode {
   static get type(): string {
     return 'AerialPerspectiveNode'
   }
 
-  /** Colour that was drawn, linear. */
-  colorNode: Node
-  /** Its depth, as the renderer writes it. */
-  depthNode: Node
-  /** The camera that drew it. */
-  readonly camera: Camera
   /** Draws the sky where nothing was drawn. Set it before the first render. */
   showSky = true
   /** Draws the sun's disc. Set it before the first render. */
   showSun = true
-  readonly #projectionInverse
   readonly #near = uniform(0.1)
   readonly #far = uniform(1000)
   readonly #backdrop = new Backdrop()
-
-  /** @throws If an argument is missing. */
-  constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
-    super(atmosphere, camera)
-    checkPostEffect('AerialPerspectiveNode', colorNode, depthNode, camera)
-    this.colorNode = colorNode
-    this.depthNode = depthNode
-    this.camera = camera
-    this.#projectionInverse = uniform(camera.projectionMatrixInverse)
-  }
 
   override customCacheKey(): number {
     return 4 * super.customCacheKey() + (this.showSky ? 1 : 0) + (this.showSun ? 2 : 0)
@@ -105,7 +87,7 @@ export class AerialPerspectiveNode extends AtmosphereNode {
       logarithmicDepthBuffer: boolean
     }
     const isLogarithmic = logarithmicDepthBuffer && !isOrthographic
-    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this.#projectionInverse)
+    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this._projectionInverse)
 
     return Fn(() => {
       const drawn = this.#color()

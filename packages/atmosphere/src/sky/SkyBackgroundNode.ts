@@ -1,3 +1,4 @@
+import { fail } from '@welkin/geo'
 import { Fn, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
@@ -22,6 +23,11 @@ export class SkyBackgroundNode extends AtmosphereNode {
 
   /** Draws the sun's disc. Set it before the first render. */
   showSun = true
+
+  /** Asked by three of what is in `scene.background` alone. @throws Always: a node does not belong there. */
+  get isCubeTexture(): boolean {
+    return fail('skyBackground', 'set it as scene.backgroundNode, not as scene.background')
+  }
 
   override customCacheKey(): number {
     return 2 * super.customCacheKey() + (this.showSun ? 1 : 0)

@@ -1,19 +1,8 @@
 import type { Camera, OrthographicCamera } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  getViewPosition,
-  isBackgroundDepth,
-  uniform,
-  uv,
-  vec3,
-  vec4
-} from 'three/tsl'
+import { Fn, If, float, getViewPosition, isBackgroundDepth, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
-import { checkPostEffect } from '../check'
 import type { Atmosphere } from '../Atmosphere'
-import { AtmosphereNode } from '../view/AtmosphereNode'
+import { PostEffectNode } from '../view/PostEffectNode'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import type { Stars } from './Stars'
 import { linearSRGB } from '../air/tsl/color'
@@ -41,27 +30,9 @@ const isOverlay = (layer: SkyLayer): layer is Stars =>
  * mapping comes after. Stars do not jitter with temporal anti-aliasing, as long as that takes its offset
  * off the camera again, as three's does.
  */
-export class StarsOverlayNode extends AtmosphereNode {
+export class StarsOverlayNode extends PostEffectNode {
   static get type(): string {
     return 'StarsOverlayNode'
-  }
-
-  /** Linear colour of the finished picture. */
-  colorNode: Node
-  /** Depth of the scene, as the renderer writes it. */
-  depthNode: Node
-  /** Camera that drew the scene. */
-  readonly camera: Camera
-  readonly #projectionInverse
-
-  /** @throws If an argument is missing. */
-  constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
-    super(atmosphere, camera)
-    checkPostEffect('StarsOverlayNode', colorNode, depthNode, camera)
-    this.colorNode = colorNode
-    this.depthNode = depthNode
-    this.camera = camera
-    this.#projectionInverse = uniform(camera.projectionMatrixInverse)
   }
 
   override setup(_builder: NodeBuilder): Node {
@@ -71,7 +42,7 @@ export class StarsOverlayNode extends AtmosphereNode {
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
       const depth = float((this.depthNode as Vec4).r).toConst()
-      const rayView = getViewPosition(uv(), float(0.5), this.#projectionInverse).toConst() as Vec3
+      const rayView = getViewPosition(uv(), float(0.5), this._projectionInverse).toConst() as Vec3
       const direction = this.view.toMapped(rayView).normalize().toConst() as Vec3
       const pixel = pixelAngle(direction)
       const added = vec3(0).toVar()

@@ -10,14 +10,14 @@ import type { Spectrum } from '../parameters/AtmosphereParameters'
  */
 export class LightSource {
   /**
-   * Irradiance above the air over `solarIrradiance`, where the camera is, a uniform of four values. 1
-   * for the bare sun.
+   * Irradiance above the air over `solarIrradiance` at the camera [–], a uniform of four values. 1 for
+   * the bare sun.
    */
   readonly irradiance = uniform(new Vector4(1, 1, 1, 1)).setGroup(renderGroup)
 
   /**
-   * @param direction - Writes the direction to the source in world space, unit length, into its target;
-   *   `from` is who looks, in world space.
+   * @param direction - Writes the direction to the source into its target, and answers with it: in world
+   *   space, of unit length. `from` is the position that it is seen from, in world space.
    * @param lightsAir - Whether its light in the air is seen, so that sky volumes are computed for it.
    */
   constructor(

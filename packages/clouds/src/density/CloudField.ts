@@ -20,7 +20,7 @@ import {
   layerPeriods,
   weatherScales
 } from '../layers/layerUniforms'
-import { vec4Array, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types'
+import { vec4Array, type Float, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
 import { windRotation } from '../layers/wind'
 
@@ -108,6 +108,11 @@ export class CloudField {
   #seconds: number | null = null
   /** Share of their coverage that layers have, in [0, 1]: 0 until there is noise. */
   fadeIn = 0
+  /**
+   * Extinction of given clouds at a displacement from the camera, in the mapped space [1/m], in place of
+   * weather and noise; null, the default, for these.
+   */
+  givenExtinction: ((offset: Vec3) => Float) | null = null
   /** Gain of `fadeIn` in a frame. */
   #fadeInStep = 1
 

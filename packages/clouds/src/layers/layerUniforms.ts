@@ -45,27 +45,35 @@ export const CLOUD_WARP = 0.3
  */
 export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
 
-/** Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in periods. */
+/**
+ * Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in
+ * periods. Without that shift regions repeat every 2,300 km (*World clouds from afar*, without its map).
+ */
 export const NEXT_WAVES = 3.1
 export const LAST_WAVES = 1.7
 export const PLANET_WARP = 0.22
 
 /**
  * Weights of the scales that the weather is the sum of, with that of single clouds 1: fields of tens of
- * kilometres, of the layer's own weather and of large cells; regions; the planet.
+ * kilometres, of the layer's own weather and of large cells; regions; the planet. A greater one
+ * gathers clouds more at its scale, with more clear sky between: *Cockpit* for fields, *World clouds from
+ * afar* without its map for the others.
  */
 export const FIELD_WEIGHT = 0.6
 const CELL_WEIGHT = 0.5
 const REGION_WEIGHT = 0.65
 const PLANET_WEIGHT = 0.4
 
-/** Share of finer cells in the regions. */
+/** Share of finer cells in the regions. 0: their edges have no finer structure (*World clouds from afar*, without its map). */
 export const REGION_CELLS = 0.6
 
 /** Length over width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
 const CIRRUS_STRETCH = 9
 
-/** Thickness of layers that begin to have anvils, and of those that have large ones [m] (*Storm*). */
+/**
+ * Thickness of layers that begin to have anvils, and of those that have large ones [m]. Smaller:
+ * thinner layers get anvils (*Storm*).
+ */
 const LEAST_ANVIL = 4000
 const LARGE_ANVIL = 8000
 
@@ -78,7 +86,7 @@ export const DETAIL_PERIOD = 330
  */
 export const CURL_AMOUNT = 0.25
 
-/** Period of the turbulence, in periods of the detail. */
+/** Period of the turbulence, in periods of the detail. Smaller: finer wisps (*Inside a cloud*). */
 export const CURL_PERIOD = 5
 
 /**

@@ -16,10 +16,10 @@ type Parameters = Partial<CloudLayerParameters>
 
 const WHERE = 'cloudLayersFromMETAR'
 
-/** Where the report proper ends: trends and remarks. */
-const LATER = /\s(?:RMK|TEMPO|BECMG|INTER|NOSIG)\b/
+/** Beginning of trends and remarks, where the report proper ends. */
+const LATER = /\s(?:RMK|TEMPO|BECMG|INTER)\b/
 
-/** What tells a report: its time, or one of the words for a sky without clouds. */
+/** Mark of a report: its time, or one of the words for a sky without clouds. */
 const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
 
 const WIND = /^(?:(\d{3})P?(\d{2,3})|VRB\d{2,3}|\/{5})(?:GP?\d{2,3})?(KT|MPS)$/
@@ -28,9 +28,9 @@ const CLOUD = /^(FEW|SCT|BKN|OVC|VV|\/{3})([0-5]\d\d|\/{3})(CB|TCU|\/{3})?$/
 /** A group of which something is known. */
 const KNOWN = /[^/]/
 
-// What was meant as one of these two; SCTE and VNKT are aerodromes.
+// What was meant as one of these two; SCTE and VNKT are aerodromes, and NIL is no report.
 const LIKE_WIND = /^(?:VRB|[\d/]).*(?:KT|MPS)$/
-const LIKE_CLOUD = /^(?:FEW|SCT|BKN|OVC|VV)(?![A-Z]+$)/
+const LIKE_CLOUD = /^(?:FEW|SCT|BKN|OVC|VV)(?![A-Z]+$)|^NIL$/
 
 /** One knot [m/s]. */
 const KNOT = 1852 / 3600
@@ -96,7 +96,7 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
   const [, amount, base, kind] = group
   const isFog = amount === 'VV'
   const unknown = isFog ? UNKNOWN_VISIBILITY : UNKNOWN_BASE
-  /** Of the base above the station, or how far one sees up in fog. */
+  /** Height of the base above the station; in fog, how far one sees up. */
   const height = HUNDRED_FEET * (base === '///' ? unknown : Number(base))
   const isLow = height < MEDIUM
   const layer = isFog ? fog(height) : layerOfKind(group, height)
@@ -156,7 +156,7 @@ export function cloudLayersFromMETAR(report: string, options: METAROptions = {})
     if (LIKE_WIND.test(text)) wind = windOf(text)
     isReport ||= group !== null || TELLING.test(text)
   }
-  if (!isReport || /\bNIL\b/i.test(report)) fail(WHERE, 'report must be a METAR', report)
+  if (!isReport) fail(WHERE, 'report must be a METAR', report)
   const rank = (group: Group): number => eighthsOf(group) + (isTall(group) ? 8 : 0)
   const ranked = groups.toSorted((a, b) => rank(b) - rank(a))
   const layers = groups

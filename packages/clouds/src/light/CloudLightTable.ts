@@ -4,7 +4,7 @@ import type { UniformNode } from 'three/webgpu'
 import { withDefaults } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
-import { depths, layers, positions } from './cpu/cloudLightSize'
+import { thicknesses, layers, positions } from './cpu/cloudLightSize'
 import { fillCloudLight } from './cpu/cloudLightTable'
 import type { LevelTexture, Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
@@ -28,7 +28,7 @@ const ranges = {
 export interface CloudLight {
   /** The table's 3-D texture; its layers as `fillCloudLight` says. */
   readonly table: LevelTexture<Vec3>
-  /** 1 − ωf: what turns optical depths and extinction into scaled ones. */
+  /** 1 − ωf: what turns optical thicknesses and extinction into scaled ones. */
   readonly depthScale: UniformNode<'float', number>
   /** ω/(1 − ωf). */
   readonly scatteringScale: UniformNode<'float', number>
@@ -41,7 +41,7 @@ export interface CloudLight {
 
 /**
  * Light scattered many times in clouds: the first three Legendre moments of its source in plane-parallel
- * slabs, by depth, thickness and sun angle, and the same for light from the sky, for one phase function.
+ * slabs, by depth, thickness and angle of the light, and the same for light from the sky, for one phase function.
  *
  * Solved on the CPU in 28 steps of 2 to 5 ms (0.07 to 0.12 s in all, measured on a busy machine of two
  * cores); the same numbers on both backends; 0.24 MB on the GPU. Until the last step is
@@ -82,8 +82,8 @@ export class CloudLightTable {
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   constructor(phase: Partial<CloudPhaseParameters> = {}) {
-    const texels = new Uint16Array(4 * positions * depths * layers)
-    this.texture = new Data3DTexture(texels, positions, depths, layers)
+    const texels = new Uint16Array(4 * positions * thicknesses * layers)
+    this.texture = new Data3DTexture(texels, positions, thicknesses, layers)
     this.texture.name = 'Welkin.CloudLight'
     this.texture.type = HalfFloatType
     this.texture.minFilter = this.texture.magFilter = LinearFilter

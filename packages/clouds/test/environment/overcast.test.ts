@@ -2,6 +2,7 @@ import fc from 'fast-check'
 import { gaussLegendre } from '@welkin/atmosphere'
 import { describe, expect, it } from 'vitest'
 import { scalePhase } from '../../src/light/cpu/cloudPhase'
+import { SlabSolver } from '../../src/light/cpu/solveSlab'
 import {
   cloudyIrradiance,
   eddingtonDiffuse,
@@ -9,8 +10,7 @@ import {
   stackDecks,
   type ClearLight,
   type CloudDeck
-} from '../../src/environment/cpu/overcast'
-import { SlabSolver } from '../../src/light/cpu/solveSlab'
+} from '../twins/overcast'
 
 const phase = scalePhase({
   forwardAsymmetry: 0.8,
@@ -31,7 +31,7 @@ const legendre2 = (mu: number): number => (3 * mu * mu - 1) / 2
 /** Part of the sun's light that a slab passes, by its solution with 8 streams. */
 function transmittance(thickness: number, mu0: number): number {
   const depths = places(thickness).map(near => thickness - near)
-  const field = solver.slab(thickness, depths).fromSun(mu0)
+  const field = solver.slab(thickness, depths).fromBeam(mu0)
   const [, chi1, chi2] = phase.moments
   const scattered = integrate(thickness, (near, i) => {
     const { s00, s10, s20 } = field[i]
@@ -114,14 +114,14 @@ describe('cloudyIrradiance', () => {
   const albedos = fc.double({ min: 0, max: 0.9, noNaN: true })
   /** Light where there is no air between clouds and ground. */
   const lights = fc
-    .record({ sun: parts, sky: parts, albedo: albedos })
-    .map(({ sun, sky, albedo }): ClearLight & { all: number } => ({
-      sun: { above: sun, below: sun },
+    .record({ direct: parts, sky: parts, albedo: albedos })
+    .map(({ direct, sky, albedo }): ClearLight & { all: number } => ({
+      direct: { above: direct, below: direct },
       sky: { here: sky, below: sky },
-      ground: albedo * (sun + sky),
+      ground: albedo * (direct + sky),
       plane: sky,
       albedo,
-      all: sun + sky
+      all: direct + sky
     }))
 
   it('is the clear sky’s without clouds', () => {
@@ -135,7 +135,7 @@ describe('cloudyIrradiance', () => {
   it('loses no light: what comes in is reflected or warms the ground', () => {
     fc.assert(
       fc.property(lights, decks, (clear, deck) => {
-        const under = cloudyIrradiance(clear, deck, none, 1) + clear.sun.above * deck.beam
+        const under = cloudyIrradiance(clear, deck, none, 1) + clear.direct.above * deck.beam
         // A plane that faces down has the ground's light where the sky is clear.
         const up = cloudyIrradiance({ ...clear, plane: clear.ground }, none, deck, -1)
         expect(up + (1 - clear.albedo) * under).toBeCloseTo(clear.all, 6)
@@ -158,7 +158,7 @@ describe('cloudyIrradiance', () => {
 
   it('gives an overcast more light than a blue sky alone, and less than a clear day', () => {
     const clear = {
-      sun: { above: 0.8, below: 0.8 },
+      direct: { above: 0.8, below: 0.8 },
       sky: { here: 0.12, below: 0.12 },
       ground: 0.2 * 0.92,
       plane: 0.12,

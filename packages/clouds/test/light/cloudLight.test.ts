@@ -1,17 +1,13 @@
 import fc from 'fast-check'
 import { gaussLegendre } from '@welkin/atmosphere'
 import { beforeAll, describe, expect, it } from 'vitest'
-import { collisionsInBall, RINGS, STEPS } from '../../scripts/ball'
+import { sphereSource, RINGS, STEPS } from '../../scripts/sphere'
 import { CloudLightTable } from '../../src/light/CloudLightTable'
-import { cloudAmbient, cloudSource, lateralLeak } from '../../src/light/cpu/cloudLight'
-import {
-  sampleSunlitSlab,
-  slabColumn,
-  slabRow,
-  solveCloudLight
-} from '../../src/light/cpu/cloudLightTable'
-import { aureolePhase, cloudPhase, scalePhase } from '../../src/light/cpu/cloudPhase'
+import { scalePhase } from '../../src/light/cpu/cloudPhase'
 import { SlabSolver } from '../../src/light/cpu/solveSlab'
+import { cloudAmbient, cloudSource, lateralLeak } from '../twins/cloudLight'
+import { sampleBeamSource, slabColumn, slabRow, solveCloudLight } from '../twins/cloudLightTable'
+import { aureolePhase, cloudPhase } from '../twins/cloudPhase'
 
 const unit = fc.double({ min: 0, max: 1, noNaN: true })
 const depths = fc.double({ min: -4, max: 5, noNaN: true }).map(Math.exp)
@@ -29,8 +25,8 @@ describe('cloud-light table', () => {
     const solver = new SlabSolver(scalePhase(phase))
     fc.assert(
       fc.property(unit, depths, fc.double({ min: 0.1, max: 1, noNaN: true }), (part, t, mu0) => {
-        const [exact] = solver.slab(t, [part * t]).fromSun(mu0)
-        const sampled = sampleSunlitSlab(table, part * t, t, mu0)
+        const [exact] = solver.slab(t, [part * t]).fromBeam(mu0)
+        const sampled = sampleBeamSource(table, part * t, t, mu0)
         const once = Math.exp((-part * t) / mu0) / (4 * Math.PI)
         const light = exact.s00 + once
         for (const key of ['s00', 's10', 's20', 's11', 's21', 's22'] as const) {
@@ -111,21 +107,21 @@ describe('aureole', () => {
 const isolated = { depthToEye: 0, layered: 0, cosLight: 1, cosView: 1, cosViewLight: 1 }
 
 describe('lateral leak', () => {
-  it('gives balls the light that Monte Carlo gives them, for phase functions between those fitted', () => {
+  it('gives spheres the light that Monte Carlo gives them, for phase functions between those fitted', () => {
     for (const [diameter, chi1] of [
       [0.9, 0.1],
       [4, 0.4],
       [14, 0.25]
     ]) {
       const solver = new SlabSolver({ depthScale: 1, albedo: 0.99999, moments: [1, chi1, 0.15] })
-      const sources = collisionsInBall(diameter, chi1, 0.15, diameter < 1 ? 400_000 : 60_000)
+      const sources = sphereSource(diameter, chi1, 0.15, diameter < 1 ? 400_000 : 60_000)
       let error = 0
       let total = 0
       for (let ring = 0; ring < RINGS; ring++) {
         const depthThrough = diameter * Math.sqrt(1 - (ring + 0.5) / RINGS)
         for (let step = 0; step < STEPS; step++) {
           const depthToLight = ((step + 0.5) / STEPS) * depthThrough
-          const [{ s00 }] = solver.slab(depthThrough, [depthToLight]).fromSun(1)
+          const [{ s00 }] = solver.slab(depthThrough, [depthToLight]).fromBeam(1)
           const sample = { ...isolated, depthToLight, depthThrough, depthAcross: diameter }
           const source = sources[ring * STEPS + step]
           error += Math.abs(s00 * lateralLeak(sample, 1 - chi1) - source)

@@ -51,7 +51,7 @@ function reflected(
   thickness: number,
   [mu, mu0, phi]: [number, number, number]
 ): number {
-  const field = new SlabSolver(phase).slab(thickness, crowded(thickness)).fromSun(mu0)
+  const field = new SlabSolver(phase).slab(thickness, crowded(thickness)).fromBeam(mu0)
   return integrate(
     thickness,
     (d, i) => (source(phase, field[i], d, [-mu, mu0, phi]) * Math.exp(-d / mu)) / mu
@@ -77,7 +77,7 @@ describe('SlabSolver', () => {
         // Flux of the source over both hemispheres; azimuth leaves only m = 0.
         const flux = (side: 1 | -1): number => {
           const depths = crowded(thickness).map(near => (side === 1 ? thickness - near : near))
-          const field = solver.slab(thickness, depths).fromSun(mu0)
+          const field = solver.slab(thickness, depths).fromBeam(mu0)
           return integrate(thickness, (near, i) => {
             const m = field[i]
             const depth = depths[i]
@@ -142,7 +142,7 @@ describe('SlabSolver', () => {
     const phase = scalePhase(lobes)
     for (const thickness of [0.05, 1, 10, 80]) {
       const depths = [0, 0.03, 0.4, 0.5, 0.6, 0.97, 1].map(part => part * thickness)
-      const field = new SlabSolver(phase).slab(thickness, depths).fromAbove()
+      const field = new SlabSolver(phase).slab(thickness, depths).fromSky()
       for (const [i, above] of field.entries()) {
         const below = field[depths.length - 1 - i]
         expect(above.s00 + below.s00).toBeCloseTo(1, 3)
@@ -159,7 +159,7 @@ describe('SlabSolver', () => {
         const [few, many] = [8, 24].map(streams =>
           new SlabSolver(phase, streams)
             .slab(thickness, [0, 0.1 * thickness, thickness / 2, thickness])
-            .fromSun(mu0)
+            .fromBeam(mu0)
         )
         for (const [i, a] of few.entries()) {
           const b = many[i]

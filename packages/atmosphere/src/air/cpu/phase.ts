@@ -17,7 +17,8 @@ export function cornetteShanksFactor(asymmetry: number): number {
  *
  * @param asymmetry - g, in (−1, 1).
  * @param cosViewLight - ν, cosine of the scattering angle.
- * @see Cornette & Shanks 1992
+ * @see Cornette & Shanks 1992, "Physically reasonable analytic expression for the single-scattering phase
+ *   function"
  */
 export function cornetteShanksPhase(asymmetry: number, cosViewLight: number): number {
   const squaredChord = 1 + asymmetry ** 2 - 2 * asymmetry * cosViewLight

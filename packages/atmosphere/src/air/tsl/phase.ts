@@ -18,7 +18,8 @@ export function rayleighPhase(cosViewLight: Float): Float {
  * Phase function of aerosols, per wavelength [1/sr].
  *
  * @param cosViewLight - ν, cosine of the scattering angle, in [−1, 1].
- * @see Cornette & Shanks 1992. Twin: cpu/phase.ts
+ * @see Cornette & Shanks 1992, "Physically reasonable analytic expression for the single-scattering phase
+ *   function". Twin: cpu/phase.ts
  */
 export function miePhase(uniforms: AtmosphereUniforms, cosViewLight: Float): Vec4 {
   const { mieAsymmetry, mieIsGrey, miePhaseFactor } = uniforms

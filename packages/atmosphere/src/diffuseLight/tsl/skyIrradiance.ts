@@ -21,7 +21,7 @@ const COSINE_2 = 1 / 4
  * @param cosNormal - Plane's normal against the zenith.
  * @param cosLight - μ_s.
  * @param cosNormalLight - Plane's normal against the sun.
- * @see Sloan 2008, "Stupid spherical harmonics tricks". Twin: cpu/skyIrradiance.ts
+ * @see Sloan 2008, "Stupid spherical harmonics tricks", "Irradiance environment maps". Twin: cpu/skyIrradiance.ts
  */
 export function skyIrradiance(
   uniforms: AtmosphereUniforms,

@@ -30,7 +30,11 @@ export function orenNayar(angles: GroundAngles, roughness: Float): Float {
 /** Reflectance of water at normal incidence, refractive index 1.34. */
 const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
 
-/** Fresnel reflectance of water. @see Schlick 1994 */
+/**
+ * Fresnel reflectance of water.
+ *
+ * @see Schlick 1994, "An inexpensive BRDF model for physically-based rendering", Fresnel approximation
+ */
 export function waterFresnel(cosine: Float): Float {
   const rest = cosine.oneMinus().clamp().toConst()
   const square = rest.mul(rest)
@@ -41,7 +45,12 @@ export function waterFresnel(cosine: Float): Float {
     .add(WATER_FRESNEL)
 }
 
-/** Λ of Smith's shadowing for Gaussian slopes. @see Walter et al. 2007, eq. 15 */
+/**
+ * Λ of Smith's shadowing for Gaussian slopes.
+ *
+ * @see Walter et al. 2007, "Microfacet models for refraction through rough surfaces", §5.2 (Beckmann
+ *   distribution): G₁ = 1/(1 + Λ)
+ */
 function smithLambda(cosine: Float, slope: Float): Float {
   const sine = cosine.mul(cosine).oneMinus().max(1e-6).sqrt()
   const a = cosine.max(0).div(sine.mul(slope)).min(1.6).toConst()
@@ -67,7 +76,7 @@ export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 *
  * F P(slope)/(4 cos θ_eye cos⁴β), with P Gaussian, and slopes in each other's shadow left out.
  *
  * @param variance - {@link seaSlopeVariance}.
- * @see Cox & Munk 1954; shadowing Walter et al. 2007
+ * @see Cox & Munk 1954, as for {@link seaSlopeVariance}; shadowing as for `smithLambda`
  */
 export function sunGlint(angles: GroundAngles, variance: Float): Float {
   const { cosLight, cosEye, cosLightEye } = angles

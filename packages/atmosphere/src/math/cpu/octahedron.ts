@@ -6,7 +6,7 @@ const fold = (a: number, b: number): number => (a < 0 ? -1 : 1) * (1 - Math.abs(
  *
  * @param x - In [−1, 1].
  * @param y - In [−1, 1].
- * @see Cigolle et al. 2014, "A survey of efficient representations for independent unit vectors".
+ * @see Cigolle et al. 2014, "A survey of efficient representations for independent unit vectors", "oct".
  *   Twin of tsl/octahedron.ts, which gives unit vectors
  */
 export function octahedralDirection(x: number, y: number): [number, number, number] {

@@ -12,7 +12,7 @@ const fold = (point: Vec2): Vec2 => vec2(point.y, point.x).abs().oneMinus().mul(
  *
  * @param direction - Not zero, of any length.
  * @returns Each in [−1, 1]; the middle is +Z, the corners are −Z.
- * @see Cigolle et al. 2014, "A survey of efficient representations for independent unit vectors".
+ * @see Cigolle et al. 2014, "A survey of efficient representations for independent unit vectors", "oct".
  *   Twin: cpu/octahedron.ts
  */
 export function octahedralPoint(direction: Vec3): Vec2 {

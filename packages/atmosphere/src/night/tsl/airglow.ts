@@ -40,7 +40,7 @@ const normalCDF = (x: Float): Float => x.mul(-1.702).clamp(-40, 40).exp().add(1)
  * @param cosView - μ.
  * @param bottomRadius - Planet's centre to the ground [m].
  * @param distance - Length of the ray [m]; null for one without end.
- * @see van Rhijn 1921, for rays that cross the layer steeply. Twin: test/twins/night/airglow.ts
+ * @see van Rhijn 1921, "On the brightness of the sky at night", for rays that cross the layer steeply. Twin: test/twins/night/airglow.ts
  */
 export function vanRhijnFactors(
   layer: AirglowLayerNodes,

@@ -9,7 +9,8 @@ import { weatherAt, type CloudWeather } from './weather'
 
 // The only answer to where the clouds are. `sampleLayer` (sampleLayer.ts) goes from a place and its weather
 // to extinction and empty distance; pixels, shadows, light and the cone prepass differ in which layers they
-// ask, and in where they have the weather from.
+// ask, and in where they have the weather from. Where a field is given (`CloudField.givenExtinction`), it
+// stands in place of all weather and noise.
 
 /** Options of the light march: no detail, and the inside of clouds, where its light is. */
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
@@ -67,6 +68,12 @@ export function samplePair(
   direction: Vec3,
   range: LayerRange
 ): SamplePair {
+  const { givenExtinction } = field
+  if (givenExtinction) {
+    const [first, second] = samples.map(sampleAt => givenExtinction(sampleAt().offset))
+    const extinction = vec2(first, second).toConst() as Vec2
+    return { extinction, emptyDistance: float(0), weather: { values: vec4(0), shapeWarp: vec3(0) } }
+  }
   const sum = vec2(0).toVar() as Vec2
   const emptyDistance = float(NOWHERE).toVar()
   const values = vec4(0).toVar() as Vec4
@@ -117,6 +124,7 @@ export function extinctionNearby(
   { values, shapeWarp }: WeatherCache,
   sample: CloudSample
 ): Float {
+  if (field.givenExtinction) return field.givenExtinction(sample.offset)
   const isOne = field.layers.length === 1
   const layer = layerAt(field, isOne ? int(0) : values.w.toInt())
   const height = heightIn(layer, sample.altitude)
@@ -147,6 +155,11 @@ export function sampleLayerPair(
   samples: readonly [CloudSample, CloudSample],
   add: (extinction: Float, index: number) => void
 ): void {
+  const { givenExtinction } = field
+  if (givenExtinction) {
+    samples.forEach((sample, i) => add(givenExtinction(sample.offset), i))
+    return
+  }
   const subpoint = subpointOffset(field, middle).toConst()
   const weather = weatherAt(field, layer, subpoint, middle, 'where unresolved')
   samples.forEach((sample, i) => {
@@ -159,6 +172,7 @@ export function sampleLayerPair(
 
 /** Empty distance of a place: no cloud of any layer is nearer, whatever the noise [m]. */
 export function emptyDistanceAt(field: CloudField, sample: CloudSample): Float {
+  if (field.givenExtinction) return float(0)
   const emptyDistance = float(NOWHERE).toVar()
   const subpoint = subpointOffset(field, sample).toConst()
   forLayers(field, index => {

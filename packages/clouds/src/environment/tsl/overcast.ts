@@ -3,14 +3,13 @@ import type { SkyLitPlane } from '@welkin/atmosphere'
 import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
-import { LOWEST_COSINE } from '../cpu/overcast'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { meanColumnDensity } from '../../density/tsl/unresolved'
 import { forLayers, layerAt } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
 import { weatherAt } from '../../density/tsl/weather'
 
-/** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: cpu/overcast.ts */
+/** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: test/twins/overcast.ts */
 export interface CloudDeckNodes {
   /** Part of diffuse light that passes. */
   diffuse: Float
@@ -23,11 +22,14 @@ export interface CloudDeckNodes {
 /** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
 export type PlacedDeck = CloudDeckNodes & { top: Float }
 
+/** Cosine of the lowest light; one below it counts as this. */
+export const LOWEST_COSINE = 0.05
+
 /** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
 const REACH_HEIGHTS = 2
 const LEAST_REACH = 1500
 
-/** Transmittances of a cloud by Eddington's approximation. Twin: cpu/overcast.ts */
+/** Transmittances of a cloud by Eddington's approximation. Twin: test/twins/overcast.ts */
 export function eddington(
   thickness: Float,
   cosLight: Float,
@@ -61,7 +63,7 @@ export function decksAround(
 ): { above: PlacedDeck; below: PlacedDeck } {
   const mu = cosLight.max(LOWEST_COSINE).toConst() as Float
   const distance = offset.length().toConst() as Float
-  /** Sums of 1/t − 1 for diffuse light and the sun's, and of tops by the first. */
+  /** Sums of 1/t − 1 for diffuse and for direct light, and of tops by the first. */
   const above = vec3(0).toVar() as Vec3
   const below = vec3(0).toVar() as Vec3
   const beam = float(1).toVar()
@@ -105,9 +107,9 @@ export function decksAround(
   return { above: deck(above, beam), below: deck(below, float(1)) }
 }
 
-/** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
+/** Light about a plane: see `ClearLight` of test/twins/overcast.ts. */
 export interface ClearLightNodes {
-  sun: { above: Vec4; below: Vec4 }
+  direct: { above: Vec4; below: Vec4 }
   sky: { here: Vec4; below: Vec4 }
   ground: Vec4
   plane: Vec4
@@ -115,14 +117,14 @@ export interface ClearLightNodes {
 }
 
 /**
- * Irradiance of a plane among clouds: of sky and ground, with the sun's light that clouds have scattered
- * but without what comes straight from the sun. Light to and fro between clouds and ground is summed as
- * geometric series. Twin: cpu/overcast.ts
+ * Irradiance of a plane among clouds: of sky and ground, with the direct light that clouds have scattered,
+ * but without what arrives unscattered. Light to and fro between clouds and ground is summed as
+ * geometric series. Twin: test/twins/overcast.ts
  *
  * @param cosNormal - The plane's normal against the zenith.
  */
 export function cloudyIrradiance(
-  { sun, sky, ground, plane, albedo }: ClearLightNodes,
+  { direct, sky, ground, plane, albedo }: ClearLightNodes,
   above: CloudDeckNodes,
   below: CloudDeckNodes,
   cosNormal: Float
@@ -131,17 +133,17 @@ export function cloudyIrradiance(
   /** Part of the light on the ground that leaves the clouds over it. */
   const escaping = albedo.mul(reflected).oneMinus().reciprocal().mul(below.diffuse)
   const whiteness = albedo.mul(escaping).mul(below.diffuse).add(reflected)
-  const passing = sun.above.mul(above.direct).add(sky.here.mul(above.diffuse))
+  const passing = direct.above.mul(above.direct).add(sky.here.mul(above.diffuse))
   const bounced = passing.div(whiteness.mul(above.diffuse.oneMinus()).oneMinus())
   const more = bounced
-    .sub(sun.above.mul(above.beam))
+    .sub(direct.above.mul(above.beam))
     .sub(sky.here.mul(above.diffuse))
     .toConst() as Vec4
-  const beam = sun.below.mul(above.beam).toConst() as Vec4
+  const beam = direct.below.mul(above.beam).toConst() as Vec4
   const diffuse = sky.below.mul(above.diffuse).add(more).toConst() as Vec4
   const onGround = beam.mul(below.direct).add(diffuse.mul(below.diffuse)).mul(escaping)
   const clouds = beam.mul(below.direct.oneMinus()).add(diffuse.mul(reflected))
-  const part = onGround.div(sun.below.add(sky.below).max(1e-20))
+  const part = onGround.div(direct.below.add(sky.below).max(1e-20))
   const lower = ground.mul(part.sub(above.diffuse)).add(clouds)
   return plane
     .mul(above.diffuse)
@@ -166,12 +168,12 @@ export function overcastIrradiance(
 ): Vec4 {
   const { uniforms, transmittance, diffuse } = view.air
   const { above, below } = decksAround(field, light, offset, altitude, up, cosLight)
-  const sunAt = (height: Float): Vec4 =>
+  const directAt = (height: Float): Vec4 =>
     transmittanceToLight(uniforms, transmittance, height, cosLight).mul(cosLight.max(0)).toConst()
   const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
   const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosLight)
   const lights: ClearLightNodes = {
-    sun: { above: sunAt(above.top), below: sunAt(below.top) },
+    direct: { above: directAt(above.top), below: directAt(below.top) },
     sky: { here: here.up.toConst(), below: onClouds.up.toConst() },
     ground: here.down.toConst(),
     plane: clear,

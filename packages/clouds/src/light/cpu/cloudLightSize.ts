@@ -4,10 +4,10 @@
 export const positions = 32
 
 /** Thicknesses of slabs. */
-export const depths = 28
+export const thicknesses = 28
 
-/** Sun angles. */
-export const suns = 16
+/** Angles of the light. */
+export const lightAngles = 16
 
-/** Layers of its 3-D texture: four moments per sun angle, two more per sun angle, the sky's. */
-export const layers = 2 * suns + 1
+/** Layers of its 3-D texture: four moments per angle of the light, two more per angle, the sky's. */
+export const layers = 2 * lightAngles + 1

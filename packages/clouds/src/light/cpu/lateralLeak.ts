@@ -4,7 +4,7 @@
 // diameter, q.
 //
 // Fitted by scripts/fit-leak.ts to Monte-Carlo solutions of spheres with D from 0.3 to 40 and g′ from 0 to
-// 0.61, against slabs of thickness qD with the sun at their zenith: within 9 % (root mean square, weighted
+// 0.61, against slabs of thickness qD with the light at their zenith: within 9 % (root mean square, weighted
 // by the light), where slabs alone are off by factors of 2 to 10.
 
 export const constant = 0.4876

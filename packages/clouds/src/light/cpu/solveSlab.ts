@@ -2,7 +2,7 @@ import { gaussLegendre } from '@welkin/atmosphere'
 import type { ScaledPhase } from './cloudPhase'
 import { dot, factorize, matrix, product, symmetricEigen, type Matrix } from './matrices'
 
-/** Streams per hemisphere: moments of the light are within 1e-4 of 24 streams for suns up to 85°. */
+/** Streams per hemisphere: moments of the light are within 1e-4 of 24 streams for light up to 85° from the normal. */
 const STREAMS = 8
 
 /** Associated Legendre functions for l ≤ 2 over sin^m θ, by l − m, scaled to 1 at the zenith. */
@@ -19,7 +19,7 @@ const weightsOf = [[1 / 2, 3 / 2, 5 / 2], [3 / 4, 15 / 4], [15 / 16]]
 /**
  * The source of scattered light, S(v) = s00 + s10 μ + s20 (3μ² − 1)/2 + s11 a + s21 μ a +
  * s22 (2a² − sin²θ sin²θ_s) [1/sr], where v is the direction that is looked in, μ and μ_s are its and
- * the sun's cosines with the slab's normal, ν that between them, and a = ν − μ μ_s.
+ * the light's cosines with the slab's normal, ν that between them, and a = ν − μ μ_s.
  */
 export interface SourceMoments {
   s00: number
@@ -119,13 +119,13 @@ class AzimuthMode {
     )
 
     return {
-      fromSun: cosLight => {
+      fromBeam: cosLight => {
         // Where the beam resonates with a mode the solution is finite, but not by this formula.
         const resonates = (rate: number): boolean =>
           rates.some(mode => Math.abs(mode / rate - 1) < 1e-7)
         let rate = 1 / cosLight
         while (resonates(rate)) rate *= 1 + 3e-7
-        // The solution that goes with the beam of sunlight, of unit irradiance on a plane across it.
+        // The solution that goes with the beam, of unit irradiance on a plane across it.
         const azimuth = this.#m === 0 ? 1 : 2
         const strength = polynomials.map(polynomial => (azimuth * polynomial(cosLight)) / Math.PI)
         const [even, odd] = [0, 1].map(parity =>
@@ -153,7 +153,7 @@ class AzimuthMode {
           return rows.map((row, l) => dot(row, amplitudes) + beam * forced[l])
         })
       },
-      fromAbove: () => {
+      fromSky: () => {
         const amplitudes = solve(SIDES.flatMap(side => rates.map(() => 1 + side)))
         return sources.map(rows => rows.map(row => dot(row, amplitudes)))
       }
@@ -163,21 +163,21 @@ class AzimuthMode {
 
 /** Terms of the source by depth and l − m. */
 interface SlabMode {
-  fromSun: (cosLight: number) => number[][]
-  fromAbove: () => number[][]
+  fromBeam: (cosLight: number) => number[][]
+  fromSky: () => number[][]
 }
 
 /** Light in a plane-parallel slab, at the depths that were asked for. */
 export interface Slab {
   /**
-   * Source of light that was scattered at least once before, for unit irradiance of the sun on a
-   * plane across its rays.
+   * Source of light that was scattered at least once before, for unit irradiance of the beam on a
+   * plane across it.
    *
    * @param cosLight - μ_s, in (0, 1].
    */
-  fromSun: (cosLight: number) => SourceMoments[]
+  fromBeam: (cosLight: number) => SourceMoments[]
   /** Source of scattered light, all orders, under an isotropic sky of radiance 1 above the slab. */
-  fromAbove: () => Pick<SourceMoments, 's00' | 's10' | 's20'>[]
+  fromSky: () => Pick<SourceMoments, 's00' | 's10' | 's20'>[]
 }
 
 /**
@@ -185,10 +185,12 @@ export interface Slab {
  *
  * The phase function has three terms, so azimuth needs three Fourier modes. In each the streams'
  * coupled equations μ dL/dτ = S − L become, for the sum and the difference of both hemispheres, one
- * symmetric eigenproblem that does not depend on the slab's thickness nor on the sun; a slab is then
+ * symmetric eigenproblem that does not depend on the slab's thickness nor on the light; a slab is then
  * a small linear system.
  *
- * @see Stamnes & Swanson 1981; Nakajima & Tanaka 1986 (symmetric reduction)
+ * @see Stamnes & Swanson 1981, "A new look at the discrete ordinate method for radiative transfer
+ *   calculations in anisotropically scattering atmospheres"; Nakajima & Tanaka 1986, "Matrix formulations for
+ *   the transfer of solar radiation in a plane-parallel scattering atmosphere" (symmetric reduction)
  */
 export class SlabSolver {
   readonly #modes: AzimuthMode[]
@@ -205,14 +207,14 @@ export class SlabSolver {
   slab(thickness: number, depths: readonly number[]): Slab {
     const modes = this.#modes.map(mode => mode.slab(thickness, depths))
     return {
-      fromSun: cosLight => {
-        const [zeroth, first, second] = modes.map(mode => mode.fromSun(cosLight))
+      fromBeam: cosLight => {
+        const [zeroth, first, second] = modes.map(mode => mode.fromBeam(cosLight))
         return zeroth.map(([s00, s10, s20], i) => {
           const [s11, s21] = first[i]
           return { s00, s10, s20, s11, s21, s22: second[i][0] }
         })
       },
-      fromAbove: () => modes[0].fromAbove().map(([s00, s10, s20]) => ({ s00, s10, s20 }))
+      fromSky: () => modes[0].fromSky().map(([s00, s10, s20]) => ({ s00, s10, s20 }))
     }
   }
 }

@@ -1,7 +1,6 @@
 import { Fn, float, vec2 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import { ISOLATED_DEPTH } from '../cpu/cloudLight'
-import { suns } from '../cpu/cloudLightSize'
+import { lightAngles } from '../cpu/cloudLightSize'
 import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
 import { lateralLeak, type LeakNodes } from './lateralLeak'
@@ -27,7 +26,7 @@ export interface CloudSourceNodes extends LeakNodes {
  * once comes from the table of slabs, less what an isolated cloud loses through its sides. March
  * in scaled depths: L = ∫ S e^{−τ′} dτ′, with the same e^{−τ′} for what is behind the cloud.
  *
- * Twin: cpu/cloudLight.ts
+ * Twin: test/twins/cloudLight.ts
  *
  * @see Nakajima & Tanaka 1988, "Algorithms for radiative intensity calculations in moderately thick
  *   atmospheres using a truncation approximation" (TMS)
@@ -50,9 +49,9 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     const thickness = depthThrough.mul(cosSlabLight).toConst()
     const depth = depthToLight.mul(cosSlabLight).clamp(0, thickness).toConst()
     const place = slabPlace(depth, thickness).toConst()
-    const layer = cosSlabLight.mul(suns - 1).toConst()
+    const layer = cosSlabLight.mul(lightAngles - 1).toConst()
     const first = readLayer(light, place, layer)
-    const second = readLayer(light, place, layer.add(suns))
+    const second = readLayer(light, place, layer.add(lightAngles))
     const along = cosViewLight.sub(cosView.mul(cosSlabLight)).toConst()
     const sines = cosView.mul(cosView).oneMinus().mul(cosSlabLight.mul(cosSlabLight).oneMinus())
     const diffuse = legendreSeries(first, cosView)
@@ -65,6 +64,13 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     return diffuse.mul(lateralLeak(light, sample)).max(0).add(single)
   })()
 }
+
+/**
+ * Thickness of the slab that sky and ground light like an isolated cloud, as a part of that cloud's: light
+ * enters it from its sides, too. That is within 0.035 of the sky's radiance (root mean square) of Monte-Carlo solutions of
+ * spheres of scaled optical diameters from 0.6 to 40.
+ */
+export const ISOLATED_DEPTH = 0.2
 
 /** Place of a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientNodes {
@@ -94,7 +100,7 @@ export function cloudAmbientShares(
   const below = depthBelow.max(0).mul(openness).toConst()
   const place = slabPlace(above, above.add(below)).toConst()
   const at = (uv: Vec2, cosine: Float): Float =>
-    legendreSeries(readLayer(light, uv, float(2 * suns)), cosine)
+    legendreSeries(readLayer(light, uv, float(2 * lightAngles)), cosine)
       .max(0)
       .toConst()
   return {
@@ -106,7 +112,7 @@ export function cloudAmbientShares(
 
 /**
  * Source function of light from a given sky and ground: radiance per scaled extinction. Twin:
- * cpu/cloudLight.ts
+ * test/twins/cloudLight.ts
  *
  * @param sky - Mean radiance of the upper hemisphere: irradiance from above over π.
  * @param ground - Mean radiance of the lower hemisphere: irradiance from below over π.

@@ -1,7 +1,9 @@
 import { Fn, If, mix } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import { LEAST_ASYMMETRY } from '../cpu/cloudPhase'
 import { layout, type Float } from '../../tsl-types'
+
+/** Least asymmetry of the broadened lobe: below it, terms cancel in float32 and none is left to see. */
+export const LEAST_ASYMMETRY = 0.2
 
 const FOUR_PI = 4 * Math.PI
 
@@ -33,11 +35,11 @@ const lowTerms = (asymmetry: Float, cosScatter: Float): Float => {
 }
 
 /**
- * Phase function for light scattered once [1/sr], its peak broadened near the sun by what it was
+ * Phase function for light scattered once [1/sr], its peak broadened near the light by what it was
  * scattered within the peak on the way. Twins: cpu/cloudPhase.ts (`cloudPhase`, `aureolePhase`)
  *
  * @param cosScatter - Of the scattering angle.
- * @param depth - Scaled depth from the sun to the sample and on to the eye.
+ * @param depth - Scaled depth from the light to the sample and on to the eye.
  */
 export function singlePhase(light: CloudLight, cosScatter: Float, depth: Float): Float {
   const { forwardAsymmetry: g, backwardAsymmetry, forwardShare, scatteringScale } = light

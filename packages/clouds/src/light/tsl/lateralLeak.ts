@@ -16,7 +16,7 @@ export interface LeakNodes {
 
 /**
  * Lateral leak: share of a slab's multiply scattered light that an isolated cloud, a sphere, keeps. Twin:
- * cpu/cloudLight.ts
+ * test/twins/cloudLight.ts
  */
 export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
   const { depthToLight, depthThrough, depthAcross, layered } = sample

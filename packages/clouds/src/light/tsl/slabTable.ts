@@ -1,6 +1,6 @@
 import { vec2, vec3 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import { depths, layers, positions } from '../cpu/cloudLightSize'
+import { thicknesses, layers, positions } from '../cpu/cloudLightSize'
 import { CLOUD_LIGHT_BEND, CLOUD_LIGHT_THICKEST } from '../cpu/cloudLightTable'
 import type { Float, Vec2, Vec4 } from '../../tsl-types'
 
@@ -18,9 +18,9 @@ export function slabPlace(depth: Float, thickness: Float): Vec2 {
       .add(0.5)
       .div(positions),
     row
-      .mul(depths - 1)
+      .mul(thicknesses - 1)
       .add(0.5)
-      .div(depths)
+      .div(thicknesses)
   )
 }
 

@@ -1,10 +1,12 @@
+import { LOWEST_COSINE } from '../../src/environment/tsl/overcast'
+
 /** Transmittances of a cloud deck, or of several at once: parts of unit flux. */
 export interface CloudDeck {
   /** Diffuse light that passes. Clouds absorb nothing: the rest is reflected. */
   readonly diffuse: number
-  /** Sunlight that passes, scattered or not. */
+  /** Direct light that passes, scattered or not. */
   readonly direct: number
-  /** Sunlight that passes unscattered, or scattered within the forward peak. */
+  /** Direct light that passes unscattered, or scattered within the forward peak. */
   readonly beam: number
 }
 
@@ -15,9 +17,6 @@ export interface CloudCover {
   /** Part of the sky. */
   readonly cover: number
 }
-
-/** Cosine of the lowest light; one below it counts as this. */
-export const LOWEST_COSINE = 0.05
 
 /**
  * Transmittance of a cloud that absorbs nothing for light from one direction, in Eddington's approximation.
@@ -72,10 +71,10 @@ export function stackDecks(
   }
 }
 
-/** Light about a plane, of unit irradiance of the sun on a plane across its rays, at one wavelength. */
+/** Light about a plane, for unit irradiance of the source of light on a plane across its rays, at one wavelength. */
 export interface ClearLight {
   /** Direct irradiance of level planes: above the clouds over the plane, and on the clouds below it. */
-  readonly sun: { readonly above: number; readonly below: number }
+  readonly direct: { readonly above: number; readonly below: number }
   /** Sky irradiance of level planes: there, and on the clouds below. */
   readonly sky: { readonly here: number; readonly below: number }
   /** Irradiance of a level plane there that faces down. */
@@ -86,8 +85,8 @@ export interface ClearLight {
 }
 
 /**
- * Irradiance of a plane among clouds: of sky and ground, with the sun's light that clouds have scattered
- * but without what comes straight from the sun. Float64 twin of the shader function: here light goes to
+ * Irradiance of a plane among clouds: of sky and ground, with the direct light that clouds have scattered,
+ * but without what arrives unscattered. Float64 twin of the shader function: here light goes to
  * and fro between clouds and ground one time after the other.
  *
  * @param above - Clouds above the plane.
@@ -100,7 +99,7 @@ export function cloudyIrradiance(
   below: CloudDeck,
   cosNormal: number
 ): number {
-  const { sun, sky, albedo } = clear
+  const { direct, sky, albedo } = clear
   /** Flux that goes up for a flux down: off the clouds below, and off white ground under them. */
   const reflect = (diffuse: number, beam: number): { clouds: number; ground: number } => {
     const clouds = diffuse * (1 - below.diffuse) + beam * (1 - below.direct)
@@ -112,8 +111,8 @@ export function cloudyIrradiance(
     }
     return { clouds, ground }
   }
-  const beam = sun.above * above.beam
-  let down = sun.above * above.direct + sky.here * above.diffuse
+  const beam = direct.above * above.beam
+  let down = direct.above * above.direct + sky.here * above.diffuse
   let wave = down
   for (let bounce = 0; bounce < 400; bounce++) {
     const { clouds, ground } = reflect(wave, 0)
@@ -123,8 +122,8 @@ export function cloudyIrradiance(
   // What is more than the clear sky's own part, from all over the upper half.
   const more = down - beam - sky.here * above.diffuse
   const onClouds = sky.below * above.diffuse + more
-  const up = reflect(onClouds, sun.below * above.beam)
-  const fromBelow = up.clouds + (clear.ground * up.ground) / (sun.below + sky.below)
+  const up = reflect(onClouds, direct.below * above.beam)
+  const fromBelow = up.clouds + (clear.ground * up.ground) / (direct.below + sky.below)
   const lower = fromBelow - above.diffuse * clear.ground
   return Math.max(
     above.diffuse * clear.plane + (more * (1 + cosNormal)) / 2 + (lower * (1 - cosNormal)) / 2,

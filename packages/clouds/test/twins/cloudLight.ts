@@ -1,6 +1,8 @@
-import { aureolePhase, cloudPhase, scalePhase, type CloudPhaseParameters } from './cloudPhase'
-import { sampleSkylitSlab, sampleSunlitSlab } from './cloudLightTable'
-import * as c from './lateralLeak'
+import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
+import * as c from '../../src/light/cpu/lateralLeak'
+import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
+import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
+import { aureolePhase, cloudPhase } from './cloudPhase'
 
 /** Place of a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
 export interface CloudSourceSample {
@@ -26,7 +28,7 @@ const clamp = (x: number, low: number, high: number): number => Math.min(Math.ma
 
 /**
  * Lateral leak: share of a slab's multiply scattered light that a sphere keeps; the rest leaves through its
- * sides. Twin of the shader function; coefficients in lateralLeak.ts.
+ * sides. Twin of the shader function; coefficients in light/cpu/lateralLeak.ts.
  *
  * @param oneMinusAsymmetry - 1 − g′, with g′ = χ′₁ the asymmetry of the delta-scaled phase function.
  */
@@ -74,7 +76,7 @@ export function cloudSource(
   const cosView = (layered * sign * sample.cosView + (1 - layered) * cosViewLight) / length
   const thickness = depthThrough * cosLight
   const depth = clamp(depthToLight * cosLight, 0, thickness)
-  const m = sampleSunlitSlab(table, depth, thickness, cosLight)
+  const m = sampleBeamSource(table, depth, thickness, cosLight)
   const along = cosViewLight - cosView * cosLight
   const sines = (1 - cosView ** 2) * (1 - cosLight ** 2)
   const diffuse =
@@ -91,13 +93,6 @@ export function cloudSource(
   const scattered = (phase.scatteringAlbedo / depthScale) * single * Math.exp(-depthToLight)
   return Math.max(diffuse * leak, 0) + scattered
 }
-
-/**
- * Thickness of the slab that sky and ground light like an isolated cloud, as a part of that cloud's: light
- * enters it from its sides, too. That is within 0.035 of the sky's radiance (root mean square) of Monte-Carlo solutions of
- * spheres of scaled optical diameters from 0.6 to 40.
- */
-export const ISOLATED_DEPTH = 0.2
 
 /** Place of a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientSample {
@@ -124,7 +119,7 @@ export function cloudAmbient(
   const above = Math.max(depthAbove, 0) * openness
   const below = Math.max(depthBelow, 0) * openness
   const share = (depth: number, cos: number): number => {
-    const [s00, s10, s20] = sampleSkylitSlab(table, depth, above + below)
+    const [s00, s10, s20] = sampleSkySource(table, depth, above + below)
     return Math.max(s00 + s10 * cos + (s20 * (3 * cos ** 2 - 1)) / 2, 0)
   }
   return { sky: share(above, cosView), ground: share(below, -cosView) }

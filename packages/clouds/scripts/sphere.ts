@@ -1,4 +1,4 @@
-/** Cells of a ball: rings about the sun's axis of equal area, and equal parts of the way along it. */
+/** Cells of a sphere: rings of equal area about the axis towards the light, and equal parts of the way along it. */
 export const RINGS = 10
 export const STEPS = 16
 
@@ -14,16 +14,16 @@ function randomNumbers(): () => number {
 }
 
 /**
- * Source of light that was scattered before, which is the mean radiance in the
- * cells of a homogeneous ball that does not absorb, under a sun of unit irradiance [1/sr].
+ * Source of light that was scattered before, the mean radiance in the cells of a homogeneous sphere that
+ * does not absorb, in a beam of unit irradiance [1/sr].
  *
  * Photons are traced and their collisions after the first one counted, by cell.
  *
  * @param diameter - Scaled optical diameter.
  * @param chi1 - χ′₁, and χ′₂ below: the phase function has no further terms.
- * @returns By ring from the axis outwards, then by part of the way from the sunward side.
+ * @returns By ring from the axis outwards, then by part of the way from the side of the light.
  */
-export function collisionsInBall(
+export function sphereSource(
   diameter: number,
   chi1: number,
   chi2: number,
@@ -77,8 +77,8 @@ export function collisionsInBall(
   return counts.map((count, i) => {
     const inner = 1 - Math.floor(i / STEPS) / RINGS
     const outer = inner - 1 / RINGS
-    const ball = (4 / 3) * Math.PI * radius ** 3
-    const volume = (ball * (inner ** 1.5 - Math.max(outer, 0) ** 1.5)) / STEPS
+    const sphere = (4 / 3) * Math.PI * radius ** 3
+    const volume = (sphere * (inner ** 1.5 - Math.max(outer, 0) ** 1.5)) / STEPS
     return (count * Math.PI * radius ** 2) / (photons * volume * 4 * Math.PI)
   })
 }

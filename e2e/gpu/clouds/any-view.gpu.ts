@@ -1,0 +1,151 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { CloudLayers, CloudLightTable, CloudNoise, cloudPreset } from '@welkin/clouds'
+import type { CloudLayerParameters, CloudPresetName, CloudsDebug } from '@welkin/clouds'
+import { Ellipsoid } from '@welkin/geo'
+import { Vector3 } from 'three'
+import { expectLight, random } from '../harness/atmosphere'
+import { CloudView, fog, viewSize } from '../harness/cloud-view'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+
+/** Random scenes by backend, of which each draws shadow maps anew: on WebGL each size and debug view once. */
+const ROUNDS = { webgpu: 15, webgl: 5 }
+
+const sizes = [
+  [24, 14, 1],
+  [1, 1, 1],
+  [7, 3, 1],
+  [7, 3, 2],
+  [24, 14, 1]
+] as const
+const debugViews: (CloudsDebug | null)[] = ['density', 'steps', 'depth', 'history', null]
+
+/** A layer of any kind, extremes more often than not. */
+function randomLayer(next: () => number): Partial<CloudLayerParameters> {
+  const extreme = (): number => [0, 1, next(), next()][Math.floor(4 * next())]
+  const baseAltitude = next() < 0.3 ? 0 : 12_000 * next()
+  const weights = [extreme(), extreme(), extreme(), extreme()] as const
+  return {
+    baseAltitude,
+    topAltitude: baseAltitude + [0.01, 300, 12_000][Math.floor(3 * next())],
+    coverage: extreme(),
+    density: extreme() ** 3,
+    profileExponent: [0.05, 1, 8][Math.floor(3 * next())],
+    shapeAmount: extreme(),
+    detailAmount: extreme(),
+    weatherWeights: weights,
+    wind: { east: 200 * (next() - 0.5), north: 200 * (next() - 0.5) },
+    shadow: next() < 0.5
+  }
+}
+
+gpuTest(
+  'any camera, layers, size and debug view give finite light, and clouds where there are some',
+  async t => {
+    const renderer = await t.createRenderer(viewSize)
+    const atmosphere = new Atmosphere()
+    atmosphere.frame = 'ecef'
+    const layers = new CloudLayers([fog, fog, fog, fog])
+    const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
+    const view = new CloudView(renderer, atmosphere, layers, shared)
+    const { camera, node } = view
+    const seed = 20_261_121
+    const next = random(seed)
+    const rounds = ROUNDS[t.backend]
+    let cloudy = 0
+    for (let round = 0; round < rounds; round++) {
+      const [width, height, ratio] = sizes[round % sizes.length]
+      renderer.setPixelRatio(ratio)
+      renderer.setSize(width, height, false)
+      camera.aspect = width / height
+      const altitude = 10 ** (8 * next())
+      const up = new Vector3(next() - 0.5, next() - 0.5, next() - 0.5).normalize()
+      camera.position.copy(up).multiplyScalar(Ellipsoid.WGS84.a + altitude)
+      camera.up.set(next() - 0.5, next() - 0.5, next() - 0.5)
+      camera.lookAt((next() - 0.5) * 1e7, (next() - 0.5) * 1e7, (next() - 0.5) * 1e7)
+      camera.near = Math.max(altitude / 10, 0.5)
+      camera.far = 1e9
+      camera.updateProjectionMatrix()
+      atmosphere.sunDirection = new Vector3(next() - 0.5, next() - 0.5, next() - 0.5).normalize()
+      for (const layer of layers) layer.set(randomLayer(next))
+      const label = `seed ${seed}, round ${round}, ${altitude.toFixed(0)} m`
+      node.time = 1000 * next()
+      node.debugView = debugViews[(round + Math.floor(round / 5)) % debugViews.length]
+      expectLight(await view.draw(), `${label}, ${node.debugView}`)
+      node.debugView = 'density'
+      const { data } = await view.draw()
+      expectTrue(
+        data.every(value => value >= 0 && value <= 1),
+        `${label}: opacities beyond 0 and 1`
+      )
+      if (data.some((value, i) => i % 4 < 3 && value > 0.01)) cloudy++
+      if (round % 4 > 0) continue
+      for (const layer of layers) layer.set({ coverage: 0 })
+      node.accumulates = false
+      const clear = await view.draw()
+      node.accumulates = true
+      const most = Math.max(...clear.data.filter((_, i) => i % 4 < 3))
+      expectTrue(most === 0, `${label}: without clouds the opacity is ${most}`)
+    }
+    t.note(`clouds in ${cloudy} of ${rounds} pictures`)
+    expectTrue(cloudy >= rounds / 4, `clouds in only ${cloudy} of ${rounds} pictures`)
+    view.dispose()
+    shared.noise.dispose()
+    shared.light.dispose()
+    atmosphere.dispose()
+  },
+  { timeoutSeconds: 120 }
+)
+
+const presets: CloudPresetName[] = ['fairWeather', 'overcast', 'cumulonimbus', 'mixed']
+
+gpuTest(
+  'clouds of a preset give finite light from any camera at any time',
+  async t => {
+    const renderer = await t.createRenderer(viewSize)
+    const atmosphere = new Atmosphere()
+    atmosphere.frame = 'ecef'
+    const layers = new CloudLayers([{}, {}, {}])
+    const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
+    const view = new CloudView(renderer, atmosphere, layers, shared)
+    const { camera, node } = view
+    camera.far = 1e9
+    camera.updateProjectionMatrix()
+    node.accumulates = false
+    await node.bake(renderer)
+    const next = random(11)
+    let changed = 0
+    for (const preset of presets) {
+      const own = cloudPreset(preset)
+      for (let round = 0; round < 4; round++) {
+        // Below, among and above the clouds, and from space.
+        const altitude = [2, 1500, 12_000, 4e5 + 3e7 * next()][round]
+        const direction = new Vector3(next() - 0.5, next() - 0.5, next() - 0.5).normalize()
+        camera.position.copy(direction).multiplyScalar(Ellipsoid.WGS84.a + altitude)
+        camera.up.set(next() - 0.5, next() - 0.5, next() - 0.5)
+        camera.lookAt(new Vector3(next() - 0.5, next() - 0.5, next() - 0.5).multiplyScalar(1e7))
+        atmosphere.date = new Date(Date.UTC(2026, 0, 1) + next() * 3.15e10)
+        node.time = 1e5 * next()
+        const pictures = []
+        for (const coverage of [0, next()]) {
+          for (let i = 0; i < layers.length; i++) {
+            const { parameters } = own.at(Math.min(i, own.length - 1))
+            layers.at(i).set({ ...parameters, coverage: i < own.length ? coverage : 0 })
+          }
+          const picture = await view.draw()
+          expectLight(picture, `${preset}, ${altitude} m`)
+          pictures.push(picture.data)
+        }
+        const [clear, cloudy] = pictures
+        if (cloudy.some((value, i) => Math.abs(value - clear[i]) > 1e-3)) changed++
+      }
+    }
+    expectTrue(changed >= 6, `clouds change only ${changed} of 16 pictures`)
+    view.dispose()
+    shared.noise.dispose()
+    shared.light.dispose()
+    atmosphere.dispose()
+  },
+  // The shaders that the test before has drawn with on both.
+  { backends: ['webgpu'], timeoutSeconds: 120 }
+)

@@ -1,0 +1,134 @@
+import { SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
+import { CloudLayers, CloudLightTable, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import { BoxGeometry, Mesh, MeshLambertMaterial } from 'three'
+import { shadow } from 'three/tsl'
+import { drawToFloat } from '../harness/atmosphere'
+import {
+  CloudView,
+  SparseNoise,
+  fog,
+  inFog,
+  onGround,
+  viewInFog,
+  viewSize
+} from '../harness/cloud-view'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { countObjects, finishWork, nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+
+const meanOf = ({ data }: Picture): number => {
+  let sum = 0
+  for (let i = 0; i < data.length; i += 4) sum += data[i] + data[i + 1] + data[i + 2]
+  return sum / (0.75 * data.length)
+}
+
+/** Mean difference between pictures, by the brightness of the first. */
+const difference = (a: Picture, b: Picture): number =>
+  a.data.reduce((sum, value, i) => sum + (i % 4 < 3 ? Math.abs(value - b.data[i]) : 0), 0) /
+  (meanOf(a) * 0.75 * a.data.length)
+
+gpuTest('a scene is lit again when its clouds are disposed of, and shaded by the next ones', t =>
+  inFog(t, async (first, shared) => {
+    const { renderer, scene, camera, atmosphere } = first
+    renderer.shadowMap.enabled = true
+    const sun = new SunDirectionalLight(atmosphere)
+    const sky = new SkyLightProbe(atmosphere)
+    const board = new Mesh(new BoxGeometry(400, 1, 400), new MeshLambertMaterial())
+    board.position.set(0, 1480, -200)
+    board.receiveShadow = true
+    scene.add(board, sun, sky)
+    const draw = async (): Promise<number> => {
+      await nextFrame()
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      return Math.max(picture.at(12, 2)[1], picture.at(12, 11)[1])
+    }
+    const open = await draw()
+    const shade = async (view: CloudView): Promise<number> => {
+      Object.assign(sun.shadow, { shadowNode: cloudShadow(view.node, shadow(sun)) })
+      cloudSkyLight(sky, view.node)
+      sun.castShadow = true
+      sun.dispose()
+      await view.draw(2)
+      return draw()
+    }
+    const shaded = await shade(first)
+    // What a node makes for itself goes with it.
+    first.dispose()
+    shared.noise.dispose()
+    const light = [await draw(), await draw()]
+    const second = viewInFog(renderer, atmosphere, shared)
+    const again = await shade(second)
+    t.note([open, shaded, ...light, again].map(value => value.toFixed(4)).join(', '))
+    expectTrue(shaded < 0.9 * open, `in shadow the ground has ${shaded}, else ${open}`)
+    for (const value of light) expectClose([value], [open], { relative: 1e-3 }, 'without clouds')
+    expectClose([again], [shaded], { relative: 0.02 }, 'with others')
+    second.dispose()
+  })
+)
+
+/** In which a picture of blocks of four pixels is whole, twice. */
+const FRAMES = 8
+
+gpuTest('two cameras with a node each in a frame see what each sees alone; so after a resize', t =>
+  inFog(t, async (first, shared) => {
+    const { renderer, atmosphere } = first
+    const second = viewInFog(renderer, atmosphere, shared)
+    second.camera.position.set(300, 8000, 0)
+    second.camera.rotation.x = -0.7
+    const alone = [await first.draw(FRAMES), await second.draw(FRAMES)]
+    for (const view of [first, second]) view.node.accumulates = false
+    await first.draw()
+    await second.draw()
+    for (const view of [first, second]) view.node.accumulates = true
+    const views = [first, second]
+    renderer.setSize(10, 22, false)
+    for (const view of views) await view.draw()
+    renderer.setSize(viewSize.width, viewSize.height, false)
+    let together: Picture[] = []
+    for (let i = 0; i < FRAMES; i++) {
+      await nextFrame()
+      together = []
+      for (const view of views) {
+        together.push(await drawToFloat(renderer, () => view.render()))
+      }
+    }
+    const apart = alone.map((picture, i) => difference(picture, together[i]))
+    const between = difference(alone[0], alone[1])
+    t.note(
+      `apart by ${apart.map(value => value.toFixed(4)).join(', ')}; views ${between.toFixed(2)}`
+    )
+    expectTrue(between > 0.1, `the two views differ by only ${between}`)
+    for (const value of apart) expectTrue(value < 0.02, `pictures are apart by ${value}`)
+    second.dispose()
+  })
+)
+
+gpuTest('leaves no memory behind', async t => {
+  const renderer = await t.createRenderer(viewSize)
+  const objects = countObjects(renderer)
+  const atmosphere = onGround()
+  const light = new CloudLightTable()
+  const round = async (): Promise<string> => {
+    // A leak does not need the whole bake.
+    const noise = new SparseNoise(1)
+    const view = new CloudView(renderer, atmosphere, new CloudLayers([fog]), { noise, light })
+    await view.draw(2)
+    renderer.setSize(12, 7, false)
+    view.node.quality = 'ultra'
+    await view.draw()
+    renderer.setSize(viewSize.width, viewSize.height, false)
+    view.dispose()
+    noise.dispose()
+    await finishWork(renderer)
+    return `${JSON.stringify(renderer.info.memory)}, objects ${JSON.stringify(objects)}`
+  }
+  await round()
+  const before = await round()
+  for (let i = 0; i < 2; i++) {
+    const after = await round()
+    expectTrue(after === before, `before ${before}\nafter round ${i} ${after}`)
+  }
+  light.dispose()
+  atmosphere.dispose()
+})

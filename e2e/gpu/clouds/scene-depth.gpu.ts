@@ -1,0 +1,133 @@
+import { aerialPerspective } from '@welkin/atmosphere'
+import { clouds } from '@welkin/clouds'
+import { BoxGeometry, Mesh, MeshBasicMaterial } from 'three'
+import { pass, vec4 } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { drawToFloat, expectLight } from '../harness/atmosphere'
+import { coarse, inFog, middle } from '../harness/cloud-view'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+
+/** A black wall across the view. */
+function wall(distance: number, parameters: object = {}): Mesh<BoxGeometry, MeshBasicMaterial> {
+  const material = new MeshBasicMaterial({ color: 0, ...parameters })
+  const mesh = new Mesh(new BoxGeometry(2 * distance, 2 * distance, distance / 100), material)
+  mesh.position.set(0, 1500, -distance)
+  return mesh
+}
+
+for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
+  gpuTest(
+    `in a cloud what is near hides it, and what is far is hidden by it: ${depth} depth`,
+    t =>
+      inFog(
+        t,
+        async view => {
+          view.node.quality = { ...coarse, block: 1 }
+          const light: number[] = []
+          const distances = [20, 100, 400, 6000]
+          for (const distance of distances) {
+            const black = wall(distance)
+            view.scene.add(black)
+            const picture = await view.draw(3)
+            expectLight(picture, `a wall at ${distance} m`)
+            light.push(middle(picture))
+            view.scene.remove(black)
+            black.geometry.dispose()
+            black.material.dispose()
+          }
+          const open = middle(await view.draw(3))
+          const parts = light.map(value => value / open)
+          t.note(`light before a wall ${parts.map(part => part.toFixed(3)).join(', ')}`)
+          const [near, close, far, farthest] = parts
+          // Even fog, of mean extinction 0.004/m, lets e^{−0.004 d} through at the least.
+          expectTrue(near > 0 && near < 0.1, `fog before a wall at 20 m has ${near} of all light`)
+          expectTrue(close > 2 * near && close < 0.4, `at 100 m it has ${close}`)
+          expectTrue(far > 1.5 * close && far < 0.95, `at 400 m it has ${far}`)
+          expectTrue(Math.abs(farthest - 1) < 0.05, `at 6 km it has ${farthest}`)
+        },
+        {
+          reversedDepthBuffer: depth === 'reversed',
+          logarithmicDepthBuffer: depth === 'logarithmic'
+        }
+      ),
+    { timeoutSeconds: 60 }
+  )
+}
+
+gpuTest('transparent things are where their depth is, or else that of what is behind them', t =>
+  inFog(t, async view => {
+    view.node.quality = { ...coarse, block: 1 }
+    const open = middle(await view.draw(2))
+    const seen: number[] = []
+    for (const depthWrite of [true, false]) {
+      const glass = wall(20, { transparent: true, opacity: 0.9, depthWrite })
+      view.scene.add(glass)
+      seen.push(middle(await view.draw(2)) / open)
+      view.scene.remove(glass)
+      glass.geometry.dispose()
+      glass.material.dispose()
+    }
+    const [written, unwritten] = seen
+    t.note(
+      `light before black glass at 20 m: ${written.toFixed(3)}, without depth ${unwritten.toFixed(3)}`
+    )
+    expectTrue(written < 0.2, `glass that writes depth shows ${written} of the fog's light`)
+    expectTrue(Math.abs(unwritten - 1) < 0.05, `glass that writes none shows ${unwritten}`)
+  })
+)
+
+gpuTest('transparent things are over the clouds in a pass of their own', t =>
+  inFog(t, async view => {
+    const { renderer, scene, camera, atmosphere } = view
+    const open = middle(await view.draw(2))
+    const opaque = pass(scene, camera, { samples: 0 })
+    opaque.transparent = false
+    const depth = opaque.getTextureNode('depth')
+    const air = aerialPerspective(opaque.getTextureNode(), depth, camera, atmosphere)
+    const { field, light } = view.node
+    const { noise } = field
+    const quality = { ...coarse, block: 1 }
+    const node = clouds(air, depth, camera, atmosphere, field.layers, { quality, noise, light })
+    const depthTexture = opaque.renderTarget.depthTexture!
+    const panes = pass(scene, camera, { samples: 0, depthTexture, autoClearDepth: false })
+    panes.opaque = false
+    const over = panes.getTextureNode()
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    pipeline.outputNode = vec4(node.rgb.mul(over.a.oneMinus()).add(over.rgb), 1)
+    const draw = async (): Promise<number> => {
+      let value = 0
+      for (let i = 0; i < 2; i++) {
+        await nextFrame()
+        value = middle(await drawToFloat(renderer, () => pipeline.render())) / open
+      }
+      return value
+    }
+    const seen: number[] = []
+    for (const depthWrite of [true, false]) {
+      const glass = wall(20, { transparent: true, opacity: 0.75, depthWrite })
+      scene.add(glass)
+      seen.push(await draw())
+      const before = wall(10)
+      glass.material.color.setScalar(100)
+      scene.add(before)
+      seen.push(await draw())
+      for (const mesh of [glass, before]) {
+        scene.remove(mesh)
+        mesh.geometry.dispose()
+        mesh.material.dispose()
+      }
+    }
+    t.note(`light before glass and a wall: ${seen.map(value => value.toFixed(3)).join(', ')}`)
+    for (const i of [0, 2]) {
+      expectTrue(Math.abs(seen[i] - 0.25) < 0.02, `glass shows ${seen[i]} of the clouds`)
+      expectTrue(seen[i + 1] < 0.1, `before bright glass a black wall has ${seen[i + 1]}`)
+    }
+    pipeline.dispose()
+    panes.dispose()
+    node.dispose()
+    opaque.dispose()
+  })
+)

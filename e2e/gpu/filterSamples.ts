@@ -1,0 +1,19 @@
+import type { Plugin } from 'vite'
+
+/** Where three's filter of environments uses its number of samples, in its bundle of nodes. */
+const USES = ['uint( GGX_SAMPLES )', '6 / ( GGX_SAMPLES *']
+
+/** Has three's filter of environments take its number of samples from `globalThis.filterSamples`. */
+export function filterSamplesPlugin(): Plugin {
+  return {
+    name: 'welkin:filter-samples',
+    transform(code, id) {
+      if (!id.includes('/three/build/') || !USES.every(use => code.includes(use))) return undefined
+      const changed = USES.reduce((made, use) => {
+        const chosen = use.replace('GGX_SAMPLES', '( globalThis.filterSamples ?? GGX_SAMPLES )')
+        return made.replace(use, chosen)
+      }, code)
+      return { code: changed, map: null }
+    }
+  }
+}
