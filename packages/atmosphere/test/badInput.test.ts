@@ -368,14 +368,14 @@ const cases: [message: string, call: () => unknown][] = [
     () => new AtmosphereShell(parameters, wrong({ radius: 1 }))
   ],
   [
-    'AtmosphereShell: topRadius must be as in tables.parameters: share that object, got 6500000',
+    'AtmosphereShell: parameters must be tables.parameters, the same object, got an AtmosphereParameters',
     () =>
       new AtmosphereShell(new AtmosphereParameters({ topRadius: 6_500_000 }), 1, {
         tables: atmosphere.tables
       })
   ],
   [
-    'Atmosphere: mieScaleHeight must be as in tables.parameters: share that object, got 900',
+    'Atmosphere: parameters must be tables.parameters, the same object, got an AtmosphereParameters',
     () =>
       new Atmosphere({
         tables: atmosphere.tables,

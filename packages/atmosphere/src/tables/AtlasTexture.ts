@@ -51,21 +51,16 @@ type BuiltShader = NodeBuilder & {
   addSequentialNode(node: Node): void
 }
 
-/** Throws as an object is drawn, before three makes a pipeline of its shader, which would draw black. */
-class TextureLimit extends Node {
-  /** Builder of the shader; null once that is known to be good. */
-  #builder: BuiltShader | null
-
-  constructor(builder: BuiltShader) {
-    super()
-    this.#builder = builder
-    this.updateBeforeType = NodeUpdateType.OBJECT
-  }
-
-  override updateBefore(): undefined {
-    if (this.#builder !== null) checkTextures(this.#builder)
-    this.#builder = null
-  }
+/** Node that throws as an object is drawn, before three makes a pipeline of its shader, which would draw black. */
+function textureLimit(builder: BuiltShader): Node {
+  let unchecked: BuiltShader | null = builder
+  return Object.assign(new Node(), {
+    updateBeforeType: NodeUpdateType.OBJECT,
+    updateBefore: () => {
+      if (unchecked !== null) checkTextures(unchecked)
+      unchecked = null
+    }
+  })
 }
 
 /** Texture that every shader of an atmosphere samples: has drawing throw where a shader samples too many. */
@@ -75,7 +70,7 @@ export class AtlasTexture extends TextureNode {
       _limited.add(builder)
       // Its turn comes when the shader is complete: that three catches what is thrown while it builds one.
       const built = builder as BuiltShader
-      built.addSequentialNode(new TextureLimit(built))
+      built.addSequentialNode(textureLimit(built))
     }
     super.setup(builder)
   }

@@ -186,10 +186,7 @@ export function checkTables(
   if (!(tables instanceof AtmosphereTables)) {
     fail(where, "tables must be an atmosphere's", tables)
   }
-  if (tables.parameters === parameters) return
-  const differs = Object.entries(parameters).find(
-    ([name, value]) => String(value) !== String(tables.parameters[name as 'topRadius'])
-  )
-  const [name, value] = differs ?? ['parameters', parameters]
-  fail(where, `${name} must be as in tables.parameters: share that object`, value)
+  if (tables.parameters !== parameters) {
+    fail(where, 'parameters must be tables.parameters, the same object', parameters)
+  }
 }

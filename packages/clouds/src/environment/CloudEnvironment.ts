@@ -133,11 +133,6 @@ export class CloudEnvironment implements SkyOverlay {
     return this.#target.width
   }
 
-  /** Size on the GPU [bytes]. */
-  get bytes(): number {
-    return 8 * this.#target.width * this.#target.height
-  }
-
   /** See `SkyOverlay.version`. */
   get version(): number {
     return this.#isAsDrawn() ? this.#version : this.#version + 1

@@ -120,15 +120,6 @@ export class CloudRenderer {
     ]
   }
 
-  /** Size on the GPU [bytes]. */
-  get bytes(): number {
-    return this.#targets
-      .flatMap(target => target.textures)
-      .reduce((sum, { type, width, height }) => {
-        return sum + width * height * (type === UnsignedByteType ? 4 : 8)
-      }, 0)
-  }
-
   /** Sizes the render targets [pixels]; where the size changes, their contents are gone. */
   setSize(width: number, height: number, block: number): void {
     const [first] = this.#accumulatedTargets

@@ -208,11 +208,6 @@ export class CloudsNode extends AtmosphereNode {
     this.#debug.value = debugViews.indexOf(view)
   }
 
-  /** Size of the pictures on the GPU, without noise and light table [bytes]. */
-  get bytes(): number {
-    return this.shadows.bytes + (this.#renderer?.bytes ?? 0)
-  }
-
   override updateBefore(frame: NodeFrame): undefined {
     super.updateBefore(frame)
     const { camera, field, light } = this

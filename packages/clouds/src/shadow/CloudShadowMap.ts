@@ -119,11 +119,6 @@ export class CloudShadowMap {
     return this.#cascades[0].isDrawn
   }
 
-  /** Size on the GPU [bytes]. */
-  get bytes(): number {
-    return 8 * this.target.width * this.target.height
-  }
-
   /**
    * Draws what no longer fits: a strip, or all cascades at once after a jump. The field must be up to
    * date.
