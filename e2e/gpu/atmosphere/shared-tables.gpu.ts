@@ -9,7 +9,8 @@ const size = { width: 32, height: 18 }
 
 function expectSame(a: Picture, b: Picture, label: string): void {
   const most = relativeDifferences(a, b).at(-1)!
-  expectTrue(most < 1e-6, `${label}: a pixel differs by ${most}`)
+  // Volumes lie elsewhere in a larger atlas: texture coordinates round differently.
+  expectTrue(most < 1e-4, `${label}: a pixel differs by ${most}`)
 }
 
 gpuTest(
