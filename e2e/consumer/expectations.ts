@@ -1,4 +1,5 @@
 import type { PNG } from 'pngjs'
+import type { Backend } from '../harness/backend'
 
 type Color = [number, number, number]
 
@@ -54,12 +55,29 @@ function checkClouds(png: PNG): string[] {
   return wrong
 }
 
-/** Per page of the app (`app/PAGE.html`), what is wrong with its frame of 320×180. */
-export const expectations: Record<string, (png: PNG) => string[]> = {
-  index: checkQuickStart,
-  clouds: checkClouds,
-  geo: png => [
-    ...difference(png, 'the globe', 160, 90, [0x22, 0x55, 0xaa]),
-    ...difference(png, 'space', 5, 5, [0, 0, 0])
-  ]
+/** What a page of the app (`app/PAGE.html`) has to draw, at 320×180. */
+export interface Expectation {
+  /** In words what is wrong with a frame. */
+  wrongWith: (png: PNG) => string[]
+  /** Both, unless another page has the same code. */
+  backends?: readonly Backend[]
+  /** Message on the console that is none of these packages' doing. */
+  allows?: RegExp
+}
+
+/** Fiber's clock is one that three has replaced. */
+const fibersClock = /THREE\.Clock: This module has been deprecated/
+
+/** By name of the page. */
+export const expectations: Record<string, Expectation> = {
+  index: { wrongWith: checkQuickStart },
+  clouds: { wrongWith: checkClouds },
+  fiber: { wrongWith: checkQuickStart, allows: fibersClock },
+  webpack: { wrongWith: checkQuickStart, backends: ['webgpu'] },
+  geo: {
+    wrongWith: png => [
+      ...difference(png, 'the globe', 160, 90, [0x22, 0x55, 0xaa]),
+      ...difference(png, 'space', 5, 5, [0, 0, 0])
+    ]
+  }
 }
