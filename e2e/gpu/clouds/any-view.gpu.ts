@@ -10,6 +10,8 @@ import { gpuTest } from '../harness/gpu-test'
 
 /** Random scenes by backend, of which each draws shadow maps anew: on WebGL each size and debug view once. */
 const ROUNDS = { webgpu: 15, webgl: 5 }
+/** Least of them in which clouds are in view. */
+const CLOUDY = { webgpu: 4, webgl: 1 }
 
 const sizes = [
   [24, 14, 1],
@@ -88,7 +90,7 @@ gpuTest(
       expectTrue(most === 0, `${label}: without clouds the opacity is ${most}`)
     }
     t.note(`clouds in ${cloudy} of ${rounds} pictures`)
-    expectTrue(cloudy >= rounds / 4, `clouds in only ${cloudy} of ${rounds} pictures`)
+    expectTrue(cloudy >= CLOUDY[t.backend], `clouds in only ${cloudy} of ${rounds} pictures`)
     view.dispose()
     shared.noise.dispose()
     shared.light.dispose()
