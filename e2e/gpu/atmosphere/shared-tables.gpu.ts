@@ -56,6 +56,25 @@ gpuTest(
   }
 )
 
+gpuTest('an atmosphere that is used again has room for its sun beside other sources', async t => {
+  const renderer = await t.createRenderer(size)
+  const camera = new PerspectiveCamera()
+  camera.position.y = 10
+  camera.updateMatrixWorld()
+  const [never, once] = [false, true].map(isDisposed => {
+    const atmosphere = new Atmosphere()
+    atmosphere.update(renderer, camera)
+    if (isDisposed) atmosphere.dispose()
+    atmosphere.update(renderer, camera)
+    const { tables } = atmosphere
+    tables.addSource({})
+    const { height } = tables.atlas.target
+    atmosphere.dispose()
+    return height
+  })
+  expectTrue(once === never, `an atlas of ${once} rows, where ${never} are needed`)
+})
+
 gpuTest('a shell shares the tables of an atmosphere that is not its sun', async t => {
   const renderer = await t.createRenderer(size)
   const camera = new PerspectiveCamera(60, size.width / size.height, 0.1, 100)

@@ -174,6 +174,8 @@ export class Atmosphere extends ScenePlanet {
    * @param source - Whose light it is.
    */
   update(renderer: Renderer, camera: Camera, source: LightSource = this.sun): AtmosphereView {
+    // Its room was left to others if it was disposed of.
+    this.tables.addSource(this)
     this.tables.update(renderer, this)
     let views = this.#views.get(source)
     if (views === undefined) this.#views.set(source, (views = new WeakMap()))

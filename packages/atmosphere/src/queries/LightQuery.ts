@@ -13,14 +13,13 @@ export const clampCosine = (value: number): number => Math.min(Math.max(value, -
 /** A question about one source's light at a position of the scene, in float64: what all answers begin with. */
 export class LightQuery {
   readonly parameters: AtmosphereParameters
-  /** Zenith at the position, unit length, in the mapped space. */
-  readonly up: Vector3
   /** Planet's centre to the position, at least to the ground [m]. */
   readonly radius: number
-  /** Direction to the source, unit length, in the mapped space. */
-  readonly lightDirection: Vector3
   /** μ_s. */
   readonly cosLight: number
+  /** Zenith at the position, and direction to the source: unit length, in the mapped space. */
+  readonly #up: Vector3
+  readonly #lightDirection: Vector3
   readonly #where: string
   readonly #space: SphericalSpace
   readonly #data: DiffuseLightData | null
@@ -46,20 +45,29 @@ export class LightQuery {
     this.parameters = parameters
     this.#space = space
     this.#data = tables.data
-    this.up = space.position(position, new Vector3())
+    this.#up = space.position(position, new Vector3())
     // At the planet's centre there is no zenith.
-    checkDirection(where, 'position', this.up)
-    this.radius = Math.max(this.up.length(), parameters.bottomRadius)
-    this.up.normalize()
+    checkDirection(where, 'position', this.#up)
+    this.radius = Math.max(this.#up.length(), parameters.bottomRadius)
+    this.#up.normalize()
     this.#irradiance = source.irradianceAt(position)
-    this.lightDirection = this.direction('source', source.direction(new Vector3(), position))
-    this.cosLight = clampCosine(this.up.dot(this.lightDirection))
+    this.#lightDirection = this.#direction('source', source.direction(new Vector3(), position))
+    this.cosLight = clampCosine(this.#up.dot(this.#lightDirection))
   }
 
   /** A direction [world] in the mapped space, unit length. */
-  direction(name: string, world: Vector3): Vector3 {
+  #direction(name: string, world: Vector3): Vector3 {
     checkDirection(this.#where, name, world)
     return this.#space.direction(world, new Vector3())
+  }
+
+  /** Cosines between a direction and the zenith, and between it and the source. */
+  cosinesOf(name: string, world: Vector3): { zenith: number; light: number } {
+    const direction = this.#direction(name, world)
+    return {
+      zenith: clampCosine(direction.dot(this.#up)),
+      light: clampCosine(direction.dot(this.#lightDirection))
+    }
   }
 
   /** The diffuse-light table. @throws Before it was read back. */

@@ -6,7 +6,7 @@ import { skyIrradiance } from '../diffuseLight/cpu/skyIrradiance'
 import { Moon } from '../moon/Moon'
 import { lightTransmittance } from '../transmittance/cpu/transmittance'
 import type { LightSource } from '../view/LightSource'
-import { clampCosine, LightQuery } from './LightQuery'
+import { LightQuery } from './LightQuery'
 
 /** Illuminance on a plane that faces the source. */
 function directIlluminance(query: LightQuery): Triple {
@@ -53,12 +53,8 @@ export function skyIlluminanceAt(
   source?: LightSource
 ): Triple {
   const query = new LightQuery('skyIlluminanceAt', atmosphere, position, source)
-  const { parameters, data, up, radius, cosLight, lightDirection } = query
-  const n = query.direction('normal', normal)
+  const { parameters, data, radius, cosLight } = query
+  const { zenith, light } = query.cosinesOf('normal', normal)
   const altitude = radius - parameters.bottomRadius
-  const cosNormal = clampCosine(n.dot(up))
-  const cosNormalLight = clampCosine(n.dot(lightDirection))
-  return query.linearSRGB(
-    skyIrradiance(parameters, data, altitude, cosNormal, cosLight, cosNormalLight)
-  )
+  return query.linearSRGB(skyIrradiance(parameters, data, altitude, zenith, cosLight, light))
 }

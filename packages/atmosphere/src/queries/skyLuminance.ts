@@ -3,7 +3,7 @@ import type { Atmosphere } from '../Atmosphere'
 import type { Triple } from '../air/cpu/color'
 import { skyRadiance } from '../scattering/cpu/scattering'
 import type { LightSource } from '../view/LightSource'
-import { clampCosine, LightQuery } from './LightQuery'
+import { LightQuery } from './LightQuery'
 
 /**
  * Luminance of the sky, or of the model's ground, in a direction, by a float64 march; without the
@@ -22,13 +22,8 @@ export function skyLuminanceAt(
   source?: LightSource
 ): Triple {
   const query = new LightQuery('skyLuminanceAt', atmosphere, position, source)
-  const { parameters, data, up, radius, cosLight, lightDirection } = query
-  const v = query.direction('direction', direction)
-  const ray = {
-    radius,
-    cosView: clampCosine(v.dot(up)),
-    cosLight,
-    cosViewLight: clampCosine(v.dot(lightDirection))
-  }
+  const { parameters, data, radius, cosLight } = query
+  const { zenith, light } = query.cosinesOf('direction', direction)
+  const ray = { radius, cosView: zenith, cosLight, cosViewLight: light }
   return query.linearSRGB(skyRadiance(parameters, data, ray))
 }
