@@ -1,24 +1,16 @@
 import { writeFileSync } from 'node:fs'
-import { fileURLToPath } from 'node:url'
-import { launchChromium } from '../harness/browser'
-import { bundlePage } from '../harness/bundle'
-import { serveStatic } from '../harness/serve'
 import type { ExtinctionGrid } from './form/grid'
 import type { CloudFieldRequest } from './page/cloud-field'
+import { withPages } from './pages'
 
 /** Fields that the GPU draws, on regular grids: one page answers all requests. */
 export async function drawCloudFields(
   requests: readonly CloudFieldRequest[],
   take: (grid: ExtinctionGrid, index: number) => void
 ): Promise<void> {
-  const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {})
-  const server = await serveStatic([{ path: '/', folder }])
-  const browser = await launchChromium()
-  try {
+  await withPages('welkinOpenCloudField', async open => {
     for (const [index, request] of requests.entries()) {
-      const page = await browser.newPage()
-      await page.goto(`${server.origin}/index.html`)
-      await page.waitForFunction(() => 'welkinOpenCloudField' in window)
+      const page = await open()
       const { nx, ny, nz, z0 } = await page.evaluate(
         asked => window.welkinOpenCloudField(asked),
         request
@@ -33,10 +25,7 @@ export async function drawCloudFields(
       await page.close()
       take({ nx, ny, nz, dx: request.cell, dz: request.cell, z0, data }, index)
     }
-  } finally {
-    await browser.close()
-    await server.close()
-  }
+  })
 }
 
 /** Fraction of columns with a vertical optical depth above 1/2. */

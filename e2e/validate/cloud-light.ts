@@ -1,15 +1,12 @@
 import { readFileSync } from 'node:fs'
 import { dirname, join } from 'node:path'
-import { fileURLToPath } from 'node:url'
 import { gunzipSync } from 'node:zlib'
 import type { CloudQualityName } from '@welkin/clouds'
 import type { Backend } from '../harness/backend'
-import { launchChromium } from '../harness/browser'
-import { bundlePage } from '../harness/bundle'
-import { serveStatic } from '../harness/serve'
 import type { CloudLightCase, CloudLightFigures } from './cloud-figures'
 import { cloudLightGoal } from './goals'
 import type { CloudLightRequest } from './page/cloud-light'
+import { withPages } from './pages'
 import { quantile } from './score'
 
 /** Blocks along an edge of a picture. */
@@ -72,31 +69,21 @@ export async function validateCloudLight(
   quality: CloudQualityName
 ): Promise<CloudLightFigures> {
   const { pictures, voxels } = readCloudLight(file)
-  const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {})
-  const server = await serveStatic([{ path: '/', folder }])
-  const browser = await launchChromium()
-  let drawn: number[][]
-  try {
-    const page = await browser.newPage()
-    await page.goto(`${server.origin}/index.html`)
-    await page.waitForFunction(() => 'welkinCloudLight' in window)
-    const request: CloudLightRequest = {
-      backend,
-      quality,
-      voxels,
-      blocks: BLOCKS,
-      pictures: pictures.map(picture => ({
-        sun: picture.sun_elevation_deg,
-        azimuth: picture.view_azimuth_deg,
-        down: picture.view_down_deg,
-        halfWidth: picture.half_width_m
-      }))
-    }
-    drawn = await page.evaluate(asked => window.welkinCloudLight(asked), request)
-  } finally {
-    await browser.close()
-    await server.close()
+  const request: CloudLightRequest = {
+    backend,
+    quality,
+    voxels,
+    blocks: BLOCKS,
+    pictures: pictures.map(picture => ({
+      sun: picture.sun_elevation_deg,
+      azimuth: picture.view_azimuth_deg,
+      down: picture.view_down_deg,
+      halfWidth: picture.half_width_m
+    }))
   }
+  const drawn = await withPages('welkinCloudLight', async open =>
+    (await open()).evaluate(asked => window.welkinCloudLight(asked), request)
+  )
   const errors: number[] = []
   const noise: number[] = []
   const cases = pictures.map((picture, i): CloudLightCase => {

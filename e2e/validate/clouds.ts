@@ -1,12 +1,9 @@
-import { fileURLToPath } from 'node:url'
 import type { Backend } from '../harness/backend'
-import { launchChromium } from '../harness/browser'
-import { bundlePage } from '../harness/bundle'
-import { serveStatic } from '../harness/serve'
 import type { CloudFigures, CloudResult, CloudStatistics } from './cloud-figures'
 import { readCloudReference } from './cloud-reference'
 import { cloudGoals, type CloudGoal } from './goals'
 import type { CloudRequest } from './page/clouds'
+import { withPages } from './pages'
 import { quantile } from './score'
 
 /** References below this part of the sun's irradiance are left out. */
@@ -26,24 +23,14 @@ const isScored = ({ exitZenith }: CloudResult): boolean => exitZenith <= LARGEST
 /** Marches the clouds of a file through the lighting code on the GPU. */
 export async function validateClouds(file: string, backend: Backend): Promise<CloudFigures> {
   const { phases, cases } = readCloudReference(file)
-  const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {})
-  const server = await serveStatic([{ path: '/', folder }])
-  const browser = await launchChromium()
-  let radiances: number[]
-  try {
-    const page = await browser.newPage()
-    await page.goto(`${server.origin}/index.html`)
-    await page.waitForFunction(() => 'welkinClouds' in window)
-    const request: CloudRequest = {
-      backend,
-      phases,
-      rays: cases.map(({ shape, phase, input }) => ({ shape, phase, input }))
-    }
-    radiances = await page.evaluate(asked => window.welkinClouds(asked), request)
-  } finally {
-    await browser.close()
-    await server.close()
+  const request: CloudRequest = {
+    backend,
+    phases,
+    rays: cases.map(({ shape, phase, input }) => ({ shape, phase, input }))
   }
+  const radiances = await withPages('welkinClouds', async open =>
+    (await open()).evaluate(asked => window.welkinClouds(asked), request)
+  )
   const results = cases.flatMap((item, i) => {
     if (!(item.reference >= NEGLIGIBLE)) return []
     const error = (radiances[i] - item.reference) / item.reference
