@@ -5,6 +5,7 @@ import { Ellipsoid } from '@welkin/geo'
 import { Vector3 } from 'three'
 import { expectLight, random } from '../harness/atmosphere'
 import { CloudView, fog, viewSize } from '../harness/cloud-view'
+import type { GpuContext } from '../harness/context'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
@@ -41,15 +42,24 @@ function randomLayer(next: () => number): Partial<CloudLayerParameters> {
   }
 }
 
+/** A view of layers about the globe, in coordinates of its centre. */
+async function cloudsOfGlobe(t: GpuContext, layers: CloudLayers) {
+  const renderer = await t.createRenderer(viewSize)
+  const atmosphere = new Atmosphere()
+  atmosphere.frame = 'ecef'
+  const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
+  const view = new CloudView(renderer, atmosphere, layers, shared)
+  const dispose = (): void => {
+    for (const made of [view, shared.noise, shared.light, atmosphere]) made.dispose()
+  }
+  return { renderer, atmosphere, view, dispose }
+}
+
 gpuTest(
   'any camera, layers, size and debug view give finite light, and clouds where there are some',
   async t => {
-    const renderer = await t.createRenderer(viewSize)
-    const atmosphere = new Atmosphere()
-    atmosphere.frame = 'ecef'
     const layers = new CloudLayers([fog, fog, fog, fog])
-    const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
-    const view = new CloudView(renderer, atmosphere, layers, shared)
+    const { renderer, atmosphere, view, dispose } = await cloudsOfGlobe(t, layers)
     const { camera, node } = view
     const seed = 20_261_121
     const next = random(seed)
@@ -91,10 +101,7 @@ gpuTest(
     }
     t.note(`clouds in ${cloudy} of ${rounds} pictures`)
     expectTrue(cloudy >= CLOUDY[t.backend], `clouds in only ${cloudy} of ${rounds} pictures`)
-    view.dispose()
-    shared.noise.dispose()
-    shared.light.dispose()
-    atmosphere.dispose()
+    dispose()
   },
   { timeoutSeconds: 120 }
 )
@@ -104,12 +111,8 @@ const presets: CloudPresetName[] = ['fairWeather', 'overcast', 'cumulonimbus', '
 gpuTest(
   'clouds of a preset give finite light from any camera at any time',
   async t => {
-    const renderer = await t.createRenderer(viewSize)
-    const atmosphere = new Atmosphere()
-    atmosphere.frame = 'ecef'
     const layers = new CloudLayers([{}, {}, {}])
-    const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
-    const view = new CloudView(renderer, atmosphere, layers, shared)
+    const { renderer, atmosphere, view, dispose } = await cloudsOfGlobe(t, layers)
     const { camera, node } = view
     camera.far = 1e9
     camera.updateProjectionMatrix()
@@ -143,10 +146,7 @@ gpuTest(
       }
     }
     expectTrue(changed >= 6, `clouds change only ${changed} of 16 pictures`)
-    view.dispose()
-    shared.noise.dispose()
-    shared.light.dispose()
-    atmosphere.dispose()
+    dispose()
   },
   // The shaders that the test before has drawn with on both.
   { backends: ['webgpu'], timeoutSeconds: 120 }
