@@ -3,18 +3,24 @@ import {
   LinearMipmapLinearFilter,
   RenderTarget3D,
   RepeatWrapping,
+  RedFormat,
   RGBAFormat,
-  RGFormat,
   UnsignedByteType
 } from 'three'
 import type { Data3DTexture, PixelFormat } from 'three'
 import { checkOwner, FragmentPass } from '@welkin/atmosphere'
 import { Fn, float, texture3D, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
-import { NOISE_SIZE } from './noiseSizes'
-import { detailChannel, shapeChannels, weatherChannels } from './noiseRecipes'
+import { NOISE_SIZE, type NoiseName } from './noiseSizes'
+import {
+  FIRST_CHANNEL,
+  detailChannel,
+  shapeChannels,
+  weatherChannels,
+  type NoiseChannel
+} from './noiseRecipes'
 import { channelNoise, curlNoise } from './tsl/noiseChannels'
-import type { LevelTexture, Vec3, Vec4 } from '../tsl-types'
+import type { Float, LevelTexture, Vec3, Vec4 } from '../tsl-types'
 
 function noiseTarget(name: string, size: number, format: PixelFormat, mips: boolean) {
   const target = new RenderTarget3D(size, size, size, {
@@ -34,17 +40,23 @@ function noiseTarget(name: string, size: number, format: PixelFormat, mips: bool
   return target
 }
 
+/** GPU time of a slice of each texture's finest level, and of any coarser level, in slices of the shape. */
+const SLICE_COST = { shape: 1, weather: 0.4, detail: 0.12, level: 0.05 } as const
+
 /** A texture of noise, filled slice by slice, level by level. */
 class NoiseTexture {
   readonly target: RenderTarget3D
   readonly #size: number
   readonly #format: PixelFormat
+  readonly #cost: number
   readonly #slice: UniformNode<'float', number> = uniform(0)
   readonly #noise: FragmentPass
 
-  constructor(name: string, size: number, format: PixelFormat, noise: (p: Vec3) => Vec4) {
+  constructor(name: NoiseName, format: PixelFormat, cost: number, noise: (p: Vec3) => Vec4) {
+    const size = NOISE_SIZE[name]
     this.#size = size
     this.#format = format
+    this.#cost = cost
     this.target = noiseTarget(`Welkin.CloudNoise.${name}`, size, format, true)
     this.#noise = new FragmentPass(
       `Welkin.CloudNoise.${name}`,
@@ -52,18 +64,24 @@ class NoiseTexture {
     )
   }
 
-  *#draw(renderer: Renderer, pass: FragmentPass, target: RenderTarget3D, level: number) {
+  *#draw(
+    renderer: Renderer,
+    pass: FragmentPass,
+    target: RenderTarget3D,
+    level: number
+  ): Generator<number, void, void> {
     const slices = this.#size >> level
     const targetLevel = target === this.target ? level : 0
+    const cost = level === 0 ? this.#cost : SLICE_COST.level
     for (let slice = 0; slice < slices; slice++) {
       this.#slice.value = (slice + 0.5) / slices
       pass.render(renderer, target, slice, targetLevel)
-      yield
+      yield cost
     }
   }
 
-  /** Draws all texels, a slice a step. */
-  *bake(renderer: Renderer): Generator<void, void, void> {
+  /** Draws all texels, a slice a step, of which it tells the cost. */
+  *bake(renderer: Renderer): Generator<number, void, void> {
     yield* this.#draw(renderer, this.#noise, this.target, 0)
     let finer = this.target
     // A level is made outside of the texture and copied in: nothing may be read while it is drawn to.
@@ -99,30 +117,34 @@ class NoiseTexture {
   }
 }
 
+/** Channels of a recipe at a place in the texture. */
+const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3): Float[] =>
+  channels.map((channel, i) => channelNoise(channel, first + i, p))
+
 /**
  * The noise that clouds are made of: three tileable 3-D textures with levels of detail, drawn on the
- * GPU in fragment passes. About 6 MB.
+ * GPU in fragment passes. About 11 MB.
  *
  * Weather is a volume too, of which the planet's surface is a slice: it has neither seams nor poles,
  * and since the lattice lies askew to the ground, no two tiles of it look alike.
  */
 export class CloudNoise {
-  /** Perlin–Worley and finer billows, by `shapeChannels`. */
-  readonly shape = new NoiseTexture('shape', NOISE_SIZE.shape, RGFormat, p =>
-    vec4(channelNoise(shapeChannels[0], 0, p), channelNoise(shapeChannels[1], 1, p), 0, 1)
-  )
-  /** Billows and curl. */
-  readonly detail = new NoiseTexture('detail', NOISE_SIZE.detail, RGBAFormat, p => {
-    const curl = curlNoise(p).toConst()
-    return vec4(channelNoise(detailChannel, 2, p), curl.x, curl.y, curl.z)
+  /** Coarse and fine billows, by `shapeChannels`, and two components of a curl. */
+  readonly shape = new NoiseTexture('shape', RGBAFormat, SLICE_COST.shape, p => {
+    const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)
+    return vec4(coarse, fine, curlNoise(FIRST_CHANNEL.shape + shapeChannels.length, p))
   })
+  /** Finest billows, by `detailChannel`. */
+  readonly detail = new NoiseTexture('detail', RedFormat, SLICE_COST.detail, p =>
+    vec4(vec3(channelNoise(detailChannel, FIRST_CHANNEL.detail, p)), 1)
+  )
   /** Weather, by `weatherChannels`. */
-  readonly weather = new NoiseTexture('weather', NOISE_SIZE.weather, RGBAFormat, p => {
-    const [r, g, b, a] = weatherChannels.map((channel, i) => channelNoise(channel, 3 + i, p))
+  readonly weather = new NoiseTexture('weather', RGBAFormat, SLICE_COST.weather, p => {
+    const [r, g, b, a] = channelsAt(weatherChannels, FIRST_CHANNEL.weather, p)
     return vec4(r, g, b, a)
   })
   readonly #textures = [this.weather, this.shape, this.detail]
-  #steps: Generator<void, void, void> | null = null
+  #steps: Generator<number, void, void> | null = null
   #isReady = false
   #renderer: Renderer | null = null
 
@@ -136,13 +158,13 @@ export class CloudNoise {
     const { shape, detail, weather } = NOISE_SIZE
     // A level has an eighth of the texels of the one before, down to one.
     const texels = (size: number): number => (8 * size ** 3 - 1) / 7
-    return 2 * texels(shape) + 4 * (texels(detail) + texels(weather))
+    return 4 * (texels(shape) + texels(weather)) + texels(detail)
   }
 
   /**
    * Draws what is missing.
    *
-   * @param slices - How many slices at most.
+   * @param slices - GPU time to spend, in slices of the shape: cheaper slices count for less.
    * @returns Whether all texels are drawn.
    * @throws If another renderer drew the noise that was not disposed of.
    */
@@ -154,8 +176,10 @@ export class CloudNoise {
       this.#renderer = renderer
     }
     this.#steps ??= this.#bake(renderer)
-    for (let i = 0; i < slices && !this.#isReady; i++) {
-      this.#isReady = this.#steps.next().done === true
+    for (let spent = 0; spent < slices && !this.#isReady;) {
+      const step = this.#steps.next()
+      this.#isReady = step.done === true
+      spent += step.value ?? 0
     }
     return this.#isReady
   }
@@ -166,7 +190,7 @@ export class CloudNoise {
     this.#isReady = false
   }
 
-  *#bake(renderer: Renderer): Generator<void, void, void> {
+  *#bake(renderer: Renderer): Generator<number, void, void> {
     for (const noise of this.#textures) yield* noise.bake(renderer)
   }
 

@@ -1,11 +1,23 @@
-import { detailChannel, shapeChannels, weatherChannels } from '../../src/noise/noiseRecipes'
+import {
+  FIRST_CHANNEL,
+  detailChannel,
+  shapeChannels,
+  weatherChannels,
+  type NoiseChannel
+} from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE, type NoiseName } from '../../src/noise/noiseSizes'
 import { channelNoise, curlNoise, type Vec3Array } from './noise'
 
+const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3Array): number[] =>
+  channels.map((channel, i) => channelNoise(channel, first + i, p))
+
 const contents: Record<NoiseName, (p: Vec3Array) => number[]> = {
-  shape: p => shapeChannels.map((channel, i) => channelNoise(channel, i, p)),
-  detail: p => [channelNoise(detailChannel, 2, p), ...curlNoise(p)],
-  weather: p => weatherChannels.map((channel, i) => channelNoise(channel, 3 + i, p))
+  shape: p => [
+    ...channelsAt(shapeChannels, FIRST_CHANNEL.shape, p),
+    ...curlNoise(FIRST_CHANNEL.shape + shapeChannels.length, p)
+  ],
+  detail: p => channelsAt([detailChannel], FIRST_CHANNEL.detail, p),
+  weather: p => channelsAt(weatherChannels, FIRST_CHANNEL.weather, p)
 }
 
 const mixed = (a: number[], b: number[], t: number): number[] =>
