@@ -49,6 +49,7 @@ export const cloudReference: CloudQuality = {
   steps: 1024,
   stepGrowth: cloudQualities.high.stepGrowth / 8,
   shortestStep: cloudQualities.high.shortestStep / 8,
+  depthStep: cloudQualities.high.depthStep / 8,
   layerSteps: cloudQualities.high.layerSteps * 8,
   lightSteps: 4,
   block: 1

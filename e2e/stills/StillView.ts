@@ -38,6 +38,8 @@ const FIELD_OF_VIEW = 55
 const LIGHT_DISTANCE = 20_000
 /** Half width of the hills' shadow map [m]. */
 const SHADOW_EXTENT = 6000
+/** Exposure with clouds over that for the ground, so that sunlit tops keep their shading. */
+const CLOUD_EXPOSURE = 0.55
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
@@ -136,9 +138,10 @@ export class StillView {
     }
   }
 
-  /** Factor on daylight's brightness. */
+  /** Factor on daylight's brightness. Sunlit clouds are brighter than the ground that it is metered for. */
   get exposure(): number {
-    return exposureFor(this.#atmosphere, this.#camera, { sources: this.#sources })
+    const metered = exposureFor(this.#atmosphere, this.#camera, { sources: this.#sources })
+    return this.#clouds === undefined ? metered : metered * CLOUD_EXPOSURE
   }
 
   draw(): void {

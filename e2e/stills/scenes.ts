@@ -24,6 +24,8 @@ const presets: Record<CloudPresetName, { azimuth: number; pitch: number }> = {
   stratocumulus: { azimuth: 30, pitch: 14 },
   overcast: { azimuth: 30, pitch: 10 },
   cumulonimbus: { azimuth: 20, pitch: 14 },
+  congestus: { azimuth: 330, pitch: 14 },
+  altocumulus: { azimuth: 30, pitch: 24 },
   cirrus: { azimuth: 20, pitch: 18 },
   mixed: { azimuth: 300, pitch: 14 }
 }

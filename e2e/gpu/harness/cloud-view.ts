@@ -17,6 +17,7 @@ export const coarse: CloudQuality = {
   steps: 32,
   stepGrowth: 0.08,
   shortestStep: 40,
+  depthStep: 1,
   layerSteps: 6,
   lightSteps: 1,
   block: 2

@@ -46,6 +46,9 @@ declare global {
 /** Samples of a cell along each axis: their mean is the cell's. */
 const SAMPLES = 2
 
+/** Levels of clear air below the lowest base. */
+const CLEAR_LEVELS = 5
+
 interface OpenField {
   renderer: WebGPURenderer
   pass: FragmentPass
@@ -81,7 +84,8 @@ window.welkinOpenCloudField = async request => {
   field.pixelAngle.value = 1
 
   const altitudes = [...layers].map(layer => layer.parameters)
-  const z0 = Math.min(...altitudes.map(layer => layer.baseAltitude))
+  // Bases are edges only where clear air is below them.
+  const z0 = Math.min(...altitudes.map(layer => layer.baseAltitude)) - CLEAR_LEVELS * cell
   const top = Math.max(...altitudes.map(layer => layer.topAltitude))
   const columns = Math.round(size / cell)
   const target = new RenderTarget(columns, columns, { type: FloatType, depthBuffer: false })

@@ -11,8 +11,6 @@ import { NightLight } from '../light/NightLight'
 import type { NoiseName } from '../noise/noiseSizes'
 import { latticeRotations, layerRotation } from './lattice'
 import {
-  CURL_PERIOD,
-  DETAIL_PERIOD,
   LAYER_STRIDE,
   REGION_PERIOD,
   FIELD_PERIOD,
@@ -20,9 +18,12 @@ import {
   layerPeriods,
   weatherScales
 } from '../layers/layerUniforms'
+import { meanColumn, type MeanColumn } from '../layers/meanColumn'
+import type { CloudLayerParameters } from '../layers/CloudLayer'
+import { billowForm } from './formConstants'
 import { vec4Array, type Float, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
-import { windRotation } from '../layers/wind'
+import { windAxis, windRotation } from '../layers/wind'
 
 /** Share of its coverage that a layer gains in a frame after its noise was drawn over several. */
 const FADE_IN_STEP = 1 / 48
@@ -30,6 +31,8 @@ const FADE_IN_STEP = 1 / 48
 const _position = new Vector3()
 const _subpoint = new Vector3()
 const _point = new Vector3()
+const _up = new Vector3()
+const _axis = new Vector3()
 const _stretch = new Vector3()
 const _matrix = new Matrix4()
 const _rotation = new Quaternion()
@@ -115,6 +118,8 @@ export class CloudField {
   givenExtinction: ((offset: Vec3) => Float) | null = null
   /** Gain of `fadeIn` in a frame. */
   #fadeInStep = 1
+  readonly #columns: { parameters: CloudLayerParameters; depthScale: number; column: MeanColumn }[] =
+    []
 
   /**
    * @param view - Nodes of the camera that samples are seen from.
@@ -171,6 +176,7 @@ export class CloudField {
     this.radius.value = bottomRadius
     this.night.update(view)
     viewpointMapped(view, _position)
+    _up.copy(view.up)
     _subpoint.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
@@ -198,44 +204,54 @@ export class CloudField {
   #write(index: number): void {
     const { parameters } = this.layers.at(index)
     const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
+    const { weatherWeights, openCells, turbulence } = parameters
     const periods = layerPeriods(parameters)
-    const scales = weatherScales(parameters.weatherWeights, this.worldMap !== null)
-    const { fibrous, stretch, steepness, sharpness, coarseness, anvil } = layerForms(parameters)
+    const scales = weatherScales(weatherWeights, this.worldMap !== null, openCells)
+    const { fibrous, stretch, edge, coarseness } = layerForms(parameters)
     const layerRotation = this.rotations[index]
     const { elements: e } = _matrix.makeRotationFromQuaternion(layerRotation)
     const perStretch = 1 / stretch
-    const anchor = (
-      place: Vector3,
-      lattice: Quaternion,
-      length: number,
-      periodsKept = 1,
-      across = 1
-    ): number[] =>
+    const anchor = (place: Vector3, lattice: Quaternion, length: number, across = 1): number[] =>
       _point
         .copy(place)
         .applyQuaternion(layerRotation)
         .multiply(_stretch.set(across, across, 1))
         .applyQuaternion(lattice)
-        .divideScalar(length * periodsKept)
+        .divideScalar(length)
         .toArray()
-        .map(v => periodsKept * (v - Math.floor(v)))
+        .map(v => v - Math.floor(v))
     const { weather, region, shape, detail, fields } = latticeRotations
+    const column = this.#meanColumn(index, parameters)
+    const bend = turbulence * billowForm.bend * periods.shape
     const vectors = [
       [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.fadeIn, density],
       [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
       scales.clouds,
-      [e[0], e[4], e[8], steepness],
-      [e[1], e[5], e[9], sharpness],
+      [e[0], e[4], e[8], 1 / edge],
+      [e[1], e[5], e[9], coarseness],
       [e[2], e[6], e[10], fibrous],
       // The weather is the same all the way up: it is looked up at the subpoint.
       [...anchor(_subpoint, weather, periods.weather), 1 / periods.weather],
       [...anchor(_subpoint, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
-      [...anchor(_position, shape, periods.shape, 1, perStretch), perStretch],
-      [...anchor(_position, detail, DETAIL_PERIOD, CURL_PERIOD, perStretch), coarseness],
-      [...anchor(_subpoint, fields, periods.weather * FIELD_PERIOD), anvil],
-      [scales.cells, scales.regions, scales.planet, scales.cloudVariance]
+      [...anchor(_position, shape, periods.shape, perStretch), perStretch],
+      [...anchor(_position, detail, periods.detail, perStretch), 1 / periods.detail],
+      [...anchor(_subpoint, fields, periods.weather * FIELD_PERIOD), parameters.anvil],
+      [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
+      [...windAxis(parameters.wind, _up, _axis).multiplyScalar(parameters.shear), bend],
+      [column.columnDensity, column.insideDensity, column.profileMean, 0],
+      [parameters.densityGrowth, parameters.shear, 0, 0]
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
+  }
+
+  /** Means of a layer's columns, computed anew where it or the light has changed. */
+  #meanColumn(index: number, parameters: CloudLayerParameters): MeanColumn {
+    const depthScale = this.depthScale.value
+    const known = this.#columns[index]
+    if (known?.parameters === parameters && known.depthScale === depthScale) return known.column
+    const column = meanColumn(parameters, depthScale)
+    this.#columns[index] = { parameters, depthScale, column }
+    return column
   }
 
   /**

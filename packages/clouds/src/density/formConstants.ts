@@ -1,25 +1,27 @@
 // Constants of the cloud field that were found by looking. Each says what one sees when it changes, and in
 // which story of stories/src/clouds.stories.ts.
 
-/** Constants of column strength and filtered coverage: tsl/weather.ts. */
+/** Constants of column strength and filtered coverage: tsl/strength.ts, tsl/weather.ts. */
 export const strengthForm = {
   /**
-   * Change of the weather over which a column goes from edge to middle [–]. Greater: clouds thin out
-   * slowly towards their edges, and their tops get rounder (*Cumulus*).
+   * Strength of the strongest columns [–]: cumulus that reach the layer's top. Greater: steeper sides, and
+   * more towers of the same height (*Cumulus*).
    */
-  edgeWidth: 0.5,
-  /** The same for cirrus. Smaller: fibres become solid bands with edges (*Cirrus*). */
-  cirrusEdgeWidth: 1.6,
+  strongest: 3.5,
+  /** Least coverage that strength is scaled by [–]. Smaller: a coverage near 0 leaves needles (*Presets*). */
+  leastCoverage: 0.02,
   /**
-   * Strength at which noise puts the edge on average, per shape amount [–]. It makes a layer cover what
-   * its coverage says: greater, and all skies have more cloud than they ask for (*Presets*).
+   * Added to the strength for the shape amount s and coverage c: s (a + b c) + d c³² [–]. It makes a layer
+   * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
    */
-  meanEdge: 0.535,
+  offset: -1.03,
+  coverageOffset: 0.93,
+  fullCoverageExcess: 3.2,
   /**
-   * Added to the strength at full coverage, taken at none [–]. Smaller: `overcast` gets holes, and a
-   * coverage of nearly 0 leaves crumbs (*Presets*).
+   * Levels of detail over which billows are lost in the mean [octaves]: the offset goes with them. Wrong:
+   * clouds grow or shrink with the distance (*Cockpit*).
    */
-  fullCoverageExcess: 0.6,
+  billowLevels: [1, 5.5],
   /**
    * Levels of detail over which single clouds are lost in the mean [octaves]. It says how much variance
    * blurred weather has left: wrong, and cover changes with the distance (*World clouds*).
@@ -35,62 +37,66 @@ export const strengthForm = {
   leastEdgeSoftness: 0.05
 } as const
 
-/** Constants of anvils, where a layer has all of one: tsl/profile.ts. All are seen in *Storm*. */
-export const anvilForm = {
-  /** Heights in the layer between which towers become anvils, in [0, 1]. Lower: thick anvils. */
-  heights: [0.62, 0.8],
-  /** Strength that towers lack below their anvils [–]. Greater: slender towers. */
-  narrowing: 0.4,
-  /** Density of anvils over that of towers, in [0, 1]. Smaller: the sky shines through anvils. */
-  density: 0.35,
-  /** Mean over all heights of a far anvil's profile times its density: columns far away keep theirs. */
-  profileMean: 0.09
+/** Constants of the strength that a column needs to reach a height: tsl/neededStrength.ts. */
+export const heightForm = {
+  /** Strength that is needed at the top of a layer [–]. Greater: flat clouds (*Cumulus*). */
+  top: 3.2,
+  /**
+   * Inversion: height in the layer from which more is needed, in [0, 1], and how much, per square of the
+   * height above it. Weaker: single towers stand out at the layer's top, cut off by it (*Cumulus*).
+   */
+  inversion: 0.68,
+  inversionStrength: 17,
+  /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
+  grown: 0.6,
+  /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
+  tower: 2.6,
+  towerHeights: [0.3, 0.68],
+  /** Where anvils end, in [0, 1], and the strength needed there: what overshoots (*Storm*). */
+  anvilHeights: [0.72, 1],
+  overshoot: 4.6,
+  /** Heights between which water freezes, in [0, 1], and extinction of ice over that of water (*Storm*). */
+  iceHeights: [0.4, 0.72],
+  iceDensity: 0.16
 } as const
 
-/** Constants of shape and detail erosion, and of edges: tsl/erosion.ts, tsl/extinction.ts. */
-export const erosionForm = {
+/** Constants of billows and detail: tsl/billows.ts, tsl/detail.ts. */
+export const billowForm = {
+  /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
+  coarse: 0.95,
+  fine: 0.81,
+  detail: 0.3,
+  /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
+  coarseGrowth: 0.337,
+  fineGrowth: 0.2,
   /**
-   * Least shape erosion, per shape amount [–]: what has less in its dimensional profile is empty for sure.
-   * Greater: longer steps through clear air, and flatter billows inside of clouds (*Inside a cloud*).
+   * Strength at which fine billows begin, and over which they set in: bodies have them, crumbs do not. Lower:
+   * crumbs float about clouds (*Cumulus*).
    */
-  leastShape: 0.15,
-  /** Weight of the finer billows against the first ones [–]. Greater: small lumps all over (*Cumulus*). */
-  finerBillows: 0.3,
+  fineFrom: 0.3,
+  fineOver: 0.5,
+  /** Height in the layer below which detail makes wisps, not heads, in [0, 1] (*Cumulus*). */
+  wispHeight: 0.1,
   /**
-   * Shape erosion that is left out where levels of detail have lost the billows, per shape amount [–], and
-   * over how many levels [octaves]. Smaller: clouds shrink with the distance (*Cockpit*).
+   * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
+   * shape], and heights in the layer over which it sets in, in [0, 1]. 0: columns like cookies (*Cumulus*).
    */
-  filteredShape: 0.09,
-  fadeLevels: 5,
-  /** Most that detail takes away [–]. Greater: ragged edges, and holes in thin clouds (*Cumulus*). */
-  mostDetail: 0.22,
-  /**
-   * Heights in the layer between which the detail turns from wisps to billows, in [0, 1]. Higher: tops
-   * have wisps, too (*Cumulus*).
-   */
-  wispHeights: [0.1, 0.35],
-  /**
-   * Density per what erosion leaves of the dimensional profile, of smooth layers and of eroded ones [–].
-   * Greater: harder edges, which need shorter steps (*Cumulus*).
-   */
-  smoothSharpness: 1.5,
-  erodedSharpness: 6
+  bend: 0.065,
+  bendHeight: 0.2
+} as const
+
+/** Constants of density: tsl/density.ts. */
+export const densityForm = {
+  /** Strength over which density rises at crisp edges, and the factor for wholly soft ones [–] (*Cumulus*). */
+  crispEdge: 0.25,
+  softEdge: 12,
+  /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
+  edgeDensity: 0.75,
+  core: 1.2
 } as const
 
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */
 export const columnForm = {
-  /**
-   * Mean density of a cloudy column over the densest: of most clouds, and where all towers have anvils,
-   * since most of these is thin [–]. Wrong: clouds get brighter or darker where they turn into a mean, a
-   * ring about the viewpoint (*World clouds*).
-   */
-  density: 0.6,
-  anvilDensity: 0.12,
-  /**
-   * The same of fibrous clouds, by coverage c: a₀ + a₁c² + a₂c⁶⁴ [–]. Fitted to columns of resolved
-   * cirrus.
-   */
-  fibrousDensity: [0.05, 0.15, 0.35],
   /**
    * Height over the weather's period, times this: how much clouds hide, looked at aslant, as tall bodies
    * would. Smaller: far fields of cumulus show the ground between them at the horizon (*Cockpit*).

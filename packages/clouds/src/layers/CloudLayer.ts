@@ -16,18 +16,43 @@ export interface CloudLayerParameters {
   readonly topAltitude: number
   /** Share of the sky that the layer covers, in [0, 1]: of the planet's; regions have more or less. */
   readonly coverage: number
-  /** Extinction coefficient of the densest cloud [1/m], in [0, 1]; cumulus has about 0.05. */
+  /** Extinction coefficient of the densest cloud [1/m], in [0, 1]; cumulus has 0.05 to 0.1. */
   readonly density: number
   /**
-   * Exponent t of the height profile 1 − (2 ĥ^t − 1)², in (0, 8], with ĥ the height in the layer
-   * from 0 to 1: 1 is symmetric, below 1 the layer is densest low down, above 1 high up.
+   * Exponent t of the strength ĥ^t that a column needs to reach a height, in (0, 8], with ĥ the height
+   * in the layer from 0 to 1. Smaller: only the strongest columns grow tall, and tops lie at all heights;
+   * greater: nearly all of them reach the same height, as under an inversion.
    */
   readonly profileExponent: number
-  /** Amount of shape erosion, which makes clouds of the layer, in [0, 1]; 0 leaves a slab. */
+  /** Amount of billows that make heads and creases, in [0, 1]; 0 leaves smooth mounds. */
   readonly shapeAmount: number
-  /** Amount of detail erosion at the clouds' edges, in [0, 1]. */
+  /** Amount of detail finer than the billows, down to 1 m near the camera, in [0, 1]. */
   readonly detailAmount: number
-  /** Weights of the weather map's four channels in this layer's local coverage, each in [0, 1]. */
+  /** Factor of the size and distance of single clouds, in [0.1, 10]. */
+  readonly weatherScale: number
+  /** Factor of the size of billows, in [0.1, 10]. */
+  readonly shapeScale: number
+  /** Factor of the size of detail, in [0.1, 10]. */
+  readonly detailScale: number
+  /** Softness of edges, in [0, 1]: 0 is crisp, as of growing cumulus, 1 fades out as cirrus does. */
+  readonly edgeSoftness: number
+  /** Turbulence that bends columns and drags their edges along, in [0, 2]; 1 is that of cumulus. */
+  readonly turbulence: number
+  /**
+   * Horizontal displacement downwind per height above the base [m/m], in [−5, 5]: clouds lean, fall
+   * streaks trail.
+   */
+  readonly shear: number
+  /** Share of an anvil that towers spread into below the layer's top, in [0, 1]. */
+  readonly anvil: number
+  /** Share of open cells, with clear middles, in stratocumulus, in [0, 1]; 0 has closed ones. */
+  readonly openCells: number
+  /** Exponent g by which extinction grows with height in the lower part of the layer, ĥ^g, in [0, 4]; 0 is even. */
+  readonly densityGrowth: number
+  /**
+   * Weights of the four kinds of weather in the layer, each in [0, 1]: cumulus, stratocumulus,
+   * cumulonimbus, cirrus.
+   */
   readonly weatherWeights: readonly [number, number, number, number]
   readonly wind: CloudWind
   /** True for a layer that casts shadows. */
@@ -39,10 +64,19 @@ const defaults: CloudLayerParameters = {
   baseAltitude: 1000,
   topAltitude: 2200,
   coverage: 0.35,
-  density: 0.05,
-  profileExponent: 0.6,
+  density: 0.1,
+  profileExponent: 0.62,
   shapeAmount: 1,
-  detailAmount: 0.6,
+  detailAmount: 1,
+  weatherScale: 1,
+  shapeScale: 1,
+  detailScale: 1,
+  edgeSoftness: 0.15,
+  turbulence: 1,
+  shear: 0.1,
+  anvil: 0,
+  openCells: 0,
+  densityGrowth: 0.3,
   weatherWeights: [1, 0, 0, 0],
   wind: { east: 8, north: 0 },
   shadow: true
@@ -55,7 +89,16 @@ const ranges = {
   density: [0, 1],
   profileExponent: [Number.MIN_VALUE, 8],
   shapeAmount: [0, 1],
-  detailAmount: [0, 1]
+  detailAmount: [0, 1],
+  weatherScale: [0.1, 10],
+  shapeScale: [0.1, 10],
+  detailScale: [0.1, 10],
+  edgeSoftness: [0, 1],
+  turbulence: [0, 2],
+  shear: [-5, 5],
+  anvil: [0, 1],
+  openCells: [0, 1],
+  densityGrowth: [0, 4]
 } as const
 
 function requireParameters(parameters: CloudLayerParameters): void {
@@ -90,6 +133,15 @@ export class CloudLayer {
   declare profileExponent: CloudLayerParameters['profileExponent']
   declare shapeAmount: CloudLayerParameters['shapeAmount']
   declare detailAmount: CloudLayerParameters['detailAmount']
+  declare weatherScale: CloudLayerParameters['weatherScale']
+  declare shapeScale: CloudLayerParameters['shapeScale']
+  declare detailScale: CloudLayerParameters['detailScale']
+  declare edgeSoftness: CloudLayerParameters['edgeSoftness']
+  declare turbulence: CloudLayerParameters['turbulence']
+  declare shear: CloudLayerParameters['shear']
+  declare anvil: CloudLayerParameters['anvil']
+  declare openCells: CloudLayerParameters['openCells']
+  declare densityGrowth: CloudLayerParameters['densityGrowth']
   declare weatherWeights: CloudLayerParameters['weatherWeights']
   declare wind: CloudLayerParameters['wind']
   declare shadow: CloudLayerParameters['shadow']

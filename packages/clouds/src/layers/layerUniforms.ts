@@ -1,17 +1,21 @@
 import type { CloudLayerParameters } from './CloudLayer'
-import { erosionForm, strengthForm } from '../density/formConstants'
+import { densityForm } from '../density/formConstants'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
-export const LAYER_STRIDE = 12
+export const LAYER_STRIDE = 15
 
 /**
- * Period of the weather texture for a layer 1200 m thick [m]. Greater: larger clouds, farther apart
- * (*Cumulus*).
+ * Period of the weather texture for a layer of cumulus 1200 m thick, and of other kinds [m]. Greater: larger
+ * clouds, farther apart (*Cumulus*).
  */
-const WEATHER_PERIOD = 15_000
+const CUMULUS_PERIOD = 6400
+const WEATHER_PERIOD = 12_800
 
 /** Period of the shape texture for such a layer [m]. Greater: broader billows, smoother clouds (*Cumulus*). */
-const SHAPE_PERIOD = 2600
+const SHAPE_PERIOD = 6400 / 3
+
+/** Period of the detail texture in those of the shape. Greater: coarser wisps at edges (*Inside a cloud*). */
+const DETAIL_PERIOD = 3 / 16
 
 /**
  * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
@@ -20,23 +24,18 @@ const SHAPE_PERIOD = 2600
 export const REGION_PERIOD = 2_300_000
 
 /**
- * Shift of the weather's look-ups by the regions [periods of the weather]: repetitions fall out of step.
- * 0: the same clouds every 15 km, in rows (*World clouds*, without its map).
- */
-export const WEATHER_WARP = 0.5
-
-/**
  * The weather is looked up a second time for the fields that clouds gather in, in a lattice without a
  * common period with the first. Its period in those of the first.
  */
 export const FIELD_PERIOD = 3 * Math.sqrt(6)
 
 /**
- * Shifts of the look-ups of shape and detail by both of the weather [periods of the shape]. 0: the same
- * billows on many clouds (*Cockpit*); much greater: billows are drawn out.
+ * Displacement of all of a layer's look-ups by its fields, and by the regions [periods of the weather]:
+ * repetitions fall out of step. 0: the same clouds and billows again and again, in rows (*World clouds*,
+ * without its map); much greater: clouds are drawn out.
  */
-export const FIELD_WARP = 1.1
-export const CLOUD_WARP = 0.3
+export const FIELD_SHIFT = 0.16
+export const REGION_SHIFT = 0.5
 
 /**
  * Shift of a world map's look-up by the fields, for a map of so many texels around the planet: half a
@@ -70,38 +69,31 @@ export const REGION_CELLS = 0.6
 /** Length over width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
 const CIRRUS_STRETCH = 9
 
-/**
- * Thickness of layers that begin to have anvils, and of those that have large ones [m]. Smaller:
- * thinner layers get anvils (*Storm*).
- */
-const LEAST_ANVIL = 4000
-const LARGE_ANVIL = 8000
-
-/** Period of the detail texture [m]. Greater: coarser wisps at edges (*Inside a cloud*). */
-export const DETAIL_PERIOD = 330
+const shareOf = (weights: readonly number[], index: number): number =>
+  weights[index] ** 2 / (weights.reduce((sum, weight) => sum + weight ** 2, 0) || 1)
 
 /**
- * Shift of the detail's look-up by turbulence, for a curl of 1 [periods]. 0: edges of round crumbs instead
- * of wisps (*Inside a cloud*).
+ * Periods of a layer's noise [m]: tall clouds are broad and have large heads. In powers of 2, or else every
+ * change of an altitude would move the noise, which is anchored at the planet's centre.
  */
-export const CURL_AMOUNT = 0.25
-
-/** Period of the turbulence, in periods of the detail. Smaller: finer wisps (*Inside a cloud*). */
-export const CURL_PERIOD = 5
-
-/**
- * Periods of a layer's weather and shape noise [m]: tall clouds are broad and have large heads. In
- * powers of 2, or else every change of an altitude would move the noise, which is anchored at the
- * planet's centre.
- */
-export function layerPeriods({ baseAltitude, topAltitude }: CloudLayerParameters): {
-  weather: number
-  shape: number
-} {
+export function layerPeriods({
+  baseAltitude,
+  topAltitude,
+  weatherWeights,
+  weatherScale,
+  shapeScale,
+  detailScale
+}: CloudLayerParameters): { weather: number; shape: number; detail: number } {
   const octaves = Math.log2((topAltitude - baseAltitude) / 1200)
   const scale = (share: number): number =>
     2 ** Math.min(Math.max(Math.round(share * octaves), -2), 2)
-  return { weather: WEATHER_PERIOD * scale(0.45), shape: SHAPE_PERIOD * scale(0.5) }
+  const isCumulus = shareOf(weatherWeights, 0) > 0.5
+  const shape = SHAPE_PERIOD * scale(0.5) * shapeScale
+  return {
+    weather: (isCumulus ? CUMULUS_PERIOD : WEATHER_PERIOD) * scale(0.45) * weatherScale,
+    shape,
+    detail: DETAIL_PERIOD * shape * detailScale
+  }
 }
 
 /** Weights of the weather's scales in a layer. */
@@ -123,8 +115,13 @@ export interface WeatherScales {
  * of variance 1: the sum of all has variance 1. No clouds count when all weights are 0.
  *
  * @param hasMap - Whether a map has what is larger than fields.
+ * @param openCells - Share of open cells in stratocumulus, in [0, 1]: turns its sign.
  */
-export function weatherScales(weights: readonly number[], hasMap: boolean): WeatherScales {
+export function weatherScales(
+  weights: readonly number[],
+  hasMap: boolean,
+  openCells = 0
+): WeatherScales {
   const size = Math.hypot(...weights) || 1
   const unit = weights.map(weight => weight / size)
   // Large cells are the third channel.
@@ -135,7 +132,7 @@ export function weatherScales(weights: readonly number[], hasMap: boolean): Weat
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   return {
-    clouds: [a, b, c, d],
+    clouds: [a, b * (1 - 2 * openCells), c, d],
     fields: FIELD_WEIGHT,
     cells: CELL_WEIGHT * factor,
     regions: (large * REGION_WEIGHT * factor) / Math.hypot(1, REGION_CELLS),
@@ -145,40 +142,22 @@ export function weatherScales(weights: readonly number[], hasMap: boolean): Weat
   }
 }
 
-const shareOf = (weights: readonly number[], index: number): number =>
-  weights[index] ** 2 / (weights.reduce((sum, weight) => sum + weight ** 2, 0) || 1)
-
 /** Forms that a layer's kind of weather gives its clouds. */
-export function layerForms({
-  weatherWeights,
-  shapeAmount,
-  baseAltitude,
-  topAltitude
-}: CloudLayerParameters): {
-  /** Length over width of the noise that erodes them. */
+export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameters): {
+  /** Length over width of the noise that shapes them. */
   stretch: number
   /** Share of cirrus in its weather, in [0, 1]. */
   fibrous: number
-  /** Slope of column strength against the weather [–]. */
-  steepness: number
-  /** Slope of density against what erosion leaves of the dimensional profile [–]. */
-  sharpness: number
+  /** Strength over which density rises at edges [–]. */
+  edge: number
   /** Levels of detail by which its weather is coarser than others. */
   coarseness: number
-  /** Share of anvils that its towers spread into at their tops, in [0, 1]. */
-  anvil: number
 } {
   const fibrous = shareOf(weatherWeights, 3)
-  const mix = (from: number, to: number, share: number): number => from + (to - from) * share
-  const eroded = shapeAmount ** 2 * (1 - fibrous)
-  const towers = shareOf(weatherWeights, 2)
-  const tall = (topAltitude - baseAltitude - LEAST_ANVIL) / (LARGE_ANVIL - LEAST_ANVIL)
   return {
     fibrous,
-    stretch: mix(1, CIRRUS_STRETCH, fibrous),
-    steepness: 1 / mix(strengthForm.edgeWidth, strengthForm.cirrusEdgeWidth, fibrous),
-    sharpness: mix(erosionForm.smoothSharpness, erosionForm.erodedSharpness, eroded),
-    coarseness: towers,
-    anvil: towers * Math.min(Math.max(tall, 0), 1)
+    stretch: 1 + (CIRRUS_STRETCH - 1) * fibrous,
+    edge: densityForm.crispEdge * densityForm.softEdge ** edgeSoftness,
+    coarseness: shareOf(weatherWeights, 2)
   }
 }

@@ -7,19 +7,35 @@ type Layers = readonly Partial<CloudLayerParameters>[]
 const cumulus: Partial<CloudLayerParameters> = {
   topAltitude: 2000,
   coverage: 0.3,
-  profileExponent: 0.4,
-  detailAmount: 0.7,
   wind: { east: 7, north: 2 }
+}
+
+const altocumulus: Partial<CloudLayerParameters> = {
+  baseAltitude: 3600,
+  topAltitude: 4000,
+  coverage: 0.5,
+  density: 0.02,
+  profileExponent: 1.5,
+  edgeSoftness: 0.5,
+  densityGrowth: 0.2,
+  weatherScale: 0.25,
+  shapeScale: 0.5,
+  weatherWeights: [0, 1, 0, 0],
+  wind: { east: 16, north: -3 }
 }
 
 const cirrus: Partial<CloudLayerParameters> = {
   baseAltitude: 8500,
   topAltitude: 9600,
   coverage: 0.5,
-  density: 0.0015,
+  density: 0.003,
   profileExponent: 1,
   shapeAmount: 0.75,
   detailAmount: 0.5,
+  edgeSoftness: 1,
+  turbulence: 1.5,
+  shear: 2,
+  densityGrowth: 0,
   weatherWeights: [0, 0, 0, 1],
   wind: { east: 28, north: -8 },
   shadow: false
@@ -28,22 +44,33 @@ const cirrus: Partial<CloudLayerParameters> = {
 /** Names of {@link cloudPreset}. */
 export type CloudPresetName =
   | 'fairWeather'
+  | 'congestus'
   | 'stratocumulus'
   | 'overcast'
   | 'cumulonimbus'
+  | 'altocumulus'
   | 'cirrus'
   | 'mixed'
 
 const presets: Readonly<Record<CloudPresetName, Layers>> = {
   fairWeather: [cumulus],
+  congestus: [
+    {
+      baseAltitude: 800,
+      topAltitude: 4300,
+      coverage: 0.25,
+      profileExponent: 0.5,
+      wind: { east: 9, north: 3 }
+    }
+  ],
   stratocumulus: [
     {
       baseAltitude: 800,
-      topAltitude: 1400,
+      topAltitude: 1300,
       coverage: 0.8,
-      density: 0.04,
-      shapeAmount: 0.8,
-      detailAmount: 0.5,
+      density: 0.06,
+      profileExponent: 1.5,
+      edgeSoftness: 0.4,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 9, north: 4 }
     }
@@ -54,9 +81,8 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       topAltitude: 1500,
       coverage: 1,
       density: 0.02,
-      profileExponent: 0.7,
-      shapeAmount: 0.7,
-      detailAmount: 0.4,
+      profileExponent: 2,
+      edgeSoftness: 0.6,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 10, north: 5 }
     }
@@ -66,29 +92,17 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       baseAltitude: 700,
       topAltitude: 11_000,
       coverage: 0.25,
-      density: 0.06,
-      profileExponent: 0.55,
-      shapeAmount: 0.9,
-      detailAmount: 0.5,
+      density: 0.08,
+      anvil: 1,
+      turbulence: 0.8,
       weatherWeights: [0, 0, 1, 0],
       wind: { east: 12, north: 3 }
     },
-    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.3 }
+    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.25 }
   ],
+  altocumulus: [altocumulus],
   cirrus: [cirrus],
-  mixed: [
-    cumulus,
-    {
-      baseAltitude: 3600,
-      topAltitude: 4100,
-      coverage: 0.3,
-      density: 0.01,
-      profileExponent: 0.8,
-      weatherWeights: [0, 1, 0, 0],
-      wind: { east: 16, north: -3 }
-    },
-    cirrus
-  ]
+  mixed: [{ ...cumulus, coverage: 0.25 }, altocumulus, cirrus]
 }
 
 /** All names of {@link cloudPreset}, for menus. */
@@ -98,9 +112,11 @@ export const cloudPresetNames = Object.keys(presets) as readonly CloudPresetName
  * Layers for a well-known sky, to be changed as one likes.
  *
  * - `fairWeather`: scattered cumulus
+ * - `congestus`: towering cumulus, up to 4 km
  * - `stratocumulus`: a deck with gaps
  * - `overcast`: a closed grey sky
  * - `cumulonimbus`: towers up to 11 km among small cumulus
+ * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
  *

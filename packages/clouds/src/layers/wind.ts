@@ -3,7 +3,22 @@ import { Vector3 } from 'three'
 import type { CloudWind } from './CloudLayer'
 
 const _east = new Vector3()
-const _north = new Vector3()
+const _axis = new Vector3()
+
+/**
+ * Axis about which wind turns a shell of air: air at the zenith `up` moves along `cross(axis, up)`.
+ *
+ * @param up - Zenith where the wind blows as given; at a pole, east is that of longitude 0.
+ * @returns Of unit length; 0 in calm.
+ */
+export function windAxis({ east, north }: CloudWind, up: Vector3, target: Vector3): Vector3 {
+  const speed = Math.hypot(east, north)
+  if (!(speed > 0)) return target.set(0, 0, 0)
+  _east.set(-up.y, up.x, 0)
+  if (_east.lengthSq() < 1e-20) _east.set(0, 1, 0)
+  target.crossVectors(up, _east.normalize())
+  return target.multiplyScalar(east).addScaledVector(_east, -north).divideScalar(speed)
+}
 
 /**
  * Rotation of a shell of air about the planet's centre by wind, seen from the shell: the noise that is
@@ -22,11 +37,7 @@ export function windRotation(
 ): Quaternion {
   const speed = Math.hypot(wind.east, wind.north)
   if (!(speed > 0)) return target.identity()
-  _east.set(-up.y, up.x, 0)
-  if (_east.lengthSq() < 1e-20) _east.set(0, 1, 0)
-  _north.crossVectors(up, _east.normalize())
-  const axis = _north.multiplyScalar(wind.east).addScaledVector(_east, -wind.north)
   // Whole turns say nothing, and a sine of 1e15 neither.
   const angle = ((speed * seconds) / radius) % (2 * Math.PI)
-  return target.setFromAxisAngle(axis.divideScalar(speed), -angle)
+  return target.setFromAxisAngle(windAxis(wind, up, _axis), -angle)
 }

@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import { NearestFilter, UnsignedByteType } from 'three'
+import { UnsignedByteType } from 'three'
 import type { RenderTarget, Texture } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -11,7 +11,6 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
-import { conePrepass, TILE } from './tsl/conePrepass'
 import { marchClouds } from './tsl/march'
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
@@ -38,27 +37,21 @@ const textureNode = (value: Texture): LevelTexture<Vec2> & { value: Texture } =>
   texture(value) as unknown as LevelTexture<Vec2> & { value: Texture }
 
 /** Marches one pixel of each block: light with the air in front of it, and its distances. */
-function marchPixels(scene: CloudScene, emptyDistance: LevelTexture<Vec2>): TwoOutputs {
+function marchPixels(scene: CloudScene): TwoOutputs {
   const { field, viewRays } = scene
   const { frame } = viewRays
   return twoOutputs(([color, distances]) =>
     Fn(() => {
       const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
-      const tiles = frame.marchedSize.div(TILE).ceil().mul(TILE)
-      const tile = block.add(0.5).div(tiles).toConst() as Vec2
       const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
       const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
       const ray = viewRayAt(viewRays, at)
       const { direction, directionView } = ray
       const end = viewRayEnd(viewRays, at, ray)
-      const start = frame.isAmongClouds
-        .greaterThan(0)
-        .select(emptyDistance.sample(tile).level(0).x, 0)
       const marched = marchClouds(scene, {
         direction,
         end,
-        jitter: interleavedNoise(block, frame.noiseShift),
-        start
+        jitter: interleavedNoise(block, frame.noiseShift)
       })
       color.assign(withAerialPerspective(field.view, marched, directionView, frame.gain))
       const distance = encodeDistance(marched.distance)
@@ -69,18 +62,16 @@ function marchPixels(scene: CloudScene, emptyDistance: LevelTexture<Vec2>): TwoO
 }
 
 /**
- * Render targets and passes of a camera's clouds. A frame takes four passes: the cone prepass (among clouds
- * alone), the march of one pixel of each block, the statistics of the cells between marched pixels, and the
- * upscale, which blends them into the history of the frames before.
+ * Render targets and passes of a camera's clouds. A frame takes three passes: the march of one pixel of each
+ * block, the statistics of the cells between marched pixels, and the upscale, which blends them into the
+ * history of the frames before.
  */
 export class CloudRenderer {
   readonly #frame: FrameUniforms
-  readonly #conePrepassTarget = tableTarget('Welkin.CloudsConePrepass', 1, 1, 1, NearestFilter)
   readonly #marchedTarget = cloudTarget('Marched')
   readonly #cellsTarget = cloudTarget('Cells')
   /** History and the picture that is drawn from it, in turns. */
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
-  readonly #conePrepass: FragmentPass
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
@@ -97,10 +88,7 @@ export class CloudRenderer {
   constructor(scene: CloudScene) {
     const { field, viewRays } = scene
     this.#frame = viewRays.frame
-    const { texture: emptyDistances } = this.#conePrepassTarget
-    const emptyDistance = texture(emptyDistances) as unknown as LevelTexture<Vec2>
-    this.#conePrepass = new FragmentPass('Welkin.CloudsConePrepass', conePrepass(viewRays))
-    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, emptyDistance))
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const marched = this.#marched
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, marched))
     const cells = texturesOf(this.#cellsTarget)
@@ -112,12 +100,7 @@ export class CloudRenderer {
   }
 
   get #targets(): RenderTarget[] {
-    return [
-      this.#conePrepassTarget,
-      this.#marchedTarget,
-      this.#cellsTarget,
-      ...this.#accumulatedTargets
-    ]
+    return [this.#marchedTarget, this.#cellsTarget, ...this.#accumulatedTargets]
   }
 
   /** Sizes the render targets [pixels]; where the size changes, their contents are gone. */
@@ -130,7 +113,6 @@ export class CloudRenderer {
     const across = Math.ceil(width / block)
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
-    this.#conePrepassTarget.setSize(Math.ceil(across / TILE), Math.ceil(down / TILE))
     this.#cellsTarget.setSize(across + 1, down + 1)
     this.#frame.size.value.set(width, height)
     this.#frame.marchedSize.value.set(across, down)
@@ -138,9 +120,6 @@ export class CloudRenderer {
 
   /** Draws a frame; `FrameUniforms.next` goes first. */
   render(renderer: Renderer): void {
-    if (this.#frame.isAmongClouds.value > 0) {
-      this.#conePrepass.render(renderer, this.#conePrepassTarget)
-    }
     this.#march.render(renderer, this.#marchedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
@@ -154,7 +133,7 @@ export class CloudRenderer {
   /** Frees the render targets. */
   dispose(): void {
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#conePrepass, this.#march, this.#gather, ...this.#upscale]) {
+    for (const pass of [this.#march, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
   }

@@ -56,23 +56,19 @@ const NO_MOVE = 1e-12
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
 
-/** Distance below or above a layer up to which the camera counts as among its clouds [m]. */
-const NEARBY = 200
-
-const isAmongClouds = (height: number, { layers }: CloudField): boolean =>
-  [...layers].some(
-    ({ parameters: { baseAltitude, topAltitude } }) =>
-      height > baseAltitude - NEARBY && height < topAltitude + NEARBY
-  )
+/** What neither the camera nor the wind moves of a layer's vector. */
+const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
+  slot < 3 || slot > 12 ? [x, y, z, w] : [w]
 
 /** Everything that shapes and lights the clouds, as numbers. */
 function cloudInputs({ values, night }: CloudField, lightVersion: number): number[] {
   const { moonDirection, moonIrradiance, skyRadiance } = night
-  const vectors = [
-    ...values.filter((_, i) => i % LAYER_STRIDE < 3),
-    ...[moonDirection, moonIrradiance, skyRadiance].map(({ value }) => value)
+  const light = [moonDirection, moonIrradiance, skyRadiance]
+  return [
+    ...values.flatMap((vector, i) => formOf(vector, i % LAYER_STRIDE)),
+    ...light.flatMap(({ value }) => value.toArray()),
+    lightVersion
   ]
-  return [...vectors.flatMap(vector => vector.toArray()), lightVersion]
 }
 
 const _toPrevious = new Matrix4()
@@ -111,8 +107,6 @@ export class FrameUniforms {
   readonly maxSamples = number(1)
   /** Half width of the variance clip [standard deviations]. */
   readonly clipDeviations = number(1)
-  /** 1 for a camera among the clouds, where the cone prepass is worth its time; else 0. */
-  readonly isAmongClouds = number()
   /** Stored light per light, and the factor that brings history's light to it. */
   readonly gain = number(1)
   readonly gainChange = number(1)
@@ -150,7 +144,6 @@ export class FrameUniforms {
     if (this.block.value !== block) this.reset()
     this.#setJitter(block, usesHistory)
     this.projectionInverse.value.copy(camera.projectionMatrixInverse)
-    this.isAmongClouds.value = isAmongClouds(view.height, field) ? 1 : 0
     this.near.value = camera.near
     this.far.value = camera.far
     const gain = nightGain(view, field.radius.value)

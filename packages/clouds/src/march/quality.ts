@@ -8,10 +8,12 @@ import { number } from '../uniforms'
 export interface CloudQuality {
   /** Most steps of a ray, in [1, 1024]. Rays that need more end early, with too little cloud. */
   readonly steps: number
-  /** Length of a step per distance from the camera, in (0, 1]. */
+  /** Length of a step in clouds per distance from the camera, in [0.0001, 1]. */
   readonly stepGrowth: number
-  /** Shortest step [m], in [0.1, 1000]. */
+  /** Shortest step in clouds [m], in [0.1, 1000]. */
   readonly shortestStep: number
+  /** Scaled optical depth of a step in clouds, in [0.01, 10]: parts of a mean free path. */
+  readonly depthStep: number
   /** Least number of steps through a layer, in [1, 256]. */
   readonly layerSteps: number
   /** Samples of the clouds towards sun or moon, near each shaded place, in [1, 16]. */
@@ -28,21 +30,39 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 
 /** Well-tried qualities. */
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
-  low: { steps: 64, stepGrowth: 0.06, shortestStep: 120, layerSteps: 8, lightSteps: 1, block: 4 },
-  medium: {
+  low: {
     steps: 96,
-    stepGrowth: 0.04,
-    shortestStep: 100,
-    layerSteps: 11,
+    stepGrowth: 0.012,
+    shortestStep: 16,
+    depthStep: 0.8,
+    layerSteps: 8,
+    lightSteps: 1,
+    block: 4
+  },
+  medium: {
+    steps: 128,
+    stepGrowth: 0.008,
+    shortestStep: 10,
+    depthStep: 0.6,
+    layerSteps: 10,
     lightSteps: 2,
     block: 4
   },
-  high: { steps: 128, stepGrowth: 0.03, shortestStep: 85, layerSteps: 16, lightSteps: 2, block: 3 },
+  high: {
+    steps: 192,
+    stepGrowth: 0.005,
+    shortestStep: 6,
+    depthStep: 0.4,
+    layerSteps: 14,
+    lightSteps: 2,
+    block: 3
+  },
   ultra: {
-    steps: 256,
-    stepGrowth: 0.012,
-    shortestStep: 25,
-    layerSteps: 32,
+    steps: 384,
+    stepGrowth: 0.0025,
+    shortestStep: 3,
+    depthStep: 0.25,
+    layerSteps: 24,
     lightSteps: 4,
     block: 2
   }
@@ -50,8 +70,9 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
 
 const ranges = {
   steps: [1, 1024],
-  stepGrowth: [1e-3, 1],
+  stepGrowth: [1e-4, 1],
   shortestStep: [0.1, 1000],
+  depthStep: [0.01, 10],
   layerSteps: [1, 256],
   lightSteps: [1, 16],
   block: [1, 4]
@@ -85,6 +106,7 @@ export class QualityUniforms {
   readonly pairs = whole()
   readonly stepGrowth = number()
   readonly shortestStep = number()
+  readonly depthStep = number()
   readonly layerSteps = number()
   readonly lightSteps = whole()
 
@@ -92,6 +114,7 @@ export class QualityUniforms {
     this.pairs.value = Math.ceil(quality.steps / 2)
     this.stepGrowth.value = quality.stepGrowth
     this.shortestStep.value = quality.shortestStep
+    this.depthStep.value = quality.depthStep
     this.layerSteps.value = quality.layerSteps
     this.lightSteps.value = Math.round(quality.lightSteps)
   }

@@ -40,8 +40,11 @@ function noiseTarget(name: string, size: number, format: PixelFormat, mips: bool
   return target
 }
 
-/** GPU time of a slice of each texture's finest level, and of any coarser level, in slices of the shape. */
-const SLICE_COST = { shape: 1, weather: 0.4, detail: 0.12, level: 0.05 } as const
+/**
+ * Time that a slice of each texture's finest level takes, in slices of the shape. Coarser levels take
+ * little of the GPU, but as many passes.
+ */
+const SLICE_COST = { shape: 1, weather: 0.35, detail: 0.15, level: 0.12 } as const
 
 /** A texture of noise, filled slice by slice, level by level. */
 class NoiseTexture {
@@ -164,7 +167,7 @@ export class CloudNoise {
   /**
    * Draws what is missing.
    *
-   * @param slices - GPU time to spend, in slices of the shape: cheaper slices count for less.
+   * @param slices - Slices of the shape to draw, or as many others as cost the same.
    * @returns Whether all texels are drawn.
    * @throws If another renderer drew the noise that was not disposed of.
    */

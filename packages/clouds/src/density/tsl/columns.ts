@@ -4,7 +4,7 @@ import type { Float, Vec3 } from '../../tsl-types'
 import { slantCoverFactor, effectiveOpticalDepth } from './unresolved'
 import { forLayers, layerAt } from './layer'
 import { subpointOffset, type CloudSample } from './sample'
-import { weatherAt } from './weather'
+import { filteredCoverageAt } from './weather'
 
 /**
  * Vertical optical depth of all clouds above or below a place of the ground, from the weather alone.
@@ -16,8 +16,8 @@ export function verticalOpticalDepth(field: CloudField, sample: CloudSample): Fl
   const sum = float(0).toVar()
   forLayers(field, index => {
     const layer = layerAt(field, index)
-    const weather = weatherAt(field, layer, subpoint, sample)
-    sum.addAssign(effectiveOpticalDepth(field, layer, weather))
+    const filteredCoverage = filteredCoverageAt(field, layer, subpoint, sample)
+    sum.addAssign(effectiveOpticalDepth(field, layer, filteredCoverage))
   })
   return sum
 }
@@ -51,9 +51,11 @@ export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLi
       const { altitude, up } = view.place(offset)
       const there = { offset, altitude, up, distance: sample.distance }
       const subpoint = subpointOffset(field, there).toConst()
-      const weather = weatherAt(field, layer, subpoint, there)
+      const filteredCoverage = filteredCoverageAt(field, layer, subpoint, there)
       sum.addAssign(
-        effectiveOpticalDepth(field, layer, weather).mul(above).mul(slantCoverFactor(layer, slope))
+        effectiveOpticalDepth(field, layer, filteredCoverage)
+          .mul(above)
+          .mul(slantCoverFactor(layer, slope))
       )
     })
   })

@@ -23,12 +23,19 @@ export interface LayerNodes {
   profileExponent: Float
   shapeAmount: Float
   detailAmount: Float
+  densityGrowth: Float
+  /** Share of an anvil, in [0, 1]. */
+  anvil: Float
   /** 1 if the layer casts shadows, or 0. */
   shadow: Float
-  /** [1/m]. */
+  /** Periods of the noise, as reciprocals [1/m]. */
   perShapePeriod: Float
-  /** [1/m]. */
+  perDetailPeriod: Float
   perWeatherPeriod: Float
+  /** Displacement of the weather's look-up by turbulence, for a curl of unit deviation [m]. */
+  bend: Float
+  /** Displacement of columns with height, for a height of 1 m, times `cross(·, zenith)` [m]. */
+  shearAxis: Vec3
   /** `weatherScales`: of single clouds. */
   weights: Vec4
   /** Factors of the weather's other scales: `weatherScales`. */
@@ -36,17 +43,16 @@ export interface LayerNodes {
   regions: Float
   planet: Float
   cloudVariance: Float
-  /** `layerForms`; the reciprocal of its stretch. */
+  /** `layerForms`; the reciprocals of its stretch and its edge. */
   perStretch: Float
   fibrous: Float
-  steepness: Float
-  sharpness: Float
+  perEdge: Float
   coarseness: Float
-  anvil: Float
-  /**
-   * Anchors: the camera and its subpoint in the periods of the noise, in [0, 1); for detail in
-   * [0, `CURL_PERIOD`), since the turbulence has that period.
-   */
+  /** `meanColumn`. */
+  columnDensity: Float
+  insideDensity: Float
+  profileMean: Float
+  /** Anchors: the camera or its subpoint in the periods of the noise, in [0, 1). */
   weatherAnchor: Vec3
   fieldAnchor: Vec3
   regionAnchor: Vec3
@@ -60,13 +66,18 @@ export interface LayerNodes {
 export function layerAt(field: CloudField, index: Int): LayerNodes {
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
-  const extent = read(0).toConst() as Vec4
-  const form = read(1).toConst() as Vec4
-  const weather = read(6).toConst() as Vec4
-  const fields = read(10).toConst() as Vec4
-  const shape = read(8).toConst() as Vec4
-  const detail = read(9).toConst() as Vec4
-  const kind = read(11).toConst() as Vec4
+  const once = (slot: number): Vec4 => read(slot).toConst() as Vec4
+  const extent = once(0)
+  const form = once(1)
+  const weather = once(6)
+  const region = once(7)
+  const shape = once(8)
+  const detail = once(9)
+  const fields = once(10)
+  const kind = once(11)
+  const shear = once(12)
+  const column = once(13)
+  const edges = once(14)
   return {
     baseAltitude: extent.x,
     perThickness: extent.y,
@@ -76,25 +87,31 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     profileExponent: form.x,
     shapeAmount: form.y,
     detailAmount: form.z,
-    shadow: read(7).w,
     perShapePeriod: form.w,
     weights: read(2),
-    perWeatherPeriod: weather.w,
+    perEdge: read(3).w,
+    coarseness: read(4).w,
+    fibrous: read(5).w,
     weatherAnchor: weather.xyz,
-    fieldAnchor: fields.xyz,
-    regionAnchor: read(7).xyz,
+    perWeatherPeriod: weather.w,
+    regionAnchor: region.xyz,
+    shadow: region.w,
     shapeAnchor: shape.xyz,
+    perStretch: shape.w,
     detailAnchor: detail.xyz,
+    perDetailPeriod: detail.w,
+    fieldAnchor: fields.xyz,
+    anvil: fields.w,
     cells: kind.x,
     regions: kind.y,
     planet: kind.z,
     cloudVariance: kind.w,
-    perStretch: shape.w,
-    fibrous: read(5).w,
-    steepness: read(3).w,
-    sharpness: read(4).w,
-    coarseness: detail.w,
-    anvil: fields.w,
+    shearAxis: shear.xyz,
+    bend: shear.w,
+    columnDensity: column.x,
+    insideDensity: column.y,
+    profileMean: column.z,
+    densityGrowth: edges.x,
     mappedToLayer: v => {
       const [x, y, z] = [3, 4, 5].map(row => read(row).xyz.dot(v))
       return vec3(x, y, z)

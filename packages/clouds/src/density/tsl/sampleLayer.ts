@@ -1,26 +1,30 @@
-import { If, float } from 'three/tsl'
+import { If } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import type { Float, Vec3 } from '../../tsl-types'
-import { emptyDistanceByShape, emptyDistanceByWeather, surelyEroded } from './emptyDistance'
-import { billows, detailErosion, meanDetailErosion, noisePlace, shapeErosion } from './erosion'
-import { edgeDensity, extinctionAt } from './extinction'
-import type { LayerNodes } from './layer'
-import { dimensionalProfile, layerHeight } from './profile'
-import type { CloudSample } from './sample'
+import type { Float, Vec2, Vec3 } from '../../tsl-types'
+import { billows, detail, fineShare, MOST_DETAIL, noisePlace } from './billows'
+import { densityOf } from './density'
+import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
+import { heightIn, type LayerNodes } from './layer'
+import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { billowsLost, columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
-import type { CloudWeather } from './weather'
+import { cloudWeather, leanAt, type CloudWeather } from './weather'
+import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** A layer at a place. */
 export interface LayerSample {
   /** Extinction [1/m], at least 0. */
   readonly extinction: Float
-  /** Distance in which there is nothing of the layer, within its altitudes; 0 in clouds [m]. */
-  readonly emptyDistance: Float
+  /**
+   * Strength of the column with all its billows, less what the height needs: cloud is where it is above 0
+   * [–]. Far away, where single clouds are not resolved, at least 0.
+   */
+  readonly strength: Float
 }
 
 /** Options of {@link sampleLayer}. */
 export interface SampleOptions {
-  /** Detail erosion of the edges, or its mean: clouds keep their size. */
+  /** Detail at the edges; without, clouds keep their size. */
   readonly detail: boolean
   /** Meaning of unresolved clouds; by default their mean. */
   readonly unresolved?: Unresolved
@@ -28,42 +32,107 @@ export interface SampleOptions {
   readonly direction?: Vec3
 }
 
+/** A layer at a place, before detail. */
+interface Body {
+  readonly sample: CloudSample
+  readonly height: Float
+  readonly place: ReturnType<typeof noisePlace>
+  readonly weather: CloudWeather
+  /** Strength with coarse billows, and with fine ones, too. */
+  readonly body: Float
+  readonly strength: Float
+  /** Strength of detail, per deviation of its noise. */
+  readonly detailStrength: Float
+}
+
+/** Weather → column → billows: two texture reads, of which the second waits for the first. */
+function bodyAt(
+  field: CloudField,
+  layer: LayerNodes,
+  packed: PackedBackground,
+  sample: CloudSample
+): Body {
+  const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
+  const background = unpackBackground(packed)
+  const footprint = footprintOf(field, sample)
+  const place = noisePlace(layer, sample.offset, background.shift, footprint)
+  const heads = billows(field, layer, place)
+  const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
+  const bend = heads.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst() as Vec2
+  const weather = cloudWeather(
+    field,
+    layer,
+    background,
+    subpoint.toConst() as Vec3,
+    bend,
+    footprint,
+    'where unresolved'
+  )
+  const lost = billowsLost(heads.level)
+  const amount = billowStrength(layer, height)
+  const body = columnStrength(layer, weather.sum, background.coverage, lost)
+    .sub(neededStrength(layer, height))
+    .add(heads.coarse.mul(amount.coarse))
+    .toConst() as Float
+  const share = fineShare(body)
+  const strength = body.add(heads.fine.mul(amount.fine).mul(share)).toConst() as Float
+  const detailStrength = amount.detail.mul(share).toConst() as Float
+  return { sample, height, place, weather, body, strength, detailStrength }
+}
+
 /**
- * One layer at a place in a given weather: weather → dimensional profile → shape erosion → detail erosion
- * → extinction and empty distance.
+ * One layer at places near each other, in the weather on large scales around them: their texture reads do
+ * not wait for each other.
  *
- * @param height - In the layer, in (0, 1).
+ * @param background - `weatherBackground` around all of them.
+ * @param samples - Within the layer's altitudes, or else they are taken to be at its boundary.
  */
+export function sampleLayerAt(
+  field: CloudField,
+  layer: LayerNodes,
+  background: PackedBackground,
+  samples: readonly CloudSample[],
+  { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
+): LayerSample[] {
+  const bodies = samples.map(sample => bodyAt(field, layer, background, sample))
+  const strengths = bodies.map(({ strength }) => strength.toVar() as Float)
+  if (hasDetail) {
+    bodies.forEach(({ place, strength, detailStrength }, i) => {
+      const most = detailStrength.abs().mul(MOST_DETAIL).toConst() as Float
+      const isAtEdge = strength
+        .greaterThan(most.negate())
+        .and(strength.lessThan(most.add(layer.perEdge.reciprocal())))
+        .and(most.greaterThan(0))
+      If(isAtEdge, () => {
+        strengths[i].addAssign(detail(field, layer, place).mul(detailStrength))
+      })
+    })
+  }
+  return bodies.map(({ sample, height, weather, body }, i) => {
+    const density = densityOf(layer, strengths[i], body).toVar() as Float
+    const { unresolvedFraction, filteredCoverage } = weather
+    If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
+      const cosine = direction?.dot(sample.up).toConst() as Float | undefined
+      const mean = unresolvedDensity(field, layer, filteredCoverage, height, unresolved, cosine)
+      const near = density.mul(densityAtHeight(layer, height))
+      density.assign(mixedDensity(mean.columnDepth, near, mean.density, unresolvedFraction))
+      strengths[i].assign(strengths[i].max(0))
+    }).Else(() => {
+      density.mulAssign(densityAtHeight(layer, height))
+    })
+    const extinction = layer.density.mul(density).toConst() as Float
+    return { extinction, strength: strengths[i] }
+  })
+}
+
+/** One layer at a place: see {@link sampleLayerAt}. */
 export function sampleLayer(
   field: CloudField,
   layer: LayerNodes,
-  weather: CloudWeather,
+  background: PackedBackground,
   sample: CloudSample,
-  height: Float,
-  { detail, unresolved = 'mean', direction }: SampleOptions
+  options: SampleOptions
 ): LayerSample {
-  const at = layerHeight(layer, height)
-  const profile = dimensionalProfile(layer, weather.strength, at)
-  const density = float(0).toVar()
-  const least = surelyEroded(layer).toConst() as Float
-  const emptyDistance = emptyDistanceByWeather(layer, weather).toVar() as Float
-  If(profile.greaterThan(least), () => {
-    const place = noisePlace(field, layer, sample)
-    const heads = billows(field, layer, weather.shapeWarp, place)
-    const { eroded, left } = shapeErosion(layer, profile, heads)
-    if (detail) detailErosion(field, layer, weather.detailWarp, place, height, left)
-    density.assign(edgeDensity(layer, detail ? left : left.sub(meanDetailErosion(layer))))
-    emptyDistance.assign(emptyDistanceByShape(layer, weather, eroded))
-  })
-  const { unresolvedFraction, filteredCoverage } = weather
-  If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
-    const cosine = direction?.dot(sample.up).toConst() as Float | undefined
-    const mean = unresolvedDensity(field, layer, weather, at, unresolved, cosine)
-    density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
-    emptyDistance.assign(float(0))
-  })
-  return {
-    extinction: extinctionAt(layer, density, at),
-    emptyDistance: emptyDistance.max(0).toConst()
-  }
+  return sampleLayerAt(field, layer, background, [sample], options)[0]
 }
+

@@ -1,191 +1,164 @@
-import { If, float, int, vec2, vec3, vec4 } from 'three/tsl'
+import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { emptyDistanceByWeather, mayHoldCloud, NOWHERE } from './emptyDistance'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
-import { subpointOffset, type CloudSample } from './sample'
-import { sampleLayer, type SampleOptions } from './sampleLayer'
-import { weatherAt, type CloudWeather } from './weather'
+import { likelyDistance, NOWHERE } from './likelyDistance'
+import { backgroundAlong, type RayWeather } from './rayWeather'
+import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
+import { weatherBackground, type PackedBackground } from './weatherBackground'
 
-// The only answer to where the clouds are. `sampleLayer` (sampleLayer.ts) goes from a place and its weather
-// to extinction and empty distance; pixels, shadows, light and the cone prepass differ in which layers they
-// ask, and in where they have the weather from. Where a field is given (`CloudField.givenExtinction`), it
-// stands in place of all weather and noise.
+// The only answer to where the clouds are. `sampleLayerAt` (sampleLayer.ts) goes from a place and the weather's
+// background to extinction and strength; pixels, shadows and light differ in which layers they ask, and in
+// where they have the background from. Where a field is given (`CloudField.givenExtinction`), it stands in
+// place of all weather and noise.
 
 /** Options of the light march: no detail, and the inside of clouds, where its light is. */
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
 
+/** Background of the weather at a sample itself. */
+const backgroundAt = (
+  field: CloudField,
+  layer: LayerNodes,
+  sample: CloudSample
+): PackedBackground =>
+  weatherBackground(
+    field,
+    layer,
+    subpointOffset(field, sample).toConst() as Vec3,
+    sample,
+    footprintOf(field, sample)
+  )
+
 /**
  * Extinction of all clouds at a place, in the weather of that very place: what the samplers below come
- * near to, which share weather between places.
+ * near to, which share its background between places.
  *
- * @param detail - Whether edges are eroded by detail.
+ * @param detail - Whether edges have detail.
  * @returns [1/m], at least 0. Twin: test/twins/density.ts
  */
 export function cloudExtinction(field: CloudField, sample: CloudSample, detail: boolean): Float {
   const sum = float(0).toVar()
-  const subpoint = subpointOffset(field, sample).toConst()
   forLayers(field, index => {
     const layer = layerAt(field, index)
-    const height = heightIn(layer, sample.altitude)
-    If(isWithin(layer, height), () => {
-      const weather = weatherAt(field, layer, subpoint, sample, 'where unresolved')
-      sum.addAssign(sampleLayer(field, layer, weather, sample, height, { detail }).extinction)
+    If(isWithin(layer, heightIn(layer, sample.altitude)), () => {
+      const background = backgroundAt(field, layer, sample)
+      sum.addAssign(sampleLayer(field, layer, background, sample, { detail }).extinction)
     })
   })
   return sum
 }
 
-/** The weather of a place, kept for places nearby: that of the layer which is densest there. */
+/** The weather around a place, kept for places nearby: that of the layer which is densest there. */
 export interface WeatherCache {
-  /** Strength, filtered coverage and unresolved fraction of `CloudWeather`, and the layer's index. */
-  readonly values: Vec4
-  readonly shapeWarp: Vec3
+  readonly background: Vec4
+  /** The layer's index. */
+  readonly layer: Int
 }
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
   /** At the first and at the second place [1/m]. */
   readonly extinction: Vec2
-  /** From the second, if there is no cloud at either: see `LayerSample` [m]. */
-  readonly emptyDistance: Float
+  /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
+  readonly likelyDistance: Float
   readonly weather: WeatherCache
 }
 
 /**
- * Samples clouds at two places near each other on a ray, with detail, in the weather in the middle between
- * them: looking that up takes longer than the rest, and it is kilometres wide.
+ * Samples clouds at two places near each other on a ray, with detail.
  *
- * @param middle - All three have to be within the altitudes of the same layers.
- * @param samples - Make the samples, where they are needed.
+ * @param kept - Weather along the ray: is looked up where it is not known yet.
+ * @param middle - Distance between both places [m]; all have to be within the altitudes of the same layers.
+ * @param samples - At the two places.
+ * @param sampleAt - The ray's sample at a distance.
  * @param direction - Direction of the ray, in the mapped space.
  * @param range - The layers that are looked at.
  */
 export function samplePair(
   field: CloudField,
-  middle: CloudSample,
-  samples: readonly (() => CloudSample)[],
+  kept: RayWeather,
+  middle: Float,
+  samples: readonly [CloudSample, CloudSample],
+  sampleAt: (distance: Float) => CloudSample,
   direction: Vec3,
   range: LayerRange
 ): SamplePair {
   const { givenExtinction } = field
   if (givenExtinction) {
-    const [first, second] = samples.map(sampleAt => givenExtinction(sampleAt().offset))
+    const [first, second] = samples.map(sample => givenExtinction(sample.offset))
     const extinction = vec2(first, second).toConst() as Vec2
-    return { extinction, emptyDistance: float(0), weather: { values: vec4(0), shapeWarp: vec3(0) } }
+    const weather = { background: vec4(0) as Vec4, layer: int(0) as Int }
+    return { extinction, likelyDistance: float(0), weather }
   }
   const sum = vec2(0).toVar() as Vec2
-  const emptyDistance = float(NOWHERE).toVar()
-  const values = vec4(0).toVar() as Vec4
-  const shapeWarp = vec3(0).toVar() as Vec3
+  const nearest = float(NOWHERE).toVar()
+  const background = vec4(0).toVar() as Vec4
+  const densest = int(0).toVar() as Int
   const most = float(0).toVar()
-  const subpoint = subpointOffset(field, middle).toConst()
-  const keepDensest = (index: Int, weather: CloudWeather, found: Vec2): void => {
-    const both = found.x.add(found.y).toConst() as Float
-    If(both.greaterThan(most), () => {
-      const { strength, filteredCoverage, unresolvedFraction } = weather
-      most.assign(both)
-      values.assign(vec4(strength, filteredCoverage, unresolvedFraction, float(index)))
-      shapeWarp.assign(weather.shapeWarp)
-    })
-  }
+  const { altitude } = sampleAt(middle)
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
-    If(isWithin(layer, heightIn(layer, middle.altitude)), () => {
-      const weather = weatherAt(field, layer, subpoint, middle, 'where unresolved')
-      const found = vec2(0).toVar() as Vec2
-      const empty = emptyDistanceByWeather(layer, weather).toVar() as Float
-      If(mayHoldCloud(layer, weather), () => {
-        samples.forEach((sampleAt, i) => {
-          const sample = sampleAt()
-          const height = heightIn(layer, sample.altitude)
-          const options = { detail: true, direction }
-          const one = sampleLayer(field, layer, weather, sample, height, options)
-          found.addAssign(i === 0 ? vec2(one.extinction, 0) : vec2(0, one.extinction))
-          if (i === 1) empty.assign(one.emptyDistance)
-        })
-      })
-      emptyDistance.assign(emptyDistance.min(empty))
+    If(isWithin(layer, heightIn(layer, altitude)), () => {
+      const here = backgroundAlong(field, kept, layer, index, middle, sampleAt)
+      const options = { detail: true, direction }
+      const [first, second] = sampleLayerAt(field, layer, here, samples, options)
+      const found = vec2(first.extinction, second.extinction).toConst() as Vec2
+      nearest.assign(nearest.min(likelyDistance(layer, first.strength.max(second.strength))))
       sum.addAssign(found)
-      keepDensest(index, weather, found)
+      const both = found.x.add(found.y).toConst() as Float
+      If(both.greaterThan(most), () => {
+        most.assign(both)
+        background.assign(here)
+        densest.assign(index)
+      })
     })
   }
   forLayers(field, look, range)
-  return { extinction: sum, emptyDistance, weather: { values, shapeWarp } }
+  return { extinction: sum, likelyDistance: nearest, weather: { background, layer: densest } }
 }
 
 /**
- * Extinction near a place whose weather was kept, of its densest layer, without detail [1/m]: a single
- * texture read. Good as far as the weather is the same. Unresolved clouds have that inside of them: what
- * light meets there is not their mean.
+ * Extinction near a place whose weather was kept, of its densest layer, without detail [1/m]. Good as far as
+ * the weather on large scales is the same. Unresolved clouds have that inside of them: what light meets
+ * there is not their mean.
  */
 export function extinctionNearby(
   field: CloudField,
-  { values, shapeWarp }: WeatherCache,
+  { background, layer: kept }: WeatherCache,
   sample: CloudSample
 ): Float {
   if (field.givenExtinction) return field.givenExtinction(sample.offset)
-  const isOne = field.layers.length === 1
-  const layer = layerAt(field, isOne ? int(0) : values.w.toInt())
+  const layer = layerAt(field, field.layers.length === 1 ? int(0) : kept)
   const height = heightIn(layer, sample.altitude)
   const extinction = float(0).toVar()
   If(height.greaterThan(0).and(height.lessThan(1)), () => {
-    const weather = {
-      strength: values.x,
-      filteredCoverage: values.y,
-      unresolvedFraction: values.z,
-      shapeWarp,
-      detailWarp: shapeWarp
-    }
-    extinction.assign(sampleLayer(field, layer, weather, sample, height, LIT).extinction)
+    extinction.assign(sampleLayer(field, layer, background, sample, LIT).extinction)
   })
   return extinction
 }
 
 /**
- * Samples a layer at two places near each other, without detail, in the weather in the middle between
- * them.
+ * Samples a layer at two places near each other, without detail, in the weather's background in the middle
+ * between them.
  *
- * @param add - Takes each sample's extinction [1/m].
+ * @returns Extinction at both [1/m].
  */
 export function sampleLayerPair(
   field: CloudField,
   layer: LayerNodes,
   middle: CloudSample,
-  samples: readonly [CloudSample, CloudSample],
-  add: (extinction: Float, index: number) => void
-): void {
+  samples: readonly [CloudSample, CloudSample]
+): Vec2 {
   const { givenExtinction } = field
   if (givenExtinction) {
-    samples.forEach((sample, i) => add(givenExtinction(sample.offset), i))
-    return
+    const [first, second] = samples.map(sample => givenExtinction(sample.offset))
+    return vec2(first, second).toConst() as Vec2
   }
-  const subpoint = subpointOffset(field, middle).toConst()
-  const weather = weatherAt(field, layer, subpoint, middle, 'where unresolved')
-  samples.forEach((sample, i) => {
-    const height = heightIn(layer, sample.altitude)
-    If(isWithin(layer, height), () => {
-      add(sampleLayer(field, layer, weather, sample, height, { detail: false }).extinction, i)
-    })
-  })
-}
-
-/** Empty distance of a place: no cloud of any layer is nearer, whatever the noise [m]. */
-export function emptyDistanceAt(field: CloudField, sample: CloudSample): Float {
-  if (field.givenExtinction) return float(0)
-  const emptyDistance = float(NOWHERE).toVar()
-  const subpoint = subpointOffset(field, sample).toConst()
-  forLayers(field, index => {
-    const layer = layerAt(field, index)
-    If(layer.coverage.greaterThan(0), () => {
-      const weather = weatherAt(field, layer, subpoint, sample, 'where unresolved')
-      const isResolved = weather.unresolvedFraction.mul(weather.filteredCoverage).equal(0)
-      const { altitude } = sample
-      const { baseAltitude, thickness } = layer
-      const apart = baseAltitude.sub(altitude).max(altitude.sub(baseAltitude).sub(thickness))
-      const empty = isResolved.select(emptyDistanceByWeather(layer, weather), 0).max(apart)
-      emptyDistance.assign(emptyDistance.min(empty))
-    })
-  })
-  return emptyDistance
+  const background = backgroundAt(field, layer, middle)
+  const found = sampleLayerAt(field, layer, background, samples, { detail: false })
+  const [first, second] = samples.map(({ altitude }, i) =>
+    isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
+  )
+  return vec2(first, second).toConst() as Vec2
 }

@@ -1,59 +1,36 @@
-import { float, smoothstep } from 'three/tsl'
+import { float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { anvilForm, columnForm } from '../formConstants'
+import { columnForm, strengthForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
+import { densityAtHeight, neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
-import type { LayerHeight } from './profile'
-import { squared } from './squared'
-import type { CloudWeather } from './weather'
 
 // Clouds too small or too far to be seen one by one, as mean columns that let the same light through.
-
-/** Weather as far as mean columns need it. */
-type Coverage = Pick<CloudWeather, 'filteredCoverage'>
-
-/** Mean density of a cloudy column over the densest [–]. */
-export function meanColumnDensity(layer: LayerNodes, { filteredCoverage }: Coverage): Float {
-  const [least, more, most] = columnForm.fibrousDensity
-  const square = squared(filteredCoverage, 1)
-  const fibres = square.mul(more).add(squared(square, 5).mul(most)).add(least)
-  const solid = layer.anvil.mix(columnForm.density, columnForm.anvilDensity)
-  return layer.fibrous.mix(solid, fibres).toConst()
-}
+// Integrals over columns and heights come from the CPU: layers/meanColumn.ts.
 
 /** Vertical optical depth of a cloud, as it counts in the light that comes through. */
-const columnOpticalDepth = (
-  { depthScale }: CloudField,
-  layer: LayerNodes,
-  weather: Coverage
-): Float =>
+const columnOpticalDepth = ({ depthScale }: CloudField, layer: LayerNodes): Float =>
   layer.density
     .mul(layer.thickness)
-    .mul(meanColumnDensity(layer, weather))
+    .mul(layer.columnDensity)
     .mul(depthScale)
     .max(1e-4)
-    .toConst()
+    .toConst() as Float
 
 /**
  * Effective optical depth: that of an even layer which takes as much light as the clouds and gaps of a
  * sample's footprint do.
+ *
+ * @param filteredCoverage - Share of the footprint that is covered, in [0, 1].
  */
 export function effectiveOpticalDepth(
   field: CloudField,
   layer: LayerNodes,
-  weather: Coverage,
-  columnDepth = columnOpticalDepth(field, layer, weather)
+  filteredCoverage: Float
 ): Float {
-  const blocked = weather.filteredCoverage.mul(columnDepth.negate().exp().oneMinus())
+  const blocked = filteredCoverage.mul(columnOpticalDepth(field, layer).negate().exp().oneMinus())
   // Thick clouds let nothing through, in float32.
-  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
-}
-
-/** Mean of `heightProfile` over a layer's heights, times the density of anvils. */
-function profileMean(layer: LayerNodes): Float {
-  const e = layer.profileExponent
-  const mean = e.mul(4).div(e.add(1).mul(e.mul(2).add(1)))
-  return layer.anvil.mix(mean, anvilForm.profileMean)
+  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst() as Float
 }
 
 /** Least cosine between a ray and the zenith by which clouds are taken to hide more. */
@@ -71,34 +48,41 @@ export function slantCoverFactor(layer: LayerNodes, cosine: Float): Float {
   return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }
 
+/** Share of cloudy columns that reach a height, times the density there, in [0, 1]: `columnProfile`. */
+const columnProfile = (layer: LayerNodes, height: Float): Float =>
+  neededStrength(layer, height)
+    .div(strengthForm.strongest)
+    .oneMinus()
+    .clamp(0, 1)
+    .mul(densityAtHeight(layer, height))
+
 /** Meaning of a sample of unresolved clouds: their mean over the sky, or the inside of one. */
 export type Unresolved = 'mean' | 'inside'
 
 /**
  * Density of unresolved clouds at a height, over the layer's [–].
  *
+ * @param filteredCoverage - Share of the footprint that is covered, in [0, 1].
  * @param cosine - Between the ray on which they are met and the zenith; left out, it goes straight up.
  */
 export function unresolvedDensity(
   field: CloudField,
   layer: LayerNodes,
-  weather: Coverage,
-  { height, profile }: LayerHeight,
+  filteredCoverage: Float,
+  height: Float,
   unresolved: Unresolved,
   cosine?: Float
 ): { density: Float; columnDepth: Float } {
-  // Towers with anvils are seen from afar as these.
-  const { anvil } = layer
-  const towers = profile.mul(anvil.mix(1, smoothstep(...anvilForm.heights, height)))
   const whole =
     unresolved === 'mean'
-      ? effectiveOpticalDepth(field, layer, weather)
+      ? effectiveOpticalDepth(field, layer, filteredCoverage)
           .mul(layer.perThickness)
-          .div(layer.density.mul(profileMean(layer)).max(1e-9))
-      : meanColumnDensity(layer, weather).max(anvil)
-  const columnDepth = columnOpticalDepth(field, layer, weather)
+          .div(layer.density.max(1e-9))
+      : layer.insideDensity
+  const shape = columnProfile(layer, height).div(layer.profileMean)
+  const columnDepth = columnOpticalDepth(field, layer)
   const slant = cosine === undefined ? float(1) : slantCoverFactor(layer, cosine).mul(cosine.abs())
-  return { density: whole.mul(towers).mul(slant).toConst(), columnDepth }
+  return { density: whole.mul(shape).mul(slant).toConst() as Float, columnDepth }
 }
 
 /** Density between two, such that the light is mixed that columns of them let through. */

@@ -1,28 +1,27 @@
-import { If, float, smoothstep } from 'three/tsl'
+import { If, float, smoothstep, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
-import { CLOUD_WARP, FIELD_WARP, FIELD_WEIGHT, REGION_CELLS } from '../../layers/layerUniforms'
-import type { Float, Vec3 } from '../../tsl-types'
-import type { LayerNodes } from './layer'
-import type { CloudSample } from './sample'
-import { squared } from './squared'
-import { weatherNoise, type WeatherNoise } from './weatherNoise'
+import { FIELD_PERIOD, REGION_CELLS, REGION_PERIOD } from '../../layers/layerUniforms'
+import { latticeRotations } from '../lattice'
+import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
+import { rotate, type LayerNodes } from './layer'
+import { footprintOf, type CloudSample } from './sample'
+import {
+  unpackBackground,
+  weatherBackground,
+  weatherLevel,
+  type WeatherBackground
+} from './weatherBackground'
 
 /** The weather of a layer at a place. */
 export interface CloudWeather {
-  /** Strength of the column: below 0 where it is clear, above 1 in the middle of clouds. */
-  strength: Float
+  /** Sum of the weather's noise on all scales, of mean 0 and variance 1; blurred clouds are as many as sharp ones. */
+  readonly sum: Float
   /** Share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
-  filteredCoverage: Float
+  readonly filteredCoverage: Float
   /** Unresolved fraction: 0 where samples resolve single clouds, 1 where they see their mean only. */
-  unresolvedFraction: Float
-  /**
-   * Shifts of the look-ups of shape and detail, in the layer's frame [m]: they too would repeat. Detail
-   * is too fine for the steps of a filter that spreads kilometres.
-   */
-  shapeWarp: Vec3
-  detailWarp: Vec3
+  readonly unresolvedFraction: Float
 }
 
 /** Levels of detail by which a sample is coarser than single clouds, when these begin to be lost. */
@@ -31,26 +30,11 @@ const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 /** Share of a noise's variance that its levels of detail have lost. */
 const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
 
-/** Sum of the weather's noise on all scales, of mean 0 and variance 1 where nothing is blurred. */
-const weatherSum = (layer: LayerNodes, { clouds, fields, regions, waves }: WeatherNoise): Float =>
-  clouds
-    .add(fields.mul(FIELD_WEIGHT))
-    .dot(layer.weights)
-    .add(fields.z.mul(layer.cells))
-    .add(regions.z.add(regions.x.mul(REGION_CELLS)).mul(layer.regions))
-    .add(
-      waves.x
-        .add(waves.y)
-        .add(waves.z)
-        .mul(layer.planet)
-        .mul(Math.sqrt(2 / 3))
-    )
-    .toConst()
-
 /** Variance of the weather's sum that levels of detail have lost: none near by. */
 function lostVariance(
   layer: LayerNodes,
-  { fieldLevel, regionLevel }: WeatherNoise,
+  footprint: Float,
+  level: Float,
   cloudLevel: Float
 ): Float {
   const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
@@ -58,31 +42,12 @@ function lostVariance(
     .add(layer.planet.mul(layer.planet))
     .add(regionVariance)
     .oneMinus()
+  const fieldLevel = level.sub(Math.log2(FIELD_PERIOD)).max(0)
+  const regionLevel = weatherLevel(footprint, 1 / REGION_PERIOD)
   return layer.cloudVariance
     .mul(lostShare(cloudLevel))
     .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))
     .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
-}
-
-/**
- * Strength of a column: how far cloud may fill it.
- *
- * The weather's cumulative distribution u takes every value in [0, 1] equally often, so u > 1 − c holds
- * over the share c of the sky. A map from (u, c) to strengths may stand here that depends on nothing else
- * but the layer, grows with both, and is `meanEdge` times the shape amount at u = 1 − c: that keeps what
- * a layer covers. `STEEPEST_WEATHER` of tsl/emptyDistance.ts bounds its slope.
- *
- * @param weather - Sum of variance 1: u is its rank.
- * @param coverage - c, in [0, 1].
- */
-export function columnStrength(layer: LayerNodes, weather: Float, coverage: Float): Float {
-  const tilt = coverage.mul(2).sub(1).toConst() as Float
-  const surely = squared(tilt, 5).mul(tilt).mul(strengthForm.fullCoverageExcess)
-  return layer.shapeAmount
-    .mul(strengthForm.meanEdge)
-    .add(cumulative(weather).sub(1).add(coverage).mul(layer.steepness))
-    .add(surely)
-    .toConst()
 }
 
 /**
@@ -100,43 +65,73 @@ function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage
   return coverage.greaterThan(0).select(all, 0)
 }
 
+/** Displacement of a layer's columns with height, by the wind's shear, in the mapped space [m]. */
+export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
+  layer.shearAxis.cross(up).mul(height.mul(layer.thickness)) as Vec3
+
 /**
- * Weather of a layer at a place: a sum of noise on four scales, single clouds, the fields that they gather
- * in, regions, and the planet; and what a sample's footprint blurs of it.
+ * Weather of a layer at a place: the background, and single clouds, one texture read.
  *
- * @param subpoint - `subpointOffset` of the sample.
- * @param where - Where the filtered coverage is wanted, which takes a third of the time: elsewhere it
- *   is 0. Twin: test/twins/density.ts
+ * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
+ *   `leanAt`.
+ * @param bend - Displacement by turbulence [m].
+ * @param where - Where the filtered coverage is wanted: elsewhere it is 0.
  */
-export function weatherAt(
+export function cloudWeather(
   field: CloudField,
   layer: LayerNodes,
+  background: WeatherBackground,
   subpoint: Vec3,
-  sample: CloudSample,
-  where: 'everywhere' | 'where unresolved' = 'everywhere'
+  bend: Vec2,
+  footprint: Float,
+  where: 'everywhere' | 'where unresolved'
 ): CloudWeather {
-  const noise = weatherNoise(field, layer, subpoint, sample)
-  const { coverage, clouds, fields, level } = noise
-  const sum = weatherSum(layer, noise)
+  const scale = layer.perWeatherPeriod
+  const level = weatherLevel(footprint, scale)
+  const place = layer.mappedToLayer(subpoint).add(vec3(background.shift, 0)) as Vec3
+  // The third component has no turbulence of its own: where the lattice stands upright, it is horizontal.
+  const bent = vec3(bend, bend.x.sub(bend.y).mul(Math.SQRT1_2))
+  const clouds = field.textures.weather
+    .sample(
+      rotate(latticeRotations.weather, place).add(bent).mul(scale).add(layer.weatherAnchor)
+    )
+    .level(level)
+    .sub(0.5)
+    .toConst() as Vec4
+  const blurred = clouds.dot(layer.weights).add(background.sum).toConst() as Float
   const cloudLevel = level.sub(layer.coarseness).toConst() as Float
   const unresolvedFraction = smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst() as Float
   const variance = float(0).toVar()
-  /** Blurred clouds are as many as sharp ones. */
-  const sharpened = sum.toVar() as Float
+  const sum = blurred.toVar() as Float
   If(level.greaterThan(0), () => {
-    variance.assign(lostVariance(layer, noise, cloudLevel))
-    sharpened.mulAssign(variance.oneMinus().max(strengthForm.leastVariance).inverseSqrt())
+    variance.assign(lostVariance(layer, footprint, level, cloudLevel))
+    sum.mulAssign(variance.oneMinus().max(strengthForm.leastVariance).inverseSqrt())
   })
   const filteredCoverage = float(0).toVar()
   const filter = (): void => {
-    filteredCoverage.assign(coverageOf(layer, sum, variance, coverage))
+    filteredCoverage.assign(coverageOf(layer, blurred, variance, background.coverage))
   }
   if (where === 'everywhere') filter()
   else If(unresolvedFraction.greaterThan(0), filter)
+  return { sum, filteredCoverage, unresolvedFraction }
+}
 
-  const strength = columnStrength(layer, sharpened, coverage)
-  const shapePeriod = layer.perShapePeriod.reciprocal().toConst()
-  const detailWarp = clouds.xyz.mul(shapePeriod).mul(CLOUD_WARP).toConst() as Vec3
-  const shapeWarp = detailWarp.add(fields.xyz.mul(shapePeriod).mul(FIELD_WARP)).toConst() as Vec3
-  return { strength, filteredCoverage, unresolvedFraction, shapeWarp, detailWarp }
+/**
+ * Filtered coverage of a layer around a place, in [0, 1]: all of the weather, without turbulence. Twin:
+ * test/twins/density.ts
+ *
+ * @param subpoint - `subpointOffset` of the sample.
+ */
+export function filteredCoverageAt(
+  field: CloudField,
+  layer: LayerNodes,
+  subpoint: Vec3,
+  sample: CloudSample
+): Float {
+  const footprint = footprintOf(field, sample)
+  const packed = weatherBackground(field, layer, subpoint, sample, footprint)
+  const background = unpackBackground(packed)
+  const still = vec3(0).xy as Vec2
+  return cloudWeather(field, layer, background, subpoint, still, footprint, 'everywhere')
+    .filteredCoverage
 }

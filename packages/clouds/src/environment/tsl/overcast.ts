@@ -4,10 +4,9 @@ import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { meanColumnDensity } from '../../density/tsl/unresolved'
 import { forLayers, layerAt } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
-import { weatherAt } from '../../density/tsl/weather'
+import { filteredCoverageAt } from '../../density/tsl/weather'
 
 /** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: test/twins/overcast.ts */
 export interface CloudDeckNodes {
@@ -75,11 +74,10 @@ export function decksAround(
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
       const subpoint = subpointOffset(field, sample).toConst()
-      const weather = weatherAt(field, layer, subpoint, sample)
-      const { filteredCoverage } = weather
+      const filteredCoverage = filteredCoverageAt(field, layer, subpoint, sample)
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
       const depth = layer.density
-        .mul(meanColumnDensity(layer, weather))
+        .mul(layer.columnDensity)
         .mul(light.depthScale)
         .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float

@@ -64,8 +64,8 @@ export interface LayersAt {
   top: Float
   /** 1 where clouds are plane-parallel layers, 0 where each is as wide as it is deep. */
   layered: Float
-  /** Greatest vertical optical depth of a layer. */
-  depth: Float
+  /** Greatest extinction of a layer [1/m]. */
+  density: Float
   /** All of them, and perhaps others between. */
   range: LayerRange
 }
@@ -85,7 +85,7 @@ export function layersAt(field: CloudField, altitude: Float): LayersAt {
   const base = float(FAR_AWAY).toVar()
   const top = float(-FAR_AWAY).toVar()
   const coverage = float(0).toVar()
-  const depth = float(0).toVar()
+  const density = float(0).toVar()
   const first = int(field.layers.length).toVar() as Int
   const last = int(0).toVar() as Int
   forLayers(field, index => {
@@ -99,12 +99,12 @@ export function layersAt(field: CloudField, altitude: Float): LayersAt {
       base.assign(base.min(layer.baseAltitude))
       top.assign(top.max(layerTop))
       coverage.assign(coverage.max(layer.coverage))
-      depth.assign(depth.max(layer.density.mul(layer.thickness)))
+      density.assign(density.max(layer.density))
       first.assign(index.lessThan(first).select(index, first))
       last.assign(index.add(1))
     })
   })
   const [from, to] = GROWING_TOGETHER
   const layered = coverage.smoothstep(from, to).toConst() as Float
-  return { base, top, layered, depth, range: { first, last } }
+  return { base, top, layered, density, range: { first, last } }
 }

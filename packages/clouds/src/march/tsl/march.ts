@@ -1,13 +1,14 @@
 import { Break, If, float, int, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { loop, type Float, type Int, type Vec2, type Vec3 } from '../../tsl-types'
+import { rayWeather } from '../../density/tsl/rayWeather'
 import { samplePair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE, sourceAt } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { addPair, rayLight, seenClouds, seenOf, shadePassing, type SeenClouds } from './rayLight'
-import { advanceInClear, enterSteps, nextSteps, stepState } from './steps'
+import { advance, enterSteps, nextSteps, stepState } from './steps'
 
 /** A ray from the camera, in the mapped space. */
 export interface CloudRay {
@@ -17,8 +18,6 @@ export interface CloudRay {
   end: Float
   /** Noise that shifts the steps of the ray, in [0, 1). */
   jitter: Float
-  /** Distance to which there is no cloud for sure; 0 if left out [m]. */
-  start?: Float
 }
 
 /** Clouds on a ray. */
@@ -26,9 +25,6 @@ export interface MarchedClouds extends SeenClouds {
   /** Steps that were taken. */
   steps: Float
 }
-
-/** Opacity of a pair of steps below which nothing is seen of it. */
-const LEAST_SEEN = 1e-7
 
 /** The stretch of a ray between two layer boundaries. */
 type Segment = ReturnType<typeof segmentState>
@@ -47,29 +43,28 @@ const segmentState = () => ({
  * Enters the next segment.
  *
  * @param altitude - In the middle of it [m].
- * @returns Greatest vertical optical depth of a layer there.
+ * @returns Greatest extinction of a layer there [1/m].
  */
 function enterSegment(field: CloudField, segment: Segment, end: Float, altitude: Float): Float {
   segment.end.assign(end)
-  const { base, top, layered, depth, range } = layersAt(field, altitude)
+  const { base, top, layered, density, range } = layersAt(field, altitude)
   segment.base.assign(base)
   segment.top.assign(top)
   segment.layered.assign(layered)
   segment.range.first.assign(range.first)
   segment.range.last.assign(range.last)
-  return depth
+  return density
 }
 
 /**
- * Marches a ray through all layers, from boundary to boundary: jumps where no layer is, skips what the
- * weather leaves clear, and ends where nothing more is seen. Steps go in pairs that share weather and
- * light.
+ * Marches a ray through all layers, from boundary to boundary: jumps where no layer is, goes by likely
+ * distances through clear air, and ends where nothing more is seen. Steps go in pairs that share light.
  *
  * To be called inside of a shader function.
  */
 export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClouds {
   const { field, light, quality } = context
-  const { direction, end, jitter, start = float(0) } = ray
+  const { direction, end, jitter } = ray
   const { view } = field
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const sampleAt = (distance: Float): CloudSample => {
@@ -80,8 +75,9 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
   const sum = rayLight()
   const state = stepState(jitter)
   const segment = segmentState()
+  const weatherAlong = rayWeather()
   const steps = float(0).toVar()
-  const position = start.toVar()
+  const position = float(0).toVar()
   /** Distance of the first layer; 0 before. */
   const entry = float(0).toVar()
 
@@ -96,8 +92,8 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
         .min(end)
         .toConst() as Float
       const { altitude } = view.place(direction.mul(position.add(boundary).mul(0.5)))
-      const depth = enterSegment(field, segment, boundary, altitude)
-      enterSteps(state, field, quality, depth, position, boundary)
+      const density = enterSegment(field, segment, boundary, altitude).mul(light.depthScale)
+      enterSteps(state, field, quality, density, position, boundary)
       If(segment.base.greaterThan(segment.top), () => {
         position.assign(boundary)
       }).ElseIf(entry.equal(0), () => {
@@ -107,13 +103,13 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
       const pair = nextSteps(state, quality, position, segment.end)
       const { length } = pair
       const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
-      const samples = places.map(at => () => sampleAt(at))
-      const middle = sampleAt(position.add(length))
-      const clouds = samplePair(field, middle, samples, direction, segment.range)
-      const depth = clouds.extinction.mul(light.depthScale).mul(length).toConst() as Vec2
-      const seen = seenOf(sum, depth)
-      If(seen.both.greaterThan(LEAST_SEEN), () => {
-        addPair(sum, seen, places, distance => {
+      const samples = [sampleAt(places[0]), sampleAt(places[1])] as const
+      const middle = position.add(length).toConst() as Float
+      const { range } = segment
+      const clouds = samplePair(field, weatherAlong, middle, samples, sampleAt, direction, range)
+      const addLight = (): void => {
+        const depth = clouds.extinction.mul(light.depthScale).mul(length).toConst() as Vec2
+        addPair(sum, seenOf(sum, depth), places, distance => {
           const sample = sampleAt(distance)
           const { weather } = clouds
           const { transmittance } = sum
@@ -121,10 +117,9 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
           const { direct, sky, ground } = sourceAt(context, lit)
           return vec3(direct, sky, ground)
         })
-        position.addAssign(length.mul(2))
-      }).Else(() => {
-        position.addAssign(advanceInClear(state, pair, clouds.emptyDistance))
-      })
+      }
+      const { extinction, likelyDistance } = clouds
+      position.addAssign(advance(state, pair, extinction, likelyDistance, addLight))
     })
   })
   shadePassing(field, sum, sampleAt)

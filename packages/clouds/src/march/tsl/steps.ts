@@ -1,52 +1,55 @@
-import { float } from 'three/tsl'
+import { If, bool, float } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { QualityUniforms } from '../quality'
-import type { Float } from '../../tsl-types'
+import type { Bool, Float, Vec2 } from '../../tsl-types'
 import { FAR_AWAY } from './layerBoundaries'
 
 // The step policy of the march, and nothing else: a pair of samples goes half a step and one and a half
-// steps ahead. It may depend on the distance, the segment between two layer boundaries, the quality, noise,
-// and what the pair before found; never on what is seen of the light.
+// steps ahead. Through clear air steps are as long as there is likely no cloud; a pair that lands in one goes
+// back, and then steps are parts of the mean free path. It may depend on the distance, the segment between
+// two layer boundaries, the quality, noise, and what the pair before found; never on what is seen of the light.
 
 /** Least number of steps through a layer that is thinner than a few samples are wide. */
 const LEAST_STEPS = 4
 
-/**
- * Vertical optical depth of a layer below which it takes fewer steps, and the least part of them. What is
- * thin all the way through has no hard edges: greater, and *Cirrus* costs more; smaller, and it has bands.
- */
-const THIN = 4
-const LEAST_EFFORT = 0.35
+/** Part of the likely distance that a step takes: the rest is left for clouds that are nearer than likely. */
+const CAUTION = 0.5
+
+/** Steps through clear air longer than this many in clouds go back where they find one. */
+const LOOK_BACK = 1.6
 
 /** State of the step policy. */
 export interface StepState {
-  /** Length of a step per distance from the camera [–]. */
-  readonly growth: FloatVariable
-  /** Longest step on the segment [m]. */
-  readonly longest: FloatVariable
+  /** True among clouds: steps are parts of the mean free path. */
+  readonly isFine: Variable<Bool>
+  /** Length of steps in clouds at the start of the segment, and of any step at most [m]. */
+  readonly finest: Variable<Float>
+  readonly longest: Variable<Float>
+  /** Likely distance to cloud that the pair before found [m]. */
+  readonly likely: Variable<Float>
   /** Part of the next pair's length: the first of a row is cut short, by chance, so that no layers show. */
-  readonly part: FloatVariable
+  readonly part: Variable<Float>
   /** Noise in [0, 1), the part to start rows with. */
   readonly jitter: Float
 }
 
 /** A variable of a shader. */
-type FloatVariable = Float & { assign: (n: Float | number) => void }
+type Variable<T> = T & { assign: (n: T | number | boolean) => void }
 
 /** Two steps of the same length. */
 export interface StepPair {
-  /** Length of each, shortened [m]. */
+  /** Length of each [m]. */
   readonly length: Float
-  /** Length of a step that is not cut short [m]. */
-  readonly whole: Float
-  /** Distance to the end of the segment [m]. */
-  readonly left: Float
+  /** Length of a step in clouds at this distance [m]. */
+  readonly fine: Float
 }
 
 /** Steps before the first segment. */
 export const stepState = (jitter: Float): StepState => ({
-  growth: float(0).toVar(),
+  isFine: bool(false).toVar() as unknown as Variable<Bool>,
+  finest: float(1).toVar(),
   longest: float(FAR_AWAY).toVar(),
+  likely: float(0).toVar(),
   part: jitter.toVar(),
   jitter
 })
@@ -54,58 +57,74 @@ export const stepState = (jitter: Float): StepState => ({
 /**
  * Sets the steps of a segment between two layer boundaries.
  *
- * @param depth - Greatest vertical optical depth of a layer on it.
+ * @param density - Greatest extinction of a layer on it, as it counts in the light that comes through [1/m].
  * @param from - Distance from the camera [m].
  * @param to - The same of its end [m].
  */
 export function enterSteps(
-  { growth, longest, part, jitter }: StepState,
+  { isFine, finest, longest, likely, part, jitter }: StepState,
   field: CloudField,
   quality: QualityUniforms,
-  depth: Float,
+  density: Float,
   from: Float,
   to: Float
 ): void {
-  const effort = depth.div(THIN).clamp(LEAST_EFFORT, 1).toConst() as Float
+  isFine.assign(false)
+  likely.assign(0)
   part.assign(jitter)
-  growth.assign(quality.stepGrowth.div(effort))
   const span = to.sub(from).toConst()
   const footprint = from.mul(field.pixelAngle)
-  longest.assign(
-    span
-      .div(quality.layerSteps.mul(effort).max(LEAST_STEPS))
-      .max(footprint.min(span.div(LEAST_STEPS)))
-      .max(1)
-  )
+  const most = span
+    .div(quality.layerSteps)
+    .max(footprint.min(span.div(LEAST_STEPS)))
+    .max(1)
+  longest.assign(most)
+  finest.assign(quality.depthStep.div(density.max(1e-6)).max(quality.shortestStep).min(most))
 }
 
 /** The next two steps: they grow with the distance, and end at the end of the segment. */
 export function nextSteps(
-  { growth, longest, part }: StepState,
+  { isFine, finest, longest, likely, part }: StepState,
   quality: QualityUniforms,
   position: Float,
   end: Float
 ): StepPair {
-  const growing = position.mul(growth).max(quality.shortestStep)
-  const left = end.sub(position).toConst() as Float
-  const whole = growing.min(longest).toConst() as Float
-  const length = whole.mul(part).min(left.mul(0.5)).max(0.01).toConst() as Float
+  const fine = finest.max(position.mul(quality.stepGrowth)).toConst() as Float
+  const most = longest.max(fine)
+  const clear = likely.mul(CAUTION).clamp(fine, most)
+  const left = end.sub(position).mul(0.5)
+  const whole = isFine.select(fine, clear) as Float
+  const length = whole.mul(part.max(0.1)).min(left).max(0.01).toConst() as Float
   part.assign(1)
-  return { length, whole, left }
+  return { length, fine }
 }
 
 /**
- * Advance from a pair in clear air: as far as there is no cloud for sure. A new row of steps begins where
- * that is farther than the steps are long [m].
+ * Goes on from a pair: forward, or back to where it began if it jumped into a cloud.
  *
- * @param emptyDistance - From the second of the pair's samples [m].
+ * @param extinction - Of both samples [1/m].
+ * @param likelyDistance - From either to a cloud; 0 in clouds [m].
+ * @param accept - Adds the pair's light, where it counts.
+ * @returns Advance of the position [m].
  */
-export function advanceInClear(
-  { part, jitter }: StepState,
-  { length, whole, left }: StepPair,
-  emptyDistance: Float
+export function advance(
+  { isFine, likely, part, jitter }: StepState,
+  { length, fine }: StepPair,
+  extinction: Vec2,
+  likelyDistance: Float,
+  accept: () => void
 ): Float {
-  const clear = length.mul(1.5).add(emptyDistance).toConst() as Float
-  part.assign(clear.greaterThan(whole.mul(2)).select(jitter, 1))
-  return length.mul(2).max(clear.min(left))
+  const forward = length.mul(2).toVar() as Float & { assign: (n: Float | number) => void }
+  const isCloudy = extinction.x.max(extinction.y).greaterThan(0).toConst()
+  If(isCloudy.and(isFine.not()).and(length.greaterThan(fine.mul(LOOK_BACK))), () => {
+    // In the second sample only: the first step is known to be clear.
+    forward.assign(extinction.x.greaterThan(0).select(0, length))
+    isFine.assign(true)
+    part.assign(jitter.max(0.5))
+  }).Else(() => {
+    isFine.assign(isCloudy.or(likelyDistance.lessThan(fine.mul(2))))
+    likely.assign(likelyDistance)
+    If(isCloudy, accept)
+  })
+  return forward
 }

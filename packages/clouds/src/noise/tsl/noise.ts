@@ -199,7 +199,7 @@ export const billow = /*#__PURE__*/ Fn(
       const gap = offset.add(hashCell(cell)).sub(part).toConst()
       nearest.assign(nearest.min(gap.dot(gap)))
     }
-    loop('near', 8, corner => {
+    loop('nearCell', 8, corner => {
       const digits = digitsOf(corner, 2).toConst('nearDigits')
       visit(index.add(nearStep.mul(digits)), side.mul(vec3(digits)))
     })
@@ -209,7 +209,7 @@ export const billow = /*#__PURE__*/ Fn(
     const nearSquare = nearGap.mul(nearGap).toConst('nearSquare')
     const farSquare = farGap.mul(farGap).toConst('farSquare')
     If(farSquare.x.min(farSquare.y).min(farSquare.z).lessThan(nearest), () => {
-      loop('far', 27, neighbour => {
+      loop('farCell', 27, neighbour => {
         // Digits 0, 1 and 2: this cell's row, the nearer one's, the farther one's.
         const digits = digitsOf(neighbour, 3).toConst('digits')
         const isNear = bitAnd(digits as never, uvec3(1) as never) as unknown as UVec3

@@ -1,9 +1,9 @@
-import { Break, If, bool, int, vec2, vec3 } from 'three/tsl'
+import { Break, If, bool, int, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { sampleLayerPair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
-import { loop, type Bool, type Float, type Int, type Vec2, type Vec3 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Int, type Vec3 } from '../../tsl-types'
 import type { LayerSegment } from './layerSegment'
 
 /** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun. */
@@ -64,11 +64,8 @@ export function segmentMoments(
     const gap = search.clear.sub(search.cloudy)
     const step = isCutting.select(gap.div(3), length).toConst() as Float
     const from = isCutting.select(search.clear.sub(step.mul(0.5)), place).toConst() as Float
-    const found = vec2(0).toVar() as Vec2
     const [middle, first, second] = [1, 0.5, 1.5].map(steps => sampleAt(from.sub(step.mul(steps))))
-    sampleLayerPair(field, layer, middle, [first, second], (extinction, i) => {
-      found.addAssign(i === 0 ? vec2(extinction, 0) : vec2(0, extinction))
-    })
+    const found = sampleLayerPair(field, layer, middle, [first, second])
     /** First of the two in clouds, in steps; 2.5 if both are clear. */
     const entry = found.x.greaterThan(0).select(0.5, found.y.greaterThan(0).select(1.5, 2.5))
     const at = from.sub(step.mul(entry)).toConst() as Float

@@ -1,0 +1,116 @@
+import { If, log2, vec2, vec3 } from 'three/tsl'
+import type { CloudField } from '../CloudField'
+import { billowForm } from '../formConstants'
+import { NOISE_SIZE } from '../../noise/noiseSizes'
+import { ENCODING_SCALE } from '../../noise/noiseRecipes'
+import { latticeRotations } from '../lattice'
+import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { rotate, type LayerNodes } from './layer'
+
+/** Place of a sample in a layer's noise. */
+export interface NoisePlace {
+  /** Displacement from the camera in the layer's frame, shifted and shortened along fibres [m]. */
+  readonly position: Vec3
+  /** Width of what the sample stands for [m]. */
+  readonly footprint: Float
+}
+
+/** Level of detail for a footprint; 0 where texels are wider. */
+const levelOf = (footprint: Float, texel: Float | number): Float =>
+  log2(footprint.div(texel).max(1e-3)).max(0).toConst() as Float
+
+/** Noise of unit deviation from its encoded values. */
+const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst() as Vec4
+
+/** Place of a sample in a layer's noise. @param shift - Of `WeatherBackground`. */
+export function noisePlace(
+  layer: LayerNodes,
+  offset: Vec3,
+  shift: Vec2,
+  footprint: Float
+): NoisePlace {
+  const stretch = vec3(layer.perStretch, layer.perStretch, 1)
+  const position = layer.mappedToLayer(offset).add(vec3(shift, 0)).mul(stretch).toConst() as Vec3
+  return { position, footprint }
+}
+
+/** Billows around a place, of unit deviation near by. */
+export interface Billows {
+  /** From a quarter of the shape's period on, and from a sixteenth on [–]. */
+  readonly coarse: Float
+  readonly fine: Float
+  /** Two components of the turbulence [–]. */
+  readonly curl: Vec2
+  /** Level of detail: what is finer than the sample's footprint is left out [octaves]. */
+  readonly level: Float
+}
+
+/**
+ * Billows: round heads that meet in creases, each octave stirred by a curl of its own size, which the
+ * noise has baked in. One texture read.
+ *
+ * @see Schneider & Vos 2015, "The real-time volumetric cloudscapes of Horizon: Zero Dawn", "Modeling"
+ * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2
+ */
+export function billows(
+  field: CloudField,
+  layer: LayerNodes,
+  { position, footprint }: NoisePlace
+): Billows {
+  const { perShapePeriod } = layer
+  const place = rotate(latticeRotations.shape, position).mul(perShapePeriod)
+  const level = levelOf(footprint.mul(perShapePeriod), 1 / NOISE_SIZE.shape)
+  const noise = decoded(field.textures.shape.sample(place.add(layer.shapeAnchor)).level(level))
+  return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() as Vec2, level }
+}
+
+/** Periods of the nearer octaves of detail, in those of the detail, and their amplitudes. */
+const NEARER = [
+  [1 / 5, 0.55],
+  [1 / 25, 0.3]
+] as const
+
+/** Footprint over the period of detail below which its nearer octaves are looked up. */
+const NEARER_FROM = 1 / 24
+
+/**
+ * Detail finer than billows, of unit deviation near by: three octaves of one noise, down to a
+ * thousandth of its period. What is finer than the sample's footprint is left out.
+ *
+ * To be called inside of a shader function.
+ */
+export function detail(
+  field: CloudField,
+  layer: LayerNodes,
+  { position, footprint }: NoisePlace
+): Float {
+  const { perDetailPeriod } = layer
+  const place = rotate(latticeRotations.detail, position)
+    .mul(perDetailPeriod)
+    .add(layer.detailAnchor)
+    .toConst() as Vec3
+  const width = footprint.mul(perDetailPeriod).toConst() as Float
+  const octave = (period: number): Float => {
+    const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)
+    return decoded(field.textures.detail.sample(place.div(period)).level(level)).x
+  }
+  const sum = octave(1).toVar() as Float
+  for (const [period, amplitude] of NEARER) {
+    If(width.lessThan(NEARER_FROM * period * 5), () => {
+      sum.addAssign(octave(period).mul(amplitude))
+    })
+  }
+  return sum
+}
+
+/** Most that detail adds, per its strength [–]. */
+export const MOST_DETAIL = 2.5
+
+/** Share of fine billows and detail that a body has, in [0, 1]: bodies have heads, crumbs do not. */
+export const fineShare = (strength: Float): Float =>
+  strength
+    .sub(billowForm.fineFrom)
+    .div(billowForm.fineOver)
+    .add(1)
+    .clamp(0, 1)
+    .toConst() as Float

@@ -1,0 +1,43 @@
+import { smoothstep } from 'three/tsl'
+import { strengthForm } from '../formConstants'
+import type { Float } from '../../tsl-types'
+import { cumulative } from '../../noise/tsl/noiseChannels'
+import type { LayerNodes } from './layer'
+import { squared } from './squared'
+
+/**
+ * Strength of a column: how high its cloud can grow, before billows add to it.
+ *
+ * The weather's cumulative distribution u takes every value in [0, 1] equally often, so u > 1 − c holds
+ * over the share c of the sky. There strength goes from 0 to `strongest`, whatever the coverage: few clouds
+ * are as tall as many. An offset makes up for the billows, which add more at edges than they take.
+ *
+ * @param weather - Sum of variance 1: u is its rank.
+ * @param coverage - c, in [0, 1].
+ * @param billowsLost - Share of billows that levels of detail have lost, in [0, 1].
+ */
+export function columnStrength(
+  layer: LayerNodes,
+  weather: Float,
+  coverage: Float,
+  billowsLost: Float
+): Float {
+  const { strongest, leastCoverage, offset, coverageOffset, fullCoverageExcess } = strengthForm
+  const forBillows = coverage
+    .mul(coverageOffset)
+    .add(offset)
+    .mul(layer.shapeAmount)
+    .mul(billowsLost.oneMinus())
+  return cumulative(weather)
+    .sub(1)
+    .add(coverage)
+    .mul(strongest)
+    .div(coverage.max(leastCoverage))
+    .add(forBillows)
+    .add(squared(coverage, 5).mul(fullCoverageExcess))
+    .toConst() as Float
+}
+
+/** Share of the billows that a level of detail of the shape has lost, in [0, 1]. */
+export const billowsLost = (level: Float): Float =>
+  smoothstep(...strengthForm.billowLevels, level)

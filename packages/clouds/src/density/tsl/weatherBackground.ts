@@ -1,0 +1,115 @@
+import { int, log2, vec2, vec4 } from 'three/tsl'
+import type { CloudField } from '../CloudField'
+import { NOISE_SIZE } from '../../noise/noiseSizes'
+import { latticeRotations } from '../lattice'
+import {
+  FIELD_PERIOD,
+  FIELD_SHIFT,
+  FIELD_WEIGHT,
+  PLANET_WARP,
+  REGION_CELLS,
+  REGION_PERIOD,
+  REGION_SHIFT
+} from '../../layers/layerUniforms'
+import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { coverageAt } from './coverage'
+import { layerAt, rotate, type LayerNodes } from './layer'
+import { planetWaves } from './planetWaves'
+import type { CloudSample } from './sample'
+
+/**
+ * Weather of a layer on all scales larger than single clouds, packed: its part of the weather's sum, coverage,
+ * and `shift`. It is smooth over kilometres.
+ */
+export type PackedBackground = Vec4
+
+/** Weather of a layer on all scales larger than single clouds. */
+export interface WeatherBackground {
+  /** Part of the weather's sum, in standard deviations of the whole. */
+  readonly sum: Float
+  /** Share of the sky that the layer covers there: `coverageAt`. */
+  readonly coverage: Float
+  /** Displacement of the layer's noise, in the layer's frame along x and y [m]: or else it would repeat. */
+  readonly shift: Vec2
+}
+
+/** The background that was packed. */
+export const unpackBackground = (packed: PackedBackground): WeatherBackground => ({
+  sum: packed.x,
+  coverage: packed.y,
+  shift: vec2(packed.z, packed.w).toConst() as Vec2
+})
+
+/** Level of detail of the weather's noise for a footprint, looked up with a period [m]. */
+export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
+  log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst() as Float
+
+/** Weather of whole regions and of the planet, which all layers share: where one is clear, others are. */
+function weatherSystems(
+  field: CloudField,
+  layer: LayerNodes,
+  subpoint: Vec3,
+  up: Vec3,
+  inLayer: Vec3,
+  footprint: Float
+): { regions: Vec3; waves: Vec3 } {
+  const isAlone = field.layers.length === 1
+  const systems = isAlone ? layer : layerAt(field, int(0))
+  const position = isAlone ? inLayer : (systems.mappedToLayer(subpoint).toConst() as Vec3)
+  const waves = planetWaves(systems.mappedToLayer(up).toConst() as Vec3)
+  const regions = field.textures.weather
+    .sample(
+      rotate(latticeRotations.region, position)
+        .div(REGION_PERIOD)
+        .add(systems.regionAnchor)
+        .add(waves.mul(PLANET_WARP))
+    )
+    .level(weatherLevel(footprint, 1 / REGION_PERIOD))
+    .xyz.sub(0.5)
+    .toConst() as Vec3
+  return { regions, waves }
+}
+
+/**
+ * Looks the background up: two texture reads, and one of the world map.
+ *
+ * @param subpoint - `subpointOffset` of the sample: the weather is the same all the way up.
+ * @param footprint - Width of what the sample stands for [m].
+ */
+export function weatherBackground(
+  field: CloudField,
+  layer: LayerNodes,
+  subpoint: Vec3,
+  sample: CloudSample,
+  footprint: Float
+): PackedBackground {
+  const inLayer = layer.mappedToLayer(subpoint).toConst() as Vec3
+  const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, inLayer, footprint)
+  const scale = layer.perWeatherPeriod.div(FIELD_PERIOD).toConst() as Float
+  const fields = field.textures.weather
+    .sample(
+      rotate(latticeRotations.fields, inLayer)
+        .mul(scale)
+        .add(layer.fieldAnchor)
+        .add(regions.mul(REGION_SHIFT))
+    )
+    .level(weatherLevel(footprint, scale))
+    .sub(0.5)
+    .toConst() as Vec4
+  const sum = fields
+    .dot(layer.weights)
+    .mul(FIELD_WEIGHT)
+    .add(fields.z.mul(layer.cells))
+    .add(regions.z.add(regions.x.mul(REGION_CELLS)).mul(layer.regions))
+    .add(
+      waves.x
+        .add(waves.y)
+        .add(waves.z)
+        .mul(layer.planet)
+        .mul(Math.sqrt(2 / 3))
+    )
+  const period = layer.perWeatherPeriod.reciprocal()
+  const shift = fields.xy.mul(FIELD_SHIFT).add(regions.xy.mul(REGION_SHIFT)).mul(period)
+  const coverage = coverageAt(field, layer, sample, footprint, fields.zxy)
+  return vec4(sum, coverage, shift).toConst() as Vec4
+}

@@ -1,0 +1,104 @@
+import type { CloudLayerParameters } from './CloudLayer'
+import { billowForm, densityForm, heightForm, strengthForm } from '../density/formConstants'
+import { layerForms } from './layerUniforms'
+
+// Integrals over a layer's columns and heights in float64, for clouds that are not seen one by one. The
+// functions of the height are those of density/tsl/heightForm.ts.
+
+/** Means over a layer's cloudy columns, relative to the layer's greatest density. */
+export interface MeanColumn {
+  /** Density of an even column that lets as much light through as cloudy columns do in the mean [–]. */
+  readonly columnDensity: number
+  /** Mean density inside of clouds, straight up through the middle of strong columns [–]. */
+  readonly insideDensity: number
+  /** Mean over all heights of the share of cloudy columns that reach one, times the density there [–]. */
+  readonly profileMean: number
+}
+
+const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
+
+const smoothstep = ([low, high]: readonly [number, number], x: number): number => {
+  const t = clamp((x - low) / (high - low), 0, 1)
+  return t * t * (3 - 2 * t)
+}
+
+/** Strength that a column needs at a height: `neededStrength` of density/tsl/heightForm.ts. */
+export function neededStrength(
+  { profileExponent, anvil }: CloudLayerParameters,
+  height: number
+): number {
+  const { top, inversion, inversionStrength, tower, towerHeights, anvilHeights, overshoot } =
+    heightForm
+  const column =
+    top * Math.max(height, 1e-4) ** profileExponent +
+    inversionStrength * Math.max(height - inversion, 0) ** 2
+  const end = Math.max(height - anvilHeights[0], 0) / (1 - anvilHeights[0])
+  const spread =
+    tower * (1 - smoothstep(towerHeights, height)) * Math.min(8 * height, 1) + overshoot * end ** 2
+  return column + anvil * (spread - column)
+}
+
+/** Extinction at a height over the layer's greatest: `densityAtHeight` of density/tsl/heightForm.ts. */
+export function densityAtHeight(
+  { densityGrowth, anvil }: CloudLayerParameters,
+  height: number
+): number {
+  const { grown, iceHeights, iceDensity } = heightForm
+  const ice = anvil * smoothstep(iceHeights, height)
+  return clamp(height / grown, 1e-4, 1) ** densityGrowth * (1 + ice * (iceDensity - 1))
+}
+
+/** Density of a strength over the layer's at that height: `densityOf` of density/tsl/density.ts. */
+export function densityOf(layer: CloudLayerParameters, strength: number, body: number): number {
+  const { edgeDensity, core } = densityForm
+  const inside = Math.sqrt(clamp(body / core, 0, 1))
+  return clamp(strength / layerForms(layer).edge, 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
+}
+
+const HEIGHTS = 24
+const COLUMNS = 8
+/** Deviations of the billows, and their weights: three-point Gauss–Hermite. */
+const BILLOWS = [
+  [-Math.sqrt(3), 1 / 6],
+  [0, 2 / 3],
+  [Math.sqrt(3), 1 / 6]
+] as const
+
+/**
+ * Means over a layer's columns, whose strength is as frequent at any value up to `strongest`.
+ *
+ * @param depthScale - Scaled optical depth over optical depth, by which light comes through [–].
+ */
+export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanColumn {
+  const { strongest } = strengthForm
+  const { baseAltitude, topAltitude, density, shapeAmount } = layer
+  const depth = Math.max(density * (topAltitude - baseAltitude) * depthScale, 1e-4)
+  const heights = Array.from({ length: HEIGHTS }, (_, i) => (i + 0.5) / HEIGHTS)
+  let through = 0
+  let inside = 0
+  for (let i = 0; i < COLUMNS; i++) {
+    const column = ((i + 0.5) / COLUMNS) * strongest
+    const mean =
+      heights.reduce((sum, height) => {
+        const body = column - neededStrength(layer, height)
+        const amount = shapeAmount * billowForm.coarse
+        const here = BILLOWS.reduce((part, [deviation, weight]) => {
+          const strength = body + amount * deviation
+          return part + weight * densityOf(layer, strength, strength)
+        }, 0)
+        return sum + here * densityAtHeight(layer, height)
+      }, 0) / HEIGHTS
+    through += Math.exp(-depth * mean) / COLUMNS
+    inside = Math.max(inside, mean)
+  }
+  const profileMean =
+    heights.reduce((sum, height) => {
+      const share = clamp(1 - neededStrength(layer, height) / strongest, 0, 1)
+      return sum + share * densityAtHeight(layer, height)
+    }, 0) / HEIGHTS
+  return {
+    columnDensity: -Math.log(Math.max(through, 1e-30)) / depth,
+    insideDensity: inside,
+    profileMean: Math.max(profileMean, 1e-3)
+  }
+}
