@@ -44,7 +44,7 @@ function noiseTarget(name: string, size: number, format: PixelFormat, mips: bool
  * Time that a slice of each texture's finest level takes, in slices of the shape. Coarser levels take
  * little of the GPU, but as many passes.
  */
-const SLICE_COST = { shape: 1, weather: 0.35, detail: 0.15, level: 0.12 } as const
+const SLICE_COST = { shape: 1, weather: 0.3, detail: 0.16, level: 0.12 } as const
 
 /** A texture of noise, filled slice by slice, level by level. */
 class NoiseTexture {
