@@ -41,8 +41,8 @@ export interface CloudCost {
 const SETTLING = 120
 
 /** Slices of noise that a node draws in a frame, and frames that this takes. */
-const NOISE_SLICES = 24
-const NOISE_FRAMES = 28
+const NOISE_SLICES = 12
+const NOISE_FRAMES = 20
 
 /** Every pixel, with an eighth of the steps' length of `high`, nothing remembered. */
 export const cloudReference: CloudQuality = {

@@ -23,8 +23,8 @@ import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
 
-/** Slices of its own noise that a node draws in a frame: all in about 28. */
-const NOISE_SLICES = 24
+/** Slices of its own noise that a node draws in a frame: all in about 20. */
+const NOISE_SLICES = 12
 
 /** Options of {@link clouds}. */
 export interface CloudsOptions {

@@ -32,36 +32,36 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
   low: {
     steps: 96,
-    stepGrowth: 0.012,
-    shortestStep: 16,
-    depthStep: 0.8,
-    layerSteps: 8,
+    stepGrowth: 0.008,
+    shortestStep: 30,
+    depthStep: 1.4,
+    layerSteps: 6,
     lightSteps: 1,
     block: 4
   },
   medium: {
     steps: 128,
-    stepGrowth: 0.008,
-    shortestStep: 10,
-    depthStep: 0.6,
-    layerSteps: 10,
-    lightSteps: 2,
+    stepGrowth: 0.005,
+    shortestStep: 20,
+    depthStep: 1,
+    layerSteps: 8,
+    lightSteps: 1,
     block: 4
   },
   high: {
     steps: 192,
-    stepGrowth: 0.005,
-    shortestStep: 6,
-    depthStep: 0.4,
-    layerSteps: 14,
+    stepGrowth: 0.003,
+    shortestStep: 12,
+    depthStep: 0.6,
+    layerSteps: 12,
     lightSteps: 2,
-    block: 3
+    block: 4
   },
   ultra: {
-    steps: 384,
-    stepGrowth: 0.0025,
-    shortestStep: 3,
-    depthStep: 0.25,
+    steps: 512,
+    stepGrowth: 0.0015,
+    shortestStep: 5,
+    depthStep: 0.3,
     layerSteps: 24,
     lightSteps: 4,
     block: 2

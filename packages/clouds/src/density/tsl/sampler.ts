@@ -1,6 +1,7 @@
 import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { densityAtHeight } from './heightForm'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
 import { likelyDistance, NOWHERE } from './likelyDistance'
 import { backgroundAlong, type RayWeather } from './rayWeather'
@@ -62,6 +63,8 @@ export interface SamplePair {
   readonly extinction: Vec2
   /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
   readonly likelyDistance: Float
+  /** Greatest extinction that clouds have at their height [1/m]. */
+  readonly greatest: Float
   readonly weather: WeatherCache
 }
 
@@ -89,17 +92,20 @@ export function samplePair(
     const [first, second] = samples.map(sample => givenExtinction(sample.offset))
     const extinction = vec2(first, second).toConst() as Vec2
     const weather = { background: vec4(0) as Vec4, layer: int(0) as Int }
-    return { extinction, likelyDistance: float(0), weather }
+    return { extinction, likelyDistance: float(0), greatest: first.max(second), weather }
   }
   const sum = vec2(0).toVar() as Vec2
   const nearest = float(NOWHERE).toVar()
   const background = vec4(0).toVar() as Vec4
   const densest = int(0).toVar() as Int
   const most = float(0).toVar()
+  const greatest = float(0).toVar()
   const { altitude } = sampleAt(middle)
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
-    If(isWithin(layer, heightIn(layer, altitude)), () => {
+    const height = heightIn(layer, altitude)
+    If(isWithin(layer, height), () => {
+      greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const here = backgroundAlong(field, kept, layer, index, middle, sampleAt)
       const options = { detail: true, direction }
       const [first, second] = sampleLayerAt(field, layer, here, samples, options)
@@ -115,7 +121,8 @@ export function samplePair(
     })
   }
   forLayers(field, look, range)
-  return { extinction: sum, likelyDistance: nearest, weather: { background, layer: densest } }
+  const weather = { background, layer: densest }
+  return { extinction: sum, likelyDistance: nearest, greatest, weather }
 }
 
 /**

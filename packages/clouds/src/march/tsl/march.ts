@@ -118,8 +118,8 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
           return vec3(direct, sky, ground)
         })
       }
-      const { extinction, likelyDistance } = clouds
-      position.addAssign(advance(state, pair, extinction, likelyDistance, addLight))
+      const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
+      position.addAssign(advance(state, pair, quality, found, addLight))
     })
   })
   shadePassing(field, sum, sampleAt)

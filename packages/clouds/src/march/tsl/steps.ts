@@ -15,6 +15,12 @@ const LEAST_STEPS = 4
 /** Part of the likely distance that a step takes: the rest is left for clouds that are nearer than likely. */
 const CAUTION = 0.5
 
+/**
+ * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
+ * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
+ */
+const CLEAR_GROWTH = 2
+
 /** Steps through clear air longer than this many in clouds go back where they find one. */
 const LOOK_BACK = 1.6
 
@@ -22,7 +28,7 @@ const LOOK_BACK = 1.6
 export interface StepState {
   /** True among clouds: steps are parts of the mean free path. */
   readonly isFine: Variable<Bool>
-  /** Length of steps in clouds at the start of the segment, and of any step at most [m]. */
+  /** Length of steps in clouds as dense as they are at this height, and of any step at most [m]. */
   readonly finest: Variable<Float>
   readonly longest: Variable<Float>
   /** Likely distance to cloud that the pair before found [m]. */
@@ -74,13 +80,18 @@ export function enterSteps(
   part.assign(jitter)
   const span = to.sub(from).toConst()
   const footprint = from.mul(field.pixelAngle)
-  const most = span
-    .div(quality.layerSteps)
-    .max(footprint.min(span.div(LEAST_STEPS)))
-    .max(1)
-  longest.assign(most)
-  finest.assign(quality.depthStep.div(density.max(1e-6)).max(quality.shortestStep).min(most))
+  longest.assign(
+    span
+      .div(quality.layerSteps)
+      .max(footprint.min(span.div(LEAST_STEPS)))
+      .max(1)
+  )
+  finest.assign(stepIn(quality, density, longest))
 }
+
+/** Length of steps in clouds of an extinction, as it counts in the light that comes through [m]. */
+const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float =>
+  quality.depthStep.div(density.max(1e-6)).max(quality.shortestStep).min(longest)
 
 /** The next two steps: they grow with the distance, and end at the end of the segment. */
 export function nextSteps(
@@ -89,9 +100,10 @@ export function nextSteps(
   position: Float,
   end: Float
 ): StepPair {
-  const fine = finest.max(position.mul(quality.stepGrowth)).toConst() as Float
-  const most = longest.max(fine)
-  const clear = likely.mul(CAUTION).clamp(fine, most)
+  const growing = position.mul(quality.stepGrowth).toConst() as Float
+  const fine = finest.max(growing).toConst() as Float
+  const least = fine.max(growing.mul(CLEAR_GROWTH)).toConst() as Float
+  const clear = likely.mul(CAUTION).clamp(least, longest.max(least))
   const left = end.sub(position).mul(0.5)
   const whole = isFine.select(fine, clear) as Float
   const length = whole.mul(part.max(0.1)).min(left).max(0.01).toConst() as Float
@@ -99,19 +111,26 @@ export function nextSteps(
   return { length, fine }
 }
 
+/** Clouds that a pair of samples found: see `SamplePair`. */
+export interface FoundClouds {
+  /** Of both samples [1/m]. */
+  readonly extinction: Vec2
+  readonly likelyDistance: Float
+  /** Greatest extinction there, as it counts in the light that comes through [1/m]. */
+  readonly greatest: Float
+}
+
 /**
  * Goes on from a pair: forward, or back to where it began if it jumped into a cloud.
  *
- * @param extinction - Of both samples [1/m].
- * @param likelyDistance - From either to a cloud; 0 in clouds [m].
  * @param accept - Adds the pair's light, where it counts.
  * @returns Advance of the position [m].
  */
 export function advance(
-  { isFine, likely, part, jitter }: StepState,
+  { isFine, finest, longest, likely, part, jitter }: StepState,
   { length, fine }: StepPair,
-  extinction: Vec2,
-  likelyDistance: Float,
+  quality: QualityUniforms,
+  { extinction, likelyDistance, greatest }: FoundClouds,
   accept: () => void
 ): Float {
   const forward = length.mul(2).toVar() as Float & { assign: (n: Float | number) => void }
@@ -123,6 +142,7 @@ export function advance(
     part.assign(jitter.max(0.5))
   }).Else(() => {
     isFine.assign(isCloudy.or(likelyDistance.lessThan(fine.mul(2))))
+    finest.assign(stepIn(quality, greatest, longest))
     likely.assign(likelyDistance)
     If(isCloudy, accept)
   })

@@ -35,6 +35,9 @@ const MOST = 15_000
 /** Footprint of samples over a cascade's texel [–]. Greater: soft shadows; smaller: grain (*Shadows*). */
 const SHARPNESS = 0.5
 
+/** Footprint of samples over a step through a layer [–]. Smaller: rings on tall clouds (*Storm*). */
+const BLUR = 0.35
+
 /** A ray of light through a texel. */
 interface LightRay extends RadialRay {
   /** Crossing with the cascade's plane, from the camera in the mapped space [m]. */
@@ -78,9 +81,9 @@ function lightRay({ view, radius, pixelAngle }: CloudField, ray: ShadowRayUnifor
 export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
   return Fn(() => {
     const texel = lightRay(field, ray)
-    const sampleAt = (at: Float): CloudSample => {
+    const sampleAt = (at: Float, distance: Float): CloudSample => {
       const offset = texel.start.add(ray.toLight.mul(at)).toConst() as Vec3
-      return { offset, ...field.view.place(offset), distance: texel.distance }
+      return { offset, ...field.view.place(offset), distance }
     }
     /** Means of 1, place on the ray, and its square, times the layers' weights. */
     const weighted = vec3(0).toVar() as Vec3
@@ -91,7 +94,9 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
       const segment = layerSegment(field, layer, texel, texel.maximumDistance)
       const length = segment.front.sub(segment.back).max(0).div(STEPS).toConst() as Float
       If(length.greaterThan(0).and(layer.coverage.greaterThan(0)), () => {
-        const sums = segmentMoments(field, layer, segment, length, sampleAt)
+        // What is shorter than steps would show as rings.
+        const distance = texel.distance.max(length.mul(BLUR).div(field.pixelAngle)).toConst() as Float
+        const sums = segmentMoments(field, layer, segment, length, at => sampleAt(at, distance))
         const depth = sums.x.toConst() as Float
         weighted.addAssign(sums.mul(depth))
         depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
