@@ -35,6 +35,7 @@ const _up = new Vector3()
 const _axis = new Vector3()
 const _stretch = new Vector3()
 const _matrix = new Matrix4()
+const _rotationMatrix = new Matrix4()
 const _rotation = new Quaternion()
 
 /** Options of {@link CloudField}. */
@@ -54,6 +55,36 @@ export const viewpointMapped = (
   { atmosphere, up, height }: AtmosphereView,
   target: Vector3
 ): Vector3 => target.copy(up).multiplyScalar(atmosphere.parameters.bottomRadius + height)
+
+/**
+ * Map from a displacement [m] in the mapped space to a place in a lattice of noise, in its periods: the three
+ * rows of a matrix, each with the place that displacements start from, in [0, 1).
+ *
+ * @param layerRotation - From the mapped space to the frame that drifts with the layer.
+ * @param rotation - From there to the lattice.
+ * @param from - Start of displacements, from the planet's centre [m].
+ * @param across - Factor along the layer frame's x and y, which draws noise out [–].
+ */
+function latticeRows(
+  layerRotation: Quaternion,
+  rotation: Quaternion,
+  period: number,
+  from: Vector3,
+  across: number
+): number[][] {
+  _matrix
+    .makeRotationFromQuaternion(rotation)
+    .scale(_stretch.set(across, across, 1))
+    .multiply(_rotationMatrix.makeRotationFromQuaternion(layerRotation))
+  const { elements: e } = _matrix
+  const start = _point.copy(from).applyMatrix4(_matrix).divideScalar(period).toArray()
+  return start.map((v, row) => [
+    e[row] / period,
+    e[row + 4] / period,
+    e[row + 8] / period,
+    v - Math.floor(v)
+  ])
+}
 
 /**
  * The field of clouds as shaders see it: layers, weather and wind as uniforms, and noise.
@@ -207,39 +238,27 @@ export class CloudField {
     const { weatherWeights, openCells, turbulence } = parameters
     const periods = layerPeriods(parameters)
     const scales = weatherScales(weatherWeights, this.worldMap !== null, openCells)
-    const { fibrous, stretch, edge, coarseness } = layerForms(parameters)
-    const layerRotation = this.rotations[index]
-    const { elements: e } = _matrix.makeRotationFromQuaternion(layerRotation)
-    const perStretch = 1 / stretch
-    const anchor = (place: Vector3, lattice: Quaternion, length: number, across = 1): number[] =>
-      _point
-        .copy(place)
-        .applyQuaternion(layerRotation)
-        .multiply(_stretch.set(across, across, 1))
-        .applyQuaternion(lattice)
-        .divideScalar(length)
-        .toArray()
-        .map(v => v - Math.floor(v))
-    const { weather, region, shape, detail, fields } = latticeRotations
-    const column = this.#meanColumn(index, parameters)
+    const { stretch, edge, coarseness } = layerForms(parameters)
+    const { columnDensity, insideDensity, profileMean } = this.#meanColumn(index, parameters)
     const bend = turbulence * billowForm.bend * periods.shape
+    const lattice = (rotation: Quaternion, period: number, from: Vector3, across = 1): number[][] =>
+      latticeRows(this.rotations[index], rotation, period, from, across)
+    const { weather, region, shape, detail, fields } = latticeRotations
     const vectors = [
       [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.fadeIn, density],
       [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
       scales.clouds,
-      [e[0], e[4], e[8], 1 / edge],
-      [e[1], e[5], e[9], coarseness],
-      [e[2], e[6], e[10], fibrous],
+      ...lattice(shape, periods.shape, _position, 1 / stretch),
+      ...lattice(detail, periods.detail, _position, 1 / stretch),
       // The weather is the same all the way up: it is looked up at the subpoint.
-      [...anchor(_subpoint, weather, periods.weather), 1 / periods.weather],
-      [...anchor(_subpoint, region, REGION_PERIOD), parameters.shadow ? 1 : 0],
-      [...anchor(_position, shape, periods.shape, perStretch), perStretch],
-      [...anchor(_position, detail, periods.detail, perStretch), 1 / periods.detail],
-      [...anchor(_subpoint, fields, periods.weather * FIELD_PERIOD), parameters.anvil],
-      [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
+      ...lattice(weather, periods.weather, _subpoint),
+      ...lattice(fields, periods.weather * FIELD_PERIOD, _subpoint),
+      ...lattice(region, REGION_PERIOD, _subpoint),
       [...windAxis(parameters.wind, _up, _axis).multiplyScalar(parameters.shear), bend],
-      [column.columnDensity, column.insideDensity, column.profileMean, 0],
-      [parameters.densityGrowth, parameters.shear, 0, 0]
+      [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
+      [columnDensity, insideDensity, profileMean, parameters.densityGrowth],
+      [1 / edge, coarseness, parameters.anvil, parameters.shadow ? 1 : 0],
+      [1 / periods.weather, 1 / periods.detail, parameters.shear, 0]
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }

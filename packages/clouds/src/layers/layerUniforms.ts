@@ -2,7 +2,7 @@ import type { CloudLayerParameters } from './CloudLayer'
 import { densityForm } from '../density/formConstants'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
-export const LAYER_STRIDE = 15
+export const LAYER_STRIDE = 23
 
 /**
  * Period of the weather texture for a layer of cumulus 1200 m thick, and of other kinds [m]. Greater: larger
@@ -146,8 +146,6 @@ export function weatherScales(
 export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameters): {
   /** Length over width of the noise that shapes them. */
   stretch: number
-  /** Share of cirrus in its weather, in [0, 1]. */
-  fibrous: number
   /** Strength over which density rises at edges [–]. */
   edge: number
   /** Levels of detail by which its weather is coarser than others. */
@@ -155,7 +153,6 @@ export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameter
 } {
   const fibrous = shareOf(weatherWeights, 3)
   return {
-    fibrous,
     stretch: 1 + (CIRRUS_STRETCH - 1) * fibrous,
     edge: densityForm.crispEdge * densityForm.softEdge ** edgeSoftness,
     coarseness: shareOf(weatherWeights, 2)

@@ -58,7 +58,7 @@ const isSame = (values: readonly number[], before: readonly number[]): boolean =
 
 /** What neither the camera nor the wind moves of a layer's vector. */
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
-  slot < 3 || slot > 12 ? [x, y, z, w] : [w]
+  slot < 3 || slot > 18 ? [x, y, z, w] : []
 
 /** Everything that shapes and lights the clouds, as numbers. */
 function cloudInputs({ values, night }: CloudField, lightVersion: number): number[] {

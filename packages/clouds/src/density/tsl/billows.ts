@@ -3,17 +3,8 @@ import type { CloudField } from '../CloudField'
 import { billowForm } from '../formConstants'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { ENCODING_SCALE } from '../../noise/noiseRecipes'
-import { latticeRotations } from '../lattice'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { rotate, type LayerNodes } from './layer'
-
-/** Place of a sample in a layer's noise. */
-export interface NoisePlace {
-  /** Displacement from the camera in the layer's frame, shifted and shortened along fibres [m]. */
-  readonly position: Vec3
-  /** Width of what the sample stands for [m]. */
-  readonly footprint: Float
-}
+import type { LayerNodes } from './layer'
 
 /** Level of detail for a footprint; 0 where texels are wider. */
 const levelOf = (footprint: Float, texel: Float | number): Float =>
@@ -21,18 +12,6 @@ const levelOf = (footprint: Float, texel: Float | number): Float =>
 
 /** Noise of unit deviation from its encoded values. */
 const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst() as Vec4
-
-/** Place of a sample in a layer's noise. @param shift - Of `WeatherBackground`. */
-export function noisePlace(
-  layer: LayerNodes,
-  offset: Vec3,
-  shift: Vec2,
-  footprint: Float
-): NoisePlace {
-  const stretch = vec3(layer.perStretch, layer.perStretch, 1)
-  const position = layer.mappedToLayer(offset).add(vec3(shift, 0)).mul(stretch).toConst() as Vec3
-  return { position, footprint }
-}
 
 /** Billows around a place, of unit deviation near by. */
 export interface Billows {
@@ -49,18 +28,23 @@ export interface Billows {
  * Billows: round heads that meet in creases, each octave stirred by a curl of its own size, which the
  * noise has baked in. One texture read.
  *
+ * @param offset - Displacement from the camera, in the mapped space [m].
+ * @param shift - Of `WeatherBackground`.
+ * @param footprint - Width of what the sample stands for [m].
  * @see Schneider & Vos 2015, "The real-time volumetric cloudscapes of Horizon: Zero Dawn", "Modeling"
  * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2
  */
 export function billows(
   field: CloudField,
   layer: LayerNodes,
-  { position, footprint }: NoisePlace
+  offset: Vec3,
+  shift: Vec2,
+  footprint: Float
 ): Billows {
   const { perShapePeriod } = layer
-  const place = rotate(latticeRotations.shape, position).mul(perShapePeriod)
+  const place = layer.shapeLattice(offset).add(vec3(shift.mul(perShapePeriod), 0)) as Vec3
   const level = levelOf(footprint.mul(perShapePeriod), 1 / NOISE_SIZE.shape)
-  const noise = decoded(field.textures.shape.sample(place.add(layer.shapeAnchor)).level(level))
+  const noise = decoded(field.textures.shape.sample(place).level(level))
   return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() as Vec2, level }
 }
 
@@ -82,13 +66,11 @@ const NEARER_FROM = 1 / 24
 export function detail(
   field: CloudField,
   layer: LayerNodes,
-  { position, footprint }: NoisePlace
+  offset: Vec3,
+  footprint: Float
 ): Float {
   const { perDetailPeriod } = layer
-  const place = rotate(latticeRotations.detail, position)
-    .mul(perDetailPeriod)
-    .add(layer.detailAnchor)
-    .toConst() as Vec3
+  const place = layer.detailLattice(offset).toConst() as Vec3
   const width = footprint.mul(perDetailPeriod).toConst() as Float
   const octave = (period: number): Float => {
     const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)

@@ -1,4 +1,4 @@
-import { float, smoothstep } from 'three/tsl'
+import { If, float, smoothstep } from 'three/tsl'
 import { billowForm, heightForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
@@ -21,10 +21,15 @@ export function neededStrength(layer: LayerNodes, height: Float): Float {
     .pow(layer.profileExponent)
     .mul(heightForm.top)
     .add(above.mul(above).mul(heightForm.inversionStrength))
-  const towers = smoothstep(...heightForm.towerHeights, height).oneMinus().mul(heightForm.tower)
-  const end = height.sub(heightForm.anvilHeights[0]).max(0).div(1 - heightForm.anvilHeights[0])
-  const anvil = towers.mul(height.mul(8).min(1)).add(end.mul(end).mul(heightForm.overshoot))
-  return layer.anvil.mix(column, anvil).toConst() as Float
+  const needed = column.toVar() as Float
+  If(layer.anvil.greaterThan(0), () => {
+    const { tower, towerHeights, anvilHeights, overshoot } = heightForm
+    const towers = smoothstep(...towerHeights, height).oneMinus().mul(tower)
+    const end = height.sub(anvilHeights[0]).max(0).div(1 - anvilHeights[0]).toConst()
+    const spread = towers.mul(height.mul(8).min(1)).add(end.mul(end).mul(overshoot))
+    needed.assign(layer.anvil.mix(needed, spread))
+  })
+  return needed
 }
 
 /** Share of ice at a height of a layer with anvils, in [0, 1]. */

@@ -1,16 +1,10 @@
-import { int, vec3 } from 'three/tsl'
-import { Matrix4, type Quaternion } from 'three'
+import { int, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { LAYER_STRIDE } from '../../layers/layerUniforms'
+import { LAYER_STRIDE, REGION_PERIOD } from '../../layers/layerUniforms'
 import { loop, type Bool, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 
-/** A vector turned by a constant rotation. */
-export const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
-  const { elements: e } = new Matrix4().makeRotationFromQuaternion(rotation)
-  // Three builds constant matrices row by row, variable ones column by column.
-  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 4], e[row + 8]).dot(v))
-  return vec3(x, y, z)
-}
+/** Place in a lattice of noise, in its periods, of a displacement in the mapped space [m]. */
+export type Lattice = (displacement: Vec3) => Vec3
 
 /** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
 export interface LayerNodes {
@@ -43,23 +37,22 @@ export interface LayerNodes {
   regions: Float
   planet: Float
   cloudVariance: Float
-  /** `layerForms`; the reciprocals of its stretch and its edge. */
-  perStretch: Float
-  fibrous: Float
+  /** `layerForms`; the reciprocal of its edge. */
   perEdge: Float
   coarseness: Float
   /** `meanColumn`. */
   columnDensity: Float
   insideDensity: Float
   profileMean: Float
-  /** Anchors: the camera or its subpoint in the periods of the noise, in [0, 1). */
-  weatherAnchor: Vec3
-  fieldAnchor: Vec3
-  regionAnchor: Vec3
-  shapeAnchor: Vec3
-  detailAnchor: Vec3
-  /** Turns displacements in the mapped space into the frame that drifts with the layer. */
-  mappedToLayer: (displacement: Vec3) => Vec3
+  /** Lattices for displacements from the camera. */
+  shapeLattice: Lattice
+  detailLattice: Lattice
+  /** Lattices for displacements from the camera's subpoint. */
+  weatherLattice: Lattice
+  fieldLattice: Lattice
+  regionLattice: Lattice
+  /** Turns directions into the frame of the regions' lattice, which drifts with the layer. */
+  zenithInRegions: (direction: Vec3) => Vec3
 }
 
 /** Reads a layer; `CloudField` writes what this reads. */
@@ -67,17 +60,15 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const once = (slot: number): Vec4 => read(slot).toConst() as Vec4
-  const extent = once(0)
-  const form = once(1)
-  const weather = once(6)
-  const region = once(7)
-  const shape = once(8)
-  const detail = once(9)
-  const fields = once(10)
-  const kind = once(11)
-  const shear = once(12)
-  const column = once(13)
-  const edges = once(14)
+  const [extent, form] = [once(0), once(1)]
+  const [shear, kind, column, edges, periods] = [18, 19, 20, 21, 22].map(once)
+  const lattice =
+    (slot: number): Lattice =>
+    v => {
+      const place = vec4(v, 1).toConst()
+      const [x, y, z] = [0, 1, 2].map(row => read(slot + row).dot(place))
+      return vec3(x, y, z)
+    }
   return {
     baseAltitude: extent.x,
     perThickness: extent.y,
@@ -89,33 +80,31 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     detailAmount: form.z,
     perShapePeriod: form.w,
     weights: read(2),
-    perEdge: read(3).w,
-    coarseness: read(4).w,
-    fibrous: read(5).w,
-    weatherAnchor: weather.xyz,
-    perWeatherPeriod: weather.w,
-    regionAnchor: region.xyz,
-    shadow: region.w,
-    shapeAnchor: shape.xyz,
-    perStretch: shape.w,
-    detailAnchor: detail.xyz,
-    perDetailPeriod: detail.w,
-    fieldAnchor: fields.xyz,
-    anvil: fields.w,
+    shapeLattice: lattice(3),
+    detailLattice: lattice(6),
+    weatherLattice: lattice(9),
+    fieldLattice: lattice(12),
+    regionLattice: lattice(15),
+    zenithInRegions: v => {
+      const [x, y, z] = [0, 1, 2].map(row => read(15 + row).xyz.dot(v))
+      return vec3(x, y, z).mul(REGION_PERIOD)
+    },
+    shearAxis: shear.xyz,
+    bend: shear.w,
     cells: kind.x,
     regions: kind.y,
     planet: kind.z,
     cloudVariance: kind.w,
-    shearAxis: shear.xyz,
-    bend: shear.w,
     columnDensity: column.x,
     insideDensity: column.y,
     profileMean: column.z,
-    densityGrowth: edges.x,
-    mappedToLayer: v => {
-      const [x, y, z] = [3, 4, 5].map(row => read(row).xyz.dot(v))
-      return vec3(x, y, z)
-    }
+    densityGrowth: column.w,
+    perEdge: edges.x,
+    coarseness: edges.y,
+    anvil: edges.z,
+    shadow: edges.w,
+    perWeatherPeriod: periods.x,
+    perDetailPeriod: periods.y
   }
 }
 

@@ -1,7 +1,7 @@
 import { If } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
-import { billows, detail, fineShare, MOST_DETAIL, noisePlace } from './billows'
+import { billows, detail, fineShare, MOST_DETAIL } from './billows'
 import { densityOf } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
@@ -36,7 +36,7 @@ export interface SampleOptions {
 interface Body {
   readonly sample: CloudSample
   readonly height: Float
-  readonly place: ReturnType<typeof noisePlace>
+  readonly footprint: Float
   readonly weather: CloudWeather
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
@@ -55,8 +55,7 @@ function bodyAt(
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
   const background = unpackBackground(packed)
   const footprint = footprintOf(field, sample)
-  const place = noisePlace(layer, sample.offset, background.shift, footprint)
-  const heads = billows(field, layer, place)
+  const heads = billows(field, layer, sample.offset, background.shift, footprint)
   const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
   const bend = heads.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst() as Vec2
   const weather = cloudWeather(
@@ -77,7 +76,7 @@ function bodyAt(
   const share = fineShare(body)
   const strength = body.add(heads.fine.mul(amount.fine).mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  return { sample, height, place, weather, body, strength, detailStrength }
+  return { sample, height, footprint, weather, body, strength, detailStrength }
 }
 
 /**
@@ -97,14 +96,15 @@ export function sampleLayerAt(
   const bodies = samples.map(sample => bodyAt(field, layer, background, sample))
   const strengths = bodies.map(({ strength }) => strength.toVar() as Float)
   if (hasDetail) {
-    bodies.forEach(({ place, strength, detailStrength }, i) => {
+    bodies.forEach(({ sample, footprint, strength, detailStrength }, i) => {
       const most = detailStrength.abs().mul(MOST_DETAIL).toConst() as Float
       const isAtEdge = strength
         .greaterThan(most.negate())
         .and(strength.lessThan(most.add(layer.perEdge.reciprocal())))
         .and(most.greaterThan(0))
       If(isAtEdge, () => {
-        strengths[i].addAssign(detail(field, layer, place).mul(detailStrength))
+        const fine = detail(field, layer, sample.offset, footprint)
+        strengths[i].addAssign(fine.mul(detailStrength))
       })
     })
   }

@@ -2,10 +2,9 @@ import { If, float, smoothstep, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
 import { FIELD_PERIOD, REGION_CELLS, REGION_PERIOD } from '../../layers/layerUniforms'
-import { latticeRotations } from '../lattice'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
-import { rotate, type LayerNodes } from './layer'
+import type { LayerNodes } from './layer'
 import { footprintOf, type CloudSample } from './sample'
 import {
   unpackBackground,
@@ -88,13 +87,10 @@ export function cloudWeather(
 ): CloudWeather {
   const scale = layer.perWeatherPeriod
   const level = weatherLevel(footprint, scale)
-  const place = layer.mappedToLayer(subpoint).add(vec3(background.shift, 0)) as Vec3
   // The third component has no turbulence of its own: where the lattice stands upright, it is horizontal.
-  const bent = vec3(bend, bend.x.sub(bend.y).mul(Math.SQRT1_2))
+  const bent = vec3(bend.add(background.shift), bend.x.sub(bend.y).mul(Math.SQRT1_2))
   const clouds = field.textures.weather
-    .sample(
-      rotate(latticeRotations.weather, place).add(bent).mul(scale).add(layer.weatherAnchor)
-    )
+    .sample(layer.weatherLattice(subpoint).add(bent.mul(scale)) as Vec3)
     .level(level)
     .sub(0.5)
     .toConst() as Vec4

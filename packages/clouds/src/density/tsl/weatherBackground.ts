@@ -1,7 +1,6 @@
 import { int, log2, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
-import { latticeRotations } from '../lattice'
 import {
   FIELD_PERIOD,
   FIELD_SHIFT,
@@ -13,7 +12,7 @@ import {
 } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { coverageAt } from './coverage'
-import { layerAt, rotate, type LayerNodes } from './layer'
+import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
 import type { CloudSample } from './sample'
 
@@ -29,7 +28,7 @@ export interface WeatherBackground {
   readonly sum: Float
   /** Share of the sky that the layer covers there: `coverageAt`. */
   readonly coverage: Float
-  /** Displacement of the layer's noise, in the layer's frame along x and y [m]: or else it would repeat. */
+  /** Displacement of noise along x and y of its lattices [m]: or else it would repeat. */
   readonly shift: Vec2
 }
 
@@ -50,20 +49,13 @@ function weatherSystems(
   layer: LayerNodes,
   subpoint: Vec3,
   up: Vec3,
-  inLayer: Vec3,
   footprint: Float
 ): { regions: Vec3; waves: Vec3 } {
   const isAlone = field.layers.length === 1
   const systems = isAlone ? layer : layerAt(field, int(0))
-  const position = isAlone ? inLayer : (systems.mappedToLayer(subpoint).toConst() as Vec3)
-  const waves = planetWaves(systems.mappedToLayer(up).toConst() as Vec3)
+  const waves = planetWaves(systems.zenithInRegions(up).toConst() as Vec3)
   const regions = field.textures.weather
-    .sample(
-      rotate(latticeRotations.region, position)
-        .div(REGION_PERIOD)
-        .add(systems.regionAnchor)
-        .add(waves.mul(PLANET_WARP))
-    )
+    .sample(systems.regionLattice(subpoint).add(waves.mul(PLANET_WARP)) as Vec3)
     .level(weatherLevel(footprint, 1 / REGION_PERIOD))
     .xyz.sub(0.5)
     .toConst() as Vec3
@@ -83,16 +75,10 @@ export function weatherBackground(
   sample: CloudSample,
   footprint: Float
 ): PackedBackground {
-  const inLayer = layer.mappedToLayer(subpoint).toConst() as Vec3
-  const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, inLayer, footprint)
+  const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, footprint)
   const scale = layer.perWeatherPeriod.div(FIELD_PERIOD).toConst() as Float
   const fields = field.textures.weather
-    .sample(
-      rotate(latticeRotations.fields, inLayer)
-        .mul(scale)
-        .add(layer.fieldAnchor)
-        .add(regions.mul(REGION_SHIFT))
-    )
+    .sample(layer.fieldLattice(subpoint).add(regions.mul(REGION_SHIFT)) as Vec3)
     .level(weatherLevel(footprint, scale))
     .sub(0.5)
     .toConst() as Vec4

@@ -13,7 +13,7 @@ import { FAR_AWAY } from './layerBoundaries'
 const LEAST_STEPS = 4
 
 /** Part of the likely distance that a step takes: the rest is left for clouds that are nearer than likely. */
-const CAUTION = 0.5
+const CAUTION = 0.8
 
 /**
  * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
@@ -33,6 +33,8 @@ export interface StepState {
   readonly longest: Variable<Float>
   /** Likely distance to cloud that the pair before found [m]. */
   readonly likely: Variable<Float>
+  /** Length of a step of the pair before [m]: its second half step was not looked at. */
+  readonly before: Variable<Float>
   /** Part of the next pair's length: the first of a row is cut short, by chance, so that no layers show. */
   readonly part: Variable<Float>
   /** Noise in [0, 1), the part to start rows with. */
@@ -56,6 +58,7 @@ export const stepState = (jitter: Float): StepState => ({
   finest: float(1).toVar(),
   longest: float(FAR_AWAY).toVar(),
   likely: float(0).toVar(),
+  before: float(0).toVar(),
   part: jitter.toVar(),
   jitter
 })
@@ -68,7 +71,7 @@ export const stepState = (jitter: Float): StepState => ({
  * @param to - The same of its end [m].
  */
 export function enterSteps(
-  { isFine, finest, longest, likely, part, jitter }: StepState,
+  { isFine, finest, longest, likely, before, part, jitter }: StepState,
   field: CloudField,
   quality: QualityUniforms,
   density: Float,
@@ -77,6 +80,7 @@ export function enterSteps(
 ): void {
   isFine.assign(false)
   likely.assign(0)
+  before.assign(0)
   part.assign(jitter)
   const span = to.sub(from).toConst()
   const footprint = from.mul(field.pixelAngle)
@@ -127,7 +131,7 @@ export interface FoundClouds {
  * @returns Advance of the position [m].
  */
 export function advance(
-  { isFine, finest, longest, likely, part, jitter }: StepState,
+  { isFine, finest, longest, likely, before, part, jitter }: StepState,
   { length, fine }: StepPair,
   quality: QualityUniforms,
   { extinction, likelyDistance, greatest }: FoundClouds,
@@ -136,14 +140,15 @@ export function advance(
   const forward = length.mul(2).toVar() as Float & { assign: (n: Float | number) => void }
   const isCloudy = extinction.x.max(extinction.y).greaterThan(0).toConst()
   If(isCloudy.and(isFine.not()).and(length.greaterThan(fine.mul(LOOK_BACK))), () => {
-    // In the second sample only: the first step is known to be clear.
-    forward.assign(extinction.x.greaterThan(0).select(0, length))
+    // Back to the last sample that was clear.
+    forward.assign(extinction.x.greaterThan(0).select(before.mul(-0.5), length.mul(0.5)))
     isFine.assign(true)
     part.assign(jitter.max(0.5))
   }).Else(() => {
     isFine.assign(isCloudy.or(likelyDistance.lessThan(fine.mul(2))))
     finest.assign(stepIn(quality, greatest, longest))
     likely.assign(likelyDistance)
+    before.assign(length)
     If(isCloudy, accept)
   })
   return forward
