@@ -48,7 +48,7 @@ export const heightForm = {
   inversion: 0.68,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.55,
+  grown: 0.6,
   /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
@@ -90,6 +90,8 @@ export const densityForm = {
   /** Strength over which density rises at crisp edges, and the factor for wholly soft ones [–] (*Cumulus*). */
   crispEdge: 0.2,
   softEdge: 12,
+  /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
+  softerBase: 4,
   /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
   edgeDensity: 0.88,
   core: 1

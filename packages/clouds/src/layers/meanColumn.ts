@@ -48,11 +48,20 @@ export function densityAtHeight(
   return clamp(height / grown, 1e-4, 1) ** densityGrowth * (1 + ice * (iceDensity - 1))
 }
 
+/** Strength over which density rises at edges at a height [–]: `edgeAt` of density/tsl/density.ts. */
+export const edgeAt = (layer: CloudLayerParameters, height: number): number =>
+  layerForms(layer).edge * (1 + densityForm.softerBase * (1 - height) ** 2)
+
 /** Density of a strength over the layer's at that height: `densityOf` of density/tsl/density.ts. */
-export function densityOf(layer: CloudLayerParameters, strength: number, body: number): number {
+export function densityOf(
+  layer: CloudLayerParameters,
+  strength: number,
+  body: number,
+  height: number
+): number {
   const { edgeDensity, core } = densityForm
   const inside = Math.sqrt(clamp(body / core, 0, 1))
-  return clamp(strength / layerForms(layer).edge, 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
+  return clamp(strength / edgeAt(layer, height), 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
 }
 
 const HEIGHTS = 24
@@ -84,7 +93,7 @@ export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanCol
         const amount = shapeAmount * billowForm.coarse
         const here = BILLOWS.reduce((part, [deviation, weight]) => {
           const strength = body + amount * deviation
-          return part + weight * densityOf(layer, strength, strength)
+          return part + weight * densityOf(layer, strength, strength, height)
         }, 0)
         return sum + here * densityAtHeight(layer, height)
       }, 0) / HEIGHTS

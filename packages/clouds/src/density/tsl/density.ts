@@ -3,14 +3,24 @@ import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
 
 /**
- * Density over a layer's at its height, in [0, 1]: it rises from 0 at the edge over the layer's softness, and
- * is full in the core.
+ * Strength over which density rises at edges [–]. Bases, where clouds form and decay, are softer than tops.
+ *
+ * @param height - ĥ in the layer, in [0, 1].
+ */
+export const edgeAt = (layer: LayerNodes, height: Float): Float => {
+  const low = height.oneMinus().toConst()
+  return low.mul(low).mul(densityForm.softerBase).add(1).div(layer.perEdge).toConst() as Float
+}
+
+/**
+ * Density over a layer's at its height, in [0, 1]: it rises from 0 at the edge, and is full in the core.
  *
  * @param strength - With all billows and detail: cloud is where it is above 0.
  * @param body - With coarse billows alone: it says how deep inside a place is.
+ * @param edge - `edgeAt`.
  */
-export const densityOf = (layer: LayerNodes, strength: Float, body: Float): Float => {
+export const densityOf = (strength: Float, body: Float, edge: Float): Float => {
   const { edgeDensity, core } = densityForm
   const inside = body.div(core).clamp(0, 1).sqrt()
-  return strength.mul(layer.perEdge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst() as Float
+  return strength.div(edge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst() as Float
 }

@@ -1,5 +1,7 @@
 import { int, vec3, vec4 } from 'three/tsl'
+import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
+import { latticeRotations } from '../lattice'
 import { LAYER_STRIDE, REGION_PERIOD } from '../../layers/layerUniforms'
 import { loop, type Bool, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 
@@ -51,8 +53,19 @@ export interface LayerNodes {
   weatherLattice: Lattice
   fieldLattice: Lattice
   regionLattice: Lattice
-  /** Turns directions into the frame of the regions' lattice, which drifts with the layer. */
-  zenithInRegions: (direction: Vec3) => Vec3
+  /** Turns directions into the frame that drifts with the layer. */
+  directionInLayer: (direction: Vec3) => Vec3
+}
+
+/** Rotation from the regions' lattice to the layer's frame. */
+const fromRegions = /*#__PURE__*/ latticeRotations.region.clone().invert()
+
+/** A vector turned by a constant rotation. */
+const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
+  const { elements: e } = new Matrix4().makeRotationFromQuaternion(rotation)
+  // Three builds constant matrices row by row, variable ones column by column.
+  const [x, y, z] = [0, 1, 2].map(row => vec3(e[row], e[row + 4], e[row + 8]).dot(v))
+  return vec3(x, y, z)
 }
 
 /** Reads a layer; `CloudField` writes what this reads. */
@@ -85,9 +98,9 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     weatherLattice: lattice(9),
     fieldLattice: lattice(12),
     regionLattice: lattice(15),
-    zenithInRegions: v => {
-      const [x, y, z] = [0, 1, 2].map(row => read(15 + row).xyz.dot(v))
-      return vec3(x, y, z).mul(REGION_PERIOD)
+    directionInLayer: v => {
+      const [x, y, z] = [0, 1, 2].map(row => read(15 + row).xyz.dot(v).mul(REGION_PERIOD))
+      return rotate(fromRegions, vec3(x, y, z))
     },
     shearAxis: shear.xyz,
     bend: shear.w,

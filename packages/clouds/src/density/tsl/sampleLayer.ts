@@ -2,7 +2,7 @@ import { If } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL } from './billows'
-import { densityOf } from './density'
+import { densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
@@ -41,6 +41,8 @@ interface Body {
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
+  /** Strength over which density rises. */
+  readonly edge: Float
   /** Strength of detail, per deviation of its noise. */
   readonly detailStrength: Float
 }
@@ -76,7 +78,8 @@ function bodyAt(
   const share = fineShare(body)
   const strength = body.add(heads.fine.mul(amount.fine).mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  return { sample, height, footprint, weather, body, strength, detailStrength }
+  const edge = edgeAt(layer, height)
+  return { sample, height, footprint, weather, body, strength, edge, detailStrength }
 }
 
 /**
@@ -96,11 +99,11 @@ export function sampleLayerAt(
   const bodies = samples.map(sample => bodyAt(field, layer, background, sample))
   const strengths = bodies.map(({ strength }) => strength.toVar() as Float)
   if (hasDetail) {
-    bodies.forEach(({ sample, footprint, strength, detailStrength }, i) => {
+    bodies.forEach(({ sample, footprint, strength, edge, detailStrength }, i) => {
       const most = detailStrength.abs().mul(MOST_DETAIL).toConst() as Float
       const isAtEdge = strength
         .greaterThan(most.negate())
-        .and(strength.lessThan(most.add(layer.perEdge.reciprocal())))
+        .and(strength.lessThan(most.add(edge)))
         .and(most.greaterThan(0))
       If(isAtEdge, () => {
         const fine = detail(field, layer, sample.offset, footprint)
@@ -108,8 +111,8 @@ export function sampleLayerAt(
       })
     })
   }
-  return bodies.map(({ sample, height, weather, body }, i) => {
-    const density = densityOf(layer, strengths[i], body).toVar() as Float
+  return bodies.map(({ sample, height, weather, body, edge }, i) => {
+    const density = densityOf(strengths[i], body, edge).toVar() as Float
     const { unresolvedFraction, filteredCoverage } = weather
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
       const cosine = direction?.dot(sample.up).toConst() as Float | undefined

@@ -53,7 +53,7 @@ function weatherSystems(
 ): { regions: Vec3; waves: Vec3 } {
   const isAlone = field.layers.length === 1
   const systems = isAlone ? layer : layerAt(field, int(0))
-  const waves = planetWaves(systems.zenithInRegions(up).toConst() as Vec3)
+  const waves = planetWaves(systems.directionInLayer(up).toConst() as Vec3)
   const regions = field.textures.weather
     .sample(systems.regionLattice(subpoint).add(waves.mul(PLANET_WARP)) as Vec3)
     .level(weatherLevel(footprint, 1 / REGION_PERIOD))
