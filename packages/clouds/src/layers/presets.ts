@@ -58,7 +58,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     {
       baseAltitude: 800,
       topAltitude: 4300,
-      coverage: 0.25,
+      coverage: 0.35,
       profileExponent: 0.5,
       wind: { east: 9, north: 3 }
     }
@@ -102,7 +102,11 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
   ],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
-  mixed: [{ ...cumulus, coverage: 0.25 }, altocumulus, cirrus]
+  mixed: [
+    { ...cumulus, coverage: 0.25 },
+    { ...altocumulus, coverage: 0.35 },
+    { ...cirrus, coverage: 0.4 }
+  ]
 }
 
 /** All names of {@link cloudPreset}, for menus. */

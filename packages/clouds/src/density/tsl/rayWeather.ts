@@ -1,6 +1,6 @@
 import { If, float, int, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { loop, type Float, type Int, type Vec4 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
 import type { LayerNodes } from './layer'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { weatherBackground, type PackedBackground } from './weatherBackground'
@@ -41,6 +41,7 @@ export const rayWeather = (): RayWeather => ({
  * Background of a layer's weather at a distance along a ray, between two places of which it was looked up.
  *
  * @param index - The layer's.
+ * @param isAlone - False where layers overlap, which take turns: they are looked up at the distance itself.
  * @param sampleAt - The ray's sample at a distance.
  */
 export function backgroundAlong(
@@ -48,6 +49,7 @@ export function backgroundAlong(
   { layer: known, from, to, first, last }: RayWeather,
   layer: LayerNodes,
   index: Int,
+  isAlone: Bool,
   distance: Float,
   sampleAt: (distance: Float) => CloudSample
 ): PackedBackground {
@@ -58,6 +60,7 @@ export function backgroundAlong(
     const span = float(SPAN).div(layer.perWeatherPeriod).max(near).toConst() as Float
     const goesOn = isOther
       .not()
+      .and(isAlone)
       .and(distance.greaterThanEqual(to))
       .and(distance.lessThan(to.add(span)))
       .toConst()
@@ -66,7 +69,7 @@ export function backgroundAlong(
     // Its far end only where the near one is known: the code is there once.
     loop(
       'weatherEnd',
-      2,
+      isAlone.select(int(2), int(1)) as Int,
       end => {
         const at = end.equal(int(0)).select(distance, from.add(span)).toConst() as Float
         const sample = sampleAt(at)
@@ -82,6 +85,9 @@ export function backgroundAlong(
       },
       goesOn.select(int(1), int(0))
     )
+    If(isAlone.not(), () => {
+      to.assign(from)
+    })
     known.assign(index)
   })
   const part = distance.sub(from).div(to.sub(from).max(1e-3)).clamp(0, 1)

@@ -101,12 +101,13 @@ export function samplePair(
   const most = float(0).toVar()
   const greatest = float(0).toVar()
   const { altitude } = sampleAt(middle)
+  const isAlone = range.last.sub(range.first).lessThan(int(2)).toConst()
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, altitude)
     If(isWithin(layer, height), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
-      const here = backgroundAlong(field, kept, layer, index, middle, sampleAt)
+      const here = backgroundAlong(field, kept, layer, index, isAlone, middle, sampleAt)
       const options = { detail: true, direction }
       const [first, second] = sampleLayerAt(field, layer, here, samples, options)
       const found = vec2(first.extinction, second.extinction).toConst() as Vec2
