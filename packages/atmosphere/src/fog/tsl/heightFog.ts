@@ -65,10 +65,10 @@ export function fogDepth(
   const here = exponent(height).negate().exp().toConst()
   const there = exponent(height.add(gain)).negate().exp().toConst()
   const outward = here.mul(airMass(radius.div(falloff), cosView.abs())).toConst()
-  const beyond = there.mul(airMass(radiusThere.div(falloff), cosThere.abs())).toConst()
+  const outwardThere = there.mul(airMass(radiusThere.div(falloff), cosThere.abs())).toConst()
 
   const sinks = cosView.lessThan(0).toConst()
-  const turns = sinks.and(cosThere.greaterThan(0)).toConst() as Bool
+  const passesNearest = sinks.and(cosThere.greaterThan(0)).toConst() as Bool
   const lowestRadius = radius.mul(cosView.mul(cosView).oneMinus().max(0).sqrt()).toConst()
   const drop = along.mul(along).div(lowestRadius.add(radius)).toConst()
   const lowest = exponent(height.sub(drop)).negate().exp().toConst()
@@ -80,14 +80,16 @@ export function fogDepth(
         .sqrt()
     )
     .mul(2)
-  const between = turns.select(
-    chord.sub(outward).sub(beyond),
-    sinks.select(beyond.sub(outward), outward.sub(beyond))
+  const between = passesNearest.select(
+    chord.sub(outward).sub(outwardThere),
+    sinks.select(outwardThere.sub(outward), outward.sub(outwardThere))
   )
   const least = here.min(there).mul(distance)
-  const most = turns.select(lowest, here.max(there)).mul(distance)
+  const most = passesNearest.select(lowest, here.max(there)).mul(distance)
   const depth = between.mul(falloff).clamp(least, most).mul(density)
-  const sinking = turns.select(drop.div(along.min(-1)), gain.div(distance.max(1e-3))).negate()
+  const sinking = passesNearest
+    .select(drop.div(along.min(-1)), gain.div(distance.max(1e-3)))
+    .negate()
   return {
     depth: depth.toConst(),
     start: height.div(falloff).toConst(),
