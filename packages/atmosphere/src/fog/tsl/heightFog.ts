@@ -18,7 +18,8 @@ const MIN_EXPONENT = -30
  *
  * @param scale - Distance to the planet's centre, in falloff heights.
  * @param cosView - |μ|, against the zenith.
- * @see Fitzmaurice 1964, "Simplification of the Chapman function for atmospheric attenuation"
+ * @see Fitzmaurice 1964, "Simplification of the Chapman function for atmospheric attenuation", Applied
+ *   Optics 3, 640
  */
 export function airMass(scale: Float, cosView: Float): Float {
   const half = scale.mul(0.5).sqrt().toConst()
@@ -107,7 +108,7 @@ export function fogDepth(
  * @param total - Vertical optical depth of the layer.
  * @param cosLight - Cosine of the light's zenith angle that gives the slant depth, > 0.
  * @see Shettle & Weinman 1970, "The transfer of solar irradiance through inhomogeneous turbid
- *   atmospheres evaluated by Eddington's approximation". Twin: test/twins/fog/heightFog.ts
+ *   atmospheres evaluated by Eddington's approximation", J. Atmos. Sci. 27, 1048. Twin: test/twins/fog/heightFog.ts
  */
 export function multipleScattering(above: Float, total: Float, cosLight: Float): Float {
   const top = cosLight.mul(3).add(2).toConst()
