@@ -1,14 +1,13 @@
 import { Atmosphere } from '@welkin/atmosphere'
 import { CloudField, CloudLayers, cloudPreset } from '@welkin/clouds'
 import { Vector3 } from 'three'
-import { float, Loop, texture3D, vec3, vec4 } from 'three/tsl'
+import { float, texture3D, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { cloudExtinction as extinctionTwin } from '../../../packages/clouds/test/twins/density'
 import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../../packages/clouds/src/noise/noiseSizes'
 import { verticalOpticalDepth } from '../../../packages/clouds/src/density/tsl/columns'
-import { cloudBound } from '../harness/cloud-bound'
-import { cloudExtinction, emptyDistanceAt } from '../../../packages/clouds/src/density/tsl/sampler'
+import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { random } from '../harness/atmosphere'
 import { CloudColumns } from '../harness/cloud-columns'
 import { cloudScene, mean, altitudeIn, offsets, places, worldMap } from '../harness/cloud-scene'
@@ -28,8 +27,8 @@ gpuTest('bakes the noise that float64 computes, levels of detail and all', async
   do {
     expectTrue(!field.noise.isReady && frames < 40, `not drawn after ${frames} frames`)
     frames++
-  } while (!field.bake(renderer, 24))
-  t.note(`${frames} frames of 24 slices, ${field.noise.bytes} bytes`)
+  } while (!field.bake(renderer, 10))
+  t.note(`${frames} frames of 10 slices, ${field.noise.bytes} bytes`)
   expectTrue(frames > 20, `drawn in ${frames} frames`)
   expectTrue(field.noise.bytes <= 20e6, `${field.noise.bytes} bytes of noise`)
   const draw = random(1)
@@ -60,7 +59,7 @@ gpuTest('bakes the noise that float64 computes, levels of detail and all', async
 for (const [where, place] of places) {
   gpuTest(`puts clouds where float64 does ${where}`, async t => {
     const layers = cloudPreset('mixed')
-    for (const layer of layers) layer.set({ coverage: 0.7 })
+    for (const layer of layers) layer.set({ coverage: 0.8 })
     const scene = await cloudScene(t, layers, place)
     scene.update(7200)
     let cloudy = 0
@@ -74,7 +73,7 @@ for (const [where, place] of places) {
         const position = scene.eye.clone().add(new Vector3(x, y, z))
         const expected = extinctionTwin(state, twin, position, distance, detail)
         if (expected > 0) cloudy++
-        return Math.abs(results[4 * i] - expected) / 0.05
+        return Math.abs(results[4 * i] - expected) / 0.1
       })
       const worst = differences.toSorted((a, b) => b - a)
       t.note(
@@ -83,8 +82,8 @@ for (const [where, place] of places) {
           .map(x => x.toFixed(4))
           .join(' ')}`
       )
-      // A byte of the noise is 0.03 of the density at a sharp edge.
-      expectTrue(worst[0] < 0.04, `worst difference ${worst[0]} of full density`)
+      // A byte of the noise is 0.1 of the density at a sharp edge: both have the same bytes.
+      expectTrue(worst[0] < 0.015, `worst difference ${worst[0]} of full density`)
     }
     expectTrue(cloudy > 30, `${cloudy} cloudy points`)
     scene.dispose()
@@ -94,13 +93,13 @@ for (const [where, place] of places) {
 /** Without shape, whose coarse levels take float64 minutes. */
 class ShapelessTwin extends NoiseTextures {
   override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {
-    return name === 'shape' ? [0.5, 0.5] : twin.sample(name, p, level)
+    return name === 'shape' ? [0.5, 0.5, 0.5, 0.5] : twin.sample(name, p, level)
   }
 }
 
 gpuTest('puts clouds where float64 does, of a world map and where they blur', async t => {
   const layers = cloudPreset('mixed')
-  for (const layer of layers) layer.set({ coverage: 0.5, shapeAmount: 0 })
+  for (const layer of layers) layer.set({ coverage: 0.5, shapeAmount: 0, turbulence: 0 })
   const map = worldMap()
   const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
   const shapeless = new ShapelessTwin()
@@ -124,87 +123,6 @@ gpuTest('puts clouds where float64 does, of a world map and where they blur', as
   scene.dispose()
   map.dispose()
 })
-
-gpuTest(
-  'bounds the density from above, in every preset',
-  async t => {
-    for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus', 'cirrus'] as const) {
-      const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
-      const inputs = offsets(scene.eye, 4096, 300_000, 3)
-      const results = await evaluateOnGpu(scene.renderer, inputs, input => {
-        const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-        const { altitude, up } = scene.field.view.place(offset)
-        const sample = { offset, altitude, up, distance: input.w }
-        const column = verticalOpticalDepth(scene.field, sample)
-        return vec4(
-          cloudBound(scene.field, sample),
-          cloudExtinction(scene.field, sample, true),
-          column,
-          1
-        )
-      })
-      let [clear, empty] = [0, 0]
-      inputs.forEach((_, i) => {
-        const [bound, extinction, column] = results.subarray(4 * i, 4 * i + 3)
-        expectTrue(bound > 0 || extinction === 0, `${name}: ${extinction} where the bound is 0`)
-        expectTrue(column >= 0 && column < 1000, `${name}: column of ${column}`)
-        if (bound === 0) clear++
-        if (extinction === 0) empty++
-      })
-      t.note(`${name}: bound finds ${clear} of ${empty} empty places`)
-      scene.dispose()
-    }
-  },
-  { backends: ['webgpu'] }
-)
-
-gpuTest(
-  'has clear air as far as it says',
-  async t => {
-    for (const name of ['fairWeather', 'stratocumulus', 'cumulonimbus'] as const) {
-      const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
-      const { field } = scene
-      const inputs = offsets(scene.eye, 2048, 30_000, 5, share => 3000 * share)
-      const results = await evaluateOnGpu(scene.renderer, inputs, input => {
-        const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-        const here = { offset, ...field.view.place(offset), distance: input.w }
-        const emptyDistance = emptyDistanceAt(field, here).toConst()
-        const most = float(0).toVar()
-        const count = 24
-        Loop(count, ({ i }) => {
-          // Spread over the ball.
-          const index = float(i)
-          const z = index
-            .add(0.5)
-            .mul(2 / count)
-            .oneMinus()
-            .toConst()
-          const across = z.mul(z).oneMinus().sqrt()
-          const angle = index.mul(2.399963)
-          const towards = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z)
-          const radius = emptyDistance.min(1e4).mul(index.mul(0.618034).fract().sqrt())
-          const there = offset.add(towards.mul(radius)).toConst() as unknown as Node<'vec3'>
-          most.assign(most.max(scene.extinction(there, input.w, true)))
-        })
-        return vec4(emptyDistance, most, scene.extinction(offset, input.w, true), 1)
-      })
-      let clear = 0
-      inputs.forEach((_, i) => {
-        const [emptyDistance, most, extinction] = results.subarray(4 * i, 4 * i + 3)
-        expectTrue(emptyDistance >= 0, `${name}: an empty distance of ${emptyDistance}`)
-        expectTrue(
-          emptyDistance === 0 || most === 0,
-          `${name}: ${most} within ${emptyDistance} m of clear air`
-        )
-        if (emptyDistance > 100 && extinction === 0) clear++
-      })
-      t.note(`${name}: ${clear} of ${inputs.length} places have 100 m of clear air`)
-      expectTrue(clear > inputs.length / 10, `${name}: only ${clear} places have clear air`)
-      scene.dispose()
-    }
-  },
-  { backends: ['webgpu'] }
-)
 
 gpuTest('follows a layer without compiling', async t => {
   const layers = new CloudLayers()
@@ -244,6 +162,15 @@ gpuTest('gives numbers for any parameters', async t => {
         profileExponent: pick(1e-9, 0.01, 1, 8),
         shapeAmount: pick(0, 0.5, 1),
         detailAmount: pick(0, 1),
+        weatherScale: pick(0.1, 1, 10),
+        shapeScale: pick(0.1, 1, 10),
+        detailScale: pick(0.1, 1, 10),
+        edgeSoftness: pick(0, 0.5, 1),
+        turbulence: pick(0, 1, 2),
+        shear: pick(-5, 0, 5),
+        anvil: pick(0, 0.5, 1),
+        openCells: pick(0, 0.5, 1),
+        densityGrowth: pick(0, 1, 4),
         weatherWeights: [pick(0, 1), pick(0, 1e-9), pick(0, 1), pick(0, 1)],
         wind: { east: pick(0, 1e6), north: pick(0, -1e9) }
       })
@@ -255,7 +182,7 @@ gpuTest('gives numbers for any parameters', async t => {
       const sample = { offset, altitude, up, distance: input.w }
       return vec4(
         cloudExtinction(scene.field, sample, true),
-        cloudBound(scene.field, sample),
+        cloudExtinction(scene.field, sample, false),
         verticalOpticalDepth(scene.field, sample),
         1
       )

@@ -70,7 +70,9 @@ export async function cloudScene(
       layers: [...layers].map(layer => layer.parameters),
       rotations: field.rotations,
       bottomRadius: atmosphere.parameters.bottomRadius,
+      zenith: eye.clone().normalize(),
       pixelAngle: field.pixelAngle.value,
+      depthScale: field.depthScale.value,
       axialRatio: field.axialRatio,
       ...(map === null ? {} : { worldMap: coverOf(map), worldMapWidth: field.worldMapWidth })
     }),

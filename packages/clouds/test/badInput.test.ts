@@ -114,7 +114,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => cloudEnvironment(wrong(atmosphere))
   ],
   [
-    "cloudPreset: name must be 'fairWeather', 'stratocumulus', 'overcast', 'cumulonimbus', 'cirrus' or 'mixed', got 'fair'",
+    "cloudPreset: name must be 'fairWeather', 'congestus', 'stratocumulus', 'overcast', 'cumulonimbus', 'altocumulus', 'cirrus' or 'mixed', got 'fair'",
     () => cloudPreset(wrong('fair'))
   ],
   ['CloudLayer: options must be an object, got a CloudLayer', () => new CloudLayer(wrong(layer))],
@@ -137,6 +137,15 @@ const cases: [message: string, call: () => unknown][] = [
 
   // Setters.
   ['CloudLayer: coverage must be in [0, 1], got 7', () => (layer.coverage = 7)],
+  ['CloudLayer: weatherScale must be in [0.1, 10], got 0', () => (layer.weatherScale = 0)],
+  ['CloudLayer: shapeScale must be in [0.1, 10], got 12', () => (layer.shapeScale = 12)],
+  ['CloudLayer: detailScale must be in [0.1, 10], got -1', () => (layer.detailScale = -1)],
+  ['CloudLayer: edgeSoftness must be in [0, 1], got 2', () => (layer.edgeSoftness = 2)],
+  ['CloudLayer: turbulence must be in [0, 2], got 3', () => (layer.turbulence = 3)],
+  ['CloudLayer: shear must be in [-5, 5], got -6', () => (layer.shear = -6)],
+  ['CloudLayer: anvil must be in [0, 1], got NaN', () => (layer.anvil = NaN)],
+  ["CloudLayer: openCells must be in [0, 1], got '1'", () => (layer.openCells = wrong('1'))],
+  ['CloudLayer: densityGrowth must be in [0, 4], got 4.5', () => (layer.densityGrowth = 4.5)],
   [
     'CloudLayer: topAltitude must be above baseAltitude (1000 m), got 900',
     () => (layer.topAltitude = 900)

@@ -1,26 +1,31 @@
 import { Vector3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
-import { anvilForm, columnForm, erosionForm, strengthForm } from '../../src/density/formConstants'
+import { billowForm, strengthForm } from '../../src/density/formConstants'
 import { latticeRotations } from '../../src/density/lattice'
 import {
-  CURL_AMOUNT,
-  CURL_PERIOD,
-  DETAIL_PERIOD,
   FIELD_PERIOD,
+  FIELD_SHIFT,
+  FIELD_WEIGHT,
+  LAST_WAVES,
   layerForms,
   layerPeriods,
-  LAST_WAVES,
   mapShift,
   NEXT_WAVES,
   PLANET_WARP,
   REGION_CELLS,
   REGION_PERIOD,
-  CLOUD_WARP,
-  FIELD_WARP,
-  WEATHER_WARP,
+  REGION_SHIFT,
   weatherScales
 } from '../../src/layers/layerUniforms'
-import { CURL_SCALE } from '../../src/noise/noiseRecipes'
+import {
+  densityAtHeight,
+  densityOf,
+  edgeAt,
+  meanColumn,
+  neededStrength
+} from '../../src/layers/meanColumn'
+import { windAxis } from '../../src/layers/wind'
+import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE } from '../../src/noise/noiseSizes'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
@@ -31,8 +36,12 @@ export interface CloudState {
   /** Rotation of each layer's noise: `CloudField.rotations`. */
   readonly rotations: readonly Quaternion[]
   readonly bottomRadius: number
+  /** Zenith of the camera, where winds blow as given, in the mapped space; only shear needs it. */
+  readonly zenith?: Vector3
   /** Angle between neighbouring samples [rad]. */
   readonly pixelAngle: number
+  /** Scaled optical depth over optical depth [–]; 1 if it is left out. */
+  readonly depthScale?: number
   /** Share of the sky that is covered, by longitude and geodetic latitude [rad]; if there is a map. */
   readonly worldMap?: (longitude: number, latitude: number) => number
   /** a/b of the ellipsoid; only the map needs it. */
@@ -43,11 +52,13 @@ export interface CloudState {
 
 /** A layer's weather at a place: see `CloudWeather` of tsl/weather.ts. */
 export interface CloudWeather {
-  readonly strength: number
+  readonly sum: number
+  /** Share of the sky that the layer covers there, as far as it is known without noise. */
+  readonly coverage: number
   readonly filteredCoverage: number
   readonly unresolvedFraction: number
-  readonly shapeWarp: Vector3
-  readonly detailWarp: Vector3
+  /** Displacement of noise along the axes of its lattices [m]. */
+  readonly shift: Vector3
 }
 
 const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
@@ -57,23 +68,25 @@ const smoothstep = (low: number, high: number, x: number): number => {
   return t * t * (3 - 2 * t)
 }
 
+/** Level of detail for a footprint; 0 where texels are wider. */
 const levelOf = (footprint: number, texel: number): number =>
-  Math.max(Math.log2(Math.max(footprint / texel, 1e-3)), 0)
+  footprint > texel ? Math.log2(footprint / texel) : 0
 
-/** Place in the periods of a noise look-up, from the planet's centre. */
-function placeIn(
-  position: Vector3,
-  layerRotation: Quaternion,
-  latticeRotation: Quaternion,
-  period: number,
-  stretch = 1,
-  warp = new Vector3()
-): Vec3Array {
-  const p = position.clone().applyQuaternion(layerRotation)
-  p.set(p.x / stretch, p.y / stretch, p.z).addScaledVector(warp, 1 / stretch)
-  p.applyQuaternion(latticeRotation).divideScalar(period)
-  return [p.x, p.y, p.z]
+/** Place in the periods of a noise look-up, of a point in the frame of a layer. */
+function placeIn(inLayer: Vector3, lattice: Quaternion, period: number): Vec3Array {
+  const { x, y, z } = inLayer.clone().applyQuaternion(lattice)
+  return [x / period, y / period, z / period]
 }
+
+const shifted = ([x, y, z]: Vec3Array, by: readonly number[], factor: number): Vec3Array => [
+  x + factor * by[0],
+  y + factor * by[1],
+  z + factor * by[2]
+]
+
+/** Noise of unit deviation from its encoded values. */
+const decoded = (values: readonly number[]): number[] =>
+  values.map(value => (value - 0.5) / ENCODING_SCALE)
 
 /** Share of a noise's variance that its levels of detail have lost. */
 const lostShare = (level: number): number => smoothstep(0, strengthForm.fadeLevels, level)
@@ -85,13 +98,11 @@ const cumulative = (z: number): number => 1 / (1 + Math.exp(-1.702 * z))
 function coverageAt(
   state: CloudState,
   { coverage }: CloudLayerParameters,
-  subpoint: Vector3,
+  zenith: Vector3,
   shift: Vector3
 ): number {
   if (state.worldMap === undefined) return coverage
-  const { x, y, z } = subpoint
-    .clone()
-    .addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048) * subpoint.length())
+  const { x, y, z } = zenith.clone().addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048))
   const latitude = Math.atan2(z * (state.axialRatio ?? 1), Math.hypot(x, y))
   const share = clamp(state.worldMap(Math.atan2(y, x), latitude), 0, 1)
   const covered = share * coverage
@@ -99,8 +110,8 @@ function coverageAt(
 }
 
 /** Waves around the planet, in [−1, 1]. */
-function planetWaves(subpoint: Vector3, layerRotation: Quaternion): Vec3Array {
-  const { x, y, z } = subpoint.clone().normalize().applyQuaternion(layerRotation)
+function planetWaves(zenith: Vector3, layerRotation: Quaternion): Vec3Array {
+  const { x, y, z } = zenith.clone().applyQuaternion(layerRotation)
   return [
     Math.sin(NEXT_WAVES * y + LAST_WAVES * z),
     Math.sin(NEXT_WAVES * z + LAST_WAVES * x),
@@ -109,137 +120,216 @@ function planetWaves(subpoint: Vector3, layerRotation: Quaternion): Vec3Array {
 }
 
 /**
- * Float64 twin of `weatherAt`, in planet-centred coordinates without anchors.
+ * Float64 twin of `weatherBackground` and `cloudWeather`, in planet-centred coordinates without anchors.
  *
  * @param position - From the planet's centre, in the mapped space [m].
  * @param distance - From the camera [m].
+ * @param height - ĥ in the layer, by which columns lean, in [0, 1].
+ * @param bendAt - Displacement by turbulence [m] of columns, by the shift of the layer's noise.
  */
 export function weatherAt(
   state: CloudState,
   noise: NoiseTextures,
   index: number,
   position: Vector3,
-  distance: number
+  distance: number,
+  height = 0,
+  bendAt: (shift: Vector3) => readonly [number, number] = () => [0, 0]
 ): CloudWeather {
   const layer = state.layers[index]
   const layerRotation = state.rotations[index]
-  const subpoint = position.clone().setLength(state.bottomRadius)
+  const zenith = position.clone().normalize()
+  const subpoint = zenith.clone().multiplyScalar(state.bottomRadius)
   const footprint = distance * state.pixelAngle
-  const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined)
-  const { steepness, coarseness } = layerForms(layer)
-
-  const waves = planetWaves(subpoint, state.rotations[0])
-  const shifted = (place: Vec3Array, by: readonly number[], factor: number): Vec3Array => {
-    const [x, y, z] = place.map((p, axis) => p + by[axis] * factor)
-    return [x, y, z]
-  }
+  const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined, layer.openCells)
+  const { coarseness } = layerForms(layer)
+  const period = layerPeriods(layer).weather
   const sample = (place: Vec3Array, level: number): number[] =>
     noise.sample('weather', place, level).map(value => value - 0.5)
-  const regionPlace = placeIn(subpoint, state.rotations[0], latticeRotations.region, REGION_PERIOD)
-  const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
-  const region = sample(shifted(regionPlace, waves, PLANET_WARP), regionLevel)
-
-  const { weather: period, shape: shapePeriod } = layerPeriods(layer)
-  const level = levelOf(footprint, period / NOISE_SIZE.weather)
-  const fieldLevel = Math.max(level - Math.log2(FIELD_PERIOD), 0)
-  const lookUp = (lattice: Quaternion, length: number, levelThere: number): number[] =>
-    sample(
-      shifted(placeIn(subpoint, layerRotation, lattice, length), region, WEATHER_WARP),
-      levelThere
-    )
-  const fields = lookUp(latticeRotations.fields, period * FIELD_PERIOD, fieldLevel)
-  const clouds = lookUp(latticeRotations.weather, period, level)
-  const c = coverageAt(state, layer, subpoint, new Vector3(fields[2], fields[0], fields[1]))
-
-  const dot = (values: number[]): number =>
+  const dot = (values: readonly number[]): number =>
     values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
-  const z =
+
+  const waves = planetWaves(zenith, state.rotations[0])
+  const inSystems = subpoint.clone().applyQuaternion(state.rotations[0])
+  const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
+  const region = sample(
+    shifted(placeIn(inSystems, latticeRotations.region, REGION_PERIOD), waves, PLANET_WARP),
+    regionLevel
+  )
+  const inLayer = subpoint.clone().applyQuaternion(layerRotation)
+  const fieldPeriod = period * FIELD_PERIOD
+  const fieldLevel = levelOf(footprint, fieldPeriod / NOISE_SIZE.weather)
+  const fields = sample(
+    shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, REGION_SHIFT),
+    fieldLevel
+  )
+  const shift = new Vector3(fields[0], fields[1], 0)
+    .multiplyScalar(FIELD_SHIFT * period)
+    .add(new Vector3(region[0], region[1], 0).multiplyScalar(REGION_SHIFT * period))
+  const coverage = coverageAt(state, layer, zenith, new Vector3(fields[2], fields[0], fields[1]))
+
+  const lean = new Vector3()
+  if (layer.shear !== 0) {
+    if (state.zenith === undefined) throw new Error('CloudState: shear needs a zenith')
+    const rise = height * (layer.topAltitude - layer.baseAltitude)
+    windAxis(layer.wind, state.zenith, lean)
+      .cross(zenith)
+      .multiplyScalar(layer.shear * rise)
+  }
+  const [bendX, bendY] = bendAt(shift)
+  const foot = subpoint.sub(lean).applyQuaternion(layerRotation)
+  const bend = new Vector3(bendX, bendY, (bendX - bendY) / Math.SQRT2).add(shift).toArray()
+  const level = levelOf(footprint, period / NOISE_SIZE.weather)
+  const clouds = sample(
+    shifted(placeIn(foot, latticeRotations.weather, period), bend, 1 / period),
+    level
+  )
+
+  const blurred =
     dot(clouds) +
-    scales.fields * dot(fields) +
+    FIELD_WEIGHT * dot(fields) +
     scales.cells * fields[2] +
     scales.regions * (region[2] + REGION_CELLS * region[0]) +
     (scales.planet * (waves[0] + waves[1] + waves[2])) / Math.sqrt(1.5)
-  const variance =
+  const lost =
     scales.cloudVariance * lostShare(level - coarseness) +
     scales.fieldVariance * lostShare(fieldLevel - 0.5) +
     (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lostShare(regionLevel - 0.8)) / 12
-  const odds = clamp(c, 1e-6, 1 - 1e-6)
+  const variance = level > 0 ? lost : 0
+  const { edgeSoftness, leastEdgeSoftness, leastVariance } = strengthForm
+  const odds = clamp(coverage, 1e-6, 1 - 1e-6)
   const quantile = Math.log(odds / (1 - odds)) / 1.702
-  const { edgeSoftness, leastEdgeSoftness, leastVariance, fullCoverageExcess, meanEdge } =
-    strengthForm
   const edges = Math.max(edgeSoftness * layer.shapeAmount, leastEdgeSoftness)
-  const chance = cumulative((z + quantile) / Math.sqrt(variance + edges ** 2))
-  const surely = fullCoverageExcess * (2 * c - 1) ** 33
-  const sharp = z / Math.sqrt(Math.max(1 - variance, leastVariance))
-  const detailWarp = new Vector3(clouds[0], clouds[1], clouds[2]).multiplyScalar(
-    CLOUD_WARP * shapePeriod
-  )
+  const chance = cumulative((blurred + quantile) / Math.sqrt(variance + edges ** 2))
   return {
-    strength: meanEdge * layer.shapeAmount + (cumulative(sharp) - (1 - c)) * steepness + surely,
-    filteredCoverage: c > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
+    sum: blurred / Math.sqrt(Math.max(1 - variance, leastVariance)),
+    coverage,
+    filteredCoverage: coverage > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
     unresolvedFraction: smoothstep(0.5, 4.5, level - coarseness),
-    shapeWarp: new Vector3(fields[0], fields[1], fields[2])
-      .multiplyScalar(FIELD_WARP * shapePeriod)
-      .add(detailWarp),
-    detailWarp
+    shift
   }
 }
 
-/** Dimensional profile less erosion, before its edge is sharpened: tsl/erosion.ts. */
-function erode(
+/** Strength of a column, before billows: tsl/strength.ts. */
+function columnStrength(
+  { shapeAmount }: CloudLayerParameters,
+  { sum, coverage }: CloudWeather,
+  billowsLost: number
+): number {
+  const { strongest, leastCoverage, offset, coverageOffset, fullCoverageExcess } = strengthForm
+  const rank = cumulative(sum)
+  return (
+    (strongest * (rank - (1 - coverage))) / Math.max(coverage, leastCoverage) +
+    shapeAmount * (1 - billowsLost) * (offset + coverageOffset * coverage) +
+    fullCoverageExcess * coverage ** 32
+  )
+}
+
+/** Periods of the octaves of detail, in those of the first, and their amplitudes. */
+const OCTAVES = [
+  [1, 1],
+  [1 / 5, 0.55],
+  [1 / 25, 0.3]
+] as const
+
+/** Detail of unit deviation near by: tsl/billows.ts. */
+function detailAt(
+  noise: NoiseTextures,
+  stretched: Vector3,
+  period: number,
+  footprint: number
+): number {
+  const [x, y, z] = placeIn(stretched, latticeRotations.detail, period)
+  return OCTAVES.reduce((sum, [part, amplitude]) => {
+    if (part < 1 && footprint >= (5 / 24) * part * period) return sum
+    const level = levelOf(footprint, (part * period) / NOISE_SIZE.detail)
+    const [value] = decoded(noise.sample('detail', [x / part, y / part, z / part], level))
+    return sum + amplitude * value
+  }, 0)
+}
+
+/** A layer at a place: `LayerSample` of tsl/sampleLayer.ts. */
+export interface LayerSample {
+  /** [1/m]. */
+  readonly extinction: number
+  /** With all billows, less what the height needs [–]. */
+  readonly strength: number
+}
+
+/**
+ * Float64 twin of `sampleLayer`, in the weather of that very place.
+ *
+ * @param position - From the planet's centre, in the mapped space [m].
+ * @param distance - From the camera [m].
+ */
+export function sampleLayer(
   state: CloudState,
   noise: NoiseTextures,
   index: number,
-  weather: CloudWeather,
   position: Vector3,
   distance: number,
-  height: number,
-  profile: number,
-  detail: boolean
-): number {
+  hasDetail: boolean
+): LayerSample {
   const layer = state.layers[index]
-  const layerRotation = state.rotations[index]
+  const { baseAltitude, topAltitude, density, shapeAmount, detailAmount } = layer
   const footprint = distance * state.pixelAngle
-  const period = layerPeriods(layer).shape
+  const periods = layerPeriods(layer)
   const { stretch } = layerForms(layer)
-  const placeOf = (lattice: Quaternion, length: number, warp: Vector3): Vec3Array =>
-    placeIn(position, layerRotation, lattice, length, stretch, warp)
-  const place = placeOf(latticeRotations.shape, period, weather.shapeWarp)
-  const level = levelOf(footprint, period / NOISE_SIZE.shape)
-  const [whole, finer] = noise.sample('shape', place, level)
-  const { finerBillows, filteredShape, fadeLevels, leastShape, mostDetail } = erosionForm
-  const billows =
-    whole + finerBillows * (finer - 0.5) + filteredShape * smoothstep(0, fadeLevels, level)
-  const left = profile - layer.shapeAmount * Math.max(1 - billows, leastShape)
-  const most = layer.detailAmount * mostDetail
-  if (!detail) return left - most / 2
-  const fine = placeOf(latticeRotations.detail, DETAIL_PERIOD, weather.detailWarp)
-  const fineLevel = levelOf(footprint, DETAIL_PERIOD / NOISE_SIZE.detail)
-  const [x, y, z] = fine.map(v => v / CURL_PERIOD)
-  const curl = noise.sample('detail', [x, y, z], fineLevel).slice(1)
-  const [a, b, c] = fine.map((v, axis) => v + (CURL_AMOUNT / CURL_SCALE) * (curl[axis] - 0.5))
-  const [stirred] = noise.sample('detail', [a, b, c], fineLevel)
-  const [wisps, heads] = erosionForm.wispHeights
-  return left - most * (stirred + (1 - 2 * stirred) * smoothstep(wisps, heads, height))
-}
+  const thickness = topAltitude - baseAltitude
+  const altitude = position.length() - state.bottomRadius
+  const height = clamp((altitude - baseAltitude) / thickness, 0, 1)
 
-/** Mean columns of clouds that are not seen one by one: tsl/unresolved.ts. */
-function meanColumn(
-  layer: CloudLayerParameters,
-  { filteredCoverage }: CloudWeather
-): { depth: number; density: number } {
-  const { baseAltitude, topAltitude, density, profileExponent: e } = layer
-  const { fibrous, anvil } = layerForms(layer)
-  const [least, more, most] = columnForm.fibrousDensity
-  const fibres = least + more * filteredCoverage ** 2 + most * filteredCoverage ** 64
-  const solid = columnForm.density + anvil * (columnForm.anvilDensity - columnForm.density)
-  const columnDensity = solid + fibrous * (fibres - solid)
-  const depth = Math.max(density * (topAltitude - baseAltitude) * columnDensity, 1e-4)
-  const passing = 1 - filteredCoverage * (1 - Math.exp(-depth))
-  const effectiveDepth = -Math.log(Math.max(passing, 1e-30))
-  const plainMean = (4 * e) / ((e + 1) * (2 * e + 1))
-  const profileMean = plainMean + anvil * (anvilForm.profileMean - plainMean)
-  return { depth, density: ((effectiveDepth / depth) * columnDensity) / profileMean }
+  const stretched = position
+    .clone()
+    .applyQuaternion(state.rotations[index])
+    .divide(new Vector3(stretch, stretch, 1))
+  const level = levelOf(footprint, periods.shape / NOISE_SIZE.shape)
+  const billowsAt = (shift: Vector3): number[] => {
+    const place = placeIn(stretched, latticeRotations.shape, periods.shape)
+    const there = shifted(place, shift.toArray(), 1 / periods.shape)
+    return decoded(noise.sample('shape', there, level))
+  }
+  const weather = weatherAt(state, noise, index, position, distance, height, shift => {
+    const [, , x, y] = billowsAt(shift)
+    const bend = layer.turbulence * billowForm.bend * Math.min(height / billowForm.bendHeight, 1)
+    return [x * bend * periods.shape, y * bend * periods.shape]
+  })
+  const [coarse, fine] = billowsAt(weather.shift)
+
+  const growing = (growth: number): number => 1 + growth * (2 * height - 1)
+  const ofCoarse = shapeAmount * billowForm.coarse * growing(billowForm.coarseGrowth)
+  const ofFine = shapeAmount * billowForm.fine * growing(billowForm.fineGrowth)
+  const sign = Math.min(height / billowForm.wispHeight - 1, 1)
+  const lost = smoothstep(...strengthForm.billowLevels, level)
+  const body =
+    columnStrength(layer, weather, lost) - neededStrength(layer, height) + ofCoarse * coarse
+  const share = clamp(1 + (body - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
+  let strength = body + ofFine * share * fine
+  const ofDetail =
+    shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share
+  const most = 2.5 * Math.abs(ofDetail)
+  if (hasDetail && most > 0 && strength > -most && strength < edgeAt(layer, height) + most) {
+    strength += ofDetail * detailAt(noise, stretched, periods.detail, footprint)
+  }
+
+  const atHeight = densityAtHeight(layer, height)
+  const near = atHeight * densityOf(layer, strength, body, height)
+  const { unresolvedFraction, filteredCoverage } = weather
+  if (unresolvedFraction === 0 || filteredCoverage === 0) {
+    return { extinction: density * near, strength }
+  }
+  const depthScale = state.depthScale ?? 1
+  const column = meanColumn(layer, depthScale)
+  const columnDepth = Math.max(density * thickness * depthScale * column.columnDensity, 1e-4)
+  const passing = 1 - filteredCoverage * (1 - Math.exp(-columnDepth))
+  const whole = -Math.log(Math.max(passing, 1e-30)) / depthScale / thickness / density
+  const reached = clamp(1 - neededStrength(layer, height) / strengthForm.strongest, 0, 1)
+  const far = (whole * reached * atHeight) / column.profileMean
+  const through =
+    (1 - unresolvedFraction) * Math.exp(-near * columnDepth) +
+    unresolvedFraction * Math.exp(-far * columnDepth)
+  const mixed = -Math.log(Math.max(through, 1e-30)) / columnDepth
+  return { extinction: density * mixed, strength: Math.max(strength, 0) }
 }
 
 /**
@@ -257,30 +347,8 @@ export function cloudExtinction(
   detail: boolean
 ): number {
   const altitude = position.length() - state.bottomRadius
-  const [towerTop, anvilBase] = anvilForm.heights
-  let sum = 0
-  state.layers.forEach((layer, index) => {
-    const { baseAltitude, topAltitude, density } = layer
-    const height = (altitude - baseAltitude) / (topAltitude - baseAltitude)
-    if (height <= 0 || height >= 1 || layer.coverage === 0) return
-    const weather = weatherAt(state, noise, index, position, distance)
-    const { strength, unresolvedFraction } = weather
-    const { sharpness, anvil } = layerForms(layer)
-    const anvilHere = anvil * smoothstep(towerTop, anvilBase, height)
-    const usual = 1 - (2 * Math.max(height, 1e-4) ** layer.profileExponent - 1) ** 2
-    const heightProfile = usual + anvilHere * (1 - smoothstep(0.9, 1, height) - usual)
-    const narrowed = clamp(strength - anvilForm.narrowing * (anvil - anvilHere), 0, 1.3)
-    const profile = narrowed * heightProfile
-    const left = erode(state, noise, index, weather, position, distance, height, profile, detail)
-    const column = meanColumn(layer, weather)
-    const far = column.density * heightProfile * (1 - anvil + anvilHere)
-    const near = clamp(left * sharpness, 0, 1)
-    const through =
-      (1 - unresolvedFraction) * Math.exp(-near * column.depth) +
-      unresolvedFraction * Math.exp(-far * column.depth)
-    const mixed =
-      unresolvedFraction === 0 ? near : -Math.log(Math.max(through, 1e-30)) / column.depth
-    sum += density * mixed * (1 + anvilHere * (anvilForm.density - 1))
-  })
-  return sum
+  return state.layers.reduce((sum, { baseAltitude, topAltitude, coverage }, index) => {
+    if (altitude <= baseAltitude || altitude >= topAltitude || coverage === 0) return sum
+    return sum + sampleLayer(state, noise, index, position, distance, detail).extinction
+  }, 0)
 }
