@@ -5,6 +5,8 @@ import { cloudCover } from './clouds/cloudCover'
 import { layerArgs, layerParameters } from './clouds/layerArgs'
 import type { LayerArgs } from './clouds/layerArgs'
 import { createBalloons, createCockpit } from './clouds/props'
+import { stages } from './clouds/stages'
+import type { Stage } from './clouds/stages'
 import { createLand } from './globe/land'
 import type { Place } from './globe/places'
 import { applyTime } from './scene'
@@ -23,6 +25,8 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   timeLapse: number
   /** Takes the coverage from a map of the world. */
   world: boolean
+  /** How far the layers are made. */
+  stage: Stage
   props: 'none' | 'cockpit' | 'balloons'
   /** [degrees] */
   longitude: number
@@ -79,10 +83,13 @@ export async function createClouds(
           : null
     if (props !== null) scene.add(props.object)
 
+    /** The layers, finished: those on show may be a stage of them. */
+    const finished = cloudPreset(preset)
+
     /** Whatever layer the arguments are meant for takes them, or they take that of the layer. */
     const applyLayer = (current: CloudsArgs): void => {
       const index = Math.min(Math.max(Math.round(current.layer), 0), layers.length - 1)
-      const layer = layers.at(index)
+      const layer = finished.at(index)
       const shown = shownBy(preset, index)
       if (current.shown === shown) {
         layer.set(layerParameters(current))
@@ -91,6 +98,12 @@ export async function createClouds(
       const changes = { ...layerArgs(layer.parameters), layer: index, shown }
       Object.assign(current, changes)
       onArgs?.(changes)
+    }
+
+    const applyStage = ({ stage }: CloudsArgs): void => {
+      for (let i = 0; i < layers.length; i++) {
+        layers.at(i).set({ ...finished.at(i).parameters, ...stages[stage] })
+      }
     }
 
     let lapse = args.timeLapse
@@ -102,6 +115,7 @@ export async function createClouds(
       apply(current) {
         applyTime(renderer, air, current)
         applyLayer(current)
+        applyStage(current)
         node.quality = qualityOf(current)
         node.debugView = current.debug === 'off' ? null : current.debug
         lapse = current.frame ? 0 : current.timeLapse

@@ -1,7 +1,8 @@
-import { cloudPreset, cloudQualities } from '@welkin/clouds'
+import { cloudPreset, cloudPresetNames, cloudQualities } from '@welkin/clouds'
 import type { CloudPresetName } from '@welkin/clouds'
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { layerArgs, layerArgTypes } from './clouds/layerArgs'
+import { stageNames, stages } from './clouds/stages'
 import { createClouds, shownBy } from './clouds.scene'
 import type { CloudsArgs } from './clouds.scene'
 import { mount } from './mount'
@@ -39,11 +40,11 @@ const world = {
 
 const meta: Meta<CloudsArgs> = {
   title: 'Clouds',
-  render: mount(createClouds, code, ({ preset }) => preset),
+  render: mount(createClouds, code, ({ preset, world }) => `${preset} ${world}`),
   argTypes: {
     preset: {
       name: 'Clouds',
-      options: ['fairWeather', 'stratocumulus', 'overcast', 'cumulonimbus', 'cirrus', 'mixed'],
+      options: cloudPresetNames,
       control: 'select'
     },
     quality: { name: 'Quality', options: Object.keys(cloudQualities), control: 'inline-radio' },
@@ -88,10 +89,15 @@ const meta: Meta<CloudsArgs> = {
       control: { type: 'range', min: -90, max: 90, step: 0.01 },
       ...camera
     },
+    world: {
+      name: 'World map',
+      description: 'Takes the cover from a picture of the whole planet',
+      control: 'boolean'
+    },
     forceWebGL,
     frame,
     shown: hidden,
-    world: hidden,
+    stage: hidden,
     props: hidden,
     path: hidden
   },
@@ -101,6 +107,7 @@ const meta: Meta<CloudsArgs> = {
     debug: 'off',
     timeLapse: 1,
     world: false,
+    stage: 'cloud',
     props: 'none',
     // 2 m above a meadow.
     longitude: -84.178,
@@ -215,4 +222,19 @@ export const Shadows: Story = {
 export const Presets: Story = {
   args: { ...sky('mixed'), altitude: 500, pitch: 12 },
   tags: ['screenshot', 'webgpu-only']
+}
+
+/** The stages of a cumulus, one on top of the other; choose one. */
+export const HowACloudIsMade: Story = {
+  name: 'How a cloud is made',
+  argTypes: {
+    stage: {
+      name: 'Stage',
+      description: 'How much of their form clouds have; the parameters below set the rest',
+      options: Object.keys(stages),
+      control: { type: 'inline-radio', labels: stageNames },
+      table: { disable: false }
+    }
+  },
+  args: { stage: 'columns', coverage: 0.2, altitude: 1150, pitch: 6 }
 }

@@ -10,6 +10,15 @@ export interface LayerArgs {
   profileExponent: number
   shapeAmount: number
   detailAmount: number
+  weatherScale: number
+  shapeScale: number
+  detailScale: number
+  edgeSoftness: number
+  turbulence: number
+  shear: number
+  anvil: number
+  openCells: number
+  densityGrowth: number
   /** Weights of the weather's channels. */
   cumulus: number
   stratocumulus: number
@@ -40,7 +49,8 @@ export function layerArgs(parameters: CloudLayerParameters): LayerArgs {
 /** The other way round. A layer upside down becomes a thin one at its base. */
 export function layerParameters(args: LayerArgs): CloudLayerParameters {
   const { baseAltitude, topAltitude, coverage, density, profileExponent } = args
-  const { shapeAmount, detailAmount, shadow } = args
+  const { shapeAmount, detailAmount, weatherScale, shapeScale, detailScale } = args
+  const { edgeSoftness, turbulence, shear, anvil, openCells, densityGrowth, shadow } = args
   return {
     baseAltitude,
     topAltitude: Math.max(topAltitude, baseAltitude + THINNEST),
@@ -49,6 +59,15 @@ export function layerParameters(args: LayerArgs): CloudLayerParameters {
     profileExponent,
     shapeAmount,
     detailAmount,
+    weatherScale,
+    shapeScale,
+    detailScale,
+    edgeSoftness,
+    turbulence,
+    shear,
+    anvil,
+    openCells,
+    densityGrowth,
     shadow,
     weatherWeights: [args.cumulus, args.stratocumulus, args.cumulonimbus, args.cirrus],
     wind: { east: args.windEast, north: args.windNorth }
@@ -71,10 +90,25 @@ export const layerArgTypes: ArgTypes<LayerArgs> = {
   baseAltitude: range('Base [m]', 0, 12_000, 50, 'Above the ellipsoid'),
   topAltitude: range('Top [m]', 50, 14_000, 50, 'Above the ellipsoid'),
   coverage: range('Coverage', 0, 1, 0.01, 'Share of the sky that is covered'),
-  density: range('Density [1/m]', 0, 0.1, 0.0005, 'Extinction of the densest cloud'),
-  profileExponent: range('Profile exponent', 0.1, 4, 0.05, 'Below 1 densest low down'),
-  shapeAmount: range('Shape', 0, 1, 0.01, 'How far the shape noise carves the layer'),
-  detailAmount: range('Detail', 0, 1, 0.01, 'How far the detail noise frays edges'),
+  density: range('Density [1/m]', 0, 0.2, 0.0005, 'Extinction of the densest cloud'),
+  densityGrowth: range('Density growth', 0, 4, 0.05, 'Growth of the extinction with height'),
+  profileExponent: range(
+    'Profile exponent',
+    0.1,
+    4,
+    0.01,
+    'Small: tops at all heights; great: nearly all at one height'
+  ),
+  shapeAmount: range('Shape', 0, 1, 0.01, 'Billows: heads and creases'),
+  detailAmount: range('Detail', 0, 1, 0.01, 'What is finer than the billows'),
+  weatherScale: range('Weather scale', 0.1, 10, 0.05, 'Size and distance of single clouds'),
+  shapeScale: range('Shape scale', 0.1, 10, 0.05, 'Size of billows'),
+  detailScale: range('Detail scale', 0.1, 10, 0.05, 'Size of detail'),
+  edgeSoftness: range('Edge softness', 0, 1, 0.01, '0 is crisp, 1 fades out as cirrus does'),
+  turbulence: range('Turbulence', 0, 2, 0.01, 'Bends columns and drags their edges along'),
+  shear: range('Shear [m/m]', -5, 5, 0.05, 'Displacement downwind per height above the base'),
+  anvil: range('Anvil', 0, 1, 0.01, 'Share of an anvil below the top'),
+  openCells: range('Open cells', 0, 1, 0.01, 'Share of cells with clear middles, in stratocumulus'),
   cumulus: weather('cumulus'),
   stratocumulus: weather('stratocumulus'),
   cumulonimbus: weather('cumulonimbus'),
