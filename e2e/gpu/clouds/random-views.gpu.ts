@@ -36,6 +36,15 @@ function randomLayer(next: () => number): Partial<CloudLayerParameters> {
     profileExponent: [0.05, 1, 8][Math.floor(3 * next())],
     shapeAmount: extreme(),
     detailAmount: extreme(),
+    weatherScale: [0.1, 1, 10][Math.floor(3 * next())],
+    shapeScale: [0.1, 1, 10][Math.floor(3 * next())],
+    detailScale: [0.1, 1, 10][Math.floor(3 * next())],
+    edgeSoftness: extreme(),
+    turbulence: 2 * extreme(),
+    shear: 5 * (extreme() - extreme()),
+    anvil: extreme(),
+    openCells: extreme(),
+    densityGrowth: 4 * extreme(),
     weatherWeights: weights,
     wind: { east: 200 * (next() - 0.5), north: 200 * (next() - 0.5) },
     shadow: next() < 0.5
@@ -106,7 +115,7 @@ gpuTest(
   { timeoutSeconds: 120 }
 )
 
-const presets: CloudPresetName[] = ['fairWeather', 'overcast', 'cumulonimbus', 'mixed']
+const presets: CloudPresetName[] = ['congestus', 'overcast', 'cumulonimbus', 'mixed']
 
 gpuTest(
   'clouds of a preset give finite light from any camera at any time',

@@ -46,7 +46,11 @@ export const fog: Partial<CloudLayerParameters> = {
   density: 0.004,
   shapeAmount: 0,
   detailAmount: 0,
-  profileExponent: 1,
+  profileExponent: 8,
+  edgeSoftness: 0,
+  turbulence: 0,
+  shear: 0,
+  densityGrowth: 0,
   wind: { east: 0, north: 0 }
 }
 
