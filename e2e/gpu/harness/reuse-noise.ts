@@ -99,9 +99,9 @@ function* restore(
         corner[0].value = size * (slice % columns)
         corner[1].value = size * Math.floor(slice / columns)
         copy.render(renderer, volume, slice, level)
-        yield
+        yield 1
         // The library draws coarser levels outside of the volume first.
-        if (level > 0) yield
+        if (level > 0) yield 1
       }
     } finally {
       copy.dispose()

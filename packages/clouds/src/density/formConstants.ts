@@ -14,7 +14,7 @@ export const strengthForm = {
    * Added to the strength for the shape amount s and coverage c: s (a + b c) + d c³² [–]. It makes a layer
    * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
    */
-  offset: -1.03,
+  offset: -0.53,
   coverageOffset: 0.93,
   fullCoverageExcess: 3.2,
   /**
@@ -37,7 +37,7 @@ export const strengthForm = {
   leastEdgeSoftness: 0.05
 } as const
 
-/** Constants of the strength that a column needs to reach a height: tsl/neededStrength.ts. */
+/** Constants of the strength that a column needs to reach a height: tsl/heightForm.ts. */
 export const heightForm = {
   /** Strength that is needed at the top of a layer [–]. Greater: flat clouds (*Cumulus*). */
   top: 3.2,
@@ -52,7 +52,9 @@ export const heightForm = {
   /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
-  /** Where anvils end, in [0, 1], and the strength needed there: what overshoots (*Storm*). */
+  /** Strength that anvils need all over [–]: greater, and a storm covers less than it is asked to (*Storm*). */
+  anvil: 0.8,
+  /** Height at which anvils end, in [0, 1], and the strength needed there: what overshoots (*Storm*). */
   anvilHeights: [0.72, 1],
   overshoot: 4.6,
   /** Heights between which water freezes, in [0, 1], and extinction of ice over that of water (*Storm*). */
@@ -60,7 +62,7 @@ export const heightForm = {
   iceDensity: 0.16
 } as const
 
-/** Constants of billows and detail: tsl/billows.ts, tsl/detail.ts. */
+/** Constants of billows and detail: tsl/billows.ts. */
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.95,

@@ -34,7 +34,7 @@ export const FIELD_PERIOD = 3 * Math.sqrt(6)
  * repetitions fall out of step. 0: the same clouds and billows again and again, in rows (*World clouds*,
  * without its map); much greater: clouds are drawn out.
  */
-export const FIELD_SHIFT = 0.16
+export const FIELD_SHIFT = 0.2
 export const REGION_SHIFT = 0.5
 
 /**
@@ -131,8 +131,10 @@ export function weatherScales(
   const variance = 1 + fieldVariance + large * (REGION_WEIGHT ** 2 + PLANET_WEIGHT ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
+  // From closed cells to open ones by way of cumulus: the variance stays.
+  const closed = 1 - 2 * openCells
   return {
-    clouds: [a, b * (1 - 2 * openCells), c, d],
+    clouds: [Math.hypot(a, b * Math.sqrt(1 - closed ** 2)), b * closed, c, d],
     fields: FIELD_WEIGHT,
     cells: CELL_WEIGHT * factor,
     regions: (large * REGION_WEIGHT * factor) / Math.hypot(1, REGION_CELLS),

@@ -27,14 +27,15 @@ export function neededStrength(
   { profileExponent, anvil }: CloudLayerParameters,
   height: number
 ): number {
-  const { top, inversion, inversionStrength, tower, towerHeights, anvilHeights, overshoot } =
-    heightForm
+  const { top, inversion, inversionStrength } = heightForm
+  const { tower, towerHeights, anvil: needed, anvilHeights, overshoot } = heightForm
   const column =
     top * Math.max(height, 1e-4) ** profileExponent +
     inversionStrength * Math.max(height - inversion, 0) ** 2
   const end = Math.max(height - anvilHeights[0], 0) / (1 - anvilHeights[0])
   const spread =
-    tower * (1 - smoothstep(towerHeights, height)) * Math.min(8 * height, 1) + overshoot * end ** 2
+    (tower * (1 - smoothstep(towerHeights, height)) + needed) * Math.min(8 * height, 1) +
+    overshoot * end ** 2
   return column + anvil * (spread - column)
 }
 

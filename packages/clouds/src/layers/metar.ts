@@ -75,16 +75,17 @@ const preset = (name: CloudPresetName, index = 0): CloudLayerParameters =>
 const fog = (visibility: number): Parameters => ({
   ...preset('overcast'),
   density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET),
-  profileExponent: 0.3,
+  profileExponent: 8,
+  densityGrowth: 0,
   shapeAmount: 0.2
 })
 
 /** Well-known layer for a cloud at a height above the station [m]. */
 function layerOfKind(group: Group, height: number): Parameters {
-  if (isTall(group)) return preset('cumulonimbus')
+  if (isTall(group)) return preset(group[3] === 'CB' ? 'cumulonimbus' : 'congestus')
   if (height >= HIGH) return preset('cirrus')
   const isMedium = height >= MEDIUM
-  const altocumulus = preset('mixed', 1)
+  const altocumulus = preset('altocumulus')
   const { density, wind } = altocumulus
   const amount = eighthsOf(group)
   if (amount === 8) return { ...preset('overcast'), ...(isMedium && { density, wind }) }

@@ -56,7 +56,7 @@ const NO_MOVE = 1e-12
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
 
-/** What neither the camera nor the wind moves of a layer's vector. */
+/** Components of a layer's vector that neither the camera nor the wind moves. */
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
   slot < 3 || slot > 18 ? [x, y, z, w] : []
 

@@ -32,7 +32,7 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
   low: {
     steps: 96,
-    stepGrowth: 0.008,
+    stepGrowth: 0.01,
     shortestStep: 30,
     depthStep: 1.4,
     layerSteps: 6,
@@ -41,7 +41,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   medium: {
     steps: 128,
-    stepGrowth: 0.005,
+    stepGrowth: 0.008,
     shortestStep: 20,
     depthStep: 1,
     layerSteps: 8,
@@ -50,7 +50,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   high: {
     steps: 192,
-    stepGrowth: 0.003,
+    stepGrowth: 0.005,
     shortestStep: 12,
     depthStep: 0.6,
     layerSteps: 12,
@@ -59,7 +59,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   ultra: {
     steps: 512,
-    stepGrowth: 0.0015,
+    stepGrowth: 0.002,
     shortestStep: 5,
     depthStep: 0.3,
     layerSteps: 24,

@@ -1,4 +1,4 @@
-import { If, float, int, vec4 } from 'three/tsl'
+import { If, float, int, mix, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
 import type { LayerNodes } from './layer'
@@ -23,6 +23,8 @@ export interface RayWeather {
   readonly to: FloatVariable
   readonly first: Vec4 & { assign: (n: Vec4) => void }
   readonly last: Vec4 & { assign: (n: Vec4) => void }
+  /** Distance up to which each layer is likely clear [m]. */
+  readonly clear: Vec4 & { assign: (n: Vec4) => void }
 }
 
 /** A variable of a shader. */
@@ -34,8 +36,27 @@ export const rayWeather = (): RayWeather => ({
   from: float(0).toVar(),
   to: float(0).toVar(),
   first: vec4(0).toVar() as RayWeather['first'],
-  last: vec4(0).toVar() as RayWeather['last']
+  last: vec4(0).toVar() as RayWeather['last'],
+  clear: vec4(0).toVar() as RayWeather['clear']
 })
+
+/**
+ * Distance up to which a layer is likely clear: where layers overlap, the rarer ones are not looked at with
+ * every sample of the others.
+ */
+export function clearLayer(
+  { clear }: RayWeather,
+  index: Int
+): { until: Float; assign: (distance: Float) => void } {
+  /** 1 in the layer's component, 0 in the others. */
+  const own = vec4(0, 1, 2, 3).sub(float(index)).abs().min(1).oneMinus().toConst() as Vec4
+  return {
+    until: clear.dot(own).toConst() as Float,
+    assign: distance => {
+      clear.assign(mix(clear, vec4(distance), own) as Vec4)
+    }
+  }
+}
 
 /**
  * Background of a layer's weather at a distance along a ray, between two places of which it was looked up.

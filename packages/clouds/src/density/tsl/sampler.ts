@@ -3,8 +3,8 @@ import type { CloudField } from '../CloudField'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { densityAtHeight } from './heightForm'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
-import { likelyDistance, NOWHERE } from './likelyDistance'
-import { backgroundAlong, type RayWeather } from './rayWeather'
+import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
+import { backgroundAlong, clearLayer, type RayWeather } from './rayWeather'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
 import { weatherBackground, type PackedBackground } from './weatherBackground'
@@ -102,16 +102,24 @@ export function samplePair(
   const greatest = float(0).toVar()
   const { altitude } = sampleAt(middle)
   const isAlone = range.last.sub(range.first).lessThan(int(2)).toConst()
+  const end = samples[1].distance
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, altitude)
-    If(isWithin(layer, height), () => {
+    const clear = clearLayer(kept, index)
+    const isNear = clear.until.lessThan(end).toConst()
+    If(isWithin(layer, height).and(isNear.not()), () => {
+      nearest.assign(nearest.min(clear.until.sub(end)))
+    })
+    If(isWithin(layer, height).and(isNear), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const here = backgroundAlong(field, kept, layer, index, isAlone, middle, sampleAt)
       const options = { detail: true, direction }
       const [first, second] = sampleLayerAt(field, layer, here, samples, options)
       const found = vec2(first.extinction, second.extinction).toConst() as Vec2
-      nearest.assign(nearest.min(likelyDistance(layer, first.strength.max(second.strength))))
+      const likely = likelyDistance(layer, first.strength.max(second.strength)).toConst() as Float
+      clear.assign(likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0) as Float)
+      nearest.assign(nearest.min(likely))
       sum.addAssign(found)
       const both = found.x.add(found.y).toConst() as Float
       If(both.greaterThan(most), () => {

@@ -2,6 +2,7 @@ import { If, bool, float } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { QualityUniforms } from '../quality'
 import type { Bool, Float, Vec2 } from '../../tsl-types'
+import { CAUTION } from '../../density/tsl/likelyDistance'
 import { FAR_AWAY } from './layerBoundaries'
 
 // The step policy of the march, and nothing else: a pair of samples goes half a step and one and a half
@@ -12,14 +13,11 @@ import { FAR_AWAY } from './layerBoundaries'
 /** Least number of steps through a layer that is thinner than a few samples are wide. */
 const LEAST_STEPS = 4
 
-/** Part of the likely distance that a step takes: the rest is left for clouds that are nearer than likely. */
-const CAUTION = 0.8
-
 /**
  * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
  * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
  */
-const CLEAR_GROWTH = 2
+const CLEAR_GROWTH = 4
 
 /** Steps through clear air longer than this many in clouds go back where they find one. */
 const LOOK_BACK = 1.6
@@ -117,7 +115,7 @@ export function nextSteps(
 
 /** Clouds that a pair of samples found: see `SamplePair`. */
 export interface FoundClouds {
-  /** Of both samples [1/m]. */
+  /** Extinction of both samples [1/m]. */
   readonly extinction: Vec2
   readonly likelyDistance: Float
   /** Greatest extinction there, as it counts in the light that comes through [1/m]. */
@@ -145,7 +143,7 @@ export function advance(
     isFine.assign(true)
     part.assign(jitter.max(0.5))
   }).Else(() => {
-    isFine.assign(isCloudy.or(likelyDistance.lessThan(fine.mul(2))))
+    isFine.assign(isCloudy.or(likelyDistance.lessThan(fine)))
     finest.assign(stepIn(quality, greatest, longest))
     likely.assign(likelyDistance)
     before.assign(length)
