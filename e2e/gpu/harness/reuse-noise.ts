@@ -83,7 +83,7 @@ function* restore(
   renderer: Renderer,
   volume: RenderTarget3D,
   kept: Texels
-): Generator<void, void, void> {
+): Generator<number, void, void> {
   let offset = 0
   for (const { level, size, columns, width, height } of levelsOf(volume)) {
     const texels = kept.subarray(offset, (offset += 4 * size ** 3))

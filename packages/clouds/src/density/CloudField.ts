@@ -149,8 +149,11 @@ export class CloudField {
   givenExtinction: ((offset: Vec3) => Float) | null = null
   /** Gain of `fadeIn` in a frame. */
   #fadeInStep = 1
-  readonly #columns: { parameters: CloudLayerParameters; depthScale: number; column: MeanColumn }[] =
-    []
+  readonly #columns: {
+    parameters: CloudLayerParameters
+    depthScale: number
+    column: MeanColumn
+  }[] = []
 
   /**
    * @param view - Nodes of the camera that samples are seen from.

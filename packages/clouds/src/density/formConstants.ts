@@ -16,12 +16,18 @@ export const strengthForm = {
    */
   offset: -0.53,
   coverageOffset: 0.93,
-  fullCoverageExcess: 3.2,
+  fullCoverageExcess: 1.7,
+  /**
+   * The same offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
+   * fraction at which it is 0 (*Cockpit*).
+   */
+  smoothOffset: 0.77,
+  smoothUntil: 0.78,
   /**
    * Levels of detail over which billows are lost in the mean [octaves]: the offset goes with them. Wrong:
    * clouds grow or shrink with the distance (*Cockpit*).
    */
-  billowLevels: [1, 5.5],
+  billowLevels: [1, 4.6],
   /**
    * Levels of detail over which single clouds are lost in the mean [octaves]. It says how much variance
    * blurred weather has left: wrong, and cover changes with the distance (*World clouds*).
@@ -53,7 +59,7 @@ export const heightForm = {
   tower: 2.6,
   towerHeights: [0.3, 0.68],
   /** Strength that anvils need all over [–]: greater, and a storm covers less than it is asked to (*Storm*). */
-  anvil: 0.8,
+  anvil: 1.15,
   /** Height at which anvils end, in [0, 1], and the strength needed there: what overshoots (*Storm*). */
   anvilHeights: [0.72, 1],
   overshoot: 4.6,
@@ -105,5 +111,15 @@ export const columnForm = {
    * Height over the weather's period, times this: how much clouds hide, looked at aslant, as tall bodies
    * would. Smaller: far fields of cumulus show the ground between them at the horizon (*Cockpit*).
    */
-  slantAspect: 5
+  slantAspect: 5,
+  /** Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World clouds*). */
+  tops: 4,
+  /** Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share (*World clouds*). */
+  hiddenBelow: 0.45,
+  leastSeen: 0.3,
+  /**
+   * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
+   * that are dark from afar (*World clouds*).
+   */
+  inside: 1.6
 } as const

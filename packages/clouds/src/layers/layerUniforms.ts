@@ -34,7 +34,7 @@ export const FIELD_PERIOD = 3 * Math.sqrt(6)
  * repetitions fall out of step. 0: the same clouds and billows again and again, in rows (*World clouds*,
  * without its map); much greater: clouds are drawn out.
  */
-export const FIELD_SHIFT = 0.2
+export const FIELD_SHIFT = 0.25
 export const REGION_SHIFT = 0.5
 
 /**

@@ -1,5 +1,11 @@
 import type { CloudLayerParameters } from './CloudLayer'
-import { billowForm, densityForm, heightForm, strengthForm } from '../density/formConstants'
+import {
+  billowForm,
+  columnForm,
+  densityForm,
+  heightForm,
+  strengthForm
+} from '../density/formConstants'
 import { layerForms } from './layerUniforms'
 
 // Integrals over a layer's columns and heights in float64, for clouds that are not seen one by one. The
@@ -11,7 +17,7 @@ export interface MeanColumn {
   readonly columnDensity: number
   /** Mean density inside of clouds, straight up through the middle of strong columns [–]. */
   readonly insideDensity: number
-  /** Mean over all heights of the share of cloudy columns that reach one, times the density there [–]. */
+  /** Mean over all heights of the share of cloudy columns that are seen there: `seenShare` [–]. */
   readonly profileMean: number
 }
 
@@ -65,6 +71,13 @@ export function densityOf(
   return clamp(strength / edgeAt(layer, height), 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
 }
 
+/** Share of cloudy columns that are seen at a height from afar: `seenShare` of density/tsl/unresolved.ts. */
+export function seenShare(layer: CloudLayerParameters, height: number): number {
+  const { tops, hiddenBelow, leastSeen } = columnForm
+  const reached = 1 - neededStrength(layer, height) / strengthForm.strongest
+  return clamp(tops * reached, 0, 1) * clamp(height / hiddenBelow, leastSeen, 1)
+}
+
 const HEIGHTS = 24
 const COLUMNS = 8
 /** Deviations of the billows, and their weights: three-point Gauss–Hermite. */
@@ -80,14 +93,16 @@ const BILLOWS = [
  * @param depthScale - Scaled optical depth over optical depth, by which light comes through [–].
  */
 export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanColumn {
-  const { strongest } = strengthForm
-  const { baseAltitude, topAltitude, density, shapeAmount } = layer
+  const { strongest, offset, coverageOffset, fullCoverageExcess } = strengthForm
+  const { baseAltitude, topAltitude, coverage, density, shapeAmount } = layer
+  const least =
+    shapeAmount * (offset + coverageOffset * coverage) + fullCoverageExcess * coverage ** 32
   const depth = Math.max(density * (topAltitude - baseAltitude) * depthScale, 1e-4)
   const heights = Array.from({ length: HEIGHTS }, (_, i) => (i + 0.5) / HEIGHTS)
   let through = 0
   let inside = 0
   for (let i = 0; i < COLUMNS; i++) {
-    const column = ((i + 0.5) / COLUMNS) * strongest
+    const column = least + ((i + 0.5) / COLUMNS) * strongest
     const mean =
       heights.reduce((sum, height) => {
         const body = column - neededStrength(layer, height)
@@ -103,8 +118,7 @@ export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanCol
   }
   const profileMean =
     heights.reduce((sum, height) => {
-      const share = clamp(1 - neededStrength(layer, height) / strongest, 0, 1)
-      return sum + share * densityAtHeight(layer, height)
+      return sum + seenShare(layer, height)
     }, 0) / HEIGHTS
   return {
     columnDensity: -Math.log(Math.max(through, 1e-30)) / depth,

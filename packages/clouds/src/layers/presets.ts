@@ -68,9 +68,9 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       baseAltitude: 800,
       topAltitude: 1300,
       coverage: 0.8,
-      density: 0.06,
+      density: 0.08,
       profileExponent: 1.5,
-      edgeSoftness: 0.4,
+      edgeSoftness: 0.25,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 9, north: 4 }
     }
@@ -81,8 +81,9 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       topAltitude: 1500,
       coverage: 1,
       density: 0.02,
-      profileExponent: 2,
-      edgeSoftness: 0.6,
+      profileExponent: 0.7,
+      shapeAmount: 0.7,
+      edgeSoftness: 0.4,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 10, north: 5 }
     }

@@ -22,7 +22,8 @@ import {
   densityOf,
   edgeAt,
   meanColumn,
-  neededStrength
+  neededStrength,
+  seenShare
 } from '../../src/layers/meanColumn'
 import { windAxis } from '../../src/layers/wind'
 import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
@@ -163,9 +164,10 @@ export function weatherAt(
     shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, REGION_SHIFT),
     fieldLevel
   )
-  const shift = new Vector3(fields[0], fields[1], 0)
-    .multiplyScalar(FIELD_SHIFT * period)
-    .add(new Vector3(region[0], region[1], 0).multiplyScalar(REGION_SHIFT * period))
+  const [shiftX, shiftY] = [0, 1].map(
+    axis => (FIELD_SHIFT * fields[axis] + REGION_SHIFT * region[axis]) * period
+  )
+  const shift = new Vector3(shiftX, shiftY, (shiftX - shiftY) / Math.SQRT2)
   const coverage = coverageAt(state, layer, zenith, new Vector3(fields[2], fields[0], fields[1]))
 
   const lean = new Vector3()
@@ -213,14 +215,17 @@ export function weatherAt(
 /** Strength of a column, before billows: tsl/strength.ts. */
 function columnStrength(
   { shapeAmount }: CloudLayerParameters,
-  { sum, coverage }: CloudWeather,
+  { sum, coverage, unresolvedFraction }: CloudWeather,
   billowsLost: number
 ): number {
   const { strongest, leastCoverage, offset, coverageOffset, fullCoverageExcess } = strengthForm
+  const { smoothOffset, smoothUntil } = strengthForm
+  const smooth = smoothOffset * Math.max(1 - unresolvedFraction / smoothUntil, 0)
+  const near = offset + coverageOffset * coverage
   const rank = cumulative(sum)
   return (
     (strongest * (rank - (1 - coverage))) / Math.max(coverage, leastCoverage) +
-    shapeAmount * (1 - billowsLost) * (offset + coverageOffset * coverage) +
+    shapeAmount * (near + billowsLost * (smooth - near)) +
     fullCoverageExcess * coverage ** 32
   )
 }
@@ -323,8 +328,7 @@ export function sampleLayer(
   const columnDepth = Math.max(density * thickness * depthScale * column.columnDensity, 1e-4)
   const passing = 1 - filteredCoverage * (1 - Math.exp(-columnDepth))
   const whole = -Math.log(Math.max(passing, 1e-30)) / depthScale / thickness / density
-  const reached = clamp(1 - neededStrength(layer, height) / strengthForm.strongest, 0, 1)
-  const far = (whole * reached * atHeight) / column.profileMean
+  const far = (whole * seenShare(layer, height)) / column.profileMean
   const through =
     (1 - unresolvedFraction) * Math.exp(-near * columnDepth) +
     unresolvedFraction * Math.exp(-far * columnDepth)

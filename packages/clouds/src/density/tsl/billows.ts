@@ -1,10 +1,10 @@
-import { If, log2, vec2, vec3 } from 'three/tsl'
+import { If, log2, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { billowForm } from '../formConstants'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { ENCODING_SCALE } from '../../noise/noiseRecipes'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import type { LayerNodes } from './layer'
+import { inLattice, type LayerNodes } from './layer'
 
 /** Level of detail for a footprint; 0 where texels are wider. */
 const levelOf = (footprint: Float, texel: Float | number): Float =>
@@ -42,7 +42,7 @@ export function billows(
   footprint: Float
 ): Billows {
   const { perShapePeriod } = layer
-  const place = layer.shapeLattice(offset).add(vec3(shift.mul(perShapePeriod), 0)) as Vec3
+  const place = layer.shapeLattice(offset).add(inLattice(shift).mul(perShapePeriod)) as Vec3
   const level = levelOf(footprint.mul(perShapePeriod), 1 / NOISE_SIZE.shape)
   const noise = decoded(field.textures.shape.sample(place).level(level))
   return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() as Vec2, level }
@@ -90,9 +90,4 @@ export const MOST_DETAIL = 2.5
 
 /** Share of fine billows and detail that a body has, in [0, 1]: bodies have heads, crumbs do not. */
 export const fineShare = (strength: Float): Float =>
-  strength
-    .sub(billowForm.fineFrom)
-    .div(billowForm.fineOver)
-    .add(1)
-    .clamp(0, 1)
-    .toConst() as Float
+  strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp(0, 1).toConst() as Float

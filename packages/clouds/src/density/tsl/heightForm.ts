@@ -24,8 +24,14 @@ export function neededStrength(layer: LayerNodes, height: Float): Float {
   const needed = column.toVar() as Float
   If(layer.anvil.greaterThan(0), () => {
     const { tower, towerHeights, anvil, anvilHeights, overshoot } = heightForm
-    const towers = smoothstep(...towerHeights, height).oneMinus().mul(tower)
-    const end = height.sub(anvilHeights[0]).max(0).div(1 - anvilHeights[0]).toConst()
+    const towers = smoothstep(...towerHeights, height)
+      .oneMinus()
+      .mul(tower)
+    const end = height
+      .sub(anvilHeights[0])
+      .max(0)
+      .div(1 - anvilHeights[0])
+      .toConst()
     const spread = towers.add(anvil).mul(height.mul(8).min(1)).add(end.mul(end).mul(overshoot))
     needed.assign(layer.anvil.mix(needed, spread))
   })

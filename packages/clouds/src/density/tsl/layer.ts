@@ -3,10 +3,25 @@ import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { latticeRotations } from '../lattice'
 import { LAYER_STRIDE, REGION_PERIOD } from '../../layers/layerUniforms'
-import { loop, type Bool, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
+import {
+  loop,
+  type Bool,
+  type Float,
+  type Int,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../../tsl-types'
 
 /** Place in a lattice of noise, in its periods, of a displacement in the mapped space [m]. */
 export type Lattice = (displacement: Vec3) => Vec3
+
+/**
+ * Displacement in a lattice by two numbers: its third component has none of its own, since where the lattice
+ * stands upright it is horizontal.
+ */
+export const inLattice = (displacement: Vec2): Vec3 =>
+  vec3(displacement, displacement.x.sub(displacement.y).mul(Math.SQRT1_2)) as Vec3
 
 /** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
 export interface LayerNodes {
@@ -99,7 +114,11 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     fieldLattice: lattice(12),
     regionLattice: lattice(15),
     directionInLayer: v => {
-      const [x, y, z] = [0, 1, 2].map(row => read(15 + row).xyz.dot(v).mul(REGION_PERIOD))
+      const [x, y, z] = [0, 1, 2].map(row =>
+        read(15 + row)
+          .xyz.dot(v)
+          .mul(REGION_PERIOD)
+      )
       return rotate(fromRegions, vec3(x, y, z))
     },
     shearAxis: shear.xyz,

@@ -71,7 +71,7 @@ function bodyAt(
   )
   const lost = billowsLost(heads.level)
   const amount = billowStrength(layer, height)
-  const body = columnStrength(layer, weather.sum, background.coverage, lost)
+  const body = columnStrength(layer, weather, background.coverage, lost)
     .sub(neededStrength(layer, height))
     .add(heads.coarse.mul(amount.coarse))
     .toConst() as Float
@@ -138,4 +138,3 @@ export function sampleLayer(
 ): LayerSample {
   return sampleLayerAt(field, layer, background, [sample], options)[0]
 }
-

@@ -4,6 +4,7 @@ import type { Float } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import type { LayerNodes } from './layer'
 import { squared } from './squared'
+import type { CloudWeather } from './weather'
 
 /**
  * Strength of a column: how high its cloud can grow, before billows add to it.
@@ -12,23 +13,27 @@ import { squared } from './squared'
  * over the share c of the sky. There strength goes from 0 to `strongest`, whatever the coverage: few clouds
  * are as tall as many. An offset makes up for the billows, which add more at edges than they take.
  *
- * @param weather - Sum of variance 1: u is its rank.
+ * @param weather - Its sum has variance 1: u is its rank.
  * @param coverage - c, in [0, 1].
  * @param billowsLost - Share of billows that levels of detail have lost, in [0, 1].
  */
 export function columnStrength(
   layer: LayerNodes,
-  weather: Float,
+  { sum, unresolvedFraction }: Pick<CloudWeather, 'sum' | 'unresolvedFraction'>,
   coverage: Float,
   billowsLost: Float
 ): Float {
   const { strongest, leastCoverage, offset, coverageOffset, fullCoverageExcess } = strengthForm
-  const forBillows = coverage
-    .mul(coverageOffset)
-    .add(offset)
+  const { smoothOffset, smoothUntil } = strengthForm
+  const smooth = unresolvedFraction
+    .mul(-1 / smoothUntil)
+    .add(1)
+    .max(0)
+    .mul(smoothOffset)
+  const forBillows = billowsLost
+    .mix(coverage.mul(coverageOffset).add(offset), smooth)
     .mul(layer.shapeAmount)
-    .mul(billowsLost.oneMinus())
-  return cumulative(weather)
+  return cumulative(sum)
     .sub(1)
     .add(coverage)
     .mul(strongest)
@@ -39,5 +44,4 @@ export function columnStrength(
 }
 
 /** Share of the billows that a level of detail of the shape has lost, in [0, 1]. */
-export const billowsLost = (level: Float): Float =>
-  smoothstep(...strengthForm.billowLevels, level)
+export const billowsLost = (level: Float): Float => smoothstep(...strengthForm.billowLevels, level)

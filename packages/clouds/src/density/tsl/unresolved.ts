@@ -2,7 +2,7 @@ import { float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { columnForm, strengthForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
-import { densityAtHeight, neededStrength } from './heightForm'
+import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
 
 // Clouds too small or too far to be seen one by one, as mean columns that let the same light through.
@@ -48,13 +48,18 @@ export function slantCoverFactor(layer: LayerNodes, cosine: Float): Float {
   return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }
 
-/** Share of cloudy columns that reach a height, times the density there, in [0, 1]: `columnProfile`. */
-const columnProfile = (layer: LayerNodes, height: Float): Float =>
+/**
+ * Share of cloudy columns that are seen at a height, in [0, 1]: more than those that reach it, since what one sees
+ * of clouds from afar are their tops.
+ */
+const seenShare = (layer: LayerNodes, height: Float): Float =>
   neededStrength(layer, height)
     .div(strengthForm.strongest)
     .oneMinus()
+    .mul(columnForm.tops)
     .clamp(0, 1)
-    .mul(densityAtHeight(layer, height))
+    .mul(height.div(columnForm.hiddenBelow).clamp(columnForm.leastSeen, 1))
+    .toConst() as Float
 
 /** Meaning of a sample of unresolved clouds: their mean over the sky, or the inside of one. */
 export type Unresolved = 'mean' | 'inside'
@@ -79,7 +84,8 @@ export function unresolvedDensity(
           .mul(layer.perThickness)
           .div(layer.density.max(1e-9))
       : layer.insideDensity
-  const shape = columnProfile(layer, height).div(layer.profileMean)
+  const profile = seenShare(layer, height).div(layer.profileMean)
+  const shape = unresolved === 'inside' ? profile.mul(columnForm.inside) : profile
   const columnDepth = columnOpticalDepth(field, layer)
   const slant = cosine === undefined ? float(1) : slantCoverFactor(layer, cosine).mul(cosine.abs())
   return { density: whole.mul(shape).mul(slant).toConst() as Float, columnDepth }

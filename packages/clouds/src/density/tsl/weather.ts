@@ -4,7 +4,7 @@ import { strengthForm } from '../formConstants'
 import { FIELD_PERIOD, REGION_CELLS, REGION_PERIOD } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
-import type { LayerNodes } from './layer'
+import { inLattice, type LayerNodes } from './layer'
 import { footprintOf, type CloudSample } from './sample'
 import {
   unpackBackground,
@@ -30,12 +30,7 @@ const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
 
 /** Variance of the weather's sum that levels of detail have lost: none near by. */
-function lostVariance(
-  layer: LayerNodes,
-  footprint: Float,
-  level: Float,
-  cloudLevel: Float
-): Float {
+function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLevel: Float): Float {
   const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
   const fieldVariance = layer.cloudVariance
     .add(layer.planet.mul(layer.planet))
@@ -87,8 +82,7 @@ export function cloudWeather(
 ): CloudWeather {
   const scale = layer.perWeatherPeriod
   const level = weatherLevel(footprint, scale)
-  // The third component has no turbulence of its own: where the lattice stands upright, it is horizontal.
-  const bent = vec3(bend.add(background.shift), bend.x.sub(bend.y).mul(Math.SQRT1_2))
+  const bent = inLattice(bend.add(background.shift) as Vec2)
   const clouds = field.textures.weather
     .sample(layer.weatherLattice(subpoint).add(bent.mul(scale)) as Vec3)
     .level(level)

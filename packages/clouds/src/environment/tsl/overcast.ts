@@ -76,10 +76,7 @@ export function decksAround(
       const subpoint = subpointOffset(field, sample).toConst()
       const filteredCoverage = filteredCoverageAt(field, layer, subpoint, sample)
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
-      const depth = layer.density
-        .mul(layer.columnDensity)
-        .mul(light.depthScale)
-        .toConst() as Float
+      const depth = layer.density.mul(layer.columnDensity).mul(light.depthScale).toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
       const passing = (part: Float): Float => filteredCoverage.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {

@@ -103,9 +103,9 @@ export function nextSteps(
   end: Float
 ): StepPair {
   const growing = position.mul(quality.stepGrowth).toConst() as Float
-  const fine = finest.max(growing).toConst() as Float
-  const least = fine.max(growing.mul(CLEAR_GROWTH)).toConst() as Float
-  const clear = likely.mul(CAUTION).clamp(least, longest.max(least))
+  const fine = finest.max(growing).min(longest).toConst() as Float
+  const least = fine.max(growing.mul(CLEAR_GROWTH)).min(longest).toConst() as Float
+  const clear = likely.mul(CAUTION).clamp(least, longest)
   const left = end.sub(position).mul(0.5)
   const whole = isFine.select(fine, clear) as Float
   const length = whole.mul(part.max(0.1)).min(left).max(0.01).toConst() as Float

@@ -95,7 +95,9 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
       const length = segment.front.sub(segment.back).max(0).div(STEPS).toConst() as Float
       If(length.greaterThan(0).and(layer.coverage.greaterThan(0)), () => {
         // What is shorter than steps would show as rings.
-        const distance = texel.distance.max(length.mul(BLUR).div(field.pixelAngle)).toConst() as Float
+        const distance = texel.distance
+          .max(length.mul(BLUR).div(field.pixelAngle))
+          .toConst() as Float
         const sums = segmentMoments(field, layer, segment, length, at => sampleAt(at, distance))
         const depth = sums.x.toConst() as Float
         weighted.addAssign(sums.mul(depth))
