@@ -242,7 +242,7 @@ export class CloudField {
     const periods = layerPeriods(parameters)
     const scales = weatherScales(weatherWeights, this.worldMap !== null, openCells)
     const { stretch, edge, coarseness } = layerForms(parameters)
-    const { columnDensity, insideDensity, profileMean } = this.#meanColumn(index, parameters)
+    const column = this.#meanColumn(index, parameters)
     const bend = turbulence * billowForm.bend * periods.shape
     const lattice = (rotation: Quaternion, period: number, from: Vector3, across = 1): number[][] =>
       latticeRows(this.rotations[index], rotation, period, from, across)
@@ -259,9 +259,9 @@ export class CloudField {
       ...lattice(region, REGION_PERIOD, _subpoint),
       [...windAxis(parameters.wind, _up, _axis).multiplyScalar(parameters.shear), bend],
       [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
-      [columnDensity, insideDensity, profileMean, parameters.densityGrowth],
+      [column.columnDensity, column.insideDensity, column.profileMean, parameters.densityGrowth],
       [1 / edge, coarseness, parameters.anvil, parameters.shadow ? 1 : 0],
-      [1 / periods.weather, 1 / periods.detail, parameters.shear, 0]
+      [1 / periods.weather, 1 / periods.detail, column.fullDensity, parameters.shear]
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }

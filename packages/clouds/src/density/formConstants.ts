@@ -115,11 +115,11 @@ export const columnForm = {
   /** Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World clouds*). */
   tops: 4,
   /** Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share (*World clouds*). */
-  hiddenBelow: 0.45,
+  hiddenBelow: 0.41,
   leastSeen: 0.3,
   /**
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
    * that are dark from afar (*World clouds*).
    */
-  inside: 1.6
+  inside: 1.5
 } as const

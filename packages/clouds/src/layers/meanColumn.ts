@@ -15,6 +15,8 @@ import { layerForms } from './layerUniforms'
 export interface MeanColumn {
   /** Density of an even column that lets as much light through as cloudy columns do in the mean [–]. */
   readonly columnDensity: number
+  /** The same where all is covered [–]. */
+  readonly fullDensity: number
   /** Mean density inside of clouds, straight up through the middle of strong columns [–]. */
   readonly insideDensity: number
   /** Mean over all heights of the share of cloudy columns that are seen there: `seenShare` [–]. */
@@ -87,42 +89,58 @@ const BILLOWS = [
   [Math.sqrt(3), 1 / 6]
 ] as const
 
-/**
- * Means over a layer's columns, whose strength is as frequent at any value up to `strongest`.
- *
- * @param depthScale - Scaled optical depth over optical depth, by which light comes through [–].
- */
-export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanColumn {
+/** Density of an even column for a coverage, and the mean density of the strongest columns [–]. */
+function columnAt(
+  layer: CloudLayerParameters,
+  coverage: number,
+  depth: number
+): { density: number; inside: number } {
   const { strongest, offset, coverageOffset, fullCoverageExcess } = strengthForm
-  const { baseAltitude, topAltitude, coverage, density, shapeAmount } = layer
+  const { shapeAmount } = layer
   const least =
     shapeAmount * (offset + coverageOffset * coverage) + fullCoverageExcess * coverage ** 32
-  const depth = Math.max(density * (topAltitude - baseAltitude) * depthScale, 1e-4)
-  const heights = Array.from({ length: HEIGHTS }, (_, i) => (i + 0.5) / HEIGHTS)
+  const amount = shapeAmount * billowForm.coarse
   let through = 0
   let inside = 0
   for (let i = 0; i < COLUMNS; i++) {
     const column = least + ((i + 0.5) / COLUMNS) * strongest
-    const mean =
-      heights.reduce((sum, height) => {
-        const body = column - neededStrength(layer, height)
-        const amount = shapeAmount * billowForm.coarse
-        const here = BILLOWS.reduce((part, [deviation, weight]) => {
-          const strength = body + amount * deviation
-          return part + weight * densityOf(layer, strength, strength, height)
-        }, 0)
-        return sum + here * densityAtHeight(layer, height)
-      }, 0) / HEIGHTS
+    const mean = meanOverHeights(height => {
+      const body = column - neededStrength(layer, height)
+      const here = BILLOWS.reduce((part, [deviation, weight]) => {
+        const strength = body + amount * deviation
+        return part + weight * densityOf(layer, strength, strength, height)
+      }, 0)
+      return here * densityAtHeight(layer, height)
+    })
     through += Math.exp(-depth * mean) / COLUMNS
     inside = Math.max(inside, mean)
   }
-  const profileMean =
-    heights.reduce((sum, height) => {
-      return sum + seenShare(layer, height)
-    }, 0) / HEIGHTS
+  return { density: -Math.log(Math.max(through, 1e-30)) / depth, inside }
+}
+
+/** Mean of a function over the heights of a layer. */
+function meanOverHeights(value: (height: number) => number): number {
+  let sum = 0
+  for (let i = 0; i < HEIGHTS; i++) sum += value((i + 0.5) / HEIGHTS)
+  return sum / HEIGHTS
+}
+
+/**
+ * Means over a layer's columns, whose strength is as frequent at any value of a range of `strongest`.
+ *
+ * @param depthScale - Scaled optical depth over optical depth, by which light comes through [–].
+ */
+export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanColumn {
+  const { baseAltitude, topAltitude, coverage, density } = layer
+  const depth = Math.max(density * (topAltitude - baseAltitude) * depthScale, 1e-4)
+  const column = columnAt(layer, coverage, depth)
   return {
-    columnDensity: -Math.log(Math.max(through, 1e-30)) / depth,
-    insideDensity: inside,
-    profileMean: Math.max(profileMean, 1e-3)
+    columnDensity: column.density,
+    fullDensity: columnAt(layer, 1, depth).density,
+    insideDensity: column.inside,
+    profileMean: Math.max(
+      meanOverHeights(height => seenShare(layer, height)),
+      1e-3
+    )
   }
 }

@@ -325,7 +325,9 @@ export function sampleLayer(
   }
   const depthScale = state.depthScale ?? 1
   const column = meanColumn(layer, depthScale)
-  const columnDepth = Math.max(density * thickness * depthScale * column.columnDensity, 1e-4)
+  const { columnDensity, fullDensity } = column
+  const meanDensity = columnDensity + filteredCoverage ** 32 * (fullDensity - columnDensity)
+  const columnDepth = Math.max(density * thickness * depthScale * meanDensity, 1e-4)
   const passing = 1 - filteredCoverage * (1 - Math.exp(-columnDepth))
   const whole = -Math.log(Math.max(passing, 1e-30)) / depthScale / thickness / density
   const far = (whole * seenShare(layer, height)) / column.profileMean

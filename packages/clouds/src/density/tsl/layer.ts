@@ -59,6 +59,7 @@ export interface LayerNodes {
   coarseness: Float
   /** `meanColumn`. */
   columnDensity: Float
+  fullDensity: Float
   insideDensity: Float
   profileMean: Float
   /** Lattices for displacements from the camera. */
@@ -136,7 +137,8 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     anvil: edges.z,
     shadow: edges.w,
     perWeatherPeriod: periods.x,
-    perDetailPeriod: periods.y
+    perDetailPeriod: periods.y,
+    fullDensity: periods.z
   }
 }
 

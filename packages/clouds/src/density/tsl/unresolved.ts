@@ -4,15 +4,24 @@ import { columnForm, strengthForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
+import { squared } from './squared'
 
 // Clouds too small or too far to be seen one by one, as mean columns that let the same light through.
 // Integrals over columns and heights come from the CPU: layers/meanColumn.ts.
 
+/** Mean density of a cloudy column, over the layer's: clouds that have grown together are thicker [–]. */
+export const columnDensityAt = (layer: LayerNodes, filteredCoverage: Float): Float =>
+  squared(filteredCoverage, 5).mix(layer.columnDensity, layer.fullDensity)
+
 /** Vertical optical depth of a cloud, as it counts in the light that comes through. */
-const columnOpticalDepth = ({ depthScale }: CloudField, layer: LayerNodes): Float =>
+const columnOpticalDepth = (
+  { depthScale }: CloudField,
+  layer: LayerNodes,
+  filteredCoverage: Float
+): Float =>
   layer.density
     .mul(layer.thickness)
-    .mul(layer.columnDensity)
+    .mul(columnDensityAt(layer, filteredCoverage))
     .mul(depthScale)
     .max(1e-4)
     .toConst() as Float
@@ -28,7 +37,9 @@ export function effectiveOpticalDepth(
   layer: LayerNodes,
   filteredCoverage: Float
 ): Float {
-  const blocked = filteredCoverage.mul(columnOpticalDepth(field, layer).negate().exp().oneMinus())
+  const blocked = filteredCoverage.mul(
+    columnOpticalDepth(field, layer, filteredCoverage).negate().exp().oneMinus()
+  )
   // Thick clouds let nothing through, in float32.
   return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst() as Float
 }
@@ -86,7 +97,7 @@ export function unresolvedDensity(
       : layer.insideDensity
   const profile = seenShare(layer, height).div(layer.profileMean)
   const shape = unresolved === 'inside' ? profile.mul(columnForm.inside) : profile
-  const columnDepth = columnOpticalDepth(field, layer)
+  const columnDepth = columnOpticalDepth(field, layer, filteredCoverage)
   const slant = cosine === undefined ? float(1) : slantCoverFactor(layer, cosine).mul(cosine.abs())
   return { density: whole.mul(shape).mul(slant).toConst() as Float, columnDepth }
 }

@@ -6,6 +6,7 @@ import type { CloudLight } from '../../light/CloudLightTable'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { forLayers, layerAt } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
+import { columnDensityAt } from '../../density/tsl/unresolved'
 import { filteredCoverageAt } from '../../density/tsl/weather'
 
 /** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: test/twins/overcast.ts */
@@ -76,7 +77,10 @@ export function decksAround(
       const subpoint = subpointOffset(field, sample).toConst()
       const filteredCoverage = filteredCoverageAt(field, layer, subpoint, sample)
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
-      const depth = layer.density.mul(layer.columnDensity).mul(light.depthScale).toConst() as Float
+      const depth = layer.density
+        .mul(columnDensityAt(layer, filteredCoverage))
+        .mul(light.depthScale)
+        .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
       const passing = (part: Float): Float => filteredCoverage.mul(part.sub(1)).add(1)
       const add = (sum: Vec3, length: Float, place: Float): Float => {

@@ -7,7 +7,7 @@ import { loop, type Bool, type Float, type Int, type Vec3 } from '../../tsl-type
 import type { LayerSegment } from './layerSegment'
 
 /** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun. */
-export const STEPS = 32
+export const STEPS = 48
 
 /**
  * Steps longer than this are cut in three to find where clouds begin [m]; how often, and on a ray. Without,
