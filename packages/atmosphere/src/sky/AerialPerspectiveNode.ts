@@ -14,6 +14,7 @@ import {
 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, PassNode, Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
+import { checkShafts, type AirOptions } from '../view/AirShadows'
 import { PostEffectNode } from '../view/PostEffectNode'
 import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
@@ -41,7 +42,7 @@ import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
  * depth, which is wrong for most of its samples at silhouettes and, from space, everywhere (smooth
  * edges afterwards, or use the fog node). What is transparent and writes no depth gets the
  * air of what is behind it; the fog node has no such limit. Knows standard, reversed and logarithmic
- * depth, perspective and orthographic cameras.
+ * depth, perspective and orthographic cameras. Its option `shafts` has shadows fall into air and sky.
  */
 export class AerialPerspectiveNode extends PostEffectNode {
   static get type(): string {
@@ -55,6 +56,19 @@ export class AerialPerspectiveNode extends PostEffectNode {
   readonly #near = uniform(0.1)
   readonly #far = uniform(1000)
   readonly #backdrop = new Backdrop()
+
+  /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
+  constructor(
+    colorNode: Node,
+    depthNode: Node,
+    camera: Camera,
+    atmosphere: Atmosphere,
+    options: AirOptions = {}
+  ) {
+    super(colorNode, depthNode, camera, atmosphere)
+    checkShafts('AerialPerspectiveNode', options)
+    this._shafts = options.shafts?.upTo(depthNode)
+  }
 
   override customCacheKey(): number {
     return 4 * super.customCacheKey() + (this.showSky ? 1 : 0) + (this.showSun ? 2 : 0)
@@ -106,14 +120,14 @@ export class AerialPerspectiveNode extends PostEffectNode {
         const at = isLogarithmic
           ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
           : position(depth)
-        const air = aerialPerspectiveTo(this.view, at)
+        const air = aerialPerspectiveTo(this.view, at, this.layers)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
         // Silhouettes (with multisampling) and transparent things cover a part of the pixel.
         If(coverage.lessThan(1), () => {
           const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
-          const sky = skyColor(this.view, direction, this.showSun ? pixel : null)
+          const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers)
           result.addAssign(sky.mul(coverage.oneMinus()))
         })
       }
@@ -127,5 +141,6 @@ export const aerialPerspective = (
   color: Node,
   depth: Node,
   camera: Camera,
-  atmosphere: Atmosphere
-): AerialPerspectiveNode => new AerialPerspectiveNode(color, depth, camera, atmosphere)
+  atmosphere: Atmosphere,
+  options?: AirOptions
+): AerialPerspectiveNode => new AerialPerspectiveNode(color, depth, camera, atmosphere, options)

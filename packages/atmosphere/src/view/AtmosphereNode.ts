@@ -2,6 +2,7 @@ import type { Camera } from 'three'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
+import type { SkyLayer } from './SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from './ViewNodes'
 
 /**
@@ -39,6 +40,8 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   readonly atmosphere: Atmosphere
   /** Uniforms and tables for shaders, as the camera that renders sees them. */
   protected readonly view: ViewNodes
+  /** What is drawn of the air after the atmosphere's layers: its shadows. */
+  protected _shafts: SkyLayer | undefined
   #layersVersion = 0
 
   /**
@@ -53,6 +56,11 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     this.view = viewNodes(atmosphere, camera)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
+  }
+
+  /** Layers of the sky, and shadows in the air if the node was given some. */
+  protected get layers(): readonly SkyLayer[] {
+    return [...this.atmosphere.layers, ...(this._shafts ? [this._shafts] : [])]
   }
 
   // Layers are part of the shader; the id tells a scene that one sky has taken another's place.
@@ -71,13 +79,13 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   override updateBefore(frame: NodeFrame): undefined {
     const view = this.view.prepare(frame)
     if (view === undefined) return
-    for (const layer of this.atmosphere.layers) layer.prepare?.(frame.renderer!, view)
+    for (const layer of this.layers) layer.prepare?.(frame.renderer!, view)
   }
 
   // Apart from updateBefore, where a nested render (a mirror's) may still set another camera's values.
   override update(frame: NodeFrame): undefined {
     const view = this.view.update(frame)
     if (view === undefined) return
-    for (const layer of this.atmosphere.layers) layer.update?.(view)
+    for (const layer of this.layers) layer.update?.(view)
   }
 }
