@@ -339,9 +339,11 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     expectClose(column, u, { absolute: 2e-5 }, 'column')
     // Near the line to the light float32 has few directions.
     const blur = 3e-7 * (1 + Math.abs(z) / distance)
-    expectClose(turn, 0.5, { absolute: 2e-6 + blur }, 'row')
-    expectClose(angle, -Math.atan2(z, distance), { absolute: 2e-6 }, 'angle')
-    expectClose(crossing, 1, { absolute: 2e-5 + 4 * blur }, 'distance from the line to the light')
+    expectClose(turn, 0.5, { absolute: 2e-5 + blur }, 'row')
+    // WGSL asks 4096 units in the last place of atan2, and software gives no more.
+    expectClose(angle, -Math.atan2(z, distance), { absolute: 1e-4 }, 'angle')
+    // Of sine and cosine it asks 2⁻¹¹.
+    expectClose(crossing, 1, { absolute: 2 ** -11 + 4 * blur }, 'distance from the line to the light')
   })
 })
 

@@ -1,5 +1,5 @@
 import type { DepthTexture, Matrix4, Vector2, Vector4 } from 'three'
-import { Fn, If, atan, float, ivec2, texture, textureLoad, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, atan, float, ivec2, mix, texture, textureLoad, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode, UniformNode } from 'three/webgpu'
 import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import { lightRayAt, type PolarFrame } from './polarMap'
@@ -56,8 +56,8 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2): Float {
     const texel = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
     return (textureLoad(depth, ivec2(texel)) as unknown as Vec4).r
   }
-  const upper = read(0, 0).mix(read(1, 0), part.x)
-  return (upper as Float).mix(read(0, 1).mix(read(1, 1), part.x), part.y)
+  const [upper, lower] = [0, 1].map(y => mix(read(0, y), read(1, y), part.x))
+  return mix(upper, lower, part.y)
 }
 
 /**
