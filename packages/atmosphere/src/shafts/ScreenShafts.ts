@@ -9,11 +9,8 @@ import { vector2 } from '../uniforms'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
-import { lostLight, type ShadowedAir, type ShaftSteps } from './tsl/lostLight'
+import { lostLight, staggered, type ShadowedAir, type ShaftSteps } from './tsl/lostLight'
 import { DepthRays } from './tsl/depthRay'
-
-/** Places of samples in their steps, in 2 × 2 pixels: any four that touch have all of them. */
-const JITTER = [0.125, 0.625, 0.875, 0.375]
 
 /** Octaves of depth by which pixels may differ and still share light, and by which they share none. */
 const SAME_DEPTH = 0.2
@@ -108,12 +105,9 @@ export class ScreenShafts implements SkyLayer {
       const cosView = towards.dot(view.up).clamp(-1, 1).toConst() as Float
       const cosViewLight = towards.dot(view.lightDirection).toConst() as Float
       const ray = { direction: towards, cosView, cosViewLight, distance }
-      const phase = pixel.mod(2).toConst()
-      const [a, b, c, d] = JITTER
-      const upper = phase.x.greaterThan(0.5).select(b, a)
-      const lower = phase.x.greaterThan(0.5).select(d, c)
-      const jitter = phase.y.greaterThan(0.5).select(lower, upper) as Float
-      return lostLight(view, shafts.shadowedAir, ray, shafts.steps, jitter).mul(RADIANCE_SCALE)
+      return lostLight(view, shafts.shadowedAir, ray, shafts.steps, staggered(pixel)).mul(
+        RADIANCE_SCALE
+      )
     })()
   }
 

@@ -8,8 +8,8 @@ import type { SphericalSpace } from '../view/cpu/spherical'
 import type { ShadowMap } from './shadowMaps'
 import { occluderAngle, type DepthStorage, type ShadowMapNodes } from './tsl/occluderAngle'
 
-/** Least over greatest distance of rays of light from the eye's: 14 octaves. */
-const LEAST_PART = 2 ** -14
+/** Part of the greatest distance up to which columns are even. */
+const EVEN_PART = 1e-3
 
 const _axes = new Matrix4()
 const _linear = new Matrix3()
@@ -36,9 +36,11 @@ export class SunPolarMap {
   readonly frame = {
     across: vector3(),
     along: vector3(),
+    evenDistance: number(1),
     logScale: number(1),
     logOffset: number(),
-    columns: number(1)
+    columns: number(1),
+    texel: vector2()
   }
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
   readonly reach = number()
@@ -70,6 +72,7 @@ export class SunPolarMap {
     this.#setSources(renderer, maps)
     this.target.setSize(rows / 2, rows)
     this.frame.columns.value = rows / 2
+    this.frame.texel.value.set(2 / rows, 1 / rows)
     this.#setFrame(view, space, maps)
     this.#pass!.render(renderer, this.target)
   }
@@ -133,8 +136,10 @@ export class SunPolarMap {
       const perMeter = _end.copy(lightDirection).applyMatrix4(_toMap).z - start
       this.#sources[i].metersPerDepth.value = 1 / perMeter
     })
-    const last = Math.log(greatest)
-    const first = Math.min(Math.log(Math.max(least, greatest * LEAST_PART)), last - 1e-3)
+    const even = EVEN_PART * greatest
+    const last = Math.log1p(greatest / even)
+    const first = Math.min(Math.log1p(least / even), last - 1e-3)
+    this.frame.evenDistance.value = even
     logScale.value = 1 / (last - first)
     logOffset.value = -first / (last - first)
     this.reach.value = greatest

@@ -1,4 +1,4 @@
-import { If, float, int, vec4 } from 'three/tsl'
+import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { densities } from '../../air/tsl/medium'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
@@ -8,7 +8,7 @@ import { EXTINCTION_SCALE, meanExtinction, viewRay } from '../../skyVolume/tsl/s
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { slicePosition } from '../../skyVolume/tsl/volumeMapping'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
-import { loop, type Float, type Vec3, type Vec4 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import { occluderAngleAt, polarRay, type PolarFrame } from './polarMap'
 import { warpedSteps } from './warpedSteps'
@@ -76,11 +76,11 @@ export function lostLight(
     loop('group', int(groups), group => {
       const dark = float(0).toVar()
       const sum = float(0).toVar()
-      loop('sample', int(samples), sample => {
-        const part = float(sample).add(jitter).mul(perSample).add(float(group)).mul(perGroup)
+      loop('look', int(samples), look => {
+        const part = float(look).add(jitter).mul(perSample).add(float(group)).mul(perGroup)
         const position = part.toConst() as Float
         const fromAxis = steps.distance(position).add(limits.start).mul(polar.sinViewLight)
-        const occluder = occluderAngleAt(map, frame, polar.row, fromAxis.max(1e-3))
+        const occluder = occluderAngleAt(map, frame, polar.row, fromAxis)
         If(polar.angle.greaterThan(occluder), () => {
           dark.addAssign(1)
           sum.addAssign(position)
@@ -107,4 +107,15 @@ export function lostLight(
     })
   })
   return lost
+}
+
+/** Places of samples in their steps, in 2 × 2 pixels: any four that touch have all of them. */
+const STAGGERED = [0.125, 0.625, 0.875, 0.375]
+
+/** Place of a pixel's samples in their steps. */
+export function staggered(pixel: Vec2): Float {
+  const [left, right, lowerLeft, lowerRight] = STAGGERED
+  const odd = pixel.mod(2).greaterThan(vec2(0.5)).toConst() as unknown as { x: Bool; y: Bool }
+  const upper = odd.x.select(right, left)
+  return odd.y.select(odd.x.select(lowerRight, lowerLeft), upper).toConst() as Float
 }

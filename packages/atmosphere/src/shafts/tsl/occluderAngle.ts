@@ -1,7 +1,22 @@
 import type { DepthTexture, Matrix4, Vector2, Vector4 } from 'three'
-import { Fn, If, atan, float, ivec2, mix, texture, textureLoad, uv, vec2, vec4 } from 'three/tsl'
+import {
+  Fn,
+  If,
+  atan,
+  float,
+  ivec2,
+  max,
+  min,
+  mix,
+  step,
+  texture,
+  textureLoad,
+  uv,
+  vec2,
+  vec4
+} from 'three/tsl'
 import type { TextureNode, UniformNode } from 'three/webgpu'
-import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import { lightRayAt, type PolarFrame } from './polarMap'
 
 /** A shadow map of a light as the shader that merges them sees it. */
@@ -25,8 +40,18 @@ export interface DepthStorage {
   readonly isCompared: boolean
 }
 
+/**
+ * Part of a texel by which casters are widened before nothing. Between a caster's texel and an empty one the angle
+ * is interpolated, and passes that of a view ray nearer to the caster than to the middle: by as much on
+ * average.
+ */
+const WIDENING = 0.3
+
 /** Comparisons that find a depth: to 2⁻¹⁶ of the map's range. */
 const COMPARISONS = 16
+
+/** Position of an occluder that is not there [m]. */
+const NOTHING = -1e30
 
 /** Part of the map's range at its far end that is taken to be empty. */
 const EMPTY = 3e-5
@@ -47,18 +72,40 @@ function comparedDepth(depth: TextureNode, at: Vec2, { isReversed }: DepthStorag
   return low
 }
 
-/** Depth between the four texels next to a place: without, slopes in shadow at a flat angle cast shadows in steps. */
-function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2): Float {
+/** True where nothing casts a shadow. */
+const isEmpty = (stored: Float, { isReversed }: DepthStorage): Bool =>
+  isReversed ? stored.lessThanEqual(EMPTY) : stored.greaterThanEqual(1 - EMPTY)
+
+/**
+ * Depth between the four texels next to a place, so that slopes in shadow at a flat angle cast no shadows in
+ * steps; of the nearest one where a caster ends, which would shrink.
+ */
+function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: DepthStorage): Float {
   const place = at.mul(size).sub(0.5).toConst()
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
   const read = (x: number, y: number): Float => {
     const texel = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
-    return (textureLoad(depth, ivec2(texel)) as unknown as Vec4).r
+    return (textureLoad(depth, ivec2(texel)) as unknown as Vec4).r.toConst()
   }
-  const [upper, lower] = [0, 1].map(y => mix(read(0, y), read(1, y), part.x))
-  return mix(upper, lower, part.y)
+  const corners = [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
+  const among = (weight: Vec2): Float =>
+    mix(mix(corners[0], corners[1], weight.x), mix(corners[2], corners[3], weight.x), weight.y)
+  const [a, b, c, d] = corners
+  const farthest = isReversed ? min(a, b, c, d) : max(a, b, c, d)
+  return isEmpty(farthest, { isReversed, isCompared: false })
+    .select(among(step(0.5, part)), among(part))
+    .toConst()
 }
+
+/** Displacements of the rays that are tried for a texel until one meets a caster, in its edges. */
+const PROBES = [
+  [0, 0],
+  [WIDENING, 0],
+  [-WIDENING, 0],
+  [0, WIDENING],
+  [0, -WIDENING]
+] as const
 
 /**
  * A texel of the sun-polar shadow map: its ray of light through all shadow maps, of which the occluder nearest
@@ -72,29 +119,44 @@ export function occluderAngle(
   storage: DepthStorage
 ): Vec4 {
   return Fn(() => {
-    const { offset, distance } = lightRayAt(frame, uv())
-    const nearest = float(-1e30).toVar()
-    for (const { depth, size, matrix, bounds, metersPerDepth } of maps) {
-      const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
-      const isInside = place.x
-        .greaterThan(bounds.x)
-        .and(place.y.greaterThan(bounds.y))
-        .and(place.x.lessThan(bounds.z))
-        .and(place.y.lessThan(bounds.w))
-      If(isInside, () => {
-        // Texture coordinates run down, as three's shadow nodes have it.
-        const at = vec2(place.x, place.y.oneMinus()).toConst() as Vec2
-        const stored = (
-          storage.isCompared ? comparedDepth(depth, at, storage) : mixedDepth(depth, size, at)
-        ).toConst() as Float
-        const isOccluded = storage.isReversed
-          ? stored.greaterThan(EMPTY)
-          : stored.lessThan(1 - EMPTY)
-        If(isOccluded, () => {
-          nearest.assign(nearest.max(stored.sub(place.z).mul(metersPerDepth)))
-        })
+    const texel = uv() as unknown as Vec2
+    const { distance } = lightRayAt(frame, texel)
+    const nearest = float(NOTHING).toVar()
+    loop('probe', PROBES.length, probe => {
+      If(nearest.equal(NOTHING), () => {
+        const shift = (axis: 0 | 1): Float =>
+          PROBES.reduce<Float>((sum, place, i) => probe.equal(i).select(place[axis], sum), float(0))
+        const edges = frame.texel.mul(vec2(shift(0), shift(1)))
+        const { offset } = lightRayAt(frame, texel.add(edges).toConst())
+        for (const map of maps) nearest.assign(nearest.max(occluderAlong(map, offset, storage)))
       })
-    }
+    })
     return vec4(atan(nearest.negate(), distance))
   })()
+}
+
+/** Position along a ray of light of what it meets first in a map, towards the light [m]. */
+function occluderAlong(
+  { depth, size, matrix, bounds, metersPerDepth }: ShadowMapNodes,
+  offset: Vec3,
+  storage: DepthStorage
+): Float {
+  const nearest = float(NOTHING).toVar()
+  const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
+  const isInside = place.x
+    .greaterThan(bounds.x)
+    .and(place.y.greaterThan(bounds.y))
+    .and(place.x.lessThan(bounds.z))
+    .and(place.y.lessThan(bounds.w))
+  If(isInside, () => {
+    // Texture coordinates run down, as three's shadow nodes have it.
+    const at = vec2(place.x, place.y.oneMinus()).toConst()
+    const stored = storage.isCompared
+      ? comparedDepth(depth, at, storage)
+      : mixedDepth(depth, size, at, storage)
+    If(isEmpty(stored, storage).not(), () => {
+      nearest.assign(stored.sub(place.z).mul(metersPerDepth))
+    })
+  })
+  return nearest
 }

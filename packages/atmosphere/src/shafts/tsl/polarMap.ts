@@ -12,11 +12,15 @@ export interface PolarFrame {
   readonly across: Vec3
   /** Direction of φ = π/2. */
   readonly along: Vec3
-  /** Factor and summand that turn ln ρ into a position among the columns, in [0, 1] from the first to the last. */
+  /** Distance ρ₀ up to which columns are even; beyond, they grow with ρ [m]. */
+  readonly evenDistance: Float
+  /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
   readonly logScale: Float
   readonly logOffset: Float
   /** Number of columns. */
   readonly columns: Float
+  /** Edges of a texel in texture coordinates. */
+  readonly texel: Vec2
 }
 
 /** A view ray in a {@link PolarFrame}. */
@@ -53,12 +57,24 @@ export function polarRay(
 
 /** A texel's ray of light: the displacement from the eye of its point nearest to the eye, and ρ [m]. */
 export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distance: Float } {
-  const { across, along, logScale, logOffset, columns } = frame
+  const { across, along, evenDistance, logScale, logOffset, columns } = frame
   const position = uv.x.mul(columns).sub(0.5).div(columns.sub(1))
-  const distance = position.sub(logOffset).div(logScale).exp().toConst() as Float
+  const grown = position.sub(logOffset).div(logScale).exp().sub(1)
+  const distance = grown.max(1e-3).mul(evenDistance).toConst() as Float
   const azimuth = uv.y.mul(2 * Math.PI).toConst()
   const offset = across.mul(azimuth.cos()).add(along.mul(azimuth.sin())).mul(distance)
   return { offset: offset.toConst(), distance }
+}
+
+/**
+ * Texture coordinate of the rays of light at a distance from the eye's.
+ *
+ * @param distance - ρ ≥ 0 [m].
+ */
+export function columnAt(frame: PolarFrame, distance: Float): Float {
+  const { evenDistance, logScale, logOffset, columns } = frame
+  const position = distance.div(evenDistance).add(1).log().mul(logScale).add(logOffset).clamp()
+  return position.mul(columns.sub(1)).add(0.5).div(columns)
 }
 
 /**
@@ -66,15 +82,13 @@ export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distanc
  * greater angles is dark [rad].
  *
  * @param row - φ of the ray of light: see {@link PolarRay}.
- * @param distance - Its ρ, > 0 [m].
+ * @param distance - Its ρ ≥ 0 [m].
  */
 export function occluderAngleAt(
   map: TextureNode,
-  { logScale, logOffset, columns }: PolarFrame,
+  frame: PolarFrame,
   row: Float,
   distance: Float
 ): Float {
-  const position = distance.log().mul(logScale).add(logOffset).clamp()
-  const column = position.mul(columns.sub(1)).add(0.5).div(columns)
-  return sampleLevel0(map, vec2(column, row)).x
+  return sampleLevel0(map, vec2(columnAt(frame, distance), row)).x
 }
