@@ -55,9 +55,9 @@ function checkClouds(png: PNG): string[] {
   return wrong
 }
 
-/** What a page of the app (`app/PAGE.html`) has to draw, at 320×180. */
+/** Checks of the frame that a page of the app (`app/PAGE.html`) draws, at 320×180. */
 export interface Expectation {
-  /** In words what is wrong with a frame. */
+  /** Faults of a frame, in words. */
   wrongWith: (png: PNG) => string[]
   /** Both, unless another page has the same code. */
   backends?: readonly Backend[]
@@ -68,7 +68,7 @@ export interface Expectation {
 /** Fiber's clock is one that three has replaced. */
 const fibersClock = /THREE\.Clock: This module has been deprecated/
 
-/** By name of the page. */
+/** Expectations by name of the page. */
 export const expectations: Record<string, Expectation> = {
   index: { wrongWith: checkQuickStart },
   clouds: { wrongWith: checkClouds },

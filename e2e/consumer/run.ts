@@ -49,7 +49,7 @@ const devDependencies = (folder: string): Record<string, string> =>
 
 const workspace = { ...devDependencies('.'), ...devDependencies('stories') }
 
-/** What only users have: React Three Fiber, and another bundler. */
+/** Packages that only users have: React Three Fiber, and another bundler. */
 const foreign = {
   '@react-three/fiber': '9.8.2',
   '@types/react': '19.3.0',
@@ -178,7 +178,7 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
   else report.fail(label, errors.join('\n'))
 }
 
-/** What the packages answer to a CommonJS module, checked. */
+/** Answers of the packages to a CommonJS module, checked. */
 function requireAll(app: string): string {
   const output = execute('node', ['require.cjs'], app)
   const { sunHeight, sunDeclination, layers } = JSON.parse(output) as Record<string, number>

@@ -1,6 +1,6 @@
 import type { Plugin } from 'vite'
 
-/** Where three's filter of environments uses its number of samples, in its bundle of nodes. */
+/** Uses of the number of samples in three's filter of environments, as its bundle of nodes has them. */
 const USES = ['uint( GGX_SAMPLES )', '6 / ( GGX_SAMPLES *']
 
 /** Has three's filter of environments take its number of samples from `globalThis.filterSamples`. */

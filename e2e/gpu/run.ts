@@ -10,6 +10,7 @@ import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
 import type { Backend } from '../harness/backend'
+import { replaceModules } from '../harness/replaceModules'
 import { filterSamplesPlugin } from './filterSamples'
 import type { TestListing, TestOutcome } from './page/main'
 
@@ -78,7 +79,10 @@ async function runSuite(
 }
 
 const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${suite}.gpu.ts`)]))
-const bundle = await bundlePage(join(folder, 'page'), files, [filterSamplesPlugin()])
+const bundle = await bundlePage(join(folder, 'page'), files, [
+  replaceModules(),
+  filterSamplesPlugin()
+])
 const server = await serveStatic([{ path: '/', folder: bundle }])
 const seconds: [suite: string, seconds: number][] = []
 /** Suites to come, by backend. */

@@ -1,4 +1,4 @@
-/** What a generated shader costs to compile and to bind. */
+/** Size of a generated shader, and textures that it binds. */
 export interface ShaderStats {
   /** Lines that are not empty. */
   readonly lines: number

@@ -4,7 +4,7 @@ import { create, globals } from 'webgpu'
 
 Object.assign(globalThis, globals)
 
-/** What waits for the next animation frame. */
+/** Callbacks that wait for the next animation frame. */
 let waiting: (() => void)[] = []
 
 /** Lets an animation frame begin: what three draws once in each is drawn anew. */

@@ -16,7 +16,7 @@ interface RenderObject {
   getNodeBuilderState(): { vertexShader: string; fragmentShader: string }
 }
 
-/** What three keeps to itself: where shaders are generated, and where pipelines are compiled. */
+/** Internals of three: where shaders are generated, and where pipelines are compiled. */
 interface Internals {
   _nodes: { getForRender(object: RenderObject, ...rest: unknown[]): unknown }
   _pipelines: { getForRender(object: RenderObject, ...rest: unknown[]): unknown }

@@ -9,11 +9,11 @@ interface Budget {
   name: string
   /** Names by module; `*` stands for all of its exports. */
   imports: Record<string, string[] | '*'>
-  /** What the app has anyway: only what comes on top of it counts. */
+  /** Imports that the app has anyway: only what comes on top of them counts. */
   onTopOf?: Record<string, string[] | '*'>
   /** Most bytes, minified and gzipped, with three left out. */
   budget: number
-  /** Where the root README states the size: what is before and after the number of kB. */
+  /** Text of the root README before and after the number of kB, where it states the size. */
   stated?: [before: string, after: string]
 }
 

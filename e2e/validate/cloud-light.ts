@@ -15,7 +15,7 @@ const BLOCKS = 12
 /** Blocks darker than this part of a picture's brightest are left out. */
 const NEGLIGIBLE = 0.02
 
-/** What the largest byte of a field stands for [1/m]. */
+/** Extinction that the largest byte of a field stands for [1/m]. */
 const EXTINCTION = /^0\.16 v \/ 255,/
 const LARGEST = 0.16
 

@@ -9,16 +9,16 @@ export interface CloudCase {
   phase: string
   /** Optical thickness, or diameter. */
   tau: number
-  /** Of the sun from the slab's normal; between the rays to eye and sun for spheres [°]. */
+  /** Angle of the sun from the slab's normal; for spheres between the rays to camera and sun [°]. */
   sunAngle: number
-  /** What else tells it from the others. */
+  /** Name: all else that tells it from the others. */
   label: string
   /** Angle of the exit from the slab's normal [°]; 0 for spheres. */
   exitZenith: number
-  /** What the shader needs: see page/clouds.ts. */
+  /** Input of the shader: see page/clouds.ts. */
   input: [number, number, number, number]
   reference: number
-  /** Of the reference; 0 where it is not a Monte-Carlo figure. */
+  /** Standard error of the reference; 0 where it is not a Monte-Carlo figure. */
   stderr: number
 }
 

@@ -25,7 +25,7 @@ const labelOf = (sample: Angles): string =>
   `${sample.h_km} km, view ${sample.view_zenith_deg}°, sun ${sample.sun_zenith_deg}°, ` +
   `azimuth ${sample.rel_azimuth_deg}°`
 
-/** What the page must compute for a file of spectral radiances. */
+/** Request for the values of a file of spectral radiances. */
 export function skyRequest(reference: SkyReference, where: Where): EvaluationRequest {
   const { parameters, sky = [], segments = [], irradiance = [] } = reference
   return {
@@ -124,7 +124,7 @@ function colorParameters(): AtmosphereParameters {
   return new AtmosphereParameters({ bottomRadius: 6_360_000, topRadius: 6_420_000 })
 }
 
-/** What the page must compute for a file of sky colours. */
+/** Request for the values of a file of sky colours. */
 export function colorRequest(samples: ColorSample[], where: Where): EvaluationRequest {
   return {
     ...where,

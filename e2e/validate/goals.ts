@@ -20,7 +20,7 @@ export const bandGoals: Record<string, Partial<Record<BandName, Goal>>> = {
   transmittance: { '0-80': { p95: 0.005 }, '84-90': { p95: 0.005 }, '91-95': { p95: 0.005 } }
 }
 
-/** Of every value of irradiance with the sun up to this zenith angle [°]. */
+/** Largest error of any irradiance with the sun up to this zenith angle [°]. */
 export const irradianceGoal = { sunZenith: 93, max: 0.01 }
 
 export const colorGoal = { mean: 0.3, p95: 0.8 }
@@ -31,13 +31,13 @@ export interface CloudGoal {
   p95?: number
 }
 
-/** Of radiances out of homogeneous clouds, per shape. */
+/** Errors of the radiance that leaves homogeneous clouds, per shape. */
 export const cloudGoals: Record<'slab' | 'sphere', CloudGoal> = {
   slab: { median: 0.03, p95: 0.15 },
   sphere: { median: 0.2, p90: 0.6 }
 }
 
-/** Of radiances out of a simulated cloud, and of the median of each picture. */
+/** Errors of the radiance that leaves a simulated cloud, and the largest median of a picture. */
 export const cloudLightGoal = { median: 0.1, p90: 0.25, pictureMedian: 0.2 }
 
 /** Of light that shadows take from the air, over all light scattered once. */

@@ -35,7 +35,7 @@ export interface SkyReference {
   parameters: AtmosphereParametersInit
   /** How many of the four values per ray the file has. */
   channels: number
-  /** Of the sun above the air, per channel [W/m²/nm]. */
+  /** Irradiance of the sun above the air, per channel [W/m²/nm]. */
   solarIrradiance: Values
   sky?: SkySample[]
   segments?: SegmentSample[]

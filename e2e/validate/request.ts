@@ -20,7 +20,7 @@ export interface RayRequest extends EyePlace {
   distance?: number
 }
 
-/** What the page is asked to compute. */
+/** Values that the page is asked to compute. */
 export interface EvaluationRequest {
   backend: Backend
   path: Path

@@ -18,7 +18,7 @@ export interface Comparison {
   error: number
   /** The reference's own relative standard error. */
   stderr: number
-  /** What it belongs to, for reports of the worst. */
+  /** Name of its sample, for reports of the worst. */
   label: string
 }
 

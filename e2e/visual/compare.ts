@@ -1,7 +1,7 @@
 import { PNG } from 'pngjs'
 
 /**
- * What two frames of the same scene may differ by. Rounding differs between backends and between
+ * Largest differences between two frames of the same scene. Rounding differs between backends and between
  * versions of the software renderer; a changed model shows as a mean shift, a changed shape as
  * pixels that are far off. A difference is measured from the range of the 3×3 pixels around.
  */
@@ -16,7 +16,7 @@ export const tolerance = {
 
 export interface Comparison {
   same: boolean
-  /** Whether more than half of a tolerance is used up. */
+  /** True if more than half of a tolerance is used up. */
   isNearLimit: boolean
   detail: string
   /** The difference, eightfold. */

@@ -1,8 +1,9 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { availableParallelism } from 'node:os'
 import { basename, join } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
-import type { Page } from 'playwright-core'
+import type { BrowserContext, Page } from 'playwright-core'
 import { PNG } from 'pngjs'
 import { worldData } from '../../stories/vite/worldData.ts'
 import type { Backend } from '../harness/backend'
@@ -10,6 +11,7 @@ import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
 import { withLimit } from '../harness/limit'
 import { outputFolder, Report } from '../harness/report'
+import { replaceModules } from '../harness/replaceModules'
 import { serveStatic } from '../harness/serve'
 import { compare, isBlank } from './compare'
 
@@ -116,13 +118,16 @@ const files = Object.fromEntries(
 )
 const root = fileURLToPath(new URL('page', import.meta.url))
 const server = await serveStatic([
-  { path: '/', folder: await bundlePage(root, files, [worldData()]) }
+  { path: '/', folder: await bundlePage(root, files, [replaceModules(), worldData()]) }
 ])
-const browser = await launchChromium()
-// Pages of one context share what they store: baked tables.
-const context = await browser.newContext({ viewport, deviceScaleFactor: 1 })
 
-async function openPage(): Promise<Page> {
+interface Shooting {
+  file: string
+  story: string
+  backend: Backend
+}
+
+async function openPage(context: BrowserContext): Promise<Page> {
   const page = await context.newPage()
   page.on('pageerror', error => console.log(`      page error: ${error.stack ?? error.message}`))
   await page.goto(`${server.origin}/index.html`)
@@ -130,22 +135,48 @@ async function openPage(): Promise<Page> {
   return page
 }
 
-try {
-  const listing = await openPage()
-  const cases = await listing.evaluate(() => window.welkinVisual.list())
-  await listing.close()
-  for (const { file, story, isWebGPUOnly } of cases) {
-    const name = `${file}-${story}`.toLowerCase()
-    if (positionals.length > 0 && !positionals.some(word => name.includes(word))) continue
-    for (const backend of backends) {
-      if (isWebGPUOnly && backend !== 'webgpu') continue
-      const page = await openPage()
-      await shoot(page, file, story, backend)
-      await page.close()
-    }
+/** Runs in a browser of its own, whose pages share what they store: baked tables. */
+async function withContext<T>(use: (context: BrowserContext) => Promise<T>): Promise<T> {
+  const browser = await launchChromium()
+  try {
+    return await use(await browser.newContext({ viewport, deviceScaleFactor: 1 }))
+  } finally {
+    await browser.close()
   }
+}
+
+/** Pictures to take, by backend. */
+async function listPictures(): Promise<Shooting[][]> {
+  const cases = await withContext(async context =>
+    (await openPage(context)).evaluate(() => window.welkinVisual.list())
+  )
+  const chosen = cases.filter(({ file, story }) => {
+    const name = `${file}-${story}`.toLowerCase()
+    return positionals.length === 0 || positionals.some(word => name.includes(word))
+  })
+  return backends.map(backend =>
+    chosen
+      .filter(({ isWebGPUOnly }) => !isWebGPUOnly || backend === 'webgpu')
+      .map(({ file, story }) => ({ file, story, backend }))
+  )
+}
+
+try {
+  const queues = await listPictures()
+  // As GPU tests do: a backend's pictures, and then the last ones of the other. An update needs those of
+  // WebGPU first.
+  const workers = values.update ? 1 : Math.min(availableParallelism(), queues.length)
+  const work = async (own: number): Promise<void> =>
+    withContext(async context => {
+      const next = () => queues[own].shift() ?? queues.find(queue => queue.length > 0)?.pop()
+      for (let job = next(); job !== undefined; job = next()) {
+        const page = await openPage(context)
+        await shoot(page, job.file, job.story, job.backend)
+        await page.close()
+      }
+    })
+  await Promise.all(Array.from({ length: workers }, (_, own) => work(own)))
 } finally {
-  await browser.close()
   await server.close()
 }
 report.finish()

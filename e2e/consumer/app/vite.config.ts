@@ -2,4 +2,8 @@ import { defineConfig } from 'vite'
 
 const pages = ['index', 'geo', 'clouds', 'fiber'].map(name => `${name}.html`)
 
-export default defineConfig({ build: { rolldownOptions: { input: pages } } })
+export default defineConfig({
+  // React's development build: StrictMode mounts twice, and React reports what is wrong.
+  define: { 'process.env.NODE_ENV': '"development"' },
+  build: { rolldownOptions: { input: pages } }
+})

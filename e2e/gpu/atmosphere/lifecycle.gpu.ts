@@ -71,7 +71,7 @@ class View {
 
 const paths = ['forward', 'post'] as const
 
-/** What a viewer sees on the canvas, by each path. */
+/** Pictures of the canvas as a viewer sees it, by each path. */
 async function shoot(t: GpuContext, view: View): Promise<Picture[]> {
   const pictures: Picture[] = []
   for (const path of paths) {

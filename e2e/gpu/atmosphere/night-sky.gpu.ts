@@ -78,7 +78,7 @@ function illuminance({ width, height, data }: Picture, fov: number): number {
   return sum
 }
 
-/** Where light in a picture is, in pixels from the top left. */
+/** Centre of the light in a picture, from the top left [pixels]. */
 function centroid({ width, data }: Picture): [number, number] {
   let [sum, sumX, sumY] = [0, 0, 0]
   for (let i = 0; i < data.length; i += 4) {

@@ -16,7 +16,7 @@ import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
 const size = { width: 128, height: 72 }
-/** Where the near cascade ends and the far one begins, and where that ends [m from the camera]. */
+/** Ends of the near cascade, where the far one begins, and of the far one [m from the camera]. */
 const cascadeEnds = [60, 300]
 /** A shadow's edge is blurred, and as coarse as the cascade's texels [m]. */
 const edges = [0.7, 2.5]

@@ -127,7 +127,7 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
     const half = await view.draw(renderer)
     expectPlaces(half, right, 'half a clear colour', 'sky', 'ball', 'white', 'black', 'label')
 
-    /** What there is over an opaque backdrop: white adds its light, black dims where it can be seen to. */
+    /** Objects over an opaque backdrop: white adds its light, black dims where it can be seen to. */
     const expectOver = (picture: Picture, backdrop: ColorRepresentation, label: string): void => {
       expectPlaces(picture, right, label, 'sky', 'ball')
       const color = new Color(backdrop).toArray()

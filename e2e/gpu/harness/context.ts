@@ -25,7 +25,7 @@ export interface RenderOptions {
 export const defaultWidth = 320
 export const defaultHeight = 180
 
-/** What a GPU test gets. All it creates is disposed when the test ends. */
+/** Tools of a GPU test. All that it creates is disposed when the test ends. */
 export interface GpuContext {
   readonly backend: Backend
   /** An initialised renderer of this backend on a canvas in the page; 320×180, pixel ratio 1. */

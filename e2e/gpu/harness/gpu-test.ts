@@ -7,8 +7,8 @@ export interface GpuTest {
   backends: readonly Backend[]
   timeoutSeconds: number
   /**
-   * Where tables and noise are baked and environments filtered as users have it: on all backends or on
-   * these. Elsewhere a test takes tables of earlier ones, and three's filter has few samples.
+   * Backends on which tables and noise are baked and environments filtered as users have it: all or
+   * these. On others a test takes tables of earlier ones, and three's filter has few samples.
    */
   bakes: boolean | readonly Backend[]
 }

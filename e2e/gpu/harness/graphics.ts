@@ -10,7 +10,7 @@ export async function nextFrame(): Promise<void> {
 
 type Method = (this: object, ...args: unknown[]) => unknown
 
-/** What a renderer draws with: a `GPUDevice` or a `WebGL2RenderingContext`. */
+/** Graphics device of a renderer: a `GPUDevice` or a `WebGL2RenderingContext`. */
 function graphicsOf(renderer: WebGPURenderer): object {
   const { device, gl } = renderer.backend as { device?: object; gl?: object }
   const graphics = device ?? gl

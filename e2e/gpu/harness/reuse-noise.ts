@@ -7,46 +7,65 @@ import {
   texture3DLoad,
   textureLoad,
   uniform,
+  uv,
   vec4
 } from 'three/tsl'
 import type { Node, Renderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
-import { CloudNoise } from '../../../packages/clouds/src/noise/CloudNoise'
+import { CloudNoise as BakedNoise } from '../../../packages/clouds/src/noise/CloudNoise'
 import { isReusingTables, readTexels, waitFor } from './reuse-tables'
-
-/** Slices of a volume lie side by side in as many columns. */
-const COLUMNS = 8
 
 const STORE = 'noise'
 
-type Slice = (target: RenderTarget3D, slice: number) => void
+type Texels = Uint8Array<ArrayBuffer>
 
-const _kept = new Map<string, Uint8Array>()
-const _copies = new WeakMap<RenderTarget, Slice>()
-const _prepared = new WeakSet<CloudNoise>()
+const _kept = new Map<string, Texels>()
 
 const pixel = (): Node<'ivec2'> => ivec2(int(screenCoordinate.x), int(screenCoordinate.y))
 
-/** Keeps the finest level of a volume, for this page and those to come. */
+/** A level of a volume, whose slices lie side by side in a picture. */
+interface Level {
+  level: number
+  /** Texels along an edge. */
+  size: number
+  /** Columns of slices, and size of the picture [pixels]. */
+  columns: number
+  width: number
+  height: number
+}
+
+/** Levels of a volume, finest first. */
+function levelsOf(volume: RenderTarget3D): Level[] {
+  return Array.from({ length: Math.log2(volume.width) + 1 }, (_, level) => {
+    const size = volume.width >> level
+    const columns = Math.min(size, 8)
+    return { level, size, columns, width: size * columns, height: size ** 2 / columns }
+  })
+}
+
+/** Keeps a volume's levels, for this page and those to come. */
 async function keep(renderer: Renderer, volume: RenderTarget3D, key: string): Promise<void> {
-  const { width: size, texture } = volume
-  const options = {
-    depthBuffer: false,
-    minFilter: NearestFilter,
-    magFilter: NearestFilter
-  } as const
-  const atlas = new RenderTarget(size * COLUMNS, size ** 2 / COLUMNS, options)
-  const { x, y } = pixel().toConst()
-  const slice = y.div(size).mul(COLUMNS).add(x.div(size))
-  const place = ivec3(x.mod(int(size)), y.mod(int(size)), slice)
-  const copy = new FragmentPass('Reuse.keep', vec4(texture3DLoad(texture, place)))
-  copy.render(renderer, atlas)
-  const reading = readTexels<Uint8Array<ArrayBuffer>>(renderer, atlas)
-  copy.dispose()
-  const texels = await reading
-  atlas.dispose()
-  _kept.set(key, texels)
-  await (await caches.open(STORE)).put(`/${key}`, new Response(texels))
+  const pictures = levelsOf(volume).map(({ level, size, columns, width, height }) => {
+    const options = {
+      depthBuffer: false,
+      minFilter: NearestFilter,
+      magFilter: NearestFilter
+    } as const
+    const picture = new RenderTarget(width, height, options)
+    const { x, y } = pixel().toConst()
+    const slice = y.div(size).mul(columns).add(x.div(size))
+    const texel = ivec3(x.mod(int(size)), y.mod(int(size)), slice)
+    const copy = new FragmentPass(
+      'Reuse.keep',
+      vec4(texture3DLoad(volume.texture, texel, int(level)))
+    )
+    copy.render(renderer, picture)
+    copy.dispose()
+    return readTexels<Texels>(renderer, picture).finally(() => picture.dispose())
+  })
+  const blob = new Blob(await Promise.all(pictures))
+  _kept.set(key, new Uint8Array(await blob.arrayBuffer()))
+  await (await caches.open(STORE)).put(`/${key}`, new Response(blob))
 }
 
 /** Fetches what other pages have kept. */
@@ -59,68 +78,58 @@ export async function loadNoise(): Promise<void> {
   }
 }
 
-/** Has the finest level's slices copied, for as long as it is not told to stop. */
-function startCopying(renderer: Renderer, volume: RenderTarget3D, kept: Uint8Array): () => void {
-  const size = volume.width
-  const source = new DataTexture(kept, size * COLUMNS, size ** 2 / COLUMNS)
-  source.minFilter = source.magFilter = NearestFilter
-  source.needsUpdate = true
-  const corner = [uniform(0, 'int'), uniform(0, 'int')]
-  const place = pixel().add(ivec2(corner[0], corner[1]))
-  const copy = new FragmentPass('Reuse.noise', textureLoad(source, place))
-  _copies.set(volume, (target, slice) => {
-    corner[0].value = size * (slice % COLUMNS)
-    corner[1].value = size * Math.floor(slice / COLUMNS)
-    copy.render(renderer, target, slice)
-  })
-  return () => {
-    _copies.delete(volume)
-    copy.dispose()
-    source.dispose()
-  }
-}
-
-function prepare(noise: CloudNoise): void {
-  if (_prepared.has(noise)) return
-  _prepared.add(noise)
-  for (const name of ['weather', 'shape'] as const) {
-    const { [name]: volume } = noise
-    const bake = volume.bake.bind(volume)
-    volume.bake = function* (renderer) {
-      const key = 'isWebGPUBackend' in renderer.backend ? `${name}.webgpu` : `${name}.webgl`
-      const kept = isReusingTables() ? _kept.get(key) : undefined
-      const stop = kept && startCopying(renderer, volume.target, kept)
-      try {
-        yield* bake(renderer)
-      } finally {
-        stop?.()
+/** Copies kept levels into a volume, in as many steps as the library's bake takes. */
+function* restore(
+  renderer: Renderer,
+  volume: RenderTarget3D,
+  kept: Texels
+): Generator<void, void, void> {
+  let offset = 0
+  for (const { level, size, columns, width, height } of levelsOf(volume)) {
+    const texels = kept.subarray(offset, (offset += 4 * size ** 3))
+    const source = new DataTexture(texels, width, height)
+    source.minFilter = source.magFilter = NearestFilter
+    source.needsUpdate = true
+    const corner = [uniform(0, 'int'), uniform(0, 'int')]
+    // By uv: `screenCoordinate` takes a level for as large as the volume.
+    const texel = ivec2(uv().mul(size).floor()).add(ivec2(corner[0], corner[1]))
+    const copy = new FragmentPass('Reuse.noise', textureLoad(source, texel))
+    try {
+      for (let slice = 0; slice < size; slice++) {
+        corner[0].value = size * (slice % columns)
+        corner[1].value = size * Math.floor(slice / columns)
+        copy.render(renderer, volume, slice, level)
+        yield
+        // The library draws coarser levels outside of the volume first.
+        if (level > 0) yield
       }
-      if (isReusingTables() && !kept) waitFor(keep(renderer, volume.target, key))
+    } finally {
+      copy.dispose()
+      source.dispose()
     }
   }
 }
 
-interface Pass {
-  render: (this: FragmentPass, ...args: Parameters<FragmentPass['render']>) => void
-}
+/** Clouds' noise, reused just as tables are, once {@link loadNoise} has been called. */
+export class CloudNoise extends BakedNoise {
+  constructor() {
+    super()
+    this.#reuse('weather')
+    this.#reuse('shape')
+  }
 
-interface Noise {
-  update: (this: CloudNoise, ...args: Parameters<CloudNoise['update']>) => boolean
-}
-
-const pass = FragmentPass.prototype as Pass
-const { render } = pass
-pass.render = function (renderer, target, slice = 0, level = 0) {
-  const isFinest = this.material.name === target.texture.name && level === 0
-  const copy = isFinest ? _copies.get(target) : undefined
-  if (copy) copy(target as RenderTarget3D, slice)
-  else render.call(this, renderer, target, slice, level)
-}
-
-/** Clouds' noise is reused just as tables are, once {@link loadNoise} has been called. */
-const noisePrototype = CloudNoise.prototype as Noise
-const { update } = noisePrototype
-noisePrototype.update = function (...args) {
-  prepare(this)
-  return update.apply(this, args)
+  #reuse(name: 'weather' | 'shape'): void {
+    const { [name]: volume } = this
+    const bake = volume.bake.bind(volume)
+    volume.bake = function* (renderer) {
+      const key = 'isWebGPUBackend' in renderer.backend ? `${name}.webgpu` : `${name}.webgl`
+      const kept = isReusingTables() ? _kept.get(key) : undefined
+      if (kept) {
+        yield* restore(renderer, volume.target, kept)
+        return
+      }
+      yield* bake(renderer)
+      if (isReusingTables()) waitFor(keep(renderer, volume.target, key))
+    }
+  }
 }

@@ -8,19 +8,19 @@ import {
 } from 'three'
 import { ivec2, textureLoad, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { AtmosphereTables } from '../../../packages/atmosphere/src/tables/AtmosphereTables'
+import type { AtmosphereUniforms } from '../../../packages/atmosphere/src/air/AtmosphereUniforms'
+import { DiffuseLightTable as BakedTable } from '../../../packages/atmosphere/src/diffuseLight/DiffuseLightTable'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
-import type { TableRegion } from '../../../packages/atmosphere/src/tables/TableAtlas'
+import type { Table, TableRegion } from '../../../packages/atmosphere/src/tables/TableAtlas'
 
-/** Of a bake, in frames of one step: the library's count. */
+/** Steps of a bake, as many as the library's has. */
 const BAKE_STEPS = 20
 
 let isReusing = false
 const _readings = new Set<Promise<void>>()
-const _prepared = new WeakSet<AtmosphereTables>()
 
-/** What a table of diffuse light is made from: all but the colours, of which it knows none. */
-function keyOf(renderer: Renderer, { uniforms }: AtmosphereTables): string {
+/** Key of a table: all that it is made from, but not the colours, of which it knows none. */
+function keyOf(renderer: Renderer, uniforms: AtmosphereUniforms): string {
   const backend = 'isWebGPUBackend' in renderer.backend ? 'webgpu' : 'webgl'
   const numbers = Object.entries(uniforms).flatMap(([name, node]) =>
     Array.isArray(node) ? [] : [[name, node.value]]
@@ -62,26 +62,32 @@ function restore(renderer: Renderer, region: TableRegion, kept: string): void {
   source.dispose()
 }
 
-function prepare(tables: AtmosphereTables): void {
-  if (_prepared.has(tables)) return
-  _prepared.add(tables)
-  const { diffuseLight } = tables
-  const bake = diffuseLight.bake.bind(diffuseLight)
-  diffuseLight.bake = function* (renderer) {
-    const key = keyOf(renderer, tables)
+/**
+ * The table of diffuse light as pages of tests have it instead of the library's: see {@link reuseTables}, and
+ * `replaceModules.ts`, which puts it there.
+ */
+export class DiffuseLightTable extends BakedTable {
+  readonly #uniforms: AtmosphereUniforms
+
+  constructor(uniforms: AtmosphereUniforms, region: TableRegion, transmittance: Table) {
+    super(uniforms, region, transmittance)
+    this.#uniforms = uniforms
+  }
+
+  override *bake(renderer: Renderer): Generator<void, void, void> {
+    const key = keyOf(renderer, this.#uniforms)
     const kept = isReusing ? localStorage.getItem(key) : null
     if (kept === null) {
-      yield* bake(renderer)
-      if (!isReusing) return
-      waitFor(keep(renderer, diffuseLight.region, key))
+      yield* super.bake(renderer)
+      if (isReusing) waitFor(keep(renderer, this.region, key))
       return
     }
     for (let step = 0; step < BAKE_STEPS; step++) yield
-    restore(renderer, diffuseLight.region, kept)
+    restore(renderer, this.region, kept)
   }
 }
 
-/** Whether tables are reused now. */
+/** True if tables are reused now. */
 export const isReusingTables = (): boolean => isReusing
 
 /** Has {@link keepTables} wait. What a test disposes of before it can be read is not kept. */
@@ -105,13 +111,4 @@ export async function keepTables(): Promise<void> {
  */
 export function reuseTables(reuse: boolean): void {
   isReusing = reuse
-}
-
-type Update = (this: AtmosphereTables, ...args: Parameters<AtmosphereTables['update']>) => void
-
-const prototype = AtmosphereTables.prototype as { update: Update }
-const { update } = prototype
-prototype.update = function (...args) {
-  prepare(this)
-  update.apply(this, args)
 }

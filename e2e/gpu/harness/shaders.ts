@@ -8,7 +8,7 @@ export interface FragmentShader extends ShaderStats {
   readonly source: string
 }
 
-/** What three hands to its backend for either graphics API. */
+/** Shader as three hands it to its backend, for either graphics API. */
 interface Program {
   readonly stage: string
   readonly code: string

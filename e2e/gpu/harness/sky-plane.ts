@@ -6,7 +6,7 @@ import type { Picture } from './picture'
 /** A square of a cloud deck, above the ground in a world whose y axis is up [m]. */
 export interface SkySquare {
   readonly altitude: number
-  /** Of its centre, from below the camera. */
+  /** Centre, from below the camera. */
   readonly x: number
   readonly z: number
   readonly width: number
@@ -22,7 +22,7 @@ const EARTH_RADIUS = 6.371e6
 
 const mix = (a: number, b: number, t: number): number => a + (b - a) * t
 
-/** What a camera at the origin sees of a square, seen straight on: `size`² brightnesses. */
+/** Square that a camera at the origin sees, straightened: `size`² brightnesses. */
 export function straighten(
   picture: Picture,
   camera: PerspectiveCamera,

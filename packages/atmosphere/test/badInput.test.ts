@@ -57,7 +57,7 @@ const flat = new Matrix4().set(
 const parameters = new AtmosphereParameters()
 const zero = new Vector3()
 
-/** What the compiler would not let pass. */
+/** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
 const source = "must be a LightSource, such as a moon's source, got a Moon"

@@ -20,7 +20,7 @@ import {
   venusParameters
 } from '@welkin/atmosphere'
 
-/** What the compiler would not let pass. */
+/** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
 const atmosphere = new Atmosphere()

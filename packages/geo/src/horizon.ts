@@ -15,7 +15,7 @@ export interface HorizonOptions {
  * Distance in a straight line to the horizon: where the line of sight touches the ellipsoid. No
  * terrain and no refraction; exact on any ellipsoid, from any altitude.
  *
- * @param positionECEF - Eye [m].
+ * @param positionECEF - Viewpoint [m].
  * @returns [m]; 0 on or below the surface.
  * @throws Error if a value is not finite.
  */
@@ -26,7 +26,7 @@ export function horizonDistance(positionECEF: Vector3, options: HorizonOptions =
 /**
  * Angle from the horizontal plane down to the horizon.
  *
- * @param positionECEF - Eye [m].
+ * @param positionECEF - Viewpoint [m].
  * @returns In [0, π/2) [rad]; 0 on or below the surface.
  * @throws Error if a value is not finite.
  */
@@ -38,7 +38,7 @@ export function horizonDip(positionECEF: Vector3, options: HorizonOptions = {}):
  * Distance in a straight line to where the line of sight touches the limb at a height above the
  * ellipsoid: a layer of air or of haze as seen from above it. At height 0 it is the horizon's.
  *
- * @param positionECEF - Eye [m].
+ * @param positionECEF - Viewpoint [m].
  * @param limbHeight - Tangent height [m], above −(smallest radius).
  * @returns [m]; 0 on or below that height.
  * @throws Error if a value is not finite.
@@ -57,7 +57,7 @@ export function tangentLimbDistance(
  * surface at the horizon and rises behind it until it is that high. Mountains show above the horizon
  * up to here.
  *
- * @param positionECEF - Eye [m].
+ * @param positionECEF - Viewpoint [m].
  * @param targetHeight - Greatest height of what is to be seen, above the ellipsoid [m].
  * @param surfaceHeight - Height of the surface that hides it [m], at most `targetHeight`; default 0.
  * @returns [m].

@@ -90,7 +90,7 @@ const radians = (degrees: number): number => (degrees * Math.PI) / 180
 /**
  * ΔT = TT − UT in the long run [s]. Within 50 s from 1800 to 2100, in which the sun moves 2″.
  *
- * @see Morrison & Stephenson 2004.
+ * @see Morrison & Stephenson 2004, J. Hist. Astron. 35, 327.
  */
 const terrestrialLag = (centuries: number): number => -20 + 32 * (centuries + 1.8) ** 2
 

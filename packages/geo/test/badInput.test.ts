@@ -35,7 +35,7 @@ class e {
   x = 1
 }
 
-/** What the compiler would not let pass. */
+/** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
 const cases: [message: string, call: () => unknown][] = [

@@ -28,7 +28,7 @@ const ORDERS = 5
 const integer = (): UniformNode<'int', number> => uniform(0, 'int')
 
 /** Bake resources: textures and passes that the finished table does not need. */
-class Workshop {
+class BakeResources {
   readonly rays = tableTarget('DiffuseLight.rays', MOST_RAYS, BAKE_ROWS * COLUMNS, 1, NearestFilter)
   readonly orders = Array.from({ length: ORDERS }, (_, order) =>
     new TableAtlas(`DiffuseLight.order${order}`, WIDTH, HEIGHT).region(0, 0, WIDTH, HEIGHT)
@@ -116,7 +116,7 @@ export class DiffuseLightTable {
   readonly region: TableRegion
   readonly #uniforms: AtmosphereUniforms
   readonly #transmittance: Table
-  #workshop: Workshop | null = null
+  #resources: BakeResources | null = null
 
   /**
    * @param region - Of {@link size}; its atlas frees it.
@@ -133,23 +133,23 @@ export class DiffuseLightTable {
    * stands.
    */
   *bake(renderer: Renderer): Generator<void, void, void> {
-    const workshop = (this.#workshop ??= new Workshop(this.#uniforms, this.#transmittance))
+    const resources = (this.#resources ??= new BakeResources(this.#uniforms, this.#transmittance))
     try {
       for (let order = 0; order < ORDERS; order++) {
         for (let row = 0; row < ROWS; row += BAKE_ROWS) {
-          workshop.gather(renderer, order, row)
+          resources.gather(renderer, order, row)
           yield
         }
       }
-      workshop.finish(renderer, this.region)
+      resources.finish(renderer, this.region)
     } finally {
-      workshop.release()
+      resources.release()
     }
   }
 
   /** Frees its shaders. */
   dispose(): void {
-    this.#workshop?.dispose()
-    this.#workshop = null
+    this.#resources?.dispose()
+    this.#resources = null
   }
 }

@@ -48,7 +48,7 @@ export class DrawnSky {
   }
 
   resembles(view: AtmosphereView, angle: number, climb: number): boolean {
-    const reach = 2 * Math.sin((Math.min(angle, 180) * RADIANS) / 2)
+    const chord = 2 * Math.sin((Math.min(angle, 180) * RADIANS) / 2)
     const axes = this.#axesOf(view).elements
     const scale = Math.hypot(axes[0], axes[1], axes[2]) || 1
     const { layers, luminanceScale, tables } = this.#atmosphere
@@ -59,9 +59,9 @@ export class DrawnSky {
         (layer, i) => layer === this.#layers[i] && layer.version === this.#versions[i]
       ) &&
       Math.abs(Math.log(luminanceScale / this.#scale)) <= Math.log(RESCALING) &&
-      this.#sun.distanceTo(view.lightDirection) <= reach &&
-      this.#up.distanceTo(view.up) <= reach &&
-      this.#axes.elements.every((value, i) => Math.abs(value - axes[i]) <= reach * scale) &&
+      this.#sun.distanceTo(view.lightDirection) <= chord &&
+      this.#up.distanceTo(view.up) <= chord &&
+      this.#axes.elements.every((value, i) => Math.abs(value - axes[i]) <= chord * scale) &&
       Math.abs(view.height - this.#height) <= climb * Math.max(Math.abs(this.#height), LOW) &&
       view.irradiance.every((value, i) => Math.abs(value - this.#irradiance[i]) <= DIMMING * value)
     )

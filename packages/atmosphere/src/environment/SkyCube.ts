@@ -94,8 +94,8 @@ export class SkyCube {
     return this.#drawn === null
   }
 
-  /** Looks from a camera's place at the sky as it is now; what is drawn from now on shows that. */
-  aim(renderer: Renderer, from: PerspectiveCamera['matrixWorld']): void {
+  /** Starts anew from a camera's position; what is drawn from now on shows the sky as it is now. */
+  restart(renderer: Renderer, from: PerspectiveCamera['matrixWorld']): void {
     this.camera.matrixWorld.setPosition(_position.setFromMatrixPosition(from))
     const { up, viewToMapped } = this.#atmosphere.update(renderer, this.camera)
     this.#up.value.copy(up).applyMatrix3(_rotation.copy(viewToMapped).transpose()).normalize()

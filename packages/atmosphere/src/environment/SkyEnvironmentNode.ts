@@ -119,7 +119,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     // The frame is shared: renders that prepare the view leave their camera in it.
     const { renderer, camera, frameId } = frame
     this.#view.prepare(frame)
-    if (renderer !== null && camera !== null) this.#follow(renderer, camera, frameId)
+    if (renderer !== null && camera !== null) this.#redrawIfStale(renderer, camera, frameId)
   }
 
   // Drawing the sky from another camera set the layers' uniforms for that.
@@ -130,7 +130,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     for (const layer of this.atmosphere.layers) layer.update?.(view)
   }
 
-  #follow(renderer: Renderer, camera: Camera, frameId: number): void {
+  #redrawIfStale(renderer: Renderer, camera: Camera, frameId: number): void {
     const view = this.atmosphere.viewOf(camera)
     if (view === undefined || view.viewpoint === null) return
     // The first camera of a frame leads: a mirror's may be below ground.
@@ -148,7 +148,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     if (this.needsRedraw || (cube.isIdle && !isSame())) {
       this.#drawn.set(view)
       this.#overlayVersion = version
-      cube.aim(renderer, camera.matrixWorld)
+      cube.restart(renderer, camera.matrixWorld)
     }
     if (cube.isIdle) return
     if (!cube.draw(renderer, this.needsRedraw)) return
@@ -161,7 +161,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     // The map must be there when a material is made, as three's own node has it.
     if (this.#cube.node === null && camera !== null) {
       this.#view.prepare({ renderer, camera } as NodeFrame)
-      this.#follow(renderer, camera, -1)
+      this.#redrawIfStale(renderer, camera, -1)
     }
     const { node } = this.#cube
     return node === null ? vec3(0) : mirrored(builder, node, this.diffuse)

@@ -69,7 +69,7 @@ export class DayCycle {
   #rate = 1440
   #daylight = 0.5
   #adaptation = 0.3
-  readonly #eyes: ExposureAdaptation
+  readonly #exposureAdaptation: ExposureAdaptation
   /** Season that was set, and the solar day that it led to; null if the time was set since. */
   #requestedSeason: { season: number; day: number } | null = null
 
@@ -92,7 +92,7 @@ export class DayCycle {
     if (rate !== undefined) this.rate = rate
     if (daylight !== undefined) this.daylight = daylight
     if (adaptation !== undefined) this.adaptation = adaptation
-    this.#eyes = new ExposureAdaptation(atmosphere)
+    this.#exposureAdaptation = new ExposureAdaptation(atmosphere)
     this.#time = 0
     this.date = date ?? atmosphere.date ?? new Date()
   }
@@ -216,7 +216,7 @@ export class DayCycle {
 
   /** Exposure last set by {@link update}: 1 in full daylight. */
   get exposure(): number {
-    return this.#eyes.exposure
+    return this.#exposureAdaptation.exposure
   }
 
   /** Geodetic position of the world's origin; longitude 0 where that is the planet's centre. */
@@ -248,7 +248,7 @@ export class DayCycle {
     }
     if (!this.paused) this.#moveTo(this.#time + this.#solarTimeOf(deltaSeconds * this.#rate * 1000))
     if (camera !== undefined) {
-      this.#eyes.update(camera, this.exposureOptions, deltaSeconds, this.#adaptation)
+      this.#exposureAdaptation.update(camera, this.exposureOptions, deltaSeconds, this.#adaptation)
     }
   }
 

@@ -42,7 +42,7 @@ export class SunDirectionalLight extends DirectionalLight {
     this.atmosphere = atmosphere
     this.source = source
     this.distance = distance
-    this.follow()
+    this.update()
   }
 
   /** Distance from the target to the light, along the sun's direction, > 0 [world units]. */
@@ -60,7 +60,7 @@ export class SunDirectionalLight extends DirectionalLight {
   }
 
   /** Moves to where the sun is; rendering does this by itself. */
-  follow(): void {
+  update(): void {
     this.target.updateWorldMatrix(true, false)
     this.position.setFromMatrixPosition(this.target.matrixWorld)
     this.source.direction(_direction, this.position)
@@ -69,7 +69,7 @@ export class SunDirectionalLight extends DirectionalLight {
   }
 
   override updateMatrixWorld(force?: boolean): void {
-    this.follow()
+    this.update()
     watchScene('SunDirectionalLight', this)
     super.updateMatrixWorld(force)
   }

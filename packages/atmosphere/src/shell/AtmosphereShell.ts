@@ -124,7 +124,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   #uniforms = new AtmosphereUniforms()
   /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
-  readonly #eye = new ViewpointUniforms()
+  readonly #viewpoint = new ViewpointUniforms()
   readonly #isMarched = uniform(1)
   readonly #profile = new ProfileUniforms()
   #version = -1
@@ -223,7 +223,12 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       }).Else(() => {
-        const light = sampledShellLight(air.uniforms, volumes.atlas, this.#eye, segment.fromCamera)
+        const light = sampledShellLight(
+          air.uniforms,
+          volumes.atlas,
+          this.#viewpoint,
+          segment.fromCamera
+        )
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       })
@@ -304,8 +309,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.#isMarched.value = isMarched ? 1 : 0
     if (isMarched) return
     const cosLight = this.#view.up.value.dot(this.#view.sunDirectionMapped.value)
-    const eye = viewpointScalars(parameters, height, Math.min(Math.max(cosLight, -1), 1))
-    this.#eye.set(eye, volumes.volumeFor(renderer, eye, tablesVersion))
+    const viewpoint = viewpointScalars(parameters, height, Math.min(Math.max(cosLight, -1), 1))
+    this.#viewpoint.set(viewpoint, volumes.volumeFor(renderer, viewpoint, tablesVersion))
   }
 
   /** Frees geometry, material and volumes, and the tables if no other shell uses them. */

@@ -54,11 +54,11 @@ export class StarsOverlayNode extends PostEffectNode {
         const { hitsGround, meetsAir } = rayTargets(viewpoint, cosView)
         // `airlight` 0: overlaid layers are never masked by the sky here.
         const airlight = vec4(0) as Vec4
-        const aim = viewRay(viewpoint, cosView, hitsGround)
-        const angles = { direction, cosViewLight, meetsAir, ...aim }
+        const volumeRay = viewRay(viewpoint, cosView, hitsGround)
+        const angles = { direction, cosViewLight, meetsAir, ...volumeRay }
         const ray = { view: this.view, ...angles, pixel, airlight }
         If(hitsGround.not(), () => {
-          const through = skyTransmittance(volume, viewpoint, aim)
+          const through = skyTransmittance(volume, viewpoint, volumeRay)
           added.assign(linearSRGB(uniforms, this.#light(ray).mul(through)))
         })
       })

@@ -14,7 +14,7 @@ import { number, runs, spectrumIndex } from '../arbitraries'
 const earth = new AtmosphereParameters()
 const { bottomRadius, topRadius } = earth
 
-/** Of an exponential profile between two altitudes. */
+/** Column of an exponential profile between two altitudes. */
 const column = (from: number, to: number, scale: number): number =>
   scale * (Math.exp(-from / scale) - Math.exp(-to / scale))
 

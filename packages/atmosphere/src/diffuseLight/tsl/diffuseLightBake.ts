@@ -57,14 +57,14 @@ export function bakeRays(
       )
       .toConst() as Float
     const end = towards.up.select(thickness, float(0))
-    const way = scattering(air, ray, length, end.sub(altitude), steps, lights)
-    const radiance = scatteredRadiance(uniforms, way, towards.cosViewLight)
+    const scattered = scattering(air, ray, length, end.sub(altitude), steps, lights)
+    const radiance = scatteredRadiance(uniforms, scattered, towards.cosViewLight)
       .mul(RADIANCE_SCALE)
       .toVar()
     If(towards.up.not(), () => {
       const target = pointAlong(air, ray, length)
       const ground = groundRadiance(air, target.cosLight, lights).mul(RADIANCE_SCALE)
-      radiance.addAssign(ground.mul(way.depth.negate().exp()))
+      radiance.addAssign(ground.mul(scattered.depth.negate().exp()))
     })
     return radiance
   })()

@@ -18,7 +18,8 @@ const MIN_EXPONENT = -30
  *
  * @param scale - Distance to the planet's centre, in falloff heights.
  * @param cosView - |μ|, against the zenith.
- * @see Fitzmaurice 1964, "Simplification of the Chapman function for atmospheric attenuation"
+ * @see Fitzmaurice 1964, "Simplification of the Chapman function for atmospheric attenuation", Applied
+ *   Optics 3, 640
  */
 export function airMass(scale: Float, cosView: Float): Float {
   const half = scale.mul(0.5).sqrt().toConst()
@@ -65,10 +66,10 @@ export function fogDepth(
   const here = exponent(height).negate().exp().toConst()
   const there = exponent(height.add(gain)).negate().exp().toConst()
   const outward = here.mul(airMass(radius.div(falloff), cosView.abs())).toConst()
-  const beyond = there.mul(airMass(radiusThere.div(falloff), cosThere.abs())).toConst()
+  const outwardThere = there.mul(airMass(radiusThere.div(falloff), cosThere.abs())).toConst()
 
   const sinks = cosView.lessThan(0).toConst()
-  const turns = sinks.and(cosThere.greaterThan(0)).toConst() as Bool
+  const passesNearest = sinks.and(cosThere.greaterThan(0)).toConst() as Bool
   const lowestRadius = radius.mul(cosView.mul(cosView).oneMinus().max(0).sqrt()).toConst()
   const drop = along.mul(along).div(lowestRadius.add(radius)).toConst()
   const lowest = exponent(height.sub(drop)).negate().exp().toConst()
@@ -80,14 +81,16 @@ export function fogDepth(
         .sqrt()
     )
     .mul(2)
-  const between = turns.select(
-    chord.sub(outward).sub(beyond),
-    sinks.select(beyond.sub(outward), outward.sub(beyond))
+  const between = passesNearest.select(
+    chord.sub(outward).sub(outwardThere),
+    sinks.select(outwardThere.sub(outward), outward.sub(outwardThere))
   )
   const least = here.min(there).mul(distance)
-  const most = turns.select(lowest, here.max(there)).mul(distance)
+  const most = passesNearest.select(lowest, here.max(there)).mul(distance)
   const depth = between.mul(falloff).clamp(least, most).mul(density)
-  const sinking = turns.select(drop.div(along.min(-1)), gain.div(distance.max(1e-3))).negate()
+  const sinking = passesNearest
+    .select(drop.div(along.min(-1)), gain.div(distance.max(1e-3)))
+    .negate()
   return {
     depth: depth.toConst(),
     start: height.div(falloff).toConst(),
@@ -105,7 +108,7 @@ export function fogDepth(
  * @param total - Vertical optical depth of the layer.
  * @param cosLight - Cosine of the light's zenith angle that gives the slant depth, > 0.
  * @see Shettle & Weinman 1970, "The transfer of solar irradiance through inhomogeneous turbid
- *   atmospheres evaluated by Eddington's approximation". Twin: test/twins/fog/heightFog.ts
+ *   atmospheres evaluated by Eddington's approximation", J. Atmos. Sci. 27, 1048. Twin: test/twins/fog/heightFog.ts
  */
 export function multipleScattering(above: Float, total: Float, cosLight: Float): Float {
   const top = cosLight.mul(3).add(2).toConst()

@@ -36,12 +36,12 @@ export function groundHit(
   const { bottomRadius } = view.air.uniforms
   const hit = view.up.mul(bottomRadius.add(view.viewpoint.altitude)).add(direction.mul(distance))
   const up = hit.normalize().toConst() as Vec3
-  const cosEye = direction.dot(up).negate().clamp(1e-3, 1).toConst() as Float
+  const cosViewer = direction.dot(up).negate().clamp(1e-3, 1).toConst() as Float
   // A pixel on the ground, in units of the radius: across the view ray and along it.
   const width = pixel.max(MIN_PIXEL_ANGLE).mul(distance).div(bottomRadius).toConst()
   const side = direction.cross(up).toConst()
   const across = side.div(side.length().max(1e-6)).mul(width).toConst() as Vec3
-  const along = up.cross(across).div(cosEye.max(0.02)).toConst() as Vec3
+  const along = up.cross(across).div(cosViewer.max(0.02)).toConst() as Vec3
   const normal = up
     .mul(vec3(flattening, flattening, 1))
     .normalize()
@@ -49,11 +49,11 @@ export function groundHit(
   return {
     angles: {
       cosLight: up.dot(view.lightDirection).clamp(-1, 1).toConst(),
-      cosEye,
-      cosLightEye: cosViewLight.negate()
+      cosViewer,
+      cosLightViewer: cosViewLight.negate()
     },
     normal,
-    footprint: width.div(cosEye.max(0.1).sqrt()),
+    footprint: width.div(cosViewer.max(0.1).sqrt()),
     uv: equirectangular(normal).toConst(),
     uvAcross: equirectangularStep(normal, across).toConst(),
     uvAlong: equirectangularStep(normal, along).toConst()

@@ -49,7 +49,7 @@ export function seaRadiance(
     .mul(angles.cosLight.max(0))
     .add(sky)
     .mul(vec4(...WATER_REFLECTANCE))
-  const mirroredSky = sky.mul(skyReflectance(angles.cosEye, variance))
+  const mirroredSky = sky.mul(skyReflectance(angles.cosViewer, variance))
   const glint = sun.mul(sunGlint(angles, variance))
   return fromWater.add(mirroredSky).div(Math.PI).add(glint)
 }

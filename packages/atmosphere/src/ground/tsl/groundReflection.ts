@@ -5,9 +5,9 @@ export interface GroundAngles {
   /** Sun and normal. */
   cosLight: Float
   /** Camera and normal, in (0, 1]. */
-  cosEye: Float
+  cosViewer: Float
   /** Sun and camera. */
-  cosLightEye: Float
+  cosLightViewer: Float
 }
 
 /**
@@ -22,8 +22,8 @@ export function orenNayar(angles: GroundAngles, roughness: Float): Float {
   const even = variance.mul(0.5).div(variance.add(0.33)).oneMinus()
   const uneven = variance.mul(0.45).div(variance.add(0.09))
   const cosLight = angles.cosLight.max(0).toConst()
-  const along = angles.cosLightEye.sub(cosLight.mul(angles.cosEye)).toConst()
-  const longest = along.greaterThan(0).select(cosLight.max(angles.cosEye), 1).max(1e-3)
+  const along = angles.cosLightViewer.sub(cosLight.mul(angles.cosViewer)).toConst()
+  const longest = along.greaterThan(0).select(cosLight.max(angles.cosViewer), 1).max(1e-3)
   return along.div(longest).mul(uneven).add(even).max(0)
 }
 
@@ -79,16 +79,19 @@ export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 *
  * @see Cox & Munk 1954, as for {@link seaSlopeVariance}; shadowing as for `smithLambda`
  */
 export function sunGlint(angles: GroundAngles, variance: Float): Float {
-  const { cosLight, cosEye, cosLightEye } = angles
+  const { cosLight, cosViewer, cosLightViewer } = angles
   // Half vector h of unit length: |l + v|² = 2 (1 + l·v).
-  const length = cosLightEye.add(1).mul(2).max(1e-6).sqrt().toConst()
-  const cosTilt = cosLight.add(cosEye).div(length).clamp(1e-3, 1).toConst()
+  const length = cosLightViewer.add(1).mul(2).max(1e-6).sqrt().toConst()
+  const cosTilt = cosLight.add(cosViewer).div(length).clamp(1e-3, 1).toConst()
   const square = cosTilt.mul(cosTilt).toConst()
   const slopes = square.reciprocal().sub(1).div(variance).negate().exp()
   const distribution = slopes.div(variance.mul(Math.PI).mul(square).mul(square))
   const slope = variance.sqrt().toConst()
   // Shadowing keeps this positive where the camera's cosine is 0.
-  const visible = smithLambda(cosLight, slope).add(smithLambda(cosEye, slope)).add(1).mul(cosEye)
+  const visible = smithLambda(cosLight, slope)
+    .add(smithLambda(cosViewer, slope))
+    .add(1)
+    .mul(cosViewer)
   const glint = waterFresnel(length.mul(0.5)).mul(distribution).div(visible.mul(4))
   return cosLight.greaterThan(0).select(glint, 0)
 }
@@ -98,6 +101,6 @@ export function sunGlint(angles: GroundAngles, variance: Float): Float {
  *
  * @param variance - {@link seaSlopeVariance}.
  */
-export function skyReflectance(cosEye: Float, variance: Float): Float {
-  return waterFresnel(cosEye.mul(cosEye).add(variance).sqrt().min(1))
+export function skyReflectance(cosViewer: Float, variance: Float): Float {
+  return waterFresnel(cosViewer.mul(cosViewer).add(variance).sqrt().min(1))
 }

@@ -40,7 +40,8 @@ const normalCDF = (x: Float): Float => x.mul(-1.702).clamp(-40, 40).exp().add(1)
  * @param cosView - μ.
  * @param bottomRadius - Planet's centre to the ground [m].
  * @param distance - Length of the ray [m]; null for one without end.
- * @see van Rhijn 1921, "On the brightness of the sky at night", for rays that cross the layer steeply. Twin: test/twins/night/airglow.ts
+ * @see van Rhijn 1921, "On the brightness of the sky at night and the total amount of starlight", Publ.
+ *   Kapteyn Lab. 31, for rays that cross the layer steeply. Twin: test/twins/night/airglow.ts
  */
 export function vanRhijnFactors(
   layer: AirglowLayerNodes,
@@ -82,7 +83,7 @@ export function vanRhijnFactors(
  * @param altitude - Altitude of the camera, at least ten standard deviations below the layer [m].
  * @param cosView - μ.
  * @param bottomRadius - Planet's centre to the ground [m].
- * @see van Rhijn 1921. Twin: test/twins/night/airglow.ts
+ * @see van Rhijn 1921, as for {@link vanRhijnFactors}. Twin: test/twins/night/airglow.ts
  */
 export function thinLayerVanRhijnFactor(
   layer: AirglowLayerNodes,

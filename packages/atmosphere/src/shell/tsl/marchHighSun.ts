@@ -124,7 +124,7 @@ export function suitsHighSun(
   { hitsGround, radiusCosView }: AirSegment,
   dense: DenseEnd
 ): Bool {
-  const turns = hitsGround.not().and(radiusCosView.lessThan(0))
+  const passesNearest = hitsGround.not().and(radiusCosView.lessThan(0))
   const isThin = thickness.lessThan(bottomRadius.mul(THIN_AIR))
-  return dense.isSunny.or(dense.isDark).and(turns.not()).and(isThin)
+  return dense.isSunny.or(dense.isDark).and(passesNearest.not()).and(isThin)
 }

@@ -16,18 +16,18 @@ import {
 /** Optical depth that hides whatever is behind it. */
 const OPAQUE_DEPTH = 7
 
-/** Visible part of a segment: one that turns in opaque air ends at its lowest point. */
+/** Visible part of a segment: one that passes its nearest point in opaque air ends at its lowest point. */
 function visiblePart(
   uniforms: AtmosphereUniforms,
   constants: ProfileConstants,
   segment: AirSegment,
-  turns: Bool
+  passesNearest: Bool
 ): AirSegment {
   const { density } = profileAt(uniforms, constants, segment.lowestAltitude)
   const columns = vec3(constants.horizon.mul(density.xy), 0) as Vec3
   const depth = extinction(uniforms, columns).toConst() as Vec4
   const isOpaque = depth.x.min(depth.y).min(depth.z.min(depth.w)).greaterThan(OPAQUE_DEPTH)
-  const length = turns
+  const length = passesNearest
     .and(isOpaque)
     .select(segment.radiusCosView.negate().clamp(0, segment.length), segment.length)
   return { ...segment, length: length.toConst() }
@@ -45,10 +45,10 @@ export function marchSingleScattering(
 ): void {
   const { altitude, radiusCosView, hitsGround } = segment
   const isShort = altitude.lessThan(uniforms.homogeneousHeight.mul(1.25))
-  const turns = hitsGround.not().and(radiusCosView.lessThan(0)).toConst() as Bool
-  const stepsToSpace = turns.select(4, 3)
+  const passesNearest = hitsGround.not().and(radiusCosView.lessThan(0)).toConst() as Bool
+  const stepsToSpace = passesNearest.select(4, 3)
   const steps = int(hitsGround.select(isShort.select(1, 3), stepsToSpace)).toConst()
-  const visible = visiblePart(uniforms, constants, segment, turns)
+  const visible = visiblePart(uniforms, constants, segment, passesNearest)
   const { nodes, weights } = gaussLegendre(3)
   marchFromLowest(
     uniforms,

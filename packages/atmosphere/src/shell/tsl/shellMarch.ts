@@ -102,8 +102,8 @@ export function marchedShellLight(air: Air, segment: AirSegment, steps: number):
 export function sampledShellLight(
   uniforms: AtmosphereUniforms,
   atlas: Texels,
-  eye: Viewpoint,
-  sight: AirRay
+  viewpoint: Viewpoint,
+  ray: AirRay
 ): ShellLight {
-  return sampleAir(uniforms, atlas, eye, sight)
+  return sampleAir(uniforms, atlas, viewpoint, ray)
 }

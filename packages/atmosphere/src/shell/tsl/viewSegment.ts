@@ -122,8 +122,8 @@ function airChord(
   const end = root.sub(radiusCosView).max(1e-3).toConst()
   const misses = isOutside.and(impactRadius.greaterThanEqual(top).or(cosView.greaterThan(0)))
   const length = misses.select(0, hitsGround.select(product.div(end), end)).toConst() as Float
-  const turns = hitsGround.not().and(descends).toConst() as Bool
-  const lowest = turns.select(impactRadius.sub(bottomRadius).max(0), altitude)
+  const passesNearest = hitsGround.not().and(descends).toConst() as Bool
+  const lowest = passesNearest.select(impactRadius.sub(bottomRadius).max(0), altitude)
   return {
     altitude,
     radius: isOutside.select(top, radius).toConst(),
@@ -148,13 +148,13 @@ function middleDistance(
   pixel: Vec2
 ): Float {
   const { impactRadius, isOutside, entry, halfChord } = chord
-  const turns = hitsGround.not().and(radiusCosView.lessThan(0))
+  const passesNearest = hitsGround.not().and(radiusCosView.lessThan(0))
   const isLow = lowestAltitude.lessThan(altitude.mul(GRAZING_FRACTION))
-  const isGrazing = turns.and(isOutside.or(isLow))
-  const reach = isGrazing.select(radiusCosView.negate().min(length), length).toConst() as Float
-  const middle = entry.add(reach.mul(0.5)).toConst() as Float
+  const isGrazing = passesNearest.and(isOutside.or(isLow))
+  const partLength = isGrazing.select(radiusCosView.negate().min(length), length).toConst() as Float
+  const middle = entry.add(partLength.mul(0.5)).toConst() as Float
   // Corners of a pixel may show ground that is nearer by more than the air is thick.
-  const pixelRadius = entry.add(reach).mul(pixel.x).add(pixel.y)
+  const pixelRadius = entry.add(partLength).mul(pixel.x).add(pixel.y)
   const corner = impactRadius.sub(pixelRadius).max(0).toConst() as Float
   const cornerChord = bottomRadius.sub(corner).mul(bottomRadius.add(corner)).max(0).sqrt()
   const nearer = cornerChord.sub(hitsGround.select(halfChord, 0)).max(0)

@@ -89,10 +89,10 @@ export function skyColor(
   let isDimmed: Bool | null = null
   if (pixel !== null) {
     // cos x > 1 − x²/2, and no more than that by far.
-    const reach = uniforms.sunAngularRadius.add(pixel).toConst()
+    const largestAngle = uniforms.sunAngularRadius.add(pixel).toConst()
     const isNear = cosViewLight.greaterThan(
-      reach
-        .mul(reach)
+      largestAngle
+        .mul(largestAngle)
         .mul(-0.5)
         .add(1 - 1e-6)
     )

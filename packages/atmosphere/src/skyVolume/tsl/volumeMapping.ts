@@ -68,10 +68,10 @@ export function elevationCosine(
  * The sun's cosine where a ray from outside the air meets the ground or passes nearest to it:
  * the mean over azimuths, and the most that an azimuth adds or takes away.
  *
- * With b = r √(1 − μ²), the ray's distance from the planet's centre, the foot is half a chord
+ * With b = r √(1 − μ²), the ray's distance from the planet's centre, that point is half a chord
  * c = √(r_ground² − b²) before the nearest point, or that point.
  */
-function lightAtFoot(
+function lightAtLowestPoint(
   uniforms: AtmosphereUniforms,
   viewpoint: Viewpoint,
   cosView: Float,
@@ -116,7 +116,7 @@ export function azimuthColumn(
     .toConst()
   const position = cosAzimuth.oneMinus().mul(0.5).sqrt().toVar()
   If(viewpoint.toTop.lessThan(0), () => {
-    const { mean, swing } = lightAtFoot(uniforms, viewpoint, cosView, sinView, hitsGround)
+    const { mean, swing } = lightAtLowestPoint(uniforms, viewpoint, cosView, sinView, hitsGround)
     const first = compressCosine(mean.add(swing)).toConst()
     const last = compressCosine(mean.sub(swing))
     const here = compressCosine(mean.add(swing.mul(cosAzimuth)))
@@ -140,7 +140,7 @@ export function columnCosine(
     .toConst()
   const cosAzimuth = position.mul(position).mul(2).oneMinus().toVar()
   If(viewpoint.toTop.lessThan(0), () => {
-    const { mean, swing } = lightAtFoot(uniforms, viewpoint, cosView, sinView, hitsGround)
+    const { mean, swing } = lightAtLowestPoint(uniforms, viewpoint, cosView, sinView, hitsGround)
     const first = compressCosine(mean.add(swing)).toConst()
     const last = compressCosine(mean.sub(swing))
     const x = mix(first, last, position).toConst()
