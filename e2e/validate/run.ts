@@ -40,7 +40,8 @@ const usage = `npm run validate -- [options]
                              --quality NAME of the march, by default high
   --shafts [FILE]            instead: light that boxes take from the air in their shadows, by default
                              e2e/reference/shafts.json; --quality NAME of the shafts, by default high,
-                             --reversed for a reversed depth buffer
+                             --reversed for a reversed depth buffer, --forward for materials that draw
+                             the air themselves
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
                              --latitude [°], --coverage C
@@ -102,6 +103,7 @@ async function main(): Promise<void> {
       'cloud-light': { type: 'string' },
       shafts: { type: 'string' },
       reversed: { type: 'boolean', default: false },
+      forward: { type: 'boolean', default: false },
       quality: { type: 'string', default: 'high' },
       'export-clouds': { type: 'string' },
       preset: { type: 'string', default: 'fairWeather' },
@@ -167,7 +169,12 @@ async function main(): Promise<void> {
     const air = input(values.sky, 'sky.json')
     if (file === undefined || air === undefined) throw new Error('there is nothing to compare')
     const quality = choice('quality', values.quality, lightShaftsQualities)
-    const options = { backend: where.backend, quality, isReversed: values.reversed }
+    const options = {
+      backend: where.backend,
+      quality,
+      isReversed: values.reversed,
+      isForward: values.forward
+    }
     const { errors, ...shafts } = await validateShafts(
       file,
       readSkyReference(air).parameters,

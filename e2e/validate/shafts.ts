@@ -1,6 +1,5 @@
 import { readFileSync } from 'node:fs'
-import type { AtmosphereParametersInit, LightShaftsQuality } from '@welkin/atmosphere'
-import type { Backend } from '../harness/backend'
+import type { AtmosphereParametersInit } from '@welkin/atmosphere'
 import { shaftGoal } from './goals'
 import type { Box, ShaftRequest } from './page/shafts'
 import { withPages } from './pages'
@@ -59,7 +58,7 @@ const statistics = (errors: readonly ShaftError[], scene: string) => {
 export async function validateShafts(
   file: string,
   parameters: AtmosphereParametersInit,
-  options: { backend: Backend; quality: LightShaftsQuality; isReversed: boolean }
+  options: Omit<ShaftRequest, 'parameters' | 'views'>
 ): Promise<ShaftFigures & { errors: ShaftError[] }> {
   const { boxes, cases } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
   const request: ShaftRequest = {

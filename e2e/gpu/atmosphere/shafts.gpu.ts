@@ -37,7 +37,7 @@ import {
 import { warpedSteps } from '../../../packages/atmosphere/src/shafts/tsl/warpedSteps'
 import type { Float, Vec3 } from '../../../packages/atmosphere/src/tsl-types'
 import { warpedDistance } from '../../../packages/atmosphere/test/twins/shafts/warpedSteps'
-import { drawToFloat, random } from '../harness/atmosphere'
+import { drawForward, drawToFloat, random } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { countCompilations, countObjects, nextFrame } from '../harness/graphics'
@@ -262,6 +262,42 @@ gpuTest("reads three's cascades as it reads one map", async t => {
   expectTrue(shadows > 0.02, 'the tower casts a shadow')
   expectTrue(errors < 0.1 * shadows, 'cascades')
 })
+
+gpuTest(
+  'has materials draw the air as the post effect does, in the frame in which casters move',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { scene, camera, draw, shafts, atmosphere, dispose } = stage(renderer, 15, {
+      quality: 'reference'
+    })
+    const tower = addBox(scene, [-300, 200, -600], [500, 500, 60])
+    tower.material.color.set(0)
+    await draw()
+    tower.position.x = -100
+    const post = await draw()
+    shafts.enabled = false
+    const lit = await draw()
+    shafts.enabled = true
+    tower.position.x = -300
+    atmosphere.add(shafts)
+    const forward = async (): Promise<Picture> => {
+      await nextFrame()
+      return drawForward(renderer, scene, camera, atmosphere)
+    }
+    await forward()
+    // The background is drawn first, and with shadows of this frame.
+    tower.position.x = -100
+    const moved = await forward()
+    expectSame(await forward(), moved, 'a frame later')
+    const apart = (a: Picture, b: Picture): number =>
+      a.data.reduce((sum, value, i) => sum + Math.abs(value - b.data[i]), 0)
+    const [errors, shadows] = [apart(moved, post), apart(post, lit)]
+    t.note(`they differ by ${(errors / shadows).toFixed(3)} of the light lost`)
+    expectTrue(shadows > 0.002 * lit.data.reduce((sum, value) => sum + value, 0), 'shadows')
+    expectTrue(errors < 0.15 * shadows, 'forward')
+    dispose()
+  }
+)
 
 gpuTest(
   'changes strength, quality and being on without a compile, and frees what it made',

@@ -1,8 +1,10 @@
 import {
   aerialPerspective,
+  aerialPerspectiveFog,
   Atmosphere,
   AtmosphereParameters,
   lightShafts,
+  skyBackground,
   SunDirectionalLight,
   type AtmosphereParametersInit,
   type LightShaftsQuality,
@@ -46,6 +48,8 @@ export interface ShaftRequest {
   parameters: AtmosphereParametersInit
   quality: LightShaftsQuality
   isReversed: boolean
+  /** Sky and haze drawn by the scene's own materials, not by a post effect. */
+  isForward: boolean
   views: ShaftView[]
 }
 
@@ -129,7 +133,7 @@ async function drawView(
   renderer: WebGPURenderer,
   atmosphere: Atmosphere,
   view: ShaftView,
-  quality: LightShaftsQuality
+  { quality, isForward }: Pick<ShaftRequest, 'quality' | 'isForward'>
 ): Promise<number[][]> {
   const toLight = new Vector3(...view.sun)
   atmosphere.sunDirection = toLight
@@ -147,11 +151,16 @@ async function drawView(
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false
   const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
-  pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+  if (isForward) {
+    atmosphere.add(shafts)
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+  } else pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere, { shafts })
   const target = new RenderTarget(PIXELS, PIXELS, { type: FloatType })
   const draw = async (): Promise<number[]> => {
     renderer.setRenderTarget(target)
-    pipeline.render()
+    if (isForward) renderer.render(scene, camera)
+    else pipeline.render()
     renderer.setRenderTarget(null)
     const picture = await readPicture(renderer, target)
     const sums = [0, 0, 0]
@@ -173,12 +182,14 @@ async function drawView(
     const lit = await draw()
     lost.push(lit.map((value, k) => value - shadowed[k]))
   }
+  atmosphere.remove(shafts)
   scene.traverse(object => (object as Partial<Mesh>).geometry?.dispose())
   for (const owned of [light, shafts, scenePass, pipeline, target]) owned.dispose()
   return lost
 }
 
-window.welkinShafts = async ({ backend, parameters: init, quality, isReversed, views }) => {
+window.welkinShafts = async request => {
+  const { backend, parameters: init, isReversed, views } = request
   const { context, finish } = createContext(backend)
   const parameters = new AtmosphereParameters({ ...init, spectralToXYZ: unmixed() })
   const ellipsoid = new Ellipsoid(parameters.bottomRadius)
@@ -190,7 +201,7 @@ window.welkinShafts = async ({ backend, parameters: init, quality, isReversed, v
     const renderer = await context.createRenderer({ ...size, reversedDepthBuffer: isReversed })
     renderer.shadowMap.enabled = true
     await atmosphere.bake(renderer)
-    for (const view of views) results.push(await drawView(renderer, atmosphere, view, quality))
+    for (const view of views) results.push(await drawView(renderer, atmosphere, view, request))
   } finally {
     atmosphere.dispose()
     messages = (await finish()).messages

@@ -16,7 +16,6 @@ import {
   heightFog,
   type HeightFog,
   imageEnvironment,
-  lightShafts,
   marsParameters,
   milkyWay,
   moon,
@@ -42,7 +41,6 @@ import {
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
 const luna = moon().attach(atmosphere)
-const light = new SunDirectionalLight(atmosphere)
 const cycle = new DayCycle(atmosphere, { date: new Date('2026-06-21T12:00:00Z') })
 const fog = distanceFog()
 const ground = planetGround()
@@ -344,42 +342,6 @@ const cases: [message: string, call: () => unknown][] = [
   [
     'AerialPerspectiveNode: colorNode must be a node, got a Scene',
     () => aerialPerspective(wrong(new Scene()), vec4(1), camera, atmosphere)
-  ],
-  [
-    "AerialPerspectiveNode: unknown option 'shaft', did you mean 'shafts'?",
-    () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, wrong({ shaft: 1 }))
-  ],
-  [
-    'AerialPerspectiveNode: shafts must be LightShafts, got a PerspectiveCamera',
-    () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { shafts: wrong(camera) })
-  ],
-  [
-    'LightShafts: atmosphere must be an Atmosphere, got a PerspectiveCamera',
-    () => lightShafts(wrong(camera), camera, { light })
-  ],
-  [
-    'LightShafts: camera must be a Camera, got an Atmosphere',
-    () => lightShafts(atmosphere, wrong(atmosphere), { light })
-  ],
-  [
-    'LightShafts: light must be a DirectionalLight, got undefined',
-    () => lightShafts(atmosphere, camera, wrong({}))
-  ],
-  [
-    "LightShafts: unknown option 'steps', there are strength, quality, enabled",
-    () => lightShafts(atmosphere, camera, wrong({ light, steps: 4 }))
-  ],
-  [
-    'LightShafts: strength must be finite and ≥ 0, got -1',
-    () => lightShafts(atmosphere, camera, { light, strength: -1 })
-  ],
-  [
-    "LightShafts: quality must be 'low', 'medium', 'high' or 'reference', got 'best'",
-    () => lightShafts(atmosphere, camera, { light, quality: wrong('best') })
-  ],
-  [
-    'LightShafts: enabled must be true or false, got 1',
-    () => lightShafts(atmosphere, camera, { light, enabled: wrong(1) })
   ],
   [
     'StarsOverlayNode: depthNode must be a node, got a PerspectiveCamera',

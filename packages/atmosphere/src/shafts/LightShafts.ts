@@ -1,20 +1,20 @@
-import type { Camera, DirectionalLight } from 'three'
-import { If, float } from 'three/tsl'
-import type { Node, Renderer } from 'three/webgpu'
+import type { Camera, OrthographicCamera } from 'three'
+import { If, float, screenCoordinate } from 'three/tsl'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import type { Float, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { AirShadows } from '../view/AirShadows'
-import type { AtmosphereView } from '../view/AtmosphereView'
+import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
 import type { LayerRay, PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import { ScreenShafts } from './ScreenShafts'
-import { shadowMapsOf } from './shadowMaps'
+import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
-import { lostLight, type ShadowedAir } from './tsl/lostLight'
+import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
 
 /** Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in each. */
 const qualities = {
@@ -33,9 +33,10 @@ const names = Object.keys(qualities) as LightShaftsQuality[]
 export interface LightShaftsOptions {
   /**
    * Light whose shadows fall into the air: a `SunDirectionalLight`, a `MoonDirectionalLight`, or a directional
-   * light of one's own that shines from the atmosphere's sun. It must cast shadows for there to be shafts.
+   * light of one's own, three's `SunLight` too, that shines from the atmosphere's sun. It must cast shadows for
+   * there to be shafts.
    */
-  light: DirectionalLight
+  light: ParallelLight
   /** See {@link LightShafts.strength}; by default 1. */
   strength?: number
   /** See {@link LightShafts.quality}; by default `'high'`. */
@@ -54,6 +55,9 @@ const SETTINGS = ['strength', 'quality', 'enabled'] as const
  * const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
  * ```
  *
+ * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
+ * are added to the atmosphere: `atmosphere.add(shafts)`. Then each pixel marches, of every material.
+ *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit. The light scattered once is
  * taken from air in shadow; light scattered more often, which comes from all sides, stays. A scene without
@@ -70,7 +74,7 @@ export class LightShafts implements AirShadows {
   /** Camera whose picture has the shafts. */
   readonly camera: Camera
   /** Shared, not owned. */
-  readonly light: DirectionalLight
+  readonly light: ParallelLight
   /** Source of the light. */
   readonly source: LightSource
   /** The camera's view of the air in this light, for post effects. */
@@ -90,13 +94,16 @@ export class LightShafts implements AirShadows {
     checkAtmosphere('LightShafts', atmosphere)
     checkCamera('LightShafts', camera)
     const { light, ...settings } = options ?? {}
-    if (!light?.isDirectionalLight) fail('LightShafts', 'light must be a DirectionalLight', light)
+    const lightCamera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
+    if (!lightCamera?.isOrthographicCamera)
+      fail('LightShafts', 'light must be a DirectionalLight', light)
     this.atmosphere = atmosphere
     this.camera = camera
     this.light = light
     this.source = (light as { source?: LightSource }).source ?? atmosphere.sun
     this.view = viewNodes(atmosphere, camera, this.source)
     this.shadowedAir = this.#map
+    claimShadow(light)
     this.set(settings)
   }
 
@@ -150,12 +157,19 @@ export class LightShafts implements AirShadows {
     return screen
   }
 
-  prepare(renderer: Renderer, { camera }: AtmosphereView): void {
+  /** Called before it is added. @throws If it is another atmosphere's. */
+  attach(atmosphere: ViewedAtmosphere): void {
+    if (atmosphere !== this.atmosphere)
+      fail('LightShafts', 'atmosphere must be that of its layers', atmosphere)
+  }
+
+  prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): void {
     if (camera !== this.camera) return
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
     const { rows, groups, samples } = qualities[this.#quality]
+    if (isLit && frame) drawShadow(this.light, frame, camera)
     const maps = isLit ? shadowMapsOf(this.light) : []
     this.#map.update(renderer, view!, atmosphere.space, maps, rows)
     steps.groups.value = groups
@@ -189,7 +203,8 @@ export class LightShafts implements AirShadows {
     return this.subtract(without, () => {
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance }
-      return lostLight(lit, this.shadowedAir, ray, this.steps, float(0.5))
+      const jitter = staggered(screenCoordinate.xy.floor())
+      return lostLight(lit, this.shadowedAir, ray, this.steps, jitter)
     })
   }
 

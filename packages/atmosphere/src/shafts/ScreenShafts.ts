@@ -1,7 +1,7 @@
 import { NearestFilter, Vector2 } from 'three'
 import type { Camera, PerspectiveCamera, RenderTarget } from 'three'
 import { Fn, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Node, Renderer, TextureNode } from 'three/webgpu'
+import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
@@ -37,7 +37,7 @@ export interface CameraShafts {
   readonly steps: ShaftSteps
   /** True if there are shadows to be drawn, as of the last `prepare`. */
   readonly isActive: boolean
-  prepare(renderer: Renderer, view: AtmosphereView): void
+  prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   update(view: AtmosphereView): void
   /** Takes lost light from light, where shafts are on. */
   subtract(light: Vec4, lost: () => Vec4): Vec4
@@ -64,9 +64,9 @@ export class ScreenShafts implements SkyLayer {
     this.#lost = texture(this.target.texture)
   }
 
-  prepare(renderer: Renderer, view: AtmosphereView): void {
+  prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     const shafts = this.#shafts
-    shafts.prepare(renderer, view)
+    shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
     this.#halfSize.value.copy(this.#size.value).multiplyScalar(0.5).ceil()

@@ -14,7 +14,8 @@ import {
 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, PassNode, Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
-import { checkShafts, type AirOptions } from '../view/AirShadows'
+import { checkShafts, type AirOptions, type AirShadows } from '../view/AirShadows'
+import type { SkyLayer } from '../view/SkyLayer'
 import { PostEffectNode } from '../view/PostEffectNode'
 import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
@@ -53,6 +54,9 @@ export class AerialPerspectiveNode extends PostEffectNode {
   showSky = true
   /** Draws the sun's disc. Set it before the first render. */
   showSun = true
+  /** Shadows in the air, or null; shared, not owned. */
+  readonly shafts: AirShadows | null
+  readonly #screenShafts: SkyLayer | undefined
   readonly #near = uniform(0.1)
   readonly #far = uniform(1000)
   readonly #backdrop = new Backdrop()
@@ -67,7 +71,15 @@ export class AerialPerspectiveNode extends PostEffectNode {
   ) {
     super(colorNode, depthNode, camera, atmosphere)
     checkShafts('AerialPerspectiveNode', options)
-    this._shafts = options.shafts?.upTo(depthNode)
+    this.shafts = options.shafts ?? null
+    this.#screenShafts = this.shafts?.upTo(depthNode)
+  }
+
+  /** Layers of the sky, and shafts for all pixels at once in place of those that materials have. */
+  protected override get layers(): readonly SkyLayer[] {
+    const { layers } = this.atmosphere
+    if (this.#screenShafts === undefined) return layers
+    return [...layers.filter(layer => layer !== this.shafts), this.#screenShafts]
   }
 
   override customCacheKey(): number {

@@ -40,8 +40,6 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   readonly atmosphere: Atmosphere
   /** Uniforms and tables for shaders, as the camera that renders sees them. */
   protected readonly view: ViewNodes
-  /** What is drawn of the air after the atmosphere's layers: its shadows. */
-  protected _shafts: SkyLayer | undefined
   #layersVersion = 0
 
   /**
@@ -58,9 +56,9 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     this.updateType = NodeUpdateType.RENDER
   }
 
-  /** Layers of the sky, and shadows in the air if the node was given some. */
+  /** Layers of the sky that it draws. */
   protected get layers(): readonly SkyLayer[] {
-    return [...this.atmosphere.layers, ...(this._shafts ? [this._shafts] : [])]
+    return this.atmosphere.layers
   }
 
   // Layers are part of the shader; the id tells a scene that one sky has taken another's place.
@@ -79,7 +77,7 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   override updateBefore(frame: NodeFrame): undefined {
     const view = this.view.prepare(frame)
     if (view === undefined) return
-    for (const layer of this.layers) layer.prepare?.(frame.renderer!, view)
+    for (const layer of this.layers) layer.prepare?.(frame.renderer!, view, frame)
   }
 
   // Apart from updateBefore, where a nested render (a mirror's) may still set another camera's values.

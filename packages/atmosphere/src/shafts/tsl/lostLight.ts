@@ -13,7 +13,7 @@ import type { ViewUniforms } from '../../view/ViewUniforms'
 import { occluderAngleAt, polarRay, type PolarFrame } from './polarMap'
 import { warpedSteps } from './warpedSteps'
 
-/** What tells light from shadow in the air of a view. */
+/** Sun-polar shadow map, as shaders read it. */
 export interface ShadowedAir {
   readonly map: TextureNode
   readonly frame: PolarFrame
@@ -117,5 +117,5 @@ export function staggered(pixel: Vec2): Float {
   const [left, right, lowerLeft, lowerRight] = STAGGERED
   const odd = pixel.mod(2).greaterThan(vec2(0.5)).toConst() as unknown as { x: Bool; y: Bool }
   const upper = odd.x.select(right, left)
-  return odd.y.select(odd.x.select(lowerRight, lowerLeft), upper).toConst() as Float
+  return odd.y.select(odd.x.select(lowerRight, lowerLeft), upper).toConst()
 }
