@@ -19,7 +19,7 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { float, pass, vec2, vec3, vec4 } from 'three/tsl'
+import { float, pass, vec3, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { quantile } from '../../validate/score'
@@ -380,8 +380,7 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     evenDistance: float(even),
     logScale: float(logScale),
     logOffset: float(0),
-    columns: float(columns),
-    texel: vec2(0)
+    columns: float(columns)
   }
   const next = random(5)
   const texels = Array.from({ length: 32 }, () => [next(), next(), 1e4 * (2 * next() - 1)])

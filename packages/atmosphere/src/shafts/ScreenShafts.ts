@@ -1,16 +1,16 @@
 import { NearestFilter, Vector2 } from 'three'
-import type { Camera, PerspectiveCamera, RenderTarget } from 'three'
+import type { Camera, RenderTarget } from 'three'
 import { Fn, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { vector2 } from '../uniforms'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
 import { lostLight, staggered, type ShadowedAir, type ShaftSteps } from './tsl/lostLight'
-import { DepthRays } from './tsl/depthRay'
+import { DepthRays } from '../view/DepthRays'
 
 /** Octaves of depth by which pixels may differ and still share light, and by which they share none. */
 const SAME_DEPTH = 0.2
@@ -18,13 +18,6 @@ const OTHER_DEPTH = 0.6
 
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
-
-const NEIGHBOURS = [
-  [0, 0],
-  [1, 0],
-  [0, 1],
-  [1, 1]
-]
 
 const _size = new Vector2()
 
@@ -59,7 +52,7 @@ export class ScreenShafts implements SkyLayer {
 
   constructor(shafts: CameraShafts, depthNode: Node) {
     this.#shafts = shafts
-    this.#rays = new DepthRays(depthNode, shafts.camera as PerspectiveCamera)
+    this.#rays = new DepthRays(depthNode, shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
     this.#lost = texture(this.target.texture)
   }
@@ -71,7 +64,6 @@ export class ScreenShafts implements SkyLayer {
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
     this.#halfSize.value.copy(this.#size.value).multiplyScalar(0.5).ceil()
     this.target.setSize(this.#halfSize.value.x, this.#halfSize.value.y)
-    this.#rays.update()
     if (!shafts.isActive) return
     // What is drawn here and now reads the view.
     shafts.view.update(view)
@@ -96,12 +88,11 @@ export class ScreenShafts implements SkyLayer {
     return Fn(({ renderer }): Vec4 => {
       const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
       const at = this.#uvOf(pixel)
-      const { direction, position, isSky } = this.#rays.at(renderer, at)
+      const { position, isSky } = this.#rays.at(renderer, at)
       const { view } = shafts
       const offset = view.toMapped(position).toConst()
-      const distance = isSky.select(1e10, offset.length()).toConst() as Float
-      const mapped = view.toMapped(direction).normalize()
-      const towards = isSky.select(mapped, offset.div(distance.max(1e-3))).toConst() as Vec3
+      const distance = isSky.select(1e10, offset.length()).toConst()
+      const towards = offset.normalize().toConst()
       const cosView = towards.dot(view.up).clamp(-1, 1).toConst() as Float
       const cosViewLight = towards.dot(view.lightDirection).toConst() as Float
       const ray = { direction: towards, cosView, cosViewLight, distance }
@@ -113,7 +104,7 @@ export class ScreenShafts implements SkyLayer {
 
   /** Place in the picture of the pixel that is marched for one of the target. */
   #uvOf(pixel: Vec2): Vec2 {
-    return pixel.mul(2).add(0.5).min(this.#size.sub(0.5)).div(this.#size).toConst()
+    return pixel.mul(2).add(0.5).div(this.#size).toConst()
   }
 
   /** Light that the pixel has lost: the mean of four, which have samples in all places of their steps. */
@@ -124,10 +115,13 @@ export class ScreenShafts implements SkyLayer {
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
       const weights = float(0).toVar()
-      for (const [x, y] of NEIGHBOURS) {
-        const pixel = first.add(vec2(x, y)).min(this.#halfSize.sub(1)).toConst() as Vec2
+      for (const i of [0, 1, 2, 3]) {
+        const pixel = first
+          .add(vec2(i & 1, i >> 1))
+          .min(this.#halfSize.sub(1))
+          .toConst() as Vec2
         const other = this.#rays.viewDepth(renderer, this.#uvOf(pixel))
-        const apart = log2(depth.max(1e-6).div(other.max(1e-6))).abs()
+        const apart = log2(depth.div(other)).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)

@@ -1,4 +1,4 @@
-import { Matrix3, Matrix4, RedFormat, RepeatWrapping, Vector3 } from 'three'
+import { MathUtils, Matrix3, Matrix4, RedFormat, RepeatWrapping, Vector3 } from 'three'
 import type { RenderTarget, DepthTexture } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
@@ -39,8 +39,7 @@ export class SunPolarMap {
     evenDistance: number(1),
     logScale: number(1),
     logOffset: number(),
-    columns: number(1),
-    texel: vector2()
+    columns: number(1)
   }
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
   readonly reach = number()
@@ -68,11 +67,11 @@ export class SunPolarMap {
     rows: number
   ): void {
     this.reach.value = 0
-    if (maps.length === 0) return
-    this.#setSources(renderer, maps)
+    // Without maps, too: what has drawn with the texture in this frame must find it at its end.
     this.target.setSize(rows / 2, rows)
     this.frame.columns.value = rows / 2
-    this.frame.texel.value.set(2 / rows, 1 / rows)
+    if (maps.length === 0) return
+    this.#setSources(renderer, maps)
     this.#setFrame(view, space, maps)
     this.#pass!.render(renderer, this.target)
   }
@@ -97,13 +96,6 @@ export class SunPolarMap {
         occluderAngle(this.frame, this.#sources, storage)
       )
     }
-    maps.forEach(({ depth, bounds }, i) => {
-      const source = this.#sources[i]
-      source.depth.value = depth
-      const { width, height } = depth.image as { width: number; height: number }
-      source.size.value.set(width, height)
-      source.bounds.value.copy(bounds)
-    })
   }
 
   #setFrame(
@@ -121,20 +113,24 @@ export class SunPolarMap {
       _corner.set(x, y, 0.5).applyMatrix4(_fromMap)
       return _corner.addScaledVector(lightDirection, -_corner.dot(lightDirection)).length()
     }
-    maps.forEach(({ matrix, bounds }, i) => {
+    maps.forEach(({ depth, matrix, bounds }, i) => {
+      const source = this.#sources[i]
+      const { width, height } = depth.image as { width: number; height: number }
+      source.depth.value = depth
+      source.size.value.set(width, height)
+      source.bounds.value.copy(bounds)
       // From the eye in the mapped space to world axes, to the world, to the map; float64 all the way.
       space.displacement(_axes.identity(), _linear)
       _toMap.setFromMatrix3(_linear.invert()).premultiply(_axes.copyPosition(camera.matrixWorld))
       _toMap.premultiply(matrix)
-      this.#sources[i].matrix.value.copy(_toMap)
+      source.matrix.value.copy(_toMap)
       _fromMap.copy(_toMap).invert()
       const eye = _end.set(0, 0, 0).applyMatrix4(_toMap)
-      const start = eye.z
       const { x, y, z, w } = bounds
-      least = Math.min(least, distance(clamp(eye.x, x, z), clamp(eye.y, y, w)))
+      least = Math.min(least, distance(MathUtils.clamp(eye.x, x, z), MathUtils.clamp(eye.y, y, w)))
       greatest = Math.max(greatest, distance(x, y), distance(z, y), distance(x, w), distance(z, w))
-      const perMeter = _end.copy(lightDirection).applyMatrix4(_toMap).z - start
-      this.#sources[i].metersPerDepth.value = 1 / perMeter
+      const e = _toMap.elements
+      source.metersPerDepth.value = 1 / lightDirection.dot(_end.set(e[2], e[6], e[10]))
     })
     const even = EVEN_PART * greatest
     const last = Math.log1p(greatest / even)
@@ -154,6 +150,3 @@ export class SunPolarMap {
     this.reach.value = 0
   }
 }
-
-const clamp = (value: number, min: number, max: number): number =>
-  Math.min(Math.max(value, min), max)

@@ -1,27 +1,16 @@
 import type { Camera, OrthographicCamera } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  isBackgroundDepth,
-  logarithmicDepthToViewZ,
-  getViewPosition,
-  select,
-  uniform,
-  uv,
-  vec3,
-  vec4
-} from 'three/tsl'
-import type { Node, NodeBuilder, NodeFrame, PassNode, Renderer } from 'three/webgpu'
+import { Fn, If, float, isBackgroundDepth, select, uv, vec3, vec4 } from 'three/tsl'
+import type { Node, NodeBuilder, NodeFrame, PassNode } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import { checkShafts, type AirOptions, type AirShadows } from '../view/AirShadows'
 import type { SkyLayer } from '../view/SkyLayer'
+import { DepthRays } from '../view/DepthRays'
 import { PostEffectNode } from '../view/PostEffectNode'
 import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
 import { pixelAngle, skyColor } from './tsl/sky'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
-import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
+import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 
 /**
  * Aerial perspective and sky as a post effect: dims what was drawn, adds the light scattered in front
@@ -57,8 +46,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
   /** Shadows in the air, or null; shared, not owned. */
   readonly shafts: AirShadows | null
   readonly #screenShafts: SkyLayer | undefined
-  readonly #near = uniform(0.1)
-  readonly #far = uniform(1000)
+  readonly #rays: DepthRays
   readonly #backdrop = new Backdrop()
 
   /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
@@ -72,6 +60,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
     super(colorNode, depthNode, camera, atmosphere)
     checkShafts('AerialPerspectiveNode', options)
     this.shafts = options.shafts ?? null
+    this.#rays = new DepthRays(depthNode, camera)
     this.#screenShafts = this.shafts?.upTo(depthNode)
   }
 
@@ -88,9 +77,6 @@ export class AerialPerspectiveNode extends PostEffectNode {
 
   override update(frame: NodeFrame): undefined {
     super.update(frame)
-    const { near, far } = this.camera as OrthographicCamera
-    this.#near.value = near
-    this.#far.value = far
     if (frame.renderer !== null) this.#backdrop.update(frame.renderer, this.#pass)
   }
 
@@ -109,11 +95,8 @@ export class AerialPerspectiveNode extends PostEffectNode {
 
   override setup(builder: NodeBuilder): Node {
     const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
-    const { logarithmicDepthBuffer } = builder.renderer as Renderer & {
-      logarithmicDepthBuffer: boolean
-    }
-    const isLogarithmic = logarithmicDepthBuffer && !isOrthographic
-    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this._projectionInverse)
+    const position = (depth: Float): Vec3 =>
+      this.#rays.position(builder.renderer, uv() as unknown as Vec2, depth)
 
     return Fn(() => {
       const drawn = this.#color()
@@ -129,10 +112,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
       If(isSky.not(), () => {
-        const at = isLogarithmic
-          ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
-          : position(depth)
-        const air = aerialPerspectiveTo(this.view, at, this.layers)
+        const air = aerialPerspectiveTo(this.view, position(depth), this.layers)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {

@@ -98,14 +98,8 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
     .toConst()
 }
 
-/** Displacements of the rays that are tried for a texel until one meets a caster, in its edges. */
-const PROBES = [
-  [0, 0],
-  [WIDENING, 0],
-  [-WIDENING, 0],
-  [0, WIDENING],
-  [0, -WIDENING]
-] as const
+/** Rays that are tried for a texel until one meets a caster: its own, and those to its four sides. */
+const PROBES = 5
 
 /**
  * A texel of the sun-polar shadow map: its ray of light through all shadow maps, of which the occluder nearest
@@ -122,12 +116,13 @@ export function occluderAngle(
     const texel = uv() as unknown as Vec2
     const { distance } = lightRayAt(frame, texel)
     const nearest = float(NOTHING).toVar()
-    loop('probe', PROBES.length, probe => {
+    loop('probe', PROBES, probe => {
       If(nearest.equal(NOTHING), () => {
-        const shift = (axis: 0 | 1): Float =>
-          PROBES.reduce<Float>((sum, place, i) => probe.equal(i).select(place[axis], sum), float(0))
-        const edges = frame.texel.mul(vec2(shift(0), shift(1)))
-        const { offset } = lightRayAt(frame, texel.add(edges).toConst())
+        const side = (positive: number): Float =>
+          probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
+        // A row is half as high as a column is wide.
+        const shift = vec2(side(1), side(3).mul(0.5)).mul(WIDENING).div(frame.columns)
+        const { offset } = lightRayAt(frame, texel.add(shift).toConst())
         for (const map of maps) nearest.assign(nearest.max(occluderAlong(map, offset, storage)))
       })
     })

@@ -17,10 +17,8 @@ export interface PolarFrame {
   /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
   readonly logScale: Float
   readonly logOffset: Float
-  /** Number of columns. */
+  /** Number of columns; there are twice as many rows. */
   readonly columns: Float
-  /** Edges of a texel in texture coordinates. */
-  readonly texel: Vec2
 }
 
 /** A view ray in a {@link PolarFrame}. */
