@@ -16,7 +16,8 @@ import { serveStatic } from '../harness/serve'
 import { compare, isBlank } from './compare'
 
 const viewport = { width: 320, height: 180 }
-const limitSeconds = 120
+/** Longest that a picture may take: some 20 s alone, and several times that beside others on a busy machine. */
+const limitSeconds = 240
 const largestBaseline = 100_000
 
 const { values, positionals } = parseArgs({
