@@ -95,8 +95,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
 
   override setup(builder: NodeBuilder): Node {
     const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
-    const position = (depth: Float): Vec3 =>
-      this.#rays.position(builder.renderer, uv() as unknown as Vec2, depth)
+    const position = (depth: Float): Vec3 => this.#rays.position(builder.renderer, uv(), depth)
 
     return Fn(() => {
       const drawn = this.#color()
