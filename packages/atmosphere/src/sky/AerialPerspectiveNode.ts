@@ -10,7 +10,7 @@ import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
 import { pixelAngle, skyColor } from './tsl/sky'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
-import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 
 /**
  * Aerial perspective and sky as a post effect: dims what was drawn, adds the light scattered in front
