@@ -3,6 +3,8 @@ import {
   Atmosphere,
   AtmosphereParameters,
   lightShafts,
+  moon,
+  MoonDirectionalLight,
   SunDirectionalLight,
   type LightShafts,
   type LightShaftsOptions,
@@ -68,11 +70,16 @@ interface Stage {
   dispose: () => void
 }
 
-/** A scene with light shafts as a post effect; null for shafts draws the same without. */
+/**
+ * A scene with light shafts as a post effect; null for shafts draws the same without.
+ *
+ * @param elevation - Of the sun in the north, or of the full moon while the sun is down [°].
+ */
 function stage(
   renderer: WebGPURenderer,
   elevation: number,
-  options: Omit<LightShaftsOptions, 'light'> | null = {}
+  options: Omit<LightShaftsOptions, 'light'> | null = {},
+  isMoonlit = false
 ): Stage {
   renderer.shadowMap.enabled = true
   const air = parameters()
@@ -80,7 +87,12 @@ function stage(
   const atmosphere = new Atmosphere({ parameters: air, ellipsoid, luminanceScale: 1 })
   atmosphere.setSunAngles(elevation, 0)
   const scene = new Scene()
-  const light = new SunDirectionalLight(atmosphere, 6000)
+  let light = new SunDirectionalLight(atmosphere, 6000)
+  if (isMoonlit) {
+    const luna = moon({ direction: atmosphere.sunDirection })
+    atmosphere.setSunAngles(-50, 180).add(luna)
+    light = new MoonDirectionalLight(atmosphere, luna, 6000)
+  }
   light.castShadow = true
   light.shadow.mapSize.setScalar(1024)
   Object.assign(light.shadow.camera, { left: -4000, right: 4000, bottom: -4000, top: 4000 })
@@ -159,52 +171,65 @@ function northward(elevation: number, sunElevation: number, altitude: number): R
   }
 }
 
-gpuTest(
-  'takes all light scattered once from air behind a wall, and none from air before it',
-  async t => {
-    const renderer = await t.createRenderer(size)
-    const sunElevation = 12
-    // The camera looks away from the sun, over a wall in its back, whose shadow ends in the air ahead.
-    const { scene, camera, draw, shafts, dispose } = stage(renderer, sunElevation, {
-      quality: 'reference'
-    })
-    const air = parameters()
-    const [wall, height] = [300, 700]
-    addBox(scene, [0, height / 2, -wall], [7000, height, 2])
-    for (const viewElevation of [3, 25]) {
-      const radians = (angle: number): number => (angle * Math.PI) / 180
-      camera.fov = 1
-      camera.updateProjectionMatrix()
-      camera.lookAt(
-        new Vector3(0, Math.sin(radians(viewElevation)), Math.cos(radians(viewElevation))).add(
-          camera.position
-        )
+for (const isMoonlit of [false, true]) {
+  const light = isMoonlit ? 'moonlight' : 'sunlight'
+  gpuTest(
+    `takes all ${light} scattered once from air behind a wall, and none before it`,
+    async t => {
+      const renderer = await t.createRenderer(size)
+      const sunElevation = 12
+      // The camera looks away from the sun, over a wall in its back, whose shadow ends in the air ahead.
+      const options = { quality: 'reference' } as const
+      const { scene, camera, draw, shafts, dispose } = stage(
+        renderer,
+        sunElevation,
+        options,
+        isMoonlit
       )
-      shafts.enabled = true
-      const shadowed = await draw()
-      shafts.enabled = false
-      const lit = await draw()
-      // The shadow's upper face falls from the wall's top; the ray rises from 2 m.
-      const [fall, rise] = [sunElevation, viewElevation].map(angle => Math.tan(radians(angle)))
-      const level = (height - 2 - wall * fall) / (rise + fall)
-      const distance = level / Math.cos(radians(viewElevation))
-      const ray = {
-        ...northward(180 - viewElevation, sunElevation, 2),
-        cosView: Math.sin(radians(viewElevation))
+      const air = parameters()
+      const [wall, height] = [300, 700]
+      addBox(scene, [0, height / 2, -wall], [7000, height, 2])
+      for (const viewElevation of [3, 25]) {
+        const radians = (angle: number): number => (angle * Math.PI) / 180
+        camera.fov = 1
+        camera.updateProjectionMatrix()
+        camera.lookAt(
+          new Vector3(0, Math.sin(radians(viewElevation)), Math.cos(radians(viewElevation))).add(
+            camera.position
+          )
+        )
+        shafts.enabled = true
+        const shadowed = await draw()
+        shafts.enabled = false
+        const lit = await draw()
+        // The shadow's upper face falls from the wall's top; the ray rises from 2 m.
+        const [fall, rise] = [sunElevation, viewElevation].map(angle => Math.tan(radians(angle)))
+        const level = (height - 2 - wall * fall) / (rise + fall)
+        const distance = level / Math.cos(radians(viewElevation))
+        const ray = {
+          ...northward(180 - viewElevation, sunElevation, 2),
+          cosView: Math.sin(radians(viewElevation))
+        }
+        const expected = inScatter(air, null, ray, distance)
+        const whole = inScatter(
+          air,
+          null,
+          ray,
+          distanceToTop(ray.radius, ray.cosView, air.topRadius)
+        )
+        const [x, y] = [size.width / 2, size.height / 2]
+        const label = `view ${viewElevation}° up`
+        for (let k = 0; k < 3; k++) {
+          const irradiance = shafts.source.irradiance.value.getComponent(k)
+          const lost = (lit.at(x, y)[k] - shadowed.at(x, y)[k]) / irradiance
+          t.note(`${label}: ${((100 * (lost - expected[k])) / whole[k]).toFixed(3)} %`)
+          expectClose(lost, expected[k], { absolute: 0.004 * whole[k] }, `${label}, channel ${k}`)
+        }
       }
-      const expected = inScatter(air, null, ray, distance)
-      const whole = inScatter(air, null, ray, distanceToTop(ray.radius, ray.cosView, air.topRadius))
-      const [x, y] = [size.width / 2, size.height / 2]
-      const label = `view ${viewElevation}° up`
-      for (let k = 0; k < 3; k++) {
-        const lost = lit.at(x, y)[k] - shadowed.at(x, y)[k]
-        t.note(`${label}: ${((100 * (lost - expected[k])) / whole[k]).toFixed(3)} %`)
-        expectClose(lost, expected[k], { absolute: 0.004 * whole[k] }, `${label}, channel ${k}`)
-      }
+      dispose()
     }
-    dispose()
-  }
-)
+  )
+}
 
 gpuTest(
   'draws the same with standard and reversed depth, and follows its caster in the same frame',

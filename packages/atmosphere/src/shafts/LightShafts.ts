@@ -86,6 +86,8 @@ export class LightShafts implements AirShadows {
   readonly #strength = number()
   readonly #screens: ScreenShafts[] = []
   #setStrength = 1
+  /** Render whose shadows the map has. */
+  #render = ''
   #quality: LightShaftsQuality = 'high'
   #enabled = true
 
@@ -169,7 +171,12 @@ export class LightShafts implements AirShadows {
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
     const { rows, groups, samples } = qualities[this.#quality]
-    if (isLit && frame) drawShadow(this.light, frame, camera)
+    if (isLit && frame && drawShadow(this.light, frame, camera)) {
+      // Nodes of one render share the map.
+      const render = `${frame.frameId} ${frame.renderId}`
+      if (render === this.#render && this.isActive) return
+      this.#render = render
+    }
     const maps = isLit ? shadowMapsOf(this.light) : []
     this.#map.update(renderer, view!, atmosphere.space, maps, rows)
     steps.groups.value = groups

@@ -46,16 +46,19 @@ export function claimShadow(light: ParallelLight): void {
 /**
  * Has three draw a shadow map now, if it would draw it later in the frame, or not at all since nothing in
  * view takes shadows. Cascades are drawn by three alone.
+ *
+ * @returns Whether the map is that of the frame.
  */
-export function drawShadow(light: ParallelLight, frame: NodeFrame, camera: Camera): void {
+export function drawShadow(light: ParallelLight, frame: NodeFrame, camera: Camera): boolean {
   let root: ParallelLight['parent'] = light
   while (root.parent) root = root.parent
   const node = slotsOf(light.shadow!).find(slot => slot instanceof ShadowNode)
   const isReady = (node as { shadowMap?: object | null } | undefined)?.shadowMap
-  if (!light.castShadow || !isReady || !(root as Partial<Scene>).isScene) return
+  if (!light.castShadow || !isReady || !(root as Partial<Scene>).isScene) return false
   const { renderer, frameId } = frame
   const seen = { renderer, frameId, camera, scene: root } as unknown as NodeFrame
   ;(node as unknown as ShadowNode).updateBefore(seen)
+  return true
 }
 
 function mapsOf(shadow: Shadow): ShadowMap[] {
