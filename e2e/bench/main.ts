@@ -5,6 +5,7 @@ import { HeadlessDevice, finished, gpuMilliseconds } from '../headless/device'
 import { timeEnvironment } from './environment'
 import { timeFrame } from './frame'
 import { benchScene, type Path } from './scene'
+import { shaftLine, timeShafts } from './shafts'
 import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
 import { measureCloudMemory } from './memory'
@@ -65,6 +66,9 @@ for (const path of PATHS) {
 
 const skyCosts = await timeSky(device, size, frames, PATHS)
 for (const cost of skyCosts) log(skyLine(cost))
+
+const shafts = await timeShafts(device, size, frames)
+for (const cost of shafts) log(shaftLine(cost))
 
 const shells = await timeShells(device, size, frames)
 for (const { model, outsideMs, insideMs } of shells) {
@@ -148,6 +152,7 @@ const result = {
   device: device.name,
   cases,
   shells,
+  shafts,
   skyCosts,
   bakeMs: bake.total,
   bakeMaxFrameMs: bake.most,

@@ -2,6 +2,7 @@ import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { parseArgs } from 'node:util'
 import type { Backend } from '../harness/backend'
+import type { LightShaftsQuality } from '@welkin/atmosphere'
 import {
   cloudPresetNames,
   cloudQualities,
@@ -19,6 +20,7 @@ import { missedCloudGoals, missedCloudLightGoals, missedGoals } from './goals'
 import { printColors, printQuantities, printSun, printWorst } from './print'
 import { readColorReference, readSkyReference } from './reference'
 import type { Path } from './request'
+import { missedShaftGoals, printShafts, validateShafts } from './shafts'
 import { bandStatistics, type Comparison } from './score'
 
 const usage = `npm run validate -- [options]
@@ -36,6 +38,10 @@ const usage = `npm run validate -- [options]
                              --coverage C for another one than the preset's
   --cloud-light [FILE]       instead: light of a simulated cloud, by default e2e/reference/cloud_light.json;
                              --quality NAME of the march, by default high
+  --shafts [FILE]            instead: light that boxes take from the air in their shadows, by default
+                             e2e/reference/shafts.json; --quality NAME of the shafts, by default high,
+                             --reversed for a reversed depth buffer, --forward for materials that draw
+                             the air themselves
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
                              --latitude [°], --coverage C
@@ -62,6 +68,8 @@ function inRange(name: string, value: string, min: number, max: number): number 
 const preset = (option: string, value: string): CloudPresetName =>
   choice(option, value, cloudPresetNames)
 
+const lightShaftsQualities: LightShaftsQuality[] = ['low', 'medium', 'high', 'reference']
+
 /** The file named on the command line, or the default one if it is there. */
 function input(named: string | undefined, standard: string): string | undefined {
   if (named !== undefined) return named
@@ -69,11 +77,13 @@ function input(named: string | undefined, standard: string): string | undefined 
   return existsSync(file) ? file : undefined
 }
 
-/** The arguments, with an empty file for the option that may go without. */
+/** The arguments, with an empty file for options that may go without. */
 function commandLine(): string[] {
   const words = process.argv.slice(2)
-  const at = words.indexOf('--cloud-light')
-  if (at >= 0 && (words[at + 1] ?? '--').startsWith('--')) words.splice(at + 1, 0, '')
+  for (const option of ['--cloud-light', '--shafts']) {
+    const at = words.indexOf(option)
+    if (at >= 0 && (words[at + 1] ?? '--').startsWith('--')) words.splice(at + 1, 0, '')
+  }
   return words
 }
 
@@ -91,6 +101,9 @@ async function main(): Promise<void> {
       check: { type: 'boolean', default: false },
       form: { type: 'string' },
       'cloud-light': { type: 'string' },
+      shafts: { type: 'string' },
+      reversed: { type: 'boolean', default: false },
+      forward: { type: 'boolean', default: false },
       quality: { type: 'string', default: 'high' },
       'export-clouds': { type: 'string' },
       preset: { type: 'string', default: 'fairWeather' },
@@ -149,6 +162,27 @@ async function main(): Promise<void> {
     if (values.check && missed.length > 0) process.exitCode = 1
     if (values.json) print(JSON.stringify({ cloudLight }, null, 2))
     else printCloudLight(cloudLight)
+    return
+  }
+  if (values.shafts !== undefined) {
+    const file = input(values.shafts || undefined, 'shafts.json')
+    const air = input(values.sky, 'sky.json')
+    if (file === undefined || air === undefined) throw new Error('there is nothing to compare')
+    const quality = choice('quality', values.quality, lightShaftsQualities)
+    const options = {
+      backend: where.backend,
+      quality,
+      isReversed: values.reversed,
+      isForward: values.forward
+    }
+    const { errors, ...shafts } = await validateShafts(
+      file,
+      readSkyReference(air).parameters,
+      options
+    )
+    if (values.check && missedShaftGoals(shafts).length > 0) process.exitCode = 1
+    if (values.json) print(JSON.stringify({ shafts }, null, 2))
+    else printShafts({ ...shafts, errors }, worst)
     return
   }
 

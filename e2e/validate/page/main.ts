@@ -21,6 +21,7 @@ import { RayBatch, type RayNodes } from './RayBatch'
 import './clouds'
 import './cloud-field'
 import './cloud-light'
+import './shafts'
 
 declare global {
   interface Window {

@@ -1,19 +1,10 @@
 import type { Camera, OrthographicCamera } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  isBackgroundDepth,
-  logarithmicDepthToViewZ,
-  getViewPosition,
-  select,
-  uniform,
-  uv,
-  vec3,
-  vec4
-} from 'three/tsl'
-import type { Node, NodeBuilder, NodeFrame, PassNode, Renderer } from 'three/webgpu'
+import { Fn, If, float, isBackgroundDepth, select, uv, vec3, vec4 } from 'three/tsl'
+import type { Node, NodeBuilder, NodeFrame, PassNode } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
+import { checkShafts, type AirOptions, type AirShadows } from '../view/AirShadows'
+import type { SkyLayer } from '../view/SkyLayer'
+import { DepthRays } from '../view/DepthRays'
 import { PostEffectNode } from '../view/PostEffectNode'
 import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
@@ -41,7 +32,7 @@ import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
  * depth, which is wrong for most of its samples at silhouettes and, from space, everywhere (smooth
  * edges afterwards, or use the fog node). What is transparent and writes no depth gets the
  * air of what is behind it; the fog node has no such limit. Knows standard, reversed and logarithmic
- * depth, perspective and orthographic cameras.
+ * depth, perspective and orthographic cameras. Its option `shafts` has shadows fall into air and sky.
  */
 export class AerialPerspectiveNode extends PostEffectNode {
   static get type(): string {
@@ -52,9 +43,33 @@ export class AerialPerspectiveNode extends PostEffectNode {
   showSky = true
   /** Draws the sun's disc. Set it before the first render. */
   showSun = true
-  readonly #near = uniform(0.1)
-  readonly #far = uniform(1000)
+  /** Shadows in the air, or null; shared, not owned. */
+  readonly shafts: AirShadows | null
+  readonly #screenShafts: SkyLayer | undefined
+  readonly #rays: DepthRays
   readonly #backdrop = new Backdrop()
+
+  /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
+  constructor(
+    colorNode: Node,
+    depthNode: Node,
+    camera: Camera,
+    atmosphere: Atmosphere,
+    options: AirOptions = {}
+  ) {
+    super(colorNode, depthNode, camera, atmosphere)
+    checkShafts('AerialPerspectiveNode', options)
+    this.shafts = options.shafts ?? null
+    this.#rays = new DepthRays(depthNode, camera)
+    this.#screenShafts = this.shafts?.upTo(depthNode)
+  }
+
+  /** Layers of the sky, and shafts for all pixels at once in place of those that materials have. */
+  protected override get layers(): readonly SkyLayer[] {
+    const { layers } = this.atmosphere
+    if (this.#screenShafts === undefined) return layers
+    return [...layers.filter(layer => layer !== this.shafts), this.#screenShafts]
+  }
 
   override customCacheKey(): number {
     return 4 * super.customCacheKey() + (this.showSky ? 1 : 0) + (this.showSun ? 2 : 0)
@@ -62,9 +77,6 @@ export class AerialPerspectiveNode extends PostEffectNode {
 
   override update(frame: NodeFrame): undefined {
     super.update(frame)
-    const { near, far } = this.camera as OrthographicCamera
-    this.#near.value = near
-    this.#far.value = far
     if (frame.renderer !== null) this.#backdrop.update(frame.renderer, this.#pass)
   }
 
@@ -83,11 +95,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
 
   override setup(builder: NodeBuilder): Node {
     const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
-    const { logarithmicDepthBuffer } = builder.renderer as Renderer & {
-      logarithmicDepthBuffer: boolean
-    }
-    const isLogarithmic = logarithmicDepthBuffer && !isOrthographic
-    const position = (depth: Float): Vec3 => getViewPosition(uv(), depth, this._projectionInverse)
+    const position = (depth: Float): Vec3 => this.#rays.position(builder.renderer, uv(), depth)
 
     return Fn(() => {
       const drawn = this.#color()
@@ -103,17 +111,14 @@ export class AerialPerspectiveNode extends PostEffectNode {
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
       If(isSky.not(), () => {
-        const at = isLogarithmic
-          ? middle.mul(logarithmicDepthToViewZ(depth, this.#near, this.#far).div(middle.z))
-          : position(depth)
-        const air = aerialPerspectiveTo(this.view, at)
+        const air = aerialPerspectiveTo(this.view, position(depth), this.layers)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
         // Silhouettes (with multisampling) and transparent things cover a part of the pixel.
         If(coverage.lessThan(1), () => {
           const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
-          const sky = skyColor(this.view, direction, this.showSun ? pixel : null)
+          const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers)
           result.addAssign(sky.mul(coverage.oneMinus()))
         })
       }
@@ -127,5 +132,6 @@ export const aerialPerspective = (
   color: Node,
   depth: Node,
   camera: Camera,
-  atmosphere: Atmosphere
-): AerialPerspectiveNode => new AerialPerspectiveNode(color, depth, camera, atmosphere)
+  atmosphere: Atmosphere,
+  options?: AirOptions
+): AerialPerspectiveNode => new AerialPerspectiveNode(color, depth, camera, atmosphere, options)

@@ -2,6 +2,7 @@ import type { Camera } from 'three'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
+import type { SkyLayer } from './SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from './ViewNodes'
 
 /**
@@ -55,6 +56,11 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
     this.updateType = NodeUpdateType.RENDER
   }
 
+  /** Layers of the sky that it draws. */
+  protected get layers(): readonly SkyLayer[] {
+    return this.atmosphere.layers
+  }
+
   // Layers are part of the shader; the id tells a scene that one sky has taken another's place.
   override customCacheKey(): number {
     return 1024 * super.customCacheKey() + (this.atmosphere.layersVersion % 1024)
@@ -71,13 +77,13 @@ export abstract class AtmosphereNode extends Node<'vec4'> {
   override updateBefore(frame: NodeFrame): undefined {
     const view = this.view.prepare(frame)
     if (view === undefined) return
-    for (const layer of this.atmosphere.layers) layer.prepare?.(frame.renderer!, view)
+    for (const layer of this.layers) layer.prepare?.(frame.renderer!, view, frame)
   }
 
   // Apart from updateBefore, where a nested render (a mirror's) may still set another camera's values.
   override update(frame: NodeFrame): undefined {
     const view = this.view.update(frame)
     if (view === undefined) return
-    for (const layer of this.atmosphere.layers) layer.update?.(view)
+    for (const layer of this.layers) layer.update?.(view)
   }
 }

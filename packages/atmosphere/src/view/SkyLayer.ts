@@ -1,5 +1,5 @@
 import type { Vector3 } from 'three'
-import type { Renderer } from 'three/webgpu'
+import type { NodeFrame, Renderer } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView, ViewedAtmosphere } from './AtmosphereView'
@@ -61,8 +61,8 @@ export interface SkyLayer {
    * kept is drawn again. Not what follows camera, sun and date by itself.
    */
   readonly version?: number
-  /** Bakes what the layer needs. Called before a render. */
-  prepare?(renderer: Renderer, view: AtmosphereView): void
+  /** Bakes what the layer needs. Called before a render; of a frame, unless what is drawn is kept. */
+  prepare?(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   /** Sets uniforms for the camera that renders. */
   update?(view: AtmosphereView): void
   /**

@@ -28,10 +28,14 @@ export function withMedia(
  * Air between the camera and a point, from the sky volume.
  *
  * @param displacementView - From the camera to the point, in view space [world units].
+ * @param layers - Of the sky, and shadows in the air; by default the atmosphere's layers.
  */
-export function aerialPerspectiveTo(view: ViewNodes, displacementView: Vec3): AerialPerspective {
+export function aerialPerspectiveTo(
+  view: ViewNodes,
+  displacementView: Vec3,
+  layers: readonly SkyLayer[] = view.atmosphere.layers
+): AerialPerspective {
   const { air, volume, viewpoint } = view
-  const { layers } = view.atmosphere
   const offset = view.toMapped(displacementView).toConst()
   const square = offset.dot(offset).max(1e-6).toConst() as Float
   const inverse = square.inverseSqrt().toConst()

@@ -1,7 +1,7 @@
 import { If, float, smoothstep, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
-import type { SkyRay } from '../../view/SkyLayer'
+import type { SkyLayer, SkyRay } from '../../view/SkyLayer'
 import type { ViewNodes } from '../../view/ViewNodes'
 import { linearSRGB } from '../../air/tsl/color'
 import { withMedia } from './aerialPerspective'
@@ -57,11 +57,16 @@ export function pixelAngle(direction: Vec3): Float {
  *
  * @param direction - In the mapped space, unit length.
  * @param pixel - {@link pixelAngle} of it; null to leave out what is beyond the air: sun, moon, stars.
+ * @param layers - Of the sky, and shadows in the air; by default the atmosphere's layers.
  * @returns Linear sRGB × `luminanceScale`.
  */
-export function skyColor(view: ViewNodes, direction: Vec3, pixel: Float | null): Vec3 {
+export function skyColor(
+  view: ViewNodes,
+  direction: Vec3,
+  pixel: Float | null,
+  layers: readonly SkyLayer[] = view.atmosphere.layers
+): Vec3 {
   const { air, volume, viewpoint } = view
-  const { layers } = view.atmosphere
   const { uniforms } = air
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const cosViewLight = direction.dot(view.lightDirection).toConst() as Float

@@ -1,0 +1,230 @@
+import type { Camera, OrthographicCamera } from 'three'
+import { If, float, screenCoordinate } from 'three/tsl'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
+import type { Atmosphere } from '../Atmosphere'
+import { checkCamera } from '../check'
+import type { Float, Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
+import type { AirShadows } from '../view/AirShadows'
+import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
+import type { LightSource } from '../view/LightSource'
+import type { LayerRay, PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
+import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
+import { ScreenShafts } from './ScreenShafts'
+import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
+import { SunPolarMap } from './SunPolarMap'
+import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
+
+/** Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in each. */
+const qualities = {
+  low: { rows: 512, groups: 3, samples: 3 },
+  medium: { rows: 1024, groups: 4, samples: 3 },
+  high: { rows: 1024, groups: 4, samples: 4 },
+  reference: { rows: 2048, groups: 64, samples: 8 }
+} as const
+
+/** How finely light shafts are marched. */
+export type LightShaftsQuality = keyof typeof qualities
+
+const names = Object.keys(qualities) as LightShaftsQuality[]
+
+/** Options of {@link LightShafts}. */
+export interface LightShaftsOptions {
+  /**
+   * Light whose shadows fall into the air: a `SunDirectionalLight`, a `MoonDirectionalLight`, or a directional
+   * light of one's own, three's `SunLight` too, that shines from the atmosphere's sun. It must cast shadows for
+   * there to be shafts.
+   */
+  light: ParallelLight
+  /** See {@link LightShafts.strength}; by default 1. */
+  strength?: number
+  /** See {@link LightShafts.quality}; by default `'high'`. */
+  quality?: LightShaftsQuality
+  /** See {@link LightShafts.enabled}; by default true. */
+  enabled?: boolean
+}
+
+const SETTINGS = ['strength', 'quality', 'enabled'] as const
+
+/**
+ * Light shafts: what shadows take from the light that the air scatters to a camera.
+ *
+ * ```ts
+ * const shafts = lightShafts(atmosphere, camera, { light: sun })
+ * const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+ * ```
+ *
+ * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
+ * are added to the atmosphere: `atmosphere.add(shafts)`. Then each pixel marches, of every material.
+ *
+ * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
+ * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit. The light scattered once is
+ * taken from air in shadow; light scattered more often, which comes from all sides, stays. A scene without
+ * shadows is the same, bit for bit, as without shafts, and one whose light casts none costs nothing.
+ *
+ * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
+ *
+ * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
+ *   about the eye); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
+ */
+export class LightShafts implements AirShadows {
+  /** Shared, not owned. */
+  readonly atmosphere: Atmosphere
+  /** Camera whose picture has the shafts. */
+  readonly camera: Camera
+  /** Shared, not owned. */
+  readonly light: ParallelLight
+  /** Source of the light. */
+  readonly source: LightSource
+  /** The camera's view of the air in this light, for post effects. */
+  readonly view: ViewNodes
+  /** Samples on a view ray. */
+  readonly steps = { groups: number(), samples: number() }
+  readonly #map = new SunPolarMap()
+  readonly shadowedAir: ShadowedAir
+  readonly #strength = number()
+  readonly #screens: ScreenShafts[] = []
+  #setStrength = 1
+  /** Render whose shadows the map has. */
+  #render = ''
+  #quality: LightShaftsQuality = 'high'
+  #enabled = true
+
+  /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
+  constructor(atmosphere: Atmosphere, camera: Camera, options: LightShaftsOptions) {
+    checkAtmosphere('LightShafts', atmosphere)
+    checkCamera('LightShafts', camera)
+    const { light, ...settings } = options ?? {}
+    const lightCamera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
+    if (!lightCamera?.isOrthographicCamera)
+      fail('LightShafts', 'light must be a DirectionalLight', light)
+    this.atmosphere = atmosphere
+    this.camera = camera
+    this.light = light
+    this.source = (light as { source?: LightSource }).source ?? atmosphere.sun
+    this.view = viewNodes(atmosphere, camera, this.source)
+    this.shadowedAir = this.#map
+    claimShadow(light)
+    this.set(settings)
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or refused; then nothing has changed.
+   */
+  set(settings: Omit<LightShaftsOptions, 'light'>): this {
+    return setOptions('LightShafts', this, settings, ...SETTINGS)
+  }
+
+  /** Part of the light that air in shadow loses, ≥ 0: 1 is physical, more than all is not taken [–]. */
+  get strength(): number {
+    return this.#setStrength
+  }
+
+  set strength(value: number) {
+    checkNonNegative('LightShafts', 'strength', value)
+    this.#setStrength = value
+  }
+
+  /** How finely shafts are marched; `'reference'` is for comparisons. Nothing is compiled when it changes. */
+  get quality(): LightShaftsQuality {
+    return this.#quality
+  }
+
+  set quality(value: LightShaftsQuality) {
+    checkChoice('LightShafts', 'quality', value, names)
+    this.#quality = value
+  }
+
+  /** False for air without shadows, at no cost. Nothing is compiled when it changes. */
+  get enabled(): boolean {
+    return this.#enabled
+  }
+
+  set enabled(value: boolean) {
+    checkBoolean('LightShafts', 'enabled', value)
+    this.#enabled = value
+  }
+
+  /** True if there are shadows to be drawn, as of the last {@link prepare} for the camera. */
+  get isActive(): boolean {
+    return this.#map.reach.value > 0
+  }
+
+  upTo(depthNode: Node): SkyLayer {
+    const screen = new ScreenShafts(this, depthNode)
+    this.#screens.push(screen)
+    return screen
+  }
+
+  /** Called before it is added. @throws If it is another atmosphere's. */
+  attach(atmosphere: ViewedAtmosphere): void {
+    if (atmosphere !== this.atmosphere)
+      fail('LightShafts', 'atmosphere must be that of its layers', atmosphere)
+  }
+
+  prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): void {
+    if (camera !== this.camera) return
+    const { atmosphere, source, steps } = this
+    const view = atmosphere.viewOf(camera, source)
+    const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
+    const { rows, groups, samples } = qualities[this.#quality]
+    if (isLit && frame && drawShadow(this.light, frame, camera)) {
+      // Nodes of one render share the map.
+      const render = `${frame.frameId} ${frame.renderId}`
+      if (render === this.#render && this.isActive) return
+      this.#render = render
+    }
+    const maps = isLit ? shadowMapsOf(this.light) : []
+    this.#map.update(renderer, view!, atmosphere.space, maps, rows)
+    steps.groups.value = groups
+    steps.samples.value = samples
+  }
+
+  update({ camera }: AtmosphereView): void {
+    this.#strength.value = this.isActive && camera === this.camera ? this.#setStrength : 0
+  }
+
+  /** Takes from light what {@link lostLight} gives, where shafts are on. */
+  subtract(light: Vec4, lost: () => Vec4): Vec4 {
+    const left = light.toVar()
+    If(this.#strength.greaterThan(0), () => {
+      const irradiance = this.source.irradiance as unknown as Vec4
+      left.subAssign(lost().mul(irradiance).mul(this.#strength).min(left))
+    })
+    return left
+  }
+
+  glow(ray: SkyRay, without: Vec4): Vec4 {
+    return this.#subtract(ray, without, float(1e10))
+  }
+
+  inScatter(ray: PointRay, without: Vec4): Vec4 {
+    return this.#subtract(ray, without, ray.distance)
+  }
+
+  #subtract({ view, direction, cosView }: LayerRay, without: Vec4, distance: Float): Vec4 {
+    const lit = viewNodes(this.atmosphere, view.camera, this.source)
+    return this.subtract(without, () => {
+      const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
+      const ray = { direction, cosView, cosViewLight, distance }
+      const jitter = staggered(screenCoordinate.xy.floor())
+      return lostLight(lit, this.shadowedAir, ray, this.steps, jitter)
+    })
+  }
+
+  /** Frees its textures. It can be used again. */
+  dispose(): void {
+    this.#map.dispose()
+    for (const screen of this.#screens) screen.dispose()
+  }
+}
+
+/** Light shafts: see {@link LightShafts}. */
+export const lightShafts = (
+  atmosphere: Atmosphere,
+  camera: Camera,
+  options: LightShaftsOptions
+): LightShafts => new LightShafts(atmosphere, camera, options)

@@ -1,0 +1,152 @@
+import { MathUtils, Matrix3, Matrix4, RedFormat, RepeatWrapping, Vector3 } from 'three'
+import type { RenderTarget, DepthTexture } from 'three'
+import { renderGroup, texture, uniform } from 'three/tsl'
+import type { Renderer, TextureNode } from 'three/webgpu'
+import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { number, vector2, vector3, vector4 } from '../uniforms'
+import type { SphericalSpace } from '../view/cpu/spherical'
+import type { ShadowMap } from './shadowMaps'
+import { occluderAngle, type DepthStorage, type ShadowMapNodes } from './tsl/occluderAngle'
+
+/** Part of the greatest distance up to which columns are even. */
+const EVEN_PART = 1e-3
+
+const _axes = new Matrix4()
+const _linear = new Matrix3()
+const _toMap = new Matrix4()
+const _fromMap = new Matrix4()
+const _corner = new Vector3()
+const _end = new Vector3()
+
+/** A view as far as the map asks it. */
+interface PolarView {
+  readonly up: Vector3
+  readonly lightDirection: Vector3
+  readonly camera: { readonly matrixWorld: Matrix4 }
+}
+
+/**
+ * Shadow map in polar coordinates about the eye with the source of light as pole: for each ray of light the
+ * angle of its first occluder. A view ray stays in one row of it, whatever its length; a row's texels
+ * are a third of a degree wide, finer than the sun's disc, and its columns grow with the distance.
+ */
+export class SunPolarMap {
+  readonly target: RenderTarget
+  readonly map: TextureNode
+  readonly frame = {
+    across: vector3(),
+    along: vector3(),
+    evenDistance: number(1),
+    logScale: number(1),
+    logOffset: number(),
+    columns: number(1)
+  }
+  /** Greatest ρ of a shadow map [m]; 0 without maps. */
+  readonly reach = number()
+  #sources: ShadowMapNodes[] = []
+  #pass: FragmentPass | null = null
+
+  constructor() {
+    this.target = tableTarget('Welkin.LightShafts', 1, 1)
+    const [map] = this.target.textures
+    map.format = RedFormat
+    map.wrapT = RepeatWrapping
+    this.map = texture(map)
+  }
+
+  /**
+   * Draws it for an eye.
+   *
+   * @param rows - Number of directions around the light; there are half as many columns.
+   */
+  update(
+    renderer: Renderer,
+    view: PolarView,
+    space: SphericalSpace,
+    maps: readonly ShadowMap[],
+    rows: number
+  ): void {
+    this.reach.value = 0
+    // Without maps, too: what has drawn with the texture in this frame must find it at its end.
+    this.target.setSize(rows / 2, rows)
+    this.frame.columns.value = rows / 2
+    if (maps.length === 0) return
+    this.#setSources(renderer, maps)
+    this.#setFrame(view, space, maps)
+    this.#pass!.render(renderer, this.target)
+  }
+
+  /** Compiles the shader anew when there are more or fewer maps. */
+  #setSources(renderer: Renderer, maps: readonly ShadowMap[]): void {
+    if (this.#sources.length !== maps.length) {
+      this.#sources = maps.map(({ depth }) => ({
+        depth: texture(depth) as TextureNode & { value: DepthTexture },
+        size: vector2(),
+        matrix: uniform(new Matrix4()).setGroup(renderGroup),
+        bounds: vector4(),
+        metersPerDepth: number()
+      }))
+      const storage: DepthStorage = {
+        isReversed: renderer.reversedDepthBuffer,
+        isCompared: !('isWebGPUBackend' in renderer.backend)
+      }
+      this.#pass?.dispose()
+      this.#pass = new FragmentPass(
+        'Welkin.LightShafts',
+        occluderAngle(this.frame, this.#sources, storage)
+      )
+    }
+  }
+
+  #setFrame(
+    { up, lightDirection, camera }: PolarView,
+    space: SphericalSpace,
+    maps: readonly ShadowMap[]
+  ): void {
+    const { across, along, logScale, logOffset } = this.frame
+    across.value.crossVectors(up, lightDirection)
+    if (across.value.lengthSq() < 1e-12) across.value.set(up.z, up.x, up.y).cross(lightDirection)
+    across.value.normalize()
+    along.value.crossVectors(lightDirection, across.value)
+    let [least, greatest] = [Infinity, 0]
+    const distance = (x: number, y: number): number => {
+      _corner.set(x, y, 0.5).applyMatrix4(_fromMap)
+      return _corner.addScaledVector(lightDirection, -_corner.dot(lightDirection)).length()
+    }
+    maps.forEach(({ depth, matrix, bounds }, i) => {
+      const source = this.#sources[i]
+      const { width, height } = depth.image as { width: number; height: number }
+      source.depth.value = depth
+      source.size.value.set(width, height)
+      source.bounds.value.copy(bounds)
+      // From the eye in the mapped space to world axes, to the world, to the map; float64 all the way.
+      space.displacement(_axes.identity(), _linear)
+      _toMap.setFromMatrix3(_linear.invert()).premultiply(_axes.copyPosition(camera.matrixWorld))
+      _toMap.premultiply(matrix)
+      source.matrix.value.copy(_toMap)
+      _fromMap.copy(_toMap).invert()
+      const eye = _end.set(0, 0, 0).applyMatrix4(_toMap)
+      const { x, y, z, w } = bounds
+      least = Math.min(least, distance(MathUtils.clamp(eye.x, x, z), MathUtils.clamp(eye.y, y, w)))
+      greatest = Math.max(greatest, distance(x, y), distance(z, y), distance(x, w), distance(z, w))
+      const e = _toMap.elements
+      source.metersPerDepth.value = 1 / lightDirection.dot(_end.set(e[2], e[6], e[10]))
+    })
+    const even = EVEN_PART * greatest
+    const last = Math.log1p(greatest / even)
+    const first = Math.min(Math.log1p(least / even), last - 1e-3)
+    this.frame.evenDistance.value = even
+    logScale.value = 1 / (last - first)
+    logOffset.value = -first / (last - first)
+    this.reach.value = greatest
+  }
+
+  /** Frees the map. */
+  dispose(): void {
+    this.target.dispose()
+    this.#pass?.dispose()
+    this.#pass = null
+    this.#sources = []
+    this.reach.value = 0
+  }
+}

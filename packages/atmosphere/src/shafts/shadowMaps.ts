@@ -1,0 +1,80 @@
+import { Vector4 } from 'three'
+import type { Camera, DepthTexture, Light, LightShadow, Matrix4, Scene } from 'three'
+import { shadow as shadowNodeOf } from 'three/tsl'
+import { ShadowNode } from 'three/webgpu'
+import type { NodeFrame } from 'three/webgpu'
+
+/** Light of parallel rays: three's `DirectionalLight` or `SunLight`. */
+export type ParallelLight = Light & { shadow?: LightShadow }
+
+/** A shadow map as a light has drawn it. */
+export interface ShadowMap {
+  readonly depth: DepthTexture
+  /** World space to the map's coordinates: a point of the texture, and depth. */
+  readonly matrix: Matrix4
+  /** Part of the texture that is its own: first and last coordinates. */
+  readonly bounds: Vector4
+}
+
+/** A light's shadow of one map, or of several that share a texture, such as three's `SunLight` has. */
+type Shadow = LightShadow & { getMatrix?(index: number): Matrix4 }
+
+/** A node in a shadow's slot: `CSMShadowNode`, which has a light for each cascade, or one around another. */
+interface ShadowSlot {
+  readonly lights?: readonly { shadow: Shadow }[]
+  readonly shadowNode?: ShadowSlot | null
+}
+
+/** The shadow's own nodes, from the outermost to the innermost. */
+function slotsOf(shadow: LightShadow): ShadowSlot[] {
+  const slots: ShadowSlot[] = []
+  let slot = (shadow as unknown as ShadowSlot).shadowNode
+  while (slot) {
+    slots.push(slot)
+    slot = slot.shadowNode
+  }
+  return slots
+}
+
+/** Has a plain shadow drawn by a node that {@link drawShadow} finds; not once three has made one. */
+export function claimShadow(light: ParallelLight): void {
+  const { shadow } = light as { shadow: Shadow & { shadowNode?: unknown } }
+  const isPlain = (shadow as { isDirectionalLightShadow?: boolean }).isDirectionalLightShadow
+  if (isPlain && !shadow.map) shadow.shadowNode ??= shadowNodeOf(light)
+}
+
+/**
+ * Has three draw a shadow map now, if it would draw it later in the frame, or not at all since nothing in
+ * view takes shadows. Cascades are drawn by three alone.
+ *
+ * @returns Whether the map is that of the frame.
+ */
+export function drawShadow(light: ParallelLight, frame: NodeFrame, camera: Camera): boolean {
+  let root: ParallelLight['parent'] = light
+  while (root.parent) root = root.parent
+  const node = slotsOf(light.shadow!).find(slot => slot instanceof ShadowNode)
+  const isReady = (node as { shadowMap?: object | null } | undefined)?.shadowMap
+  if (!light.castShadow || !isReady || !(root as Partial<Scene>).isScene) return false
+  const { renderer, frameId } = frame
+  const seen = { renderer, frameId, camera, scene: root } as unknown as NodeFrame
+  ;(node as unknown as ShadowNode).updateBefore(seen)
+  return true
+}
+
+function mapsOf(shadow: Shadow): ShadowMap[] {
+  const depth = shadow.map?.depthTexture
+  if (!depth) return []
+  const { x: width, y: height } = shadow.getFrameExtents()
+  return Array.from({ length: shadow.getViewportCount() }, (_, i) => {
+    const { x, y, z, w } = shadow.getViewport(i)
+    const bounds = new Vector4(x / width, y / height, (x + z) / width, (y + w) / height)
+    return { depth, matrix: shadow.getMatrix?.(i) ?? shadow.matrix, bounds }
+  })
+}
+
+/** All shadow maps that a light has drawn so far: its own, `CSMShadowNode`'s cascades, or `SunLight`'s. */
+export function shadowMapsOf({ castShadow, shadow }: ParallelLight): ShadowMap[] {
+  if (!castShadow || !shadow) return []
+  const cascades = slotsOf(shadow).find(slot => slot.lights)?.lights
+  return cascades?.flatMap(light => mapsOf(light.shadow)) ?? mapsOf(shadow)
+}

@@ -1,0 +1,157 @@
+import type { DepthTexture, Matrix4, Vector2, Vector4 } from 'three'
+import {
+  Fn,
+  If,
+  atan,
+  float,
+  ivec2,
+  max,
+  min,
+  mix,
+  step,
+  texture,
+  textureLoad,
+  uv,
+  vec2,
+  vec4
+} from 'three/tsl'
+import type { TextureNode, UniformNode } from 'three/webgpu'
+import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { lightRayAt, type PolarFrame } from './polarMap'
+
+/** A shadow map of a light as the shader that merges them sees it. */
+export interface ShadowMapNodes {
+  readonly depth: TextureNode & { value: DepthTexture }
+  /** Size of the texture [texels]. */
+  readonly size: UniformNode<'vec2', Vector2>
+  /** Displacements from the eye in the mapped space [m] to the map's coordinates. */
+  readonly matrix: UniformNode<'mat4', Matrix4>
+  /** First coordinates that are the map's, and last: a part of the texture where maps share one. */
+  readonly bounds: UniformNode<'vec4', Vector4>
+  /** Distance towards the light per unit of stored depth [m]. */
+  readonly metersPerDepth: UniformNode<'float', number>
+}
+
+/** How a renderer stores depths. */
+export interface DepthStorage {
+  /** Greater is nearer. */
+  readonly isReversed: boolean
+  /** Depths can be read only by comparing: WebGL, from textures made for that. */
+  readonly isCompared: boolean
+}
+
+/**
+ * Part of a texel by which casters are widened before nothing. Between a caster's texel and an empty one the angle
+ * is interpolated, and passes that of a view ray nearer to the caster than to the middle: by as much on
+ * average.
+ */
+const WIDENING = 0.3
+
+/** Comparisons that find a depth: to 2⁻¹⁶ of the map's range. */
+const COMPARISONS = 16
+
+/** Position of an occluder that is not there [m]. */
+const NOTHING = -1e30
+
+/** Part of the map's range at its far end that is taken to be empty. */
+const EMPTY = 3e-5
+
+/** Depth by bisection, where a texture can only be compared with. */
+function comparedDepth(depth: TextureNode, at: Vec2, { isReversed }: DepthStorage): Float {
+  const low = float(0).toVar()
+  const width = float(0.5).toVar()
+  const compared = texture(depth.value, at) as unknown as { compare(to: Float): Vec4 }
+  loop('comparison', COMPARISONS, () => {
+    const middle = low.add(width).toConst() as Float
+    const passes = compared.compare(middle).r.greaterThan(0.5)
+    If(isReversed ? passes.not() : passes, () => {
+      low.assign(middle)
+    })
+    width.mulAssign(0.5)
+  })
+  return low
+}
+
+/** True where nothing casts a shadow. */
+const isEmpty = (stored: Float, { isReversed }: DepthStorage): Bool =>
+  isReversed ? stored.lessThanEqual(EMPTY) : stored.greaterThanEqual(1 - EMPTY)
+
+/**
+ * Depth between the four texels next to a place, so that slopes in shadow at a flat angle cast no shadows in
+ * steps; of the nearest one where a caster ends, which would shrink.
+ */
+function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: DepthStorage): Float {
+  const place = at.mul(size).sub(0.5).toConst()
+  const first = place.floor().toConst()
+  const part = place.sub(first).toConst()
+  const read = (x: number, y: number): Float => {
+    const texel = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
+    return (textureLoad(depth, ivec2(texel)) as unknown as Vec4).r.toConst()
+  }
+  const corners = [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
+  const among = (weight: Vec2): Float =>
+    mix(mix(corners[0], corners[1], weight.x), mix(corners[2], corners[3], weight.x), weight.y)
+  const [a, b, c, d] = corners
+  const farthest = isReversed ? min(a, b, c, d) : max(a, b, c, d)
+  return isEmpty(farthest, { isReversed, isCompared: false })
+    .select(among(step(0.5, part)), among(part))
+    .toConst()
+}
+
+/** Rays that are tried for a texel until one meets a caster: its own, and those to its four sides. */
+const PROBES = 5
+
+/**
+ * A texel of the sun-polar shadow map: its ray of light through all shadow maps, of which the occluder nearest
+ * to the light counts.
+ *
+ * @returns Angle of the occluder from the source of light less π/2; π/2 where there is none [rad].
+ */
+export function occluderAngle(
+  frame: PolarFrame,
+  maps: readonly ShadowMapNodes[],
+  storage: DepthStorage
+): Vec4 {
+  return Fn(() => {
+    const texel = uv() as unknown as Vec2
+    const { distance } = lightRayAt(frame, texel)
+    const nearest = float(NOTHING).toVar()
+    loop('probe', PROBES, probe => {
+      If(nearest.equal(NOTHING), () => {
+        const side = (positive: number): Float =>
+          probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
+        // A row is half as high as a column is wide.
+        const shift = vec2(side(1), side(3).mul(0.5)).mul(WIDENING).div(frame.columns)
+        const { offset } = lightRayAt(frame, texel.add(shift).toConst())
+        for (const map of maps) nearest.assign(nearest.max(occluderAlong(map, offset, storage)))
+      })
+    })
+    return vec4(atan(nearest.negate(), distance))
+  })()
+}
+
+/** Position along a ray of light of what it meets first in a map, towards the light [m]. */
+function occluderAlong(
+  { depth, size, matrix, bounds, metersPerDepth }: ShadowMapNodes,
+  offset: Vec3,
+  storage: DepthStorage
+): Float {
+  const nearest = float(NOTHING).toVar()
+  const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
+  const isInside = place.x
+    .greaterThan(bounds.x)
+    .and(place.y.greaterThan(bounds.y))
+    .and(place.x.lessThan(bounds.z))
+    .and(place.y.lessThan(bounds.w))
+  If(isInside, () => {
+    // Texture coordinates run down, as three's shadow nodes have it.
+    const at = vec2(place.x, place.y.oneMinus()).toConst()
+    const stored = storage.isCompared
+      ? comparedDepth(depth, at, storage)
+      : mixedDepth(depth, size, at, storage)
+    If(isEmpty(stored, storage).not(), () => {
+      nearest.assign(stored.sub(place.z).mul(metersPerDepth))
+    })
+  })
+  return nearest
+}

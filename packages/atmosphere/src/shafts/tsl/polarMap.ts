@@ -1,0 +1,92 @@
+import { atan, vec2 } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
+import { sampleLevel0, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+
+/**
+ * Polar coordinates about the eye with the source of light as pole: θ from the source, φ around it, ρ the
+ * distance from the line between both. A view ray has one θ and one φ, a ray of light one φ and one ρ. All in
+ * the mapped space.
+ */
+export interface PolarFrame {
+  /** Direction of φ = 0, at right angles to the light's; unit length. */
+  readonly across: Vec3
+  /** Direction of φ = π/2. */
+  readonly along: Vec3
+  /** Distance ρ₀ up to which columns are even; beyond, they grow with ρ [m]. */
+  readonly evenDistance: Float
+  /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
+  readonly logScale: Float
+  readonly logOffset: Float
+  /** Number of columns; there are twice as many rows. */
+  readonly columns: Float
+}
+
+/** A view ray in a {@link PolarFrame}. */
+export interface PolarRay {
+  /** sin θ, which turns a distance along the ray into ρ. */
+  sinViewLight: Float
+  /** θ − π/2 [rad]. */
+  angle: Float
+  /** φ as a texture coordinate, in turns. */
+  row: Float
+}
+
+/**
+ * @param direction - Of view, unit length.
+ * @param cosViewLight - ν, direction against the source.
+ */
+export function polarRay(
+  { across, along }: PolarFrame,
+  direction: Vec3,
+  cosViewLight: Float
+): PolarRay {
+  const x = direction.dot(across).toConst()
+  const y = direction.dot(along).toConst()
+  // Not √(1 − ν²), which cancels near the source.
+  const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
+  return {
+    sinViewLight,
+    angle: atan(cosViewLight.negate(), sinViewLight).toConst(),
+    row: atan(y, x)
+      .mul(1 / (2 * Math.PI))
+      .toConst()
+  }
+}
+
+/** A texel's ray of light: the displacement from the eye of its point nearest to the eye, and ρ [m]. */
+export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distance: Float } {
+  const { across, along, evenDistance, logScale, logOffset, columns } = frame
+  const position = uv.x.mul(columns).sub(0.5).div(columns.sub(1))
+  const grown = position.sub(logOffset).div(logScale).exp().sub(1)
+  const distance = grown.max(1e-3).mul(evenDistance).toConst() as Float
+  const azimuth = uv.y.mul(2 * Math.PI).toConst()
+  const offset = across.mul(azimuth.cos()).add(along.mul(azimuth.sin())).mul(distance)
+  return { offset: offset.toConst(), distance }
+}
+
+/**
+ * Texture coordinate of the rays of light at a distance from the eye's.
+ *
+ * @param distance - ρ ≥ 0 [m].
+ */
+export function columnAt(frame: PolarFrame, distance: Float): Float {
+  const { evenDistance, logScale, logOffset, columns } = frame
+  const position = distance.div(evenDistance).add(1).log().mul(logScale).add(logOffset).clamp()
+  return position.mul(columns.sub(1)).add(0.5).div(columns)
+}
+
+/**
+ * Angle from the source of light at which the first occluder of a ray of light stands, less π/2; what is at
+ * greater angles is dark [rad].
+ *
+ * @param row - φ of the ray of light: see {@link PolarRay}.
+ * @param distance - Its ρ ≥ 0 [m].
+ */
+export function occluderAngleAt(
+  map: TextureNode,
+  frame: PolarFrame,
+  row: Float,
+  distance: Float
+): Float {
+  return sampleLevel0(map, vec2(columnAt(frame, distance), row)).x
+}

@@ -1,0 +1,52 @@
+import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
+import type { Ray } from '../../scattering/tsl/ray'
+import type { Float } from '../../tsl-types'
+
+/** 1/L of a level ray, and what the slope of a ray adds to it, in heights of the homogeneous atmosphere. */
+const LEVEL = 0.133
+const STEEP = 1.33
+
+/** Positions of samples along a ray, by a part in [0, 1] of all of them. */
+export interface WarpedSteps {
+  /** Distance from the ray's start [m]. */
+  distance(part: Float): Float
+  /** Its derivative [m]. */
+  slope(part: Float): Float
+}
+
+/**
+ * Spaces samples so that each has about as much light: q = (t − t_d)/(L + |t − t_d|) runs evenly, where t_d is
+ * the distance at which the air is densest and L falls with the slope of the ray there. The tails are long
+ * because molecules reach higher than aerosols.
+ *
+ * @param ray - From its entry into the air.
+ * @param length - > 0 [m].
+ */
+export function warpedSteps(
+  { bottomRadius, homogeneousHeight }: AtmosphereUniforms,
+  { altitude, cosView }: Ray,
+  length: Float
+): WarpedSteps {
+  const radius = bottomRadius.add(altitude).toConst()
+  const radial = radius.mul(cosView).toConst()
+  const densest = radial.negate().clamp(0, length).toConst() as Float
+  const steepness = radial.add(densest).abs().div(radius)
+  const scale = homogeneousHeight.div(steepness.mul(STEEP).add(LEVEL)).toConst() as Float
+  const warp = (distance: Float): Float => {
+    const from = distance.sub(densest).toConst()
+    return from.div(from.abs().add(scale))
+  }
+  const first = densest.negate().div(densest.add(scale)).toConst() as Float
+  const range = warp(length).sub(first).toConst() as Float
+  const at = (part: Float): Float => first.add(range.mul(part)).toConst()
+  return {
+    distance(part) {
+      const q = at(part)
+      return densest.add(scale.mul(q).div(q.abs().oneMinus()))
+    },
+    slope(part) {
+      const left = at(part).abs().oneMinus().toConst()
+      return scale.mul(range).div(left.mul(left))
+    }
+  }
+}

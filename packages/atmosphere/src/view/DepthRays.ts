@@ -1,0 +1,69 @@
+import type { Camera, OrthographicCamera } from 'three'
+import {
+  float,
+  getViewPosition,
+  isBackgroundDepth,
+  logarithmicDepthToViewZ,
+  reference,
+  uniform,
+  vec3
+} from 'three/tsl'
+import type { Node, Renderer, TextureNode } from 'three/webgpu'
+import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
+
+/** Distance that stands for the sky [world units]. */
+const SKY = 1e10
+
+/** Positions in view space of what a camera has drawn, by its depth. */
+export class DepthRays {
+  readonly #projectionInverse
+
+  /** @param depthNode - Depth as the renderer writes it: a texture's node, or one for all pixels. */
+  constructor(
+    readonly depthNode: Node,
+    readonly camera: Camera
+  ) {
+    this.#projectionInverse = uniform(camera.projectionMatrixInverse)
+  }
+
+  depthAt(at: Vec2): Float {
+    const depth = this.depthNode as unknown as TextureNode
+    const read =
+      typeof depth.sample === 'function'
+        ? (depth.sample(at) as unknown as { level(n: number): Node }).level(0)
+        : depth
+    return float((read as unknown as { r: Float }).r).toConst()
+  }
+
+  /** Distance before the camera of what is seen; very far for the sky [world units]. */
+  viewDepth(renderer: Renderer, at: Vec2): Float {
+    const depth = this.depthAt(at)
+    const z = this.position(renderer, at, depth).z.negate().max(1e-6)
+    return (isBackgroundDepth(depth) as Bool).select(SKY, z).toConst()
+  }
+
+  /** Position of what is seen; for the sky any in its direction. In view space [world units]. */
+  at(renderer: Renderer, at: Vec2): { position: Vec3; isSky: Bool } {
+    const depth = this.depthAt(at)
+    const isSky = isBackgroundDepth(depth).toConst() as Bool
+    const { isOrthographicCamera } = this.camera as OrthographicCamera
+    const position = this.position(renderer, at, isSky.select(0.5, depth).toConst())
+    return {
+      position: isOrthographicCamera ? isSky.select(vec3(0, 0, -1), position) : position,
+      isSky
+    }
+  }
+
+  /** Position of a depth at a place of the picture, in view space [world units]. */
+  position(renderer: Renderer, at: Vec2, depth: Float): Vec3 {
+    const { logarithmicDepthBuffer } = renderer as Renderer & { logarithmicDepthBuffer: boolean }
+    const { isOrthographicCamera } = this.camera as OrthographicCamera
+    if (!logarithmicDepthBuffer || isOrthographicCamera) {
+      return getViewPosition(at, depth, this.#projectionInverse).toConst()
+    }
+    const middle = getViewPosition(at, float(0.5), this.#projectionInverse).toConst() as Vec3
+    const [near, far] = ['near', 'far'].map(name => reference(name, 'float', this.camera) as Float)
+    const z = logarithmicDepthToViewZ(depth, near, far)
+    return middle.mul(z.div(middle.z)).toConst()
+  }
+}

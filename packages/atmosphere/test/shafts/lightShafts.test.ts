@@ -1,0 +1,122 @@
+import fc from 'fast-check'
+import { DirectionalLight, PerspectiveCamera, PointLight } from 'three'
+import { vec4 } from 'three/tsl'
+import { describe, expect, it } from 'vitest'
+import { aerialPerspective, Atmosphere, lightShafts, SunDirectionalLight } from '@welkin/atmosphere'
+import { claimShadow, shadowMapsOf } from '../../src/shafts/shadowMaps'
+import { warpedDistance } from '../twins/shafts/warpedSteps'
+
+const atmosphere = new Atmosphere()
+const camera = new PerspectiveCamera()
+const light = new SunDirectionalLight(atmosphere)
+
+/** What the compiler would not let pass. */
+const wrong = (value: unknown): never => value as never
+
+describe('bad input to light shafts', () => {
+  const cases: [string, () => unknown][] = [
+    [
+      "AerialPerspectiveNode: unknown option 'shaft', did you mean 'shafts'?",
+      () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, wrong({ shaft: 1 }))
+    ],
+    [
+      'AerialPerspectiveNode: shafts must be LightShafts, got a PerspectiveCamera',
+      () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { shafts: wrong(camera) })
+    ],
+    [
+      'LightShafts: atmosphere must be an Atmosphere, got a PerspectiveCamera',
+      () => lightShafts(wrong(camera), camera, { light })
+    ],
+    [
+      'LightShafts: camera must be a Camera, got an Atmosphere',
+      () => lightShafts(atmosphere, wrong(atmosphere), { light })
+    ],
+    [
+      'LightShafts: light must be a DirectionalLight, got undefined',
+      () => lightShafts(atmosphere, camera, wrong({}))
+    ],
+    [
+      "LightShafts: unknown option 'steps', there are strength, quality, enabled",
+      () => lightShafts(atmosphere, camera, wrong({ light, steps: 4 }))
+    ],
+    [
+      'LightShafts: strength must be finite and ≥ 0, got -1',
+      () => lightShafts(atmosphere, camera, { light, strength: -1 })
+    ],
+    [
+      "LightShafts: quality must be 'low', 'medium', 'high' or 'reference', got 'best'",
+      () => lightShafts(atmosphere, camera, { light, quality: wrong('best') })
+    ],
+    [
+      'LightShafts: enabled must be true or false, got 1',
+      () => lightShafts(atmosphere, camera, { light, enabled: wrong(1) })
+    ],
+    [
+      'LightShafts: light must be a DirectionalLight, got a PointLight',
+      () => lightShafts(atmosphere, camera, { light: wrong(new PointLight()) })
+    ],
+    [
+      'LightShafts: atmosphere must be that of its layers, got an Atmosphere',
+      () => new Atmosphere().add(lightShafts(atmosphere, camera, { light }))
+    ]
+  ]
+  it.each(cases)('%s', (message, run) => {
+    expect(run).toThrow(message)
+  })
+
+  it('changes nothing if a setting is refused', () => {
+    const shafts = lightShafts(atmosphere, camera, { light, strength: 0.5 })
+    expect(() => shafts.set({ strength: 2, quality: wrong('best') })).toThrow('quality')
+    expect(shafts.strength).toBe(0.5)
+    expect(shafts.quality).toBe('high')
+  })
+})
+
+describe('shadow maps of a light', () => {
+  it('are none before three has drawn one, or where the light casts no shadow', () => {
+    const plain = new DirectionalLight()
+    expect(shadowMapsOf(plain)).toEqual([])
+    plain.castShadow = true
+    expect(shadowMapsOf(plain)).toEqual([])
+  })
+
+  it('are drawn by a node in the slot of the shadow, unless it has one', () => {
+    const [plain, own] = [new DirectionalLight(), new DirectionalLight()]
+    const node = {}
+    Object.assign(own.shadow, { shadowNode: node })
+    claimShadow(plain)
+    claimShadow(own)
+    expect((plain.shadow as { shadowNode?: object }).shadowNode).toBeDefined()
+    expect((own.shadow as { shadowNode?: object }).shadowNode).toBe(node)
+  })
+})
+
+describe('spacing of samples', () => {
+  const rays = {
+    radius: fc.double({ min: 6_360_000, max: 6_420_000, noNaN: true }),
+    cosView: fc.double({ min: -1, max: 1, noNaN: true }),
+    length: fc.double({ min: 1, max: 900_000, noNaN: true })
+  }
+
+  it('begins and ends with the ray, and grows all along it', () => {
+    fc.assert(
+      fc.property(rays.radius, rays.cosView, rays.length, (radius, cosView, length) => {
+        const at = (part: number): number => warpedDistance(radius, cosView, 8000, length, part)
+        const places = [0, 0.1, 0.3, 0.5, 0.7, 0.9, 1].map(at)
+        expect(places[0] / length).toBeCloseTo(0, 9)
+        expect(places[6] / length).toBeCloseTo(1, 9)
+        places.slice(1).forEach((place, i) => expect(place).toBeGreaterThan(places[i]))
+      })
+    )
+  })
+
+  it('gives each sample of an upright ray about as much of thin air: none twice the mean', () => {
+    const [height, count] = [8000, 16]
+    const at = (part: number): number => warpedDistance(6_360_000, 1, height, 60_000, part)
+    const air = (distance: number): number => -Math.expm1(-distance / height)
+    for (let i = 0; i < count; i++) {
+      const share = air(at((i + 1) / count)) - air(at(i / count))
+      expect(share * count).toBeLessThan(2)
+    }
+  })
+})
