@@ -15,9 +15,9 @@ export const viewSize = { width: 24, height: 14 }
 /** For tests of what does not depend on steps. */
 export const coarse: CloudQuality = {
   steps: 32,
-  stepGrowth: 0.08,
-  shortestStep: 40,
-  depthStep: 1,
+  stepGrowth: 0.02,
+  shortestStep: 10,
+  depthStep: 0.3,
   layerSteps: 6,
   lightSteps: 1,
   block: 2

@@ -113,13 +113,13 @@ export const columnForm = {
    */
   slantAspect: 5,
   /** Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World clouds*). */
-  tops: 4,
+  tops: 3.7,
   /** Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share (*World clouds*). */
-  hiddenBelow: 0.41,
+  hiddenBelow: 0.4,
   leastSeen: 0.3,
   /**
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
    * that are dark from afar (*World clouds*).
    */
-  inside: 1.5
+  inside: 1.45
 } as const

@@ -24,8 +24,8 @@ const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
  * less noise, and clouds that change their form trail behind. See the story "Cumulus from the ground" with
  * "Time lapse".
  */
-const MOVING_FRAMES = 24
-const MOVING_SAMPLES = 4
+const MOVING_FRAMES = 48
+const MOVING_SAMPLES = 8
 
 /** Samples after which nothing is left of the light before a change: (3/4)¹² is 3 %. */
 const FORGETTING_SAMPLES = 12

@@ -32,15 +32,6 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
   low: {
     steps: 96,
-    stepGrowth: 0.01,
-    shortestStep: 30,
-    depthStep: 1.4,
-    layerSteps: 6,
-    lightSteps: 1,
-    block: 4
-  },
-  medium: {
-    steps: 128,
     stepGrowth: 0.008,
     shortestStep: 20,
     depthStep: 1,
@@ -48,20 +39,29 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     lightSteps: 1,
     block: 4
   },
-  high: {
-    steps: 192,
-    stepGrowth: 0.005,
-    shortestStep: 12,
-    depthStep: 0.6,
-    layerSteps: 12,
+  medium: {
+    steps: 160,
+    stepGrowth: 0.004,
+    shortestStep: 5,
+    depthStep: 0.3,
+    layerSteps: 14,
     lightSteps: 2,
     block: 4
+  },
+  high: {
+    steps: 224,
+    stepGrowth: 0.003,
+    shortestStep: 4,
+    depthStep: 0.25,
+    layerSteps: 18,
+    lightSteps: 2,
+    block: 3
   },
   ultra: {
     steps: 512,
     stepGrowth: 0.002,
-    shortestStep: 5,
-    depthStep: 0.3,
+    shortestStep: 3,
+    depthStep: 0.2,
     layerSteps: 24,
     lightSteps: 4,
     block: 2

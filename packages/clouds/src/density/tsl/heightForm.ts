@@ -39,7 +39,7 @@ export function neededStrength(layer: LayerNodes, height: Float): Float {
 }
 
 /** Share of ice at a height of a layer with anvils, in [0, 1]. */
-const iceAt = (layer: LayerNodes, height: Float): Float =>
+export const iceAt = (layer: LayerNodes, height: Float): Float =>
   layer.anvil.mul(smoothstep(...heightForm.iceHeights, height)).toConst() as Float
 
 /**

@@ -9,7 +9,7 @@ import { weatherBackground, type PackedBackground } from './weatherBackground'
  * Distance over which the weather's background along a ray is taken to change evenly [periods of the
  * weather]. Greater: clouds shift as one flies towards them (*Cockpit*).
  */
-const SPAN = 0.15
+const SPAN = 0.05
 
 /** The same for far samples [footprints]. */
 const FAR_SPAN = 16

@@ -1,8 +1,8 @@
 import { float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { columnForm, strengthForm } from '../formConstants'
+import { columnForm, heightForm, strengthForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
-import { neededStrength } from './heightForm'
+import { iceAt, neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
 import { squared } from './squared'
 
@@ -96,7 +96,9 @@ export function unresolvedDensity(
           .div(layer.density.max(1e-9))
       : layer.insideDensity
   const profile = seenShare(layer, height).div(layer.profileMean)
-  const shape = unresolved === 'inside' ? profile.mul(columnForm.inside) : profile
+  // Light from low down crosses the thin rims of anvils.
+  const thin = iceAt(layer, height).mix(1, heightForm.iceDensity ** 2)
+  const shape = unresolved === 'inside' ? profile.mul(thin).mul(columnForm.inside) : profile
   const columnDepth = columnOpticalDepth(field, layer, filteredCoverage)
   const slant = cosine === undefined ? float(1) : slantCoverFactor(layer, cosine).mul(cosine.abs())
   return { density: whole.mul(shape).mul(slant).toConst() as Float, columnDepth }

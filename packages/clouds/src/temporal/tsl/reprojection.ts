@@ -1,9 +1,10 @@
-import { exp2, vec2, vec4 } from 'three/tsl'
+import { If, exp2, vec2, vec4 } from 'three/tsl'
 import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import type { ViewRay, ViewRayNodes } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'
 import { clampDistance, unpack } from './packing'
 import type { CloudTargets } from './renderTargets'
+import { sharpSample } from './sharpSample'
 
 /**
  * Motion below which history is read at the pixel's own texel, so that filtering does not blur a picture
@@ -64,7 +65,12 @@ export function reprojectHistory(
   const nearest = from.floor().add(0.5).div(frame.size)
   const apart = unpack(history.distances.sample(nearest).level(0))
   const clampedEnd = clampDistance(end).toConst() as Float
-  const light = history.light.sample(from.div(frame.size)).level(0).toConst() as Vec4
+  const light = history.light.sample(from.div(frame.size)).level(0).toVar() as Vec4
+  If(isStill.not(), () => {
+    light.assign(sharpSample(history.light, from, frame.size as unknown as Vec2))
+    // Transmittance, which overshoots at edges.
+    light.w.assign(light.w.min(1))
+  })
   // Clouds at history's distance would have moved by another way: by that ratio of this one.
   const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
   const way = motion.length().toConst() as Float

@@ -1,0 +1,34 @@
+import { vec2 } from 'three/tsl'
+import type { Float, LevelTexture, Vec2, Vec4 } from '../../tsl-types'
+
+/**
+ * Light of a history between its pixels, by cubic convolution, of which five bilinear reads are taken: bilinear
+ * ones alone, frame after frame, would blur what moves.
+ *
+ * @param at - Place in the picture [pixels].
+ * @param size - Of the picture [pixels].
+ * @see Keys 1981, "Cubic convolution interpolation for digital image processing", IEEE TASSP 29 (6)
+ */
+export function sharpSample(light: LevelTexture<Vec2>, at: Vec2, size: Vec2): Vec4 {
+  const middle = at.sub(0.5).floor().add(0.5).toConst() as Vec2
+  const f = at.sub(middle).toConst() as Vec2
+  const square = f.mul(f).toConst() as Vec2
+  const before = square.mul(f.mul(-0.5).add(1)).sub(f.mul(0.5)).toConst() as Vec2
+  const first = square.mul(f.mul(1.5).sub(2.5)).add(1).toConst() as Vec2
+  const after = square.mul(f.mul(0.5).sub(0.5)).toConst() as Vec2
+  const second = first.add(before).add(after).oneMinus().toConst() as Vec2
+  const inner = first.add(second).toConst() as Vec2
+  const between = middle.add(second.div(inner)).toConst() as Vec2
+  const [start, end] = [middle.sub(1), middle.add(2)]
+  const read = (x: Vec2, y: Vec2): Vec4 => light.sample(vec2(x.x, y.y).div(size)).level(0)
+  const taps = [
+    { value: read(between, between), weight: inner.x.mul(inner.y).toConst() },
+    { value: read(start, between), weight: before.x.mul(inner.y).toConst() },
+    { value: read(end, between), weight: after.x.mul(inner.y).toConst() },
+    { value: read(between, start), weight: inner.x.mul(before.y).toConst() },
+    { value: read(between, end), weight: inner.x.mul(after.y).toConst() }
+  ]
+  const total = taps.map(({ weight }) => weight as Float).reduce((a, b) => a.add(b) as Float)
+  const sum = taps.map(({ value, weight }) => value.mul(weight)).reduce((a, b) => a.add(b))
+  return sum.div(total).max(0).toConst() as Vec4
+}
