@@ -199,9 +199,9 @@ gpuTest(
       async shared => {
         const sky = new Sky(shared, 'high', narrow.fieldOfView)
         const end = 60
-        // 80 m/s, as in the fastest jet streams.
+        // 70 m/s, as in the strongest storms.
         for (let i = 40; i >= 0; i--) {
-          sky.node.time = end - (10 * i) / 60
+          sky.node.time = end - (8.75 * i) / 60
           if (i > 0) await sky.draw()
         }
         const drifting = blockMeans(await sky.draw())

@@ -116,6 +116,7 @@ export const columnForm = {
   tops: 3.7,
   /** Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share (*World clouds*). */
   hiddenBelow: 0.4,
+  hiddenByAnvil: 0.75,
   leastSeen: 0.3,
   /**
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds

@@ -75,9 +75,10 @@ export function densityOf(
 
 /** Share of cloudy columns that are seen at a height from afar: `seenShare` of density/tsl/unresolved.ts. */
 export function seenShare(layer: CloudLayerParameters, height: number): number {
-  const { tops, hiddenBelow, leastSeen } = columnForm
+  const { tops, hiddenBelow, hiddenByAnvil, leastSeen } = columnForm
+  const hidden = hiddenBelow + layer.anvil * (hiddenByAnvil - hiddenBelow)
   const reached = 1 - neededStrength(layer, height) / strengthForm.strongest
-  return clamp(tops * reached, 0, 1) * clamp(height / hiddenBelow, leastSeen, 1)
+  return clamp(tops * reached, 0, 1) * clamp(height / hidden, leastSeen, 1)
 }
 
 const HEIGHTS = 24

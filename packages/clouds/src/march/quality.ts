@@ -40,7 +40,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     block: 4
   },
   medium: {
-    steps: 160,
+    steps: 256,
     stepGrowth: 0.004,
     shortestStep: 5,
     depthStep: 0.3,
@@ -49,7 +49,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     block: 4
   },
   high: {
-    steps: 224,
+    steps: 320,
     stepGrowth: 0.003,
     shortestStep: 4,
     depthStep: 0.25,

@@ -164,7 +164,7 @@ describe('shear', () => {
           }, 0)
         const shares = [-1, -0.5, 0, 0.5, 1, 1.5, 2]
         const apart = shares.map(apartAt)
-        expect(shares[apart.indexOf(Math.min(...apart))], `${apart.join(' ')}`).toBe(1)
+        expect(shares[apart.indexOf(Math.min(...apart))], apart.join(' ')).toBe(1)
         for (const [x, y] of places) {
           expect(strengthAt(0, x, y, height)).toBeCloseTo(strengthAt(shear, x, y, 0), 6)
         }
@@ -185,15 +185,28 @@ describe('shear', () => {
 
 describe('openCells', () => {
   it('turns the cells of stratocumulus inside out', () => {
-    const states = [0, 0.5, 1].map(openCells =>
-      stateOf({ weatherWeights: [0, 1, 0, 0], openCells })
-    )
+    const states = [0, 1].map(openCells => stateOf({ weatherWeights: [0, 1, 0, 0], openCells }))
     const sums = Array.from({ length: 60 }, (_, i) =>
       states.map(state => weatherAt(state, noise, 0, near(731 * i, 412 * i, 0), 10).sum)
     )
-    const cells = sums.map(([closed, half]) => closed - half)
-    sums.forEach(([, half, open], i) => expect(open - half).toBeCloseTo(-cells[i], 9))
-    expect(Math.max(...cells.map(Math.abs))).toBeGreaterThan(1)
+    // What is larger than fields is the same in both.
+    const [closed, open] = [0, 1].map(k => sums.map(pair => pair[k] - (pair[0] + pair[1]) / 2))
+    closed.forEach((value, i) => expect(open[i]).toBeCloseTo(-value, 9))
+    expect(Math.max(...closed.map(Math.abs))).toBeGreaterThan(0.5)
+  })
+
+  it('keeps the variance from closed cells to open ones', () => {
+    fc.assert(
+      fc.property(fc.double({ min: 0, max: 1, noNaN: true }), openCells => {
+        const size = (whole: number): number =>
+          Math.hypot(...weatherScales([0.2, 1, 0.1, 0], false, whole).clouds)
+        expect(size(openCells)).toBeCloseTo(size(0), 9)
+      })
+    )
+    const signs = [0, 0.5, 1].map(whole =>
+      Math.sign(weatherScales([0, 1, 0, 0], false, whole).clouds[1])
+    )
+    expect(signs).toEqual([1, 0, -1])
   })
 
   it('leaves other kinds of weather alone', () => {

@@ -4,7 +4,8 @@ import { describe, expect, it } from 'vitest'
 import { cloudPreset, cloudPresetNames } from '../../src'
 import { layerRotation } from '../../src/density/lattice'
 import { CloudLayer, type CloudLayerParameters } from '../../src/layers/CloudLayer'
-import { densityAtHeight, meanColumn, neededStrength } from '../../src/layers/meanColumn'
+import { strengthForm } from '../../src/density/formConstants'
+import { densityAtHeight, meanColumn, neededStrength, seenShare } from '../../src/layers/meanColumn'
 import { sampleLayer, weatherAt, type CloudState } from '../twins/density'
 import type { NoiseName } from '../../src/noise/noiseSizes'
 import type { Vec3Array } from '../twins/noise'
@@ -82,14 +83,19 @@ describe('meanColumn', () => {
     }
   })
 
-  it('knows what share of cloudy columns reaches a height', () => {
-    const { parameters } = new CloudLayer({ ...plain, coverage: 0.5, densityGrowth: 1 })
-    const samples = cloudyColumns(parameters, 2400).flat()
-    const mean = samples.reduce((sum, { strength, height }) => {
-      const isCloud = strength > 0 ? 1 : 0
-      return sum + (isCloud * densityAtHeight(parameters, height)) / samples.length
-    }, 0)
-    expect(Math.abs(meanColumn(parameters).profileMean - mean), `${mean}`).toBeLessThan(0.02)
+  it('sees tops, and nothing where no column reaches', () => {
+    const { parameters } = new CloudLayer({ ...plain, coverage: 0.5 })
+    const heights = Array.from({ length: 200 }, (_, i) => (i + 0.5) / 200)
+    const shares = heights.map(height => seenShare(parameters, height))
+    const mean = shares.reduce((sum, share) => sum + share) / heights.length
+    expect(meanColumn(parameters).profileMean).toBeCloseTo(mean, 2)
+    const middle = shares.indexOf(Math.max(...shares)) / heights.length
+    expect(middle).toBeGreaterThan(0.3)
+    expect(middle).toBeLessThan(0.8)
+    for (const [i, height] of heights.entries()) {
+      const isReached = neededStrength(parameters, height) < strengthForm.strongest
+      expect(shares[i] > 0).toBe(isReached)
+    }
   })
 
   it('stays within [0, 1], and its inside is denser, for any layer', () => {
@@ -133,7 +139,7 @@ describe('functions of the height', () => {
   it('let towers spread into an anvil, below what overshoots', () => {
     const storm = parametersOf({ anvil: 1 })
     const [tower, anvil, top] = [0.25, 0.7, 1].map(height => neededStrength(storm, height))
-    expect(anvil).toBeLessThan(tower / 4)
+    expect(anvil).toBeLessThan(tower / 3)
     expect(top).toBeGreaterThan(tower)
   })
 

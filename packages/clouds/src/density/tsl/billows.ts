@@ -8,10 +8,10 @@ import { inLattice, type LayerNodes } from './layer'
 
 /** Level of detail for a footprint; 0 where texels are wider. */
 const levelOf = (footprint: Float, texel: Float | number): Float =>
-  log2(footprint.div(texel).max(1e-3)).max(0).toConst() as Float
+  log2(footprint.div(texel).max(1e-3)).max(0).toConst()
 
 /** Noise of unit deviation from its encoded values. */
-const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst() as Vec4
+const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst()
 
 /** Billows around a place, of unit deviation near by. */
 export interface Billows {
@@ -45,7 +45,7 @@ export function billows(
   const place = layer.shapeLattice(offset).add(inLattice(shift).mul(perShapePeriod)) as Vec3
   const level = levelOf(footprint.mul(perShapePeriod), 1 / NOISE_SIZE.shape)
   const noise = decoded(field.textures.shape.sample(place).level(level))
-  return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() as Vec2, level }
+  return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst(), level }
 }
 
 /** Periods of the nearer octaves of detail, in those of the detail, and their amplitudes. */
@@ -90,4 +90,4 @@ export const MOST_DETAIL = 2.5
 
 /** Share of fine billows and detail that a body has, in [0, 1]: bodies have heads, crumbs do not. */
 export const fineShare = (strength: Float): Float =>
-  strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp(0, 1).toConst() as Float
+  strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp(0, 1).toConst()

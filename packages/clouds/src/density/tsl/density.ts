@@ -9,7 +9,7 @@ import type { LayerNodes } from './layer'
  */
 export const edgeAt = (layer: LayerNodes, height: Float): Float => {
   const low = height.oneMinus().toConst()
-  return low.mul(low).mul(densityForm.softerBase).add(1).div(layer.perEdge).toConst() as Float
+  return low.mul(low).mul(densityForm.softerBase).add(1).div(layer.perEdge).toConst()
 }
 
 /**
@@ -22,5 +22,5 @@ export const edgeAt = (layer: LayerNodes, height: Float): Float => {
 export const densityOf = (strength: Float, body: Float, edge: Float): Float => {
   const { edgeDensity, core } = densityForm
   const inside = body.div(core).clamp(0, 1).sqrt()
-  return strength.div(edge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst() as Float
+  return strength.div(edge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst()
 }

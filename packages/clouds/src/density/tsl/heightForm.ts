@@ -40,7 +40,7 @@ export function neededStrength(layer: LayerNodes, height: Float): Float {
 
 /** Share of ice at a height of a layer with anvils, in [0, 1]. */
 export const iceAt = (layer: LayerNodes, height: Float): Float =>
-  layer.anvil.mul(smoothstep(...heightForm.iceHeights, height)).toConst() as Float
+  layer.anvil.mul(smoothstep(...heightForm.iceHeights, height)).toConst()
 
 /**
  * Extinction at a height over the layer's greatest, in [0, 1]: it grows as droplets of constant number do
@@ -52,7 +52,7 @@ export const densityAtHeight = (layer: LayerNodes, height: Float): Float =>
     .clamp(1e-4, 1)
     .pow(layer.densityGrowth)
     .mul(iceAt(layer, height).mix(1, heightForm.iceDensity))
-    .toConst() as Float
+    .toConst()
 
 /** Strength of billows at a height, per deviation of their noise: tops are rougher than bases. */
 export function billowStrength(
@@ -65,9 +65,9 @@ export function billowStrength(
   // Detail turns over: what are heads above hangs down as wisps at the base.
   const sign = height.div(wispHeight).sub(1).min(1)
   return {
-    coarse: growing(coarseGrowth).mul(shapeAmount).mul(coarse).toConst() as Float,
-    fine: finer.mul(fine).toConst() as Float,
-    detail: finer.mul(detailAmount).mul(sign).mul(detail).toConst() as Float
+    coarse: growing(coarseGrowth).mul(shapeAmount).mul(coarse).toConst(),
+    fine: finer.mul(fine).toConst(),
+    detail: finer.mul(detailAmount).mul(sign).mul(detail).toConst()
   }
 }
 

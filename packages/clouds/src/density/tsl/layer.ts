@@ -21,7 +21,7 @@ export type Lattice = (displacement: Vec3) => Vec3
  * stands upright it is horizontal.
  */
 export const inLattice = (displacement: Vec2): Vec3 =>
-  vec3(displacement, displacement.x.sub(displacement.y).mul(Math.SQRT1_2)) as Vec3
+  vec3(displacement, displacement.x.sub(displacement.y).mul(Math.SQRT1_2))
 
 /** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
 export interface LayerNodes {
@@ -88,7 +88,7 @@ const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
 export function layerAt(field: CloudField, index: Int): LayerNodes {
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
-  const once = (slot: number): Vec4 => read(slot).toConst() as Vec4
+  const once = (slot: number): Vec4 => read(slot).toConst()
   const [extent, form] = [once(0), once(1)]
   const [shear, kind, column, edges, periods] = [18, 19, 20, 21, 22].map(once)
   const lattice =

@@ -20,4 +20,4 @@ export const CAUTION = 0.4
  * @param strength - Of a `LayerSample`.
  */
 export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
-  strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod) as Float
+  strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)

@@ -32,12 +32,12 @@ type FloatVariable = Float & { assign: (n: Float | number) => void }
 
 /** Nothing looked up yet. To be called inside of a shader function. */
 export const rayWeather = (): RayWeather => ({
-  layer: int(-1).toVar() as RayWeather['layer'],
+  layer: int(-1).toVar(),
   from: float(0).toVar(),
   to: float(0).toVar(),
-  first: vec4(0).toVar() as RayWeather['first'],
-  last: vec4(0).toVar() as RayWeather['last'],
-  clear: vec4(0).toVar() as RayWeather['clear']
+  first: vec4(0).toVar(),
+  last: vec4(0).toVar(),
+  clear: vec4(0).toVar()
 })
 
 /**
@@ -51,9 +51,9 @@ export function clearLayer(
   /** 1 in the layer's component, 0 in the others. */
   const own = vec4(0, 1, 2, 3).sub(float(index)).abs().min(1).oneMinus().toConst() as Vec4
   return {
-    until: clear.dot(own).toConst() as Float,
+    until: clear.dot(own).toConst(),
     assign: distance => {
-      clear.assign(mix(clear, vec4(distance), own) as Vec4)
+      clear.assign(mix(clear, vec4(distance), own))
     }
   }
 }
@@ -90,7 +90,7 @@ export function backgroundAlong(
     // Its far end only where the near one is known: the code is there once.
     loop(
       'weatherEnd',
-      isAlone.select(int(2), int(1)) as Int,
+      isAlone.select(int(2), int(1)),
       end => {
         const at = end.equal(int(0)).select(distance, from.add(span)).toConst() as Float
         const sample = sampleAt(at)
@@ -112,5 +112,5 @@ export function backgroundAlong(
     known.assign(index)
   })
   const part = distance.sub(from).div(to.sub(from).max(1e-3)).clamp(0, 1)
-  return part.mix(first, last).toConst() as Vec4
+  return part.mix(first, last).toConst()
 }

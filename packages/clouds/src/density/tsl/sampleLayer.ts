@@ -64,7 +64,7 @@ function bodyAt(
     field,
     layer,
     background,
-    subpoint.toConst() as Vec3,
+    subpoint.toConst(),
     bend,
     footprint,
     'where unresolved'

@@ -26,7 +26,7 @@ const backgroundAt = (
   weatherBackground(
     field,
     layer,
-    subpointOffset(field, sample).toConst() as Vec3,
+    subpointOffset(field, sample).toConst(),
     sample,
     footprintOf(field, sample)
   )
@@ -118,7 +118,7 @@ export function samplePair(
       const [first, second] = sampleLayerAt(field, layer, here, samples, options)
       const found = vec2(first.extinction, second.extinction).toConst() as Vec2
       const likely = likelyDistance(layer, first.strength.max(second.strength)).toConst() as Float
-      clear.assign(likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0) as Float)
+      clear.assign(likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0))
       nearest.assign(nearest.min(likely))
       sum.addAssign(found)
       const both = found.x.add(found.y).toConst() as Float
@@ -169,12 +169,12 @@ export function sampleLayerPair(
   const { givenExtinction } = field
   if (givenExtinction) {
     const [first, second] = samples.map(sample => givenExtinction(sample.offset))
-    return vec2(first, second).toConst() as Vec2
+    return vec2(first, second).toConst()
   }
   const background = backgroundAt(field, layer, middle)
   const found = sampleLayerAt(field, layer, background, samples, { detail: false })
   const [first, second] = samples.map(({ altitude }, i) =>
     isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
   )
-  return vec2(first, second).toConst() as Vec2
+  return vec2(first, second).toConst()
 }

@@ -40,7 +40,7 @@ export function columnStrength(
     .div(coverage.max(leastCoverage))
     .add(forBillows)
     .add(squared(coverage, 5).mul(fullCoverageExcess))
-    .toConst() as Float
+    .toConst()
 }
 
 /** Share of the billows that a level of detail of the shape has lost, in [0, 1]. */

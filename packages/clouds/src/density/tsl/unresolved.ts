@@ -24,7 +24,7 @@ const columnOpticalDepth = (
     .mul(columnDensityAt(layer, filteredCoverage))
     .mul(depthScale)
     .max(1e-4)
-    .toConst() as Float
+    .toConst()
 
 /**
  * Effective optical depth: that of an even layer which takes as much light as the clouds and gaps of a
@@ -41,7 +41,7 @@ export function effectiveOpticalDepth(
     columnOpticalDepth(field, layer, filteredCoverage).negate().exp().oneMinus()
   )
   // Thick clouds let nothing through, in float32.
-  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst() as Float
+  return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
 }
 
 /** Least cosine between a ray and the zenith by which clouds are taken to hide more. */
@@ -69,8 +69,12 @@ const seenShare = (layer: LayerNodes, height: Float): Float =>
     .oneMinus()
     .mul(columnForm.tops)
     .clamp(0, 1)
-    .mul(height.div(columnForm.hiddenBelow).clamp(columnForm.leastSeen, 1))
-    .toConst() as Float
+    .mul(
+      height
+        .div(layer.anvil.mix(columnForm.hiddenBelow, columnForm.hiddenByAnvil))
+        .clamp(columnForm.leastSeen, 1)
+    )
+    .toConst()
 
 /** Meaning of a sample of unresolved clouds: their mean over the sky, or the inside of one. */
 export type Unresolved = 'mean' | 'inside'
@@ -97,11 +101,11 @@ export function unresolvedDensity(
       : layer.insideDensity
   const profile = seenShare(layer, height).div(layer.profileMean)
   // Light from low down crosses the thin rims of anvils.
-  const thin = iceAt(layer, height).mix(1, heightForm.iceDensity ** 2)
+  const thin = iceAt(layer, height).mix(1, heightForm.iceDensity)
   const shape = unresolved === 'inside' ? profile.mul(thin).mul(columnForm.inside) : profile
   const columnDepth = columnOpticalDepth(field, layer, filteredCoverage)
   const slant = cosine === undefined ? float(1) : slantCoverFactor(layer, cosine).mul(cosine.abs())
-  return { density: whole.mul(shape).mul(slant).toConst() as Float, columnDepth }
+  return { density: whole.mul(shape).mul(slant).toConst(), columnDepth }
 }
 
 /** Density between two, such that the light is mixed that columns of them let through. */

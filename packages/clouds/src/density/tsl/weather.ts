@@ -61,7 +61,7 @@ function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage
 
 /** Displacement of a layer's columns with height, by the wind's shear, in the mapped space [m]. */
 export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
-  layer.shearAxis.cross(up).mul(height.mul(layer.thickness)) as Vec3
+  layer.shearAxis.cross(up).mul(height.mul(layer.thickness))
 
 /**
  * Weather of a layer at a place: the background, and single clouds, one texture read.
@@ -82,9 +82,9 @@ export function cloudWeather(
 ): CloudWeather {
   const scale = layer.perWeatherPeriod
   const level = weatherLevel(footprint, scale)
-  const bent = inLattice(bend.add(background.shift) as Vec2)
+  const bent = inLattice(bend.add(background.shift))
   const clouds = field.textures.weather
-    .sample(layer.weatherLattice(subpoint).add(bent.mul(scale)) as Vec3)
+    .sample(layer.weatherLattice(subpoint).add(bent.mul(scale)))
     .level(level)
     .sub(0.5)
     .toConst() as Vec4

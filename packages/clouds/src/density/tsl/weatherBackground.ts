@@ -36,12 +36,12 @@ export interface WeatherBackground {
 export const unpackBackground = (packed: PackedBackground): WeatherBackground => ({
   sum: packed.x,
   coverage: packed.y,
-  shift: vec2(packed.z, packed.w).toConst() as Vec2
+  shift: vec2(packed.z, packed.w).toConst()
 })
 
 /** Level of detail of the weather's noise for a footprint, looked up with a period [m]. */
 export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
-  log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst() as Float
+  log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst()
 
 /** Weather of whole regions and of the planet, which all layers share: where one is clear, others are. */
 function weatherSystems(
@@ -53,9 +53,9 @@ function weatherSystems(
 ): { regions: Vec3; waves: Vec3 } {
   const isAlone = field.layers.length === 1
   const systems = isAlone ? layer : layerAt(field, int(0))
-  const waves = planetWaves(systems.directionInLayer(up).toConst() as Vec3)
+  const waves = planetWaves(systems.directionInLayer(up).toConst())
   const regions = field.textures.weather
-    .sample(systems.regionLattice(subpoint).add(waves.mul(PLANET_WARP)) as Vec3)
+    .sample(systems.regionLattice(subpoint).add(waves.mul(PLANET_WARP)))
     .level(weatherLevel(footprint, 1 / REGION_PERIOD))
     .xyz.sub(0.5)
     .toConst() as Vec3
@@ -78,7 +78,7 @@ export function weatherBackground(
   const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, footprint)
   const scale = layer.perWeatherPeriod.div(FIELD_PERIOD).toConst() as Float
   const fields = field.textures.weather
-    .sample(layer.fieldLattice(subpoint).add(regions.mul(REGION_SHIFT)) as Vec3)
+    .sample(layer.fieldLattice(subpoint).add(regions.mul(REGION_SHIFT)))
     .level(weatherLevel(footprint, scale))
     .sub(0.5)
     .toConst() as Vec4
@@ -97,5 +97,5 @@ export function weatherBackground(
   const period = layer.perWeatherPeriod.reciprocal()
   const shift = fields.xy.mul(FIELD_SHIFT).add(regions.xy.mul(REGION_SHIFT)).mul(period)
   const coverage = coverageAt(field, layer, sample, footprint, fields.zxy)
-  return vec4(sum, coverage, shift).toConst() as Vec4
+  return vec4(sum, coverage, shift).toConst()
 }

@@ -52,7 +52,7 @@ export interface StepPair {
 
 /** Steps before the first segment. */
 export const stepState = (jitter: Float): StepState => ({
-  isFine: bool(false).toVar() as unknown as Variable<Bool>,
+  isFine: bool(false).toVar(),
   finest: float(1).toVar(),
   longest: float(FAR_AWAY).toVar(),
   likely: float(0).toVar(),

@@ -50,7 +50,7 @@ export const hashBits = /*#__PURE__*/ Fn(
 /** Bits of numbers in [1, 2). */
 const ONE = 0x3f800000
 
-const fromBits = (bits: Node): Vec3 => uintBitsToFloat(bits as never) as unknown as Vec3
+const fromBits = (bits: Node): Vec3 => uintBitsToFloat(bits) as unknown as Vec3
 
 /** Three numbers in [0, 1) for a cell of a lattice, each a multiple of 2⁻²³: exact in float32. */
 export const hashCell = /*#__PURE__*/ Fn(

@@ -67,7 +67,7 @@ export function reprojectHistory(
   const clampedEnd = clampDistance(end).toConst() as Float
   const light = history.light.sample(from.div(frame.size)).level(0).toVar() as Vec4
   If(isStill.not(), () => {
-    light.assign(sharpSample(history.light, from, frame.size as unknown as Vec2))
+    light.assign(sharpSample(history.light, from, frame.size))
     // Transmittance, which overshoots at edges.
     light.w.assign(light.w.min(1))
   })

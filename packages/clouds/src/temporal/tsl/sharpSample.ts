@@ -30,5 +30,5 @@ export function sharpSample(light: LevelTexture<Vec2>, at: Vec2, size: Vec2): Ve
   ]
   const total = taps.map(({ weight }) => weight as Float).reduce((a, b) => a.add(b) as Float)
   const sum = taps.map(({ value, weight }) => value.mul(weight)).reduce((a, b) => a.add(b))
-  return sum.div(total).max(0).toConst() as Vec4
+  return sum.div(total).max(0).toConst()
 }
