@@ -11,7 +11,7 @@ export const NOWHERE = 1e6
 const LIKELY = 0.012
 
 /** Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. */
-export const CAUTION = 0.4
+export const CAUTION = 0.3
 
 /**
  * Likely distance of a layer's clouds: strength is too wild for a distance that is sure, so a march that goes
