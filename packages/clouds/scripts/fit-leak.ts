@@ -91,5 +91,5 @@ const error = equations.reduce((sum, { terms, value, weight }) => {
   const fitted = terms.reduce((s, term, i) => s + term * coefficients[i], 0)
   return sum + weight * (fitted - value) ** 2
 }, 0)
-names.forEach((name, i) => console.log(`export const ${name} = ${coefficients[i].toFixed(4)}`))
+names.forEach((name, i) => console.log(`  ${name}: ${coefficients[i].toFixed(4)},`))
 console.log(`error ${(100 * Math.sqrt(error / total)).toFixed(1)} % (root mean square)`)

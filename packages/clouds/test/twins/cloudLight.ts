@@ -1,5 +1,5 @@
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
-import * as c from '../../src/light/cpu/lateralLeak'
+import { lateralLeakFit as fit } from '../../src/light/cpu/lateralLeak'
 import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
 import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
 import { aureolePhase, cloudPhase } from './cloudPhase'
@@ -37,19 +37,19 @@ export function lateralLeak(
   oneMinusAsymmetry: number
 ): number {
   const part = clamp(depthToLight / Math.max(depthThrough, 1e-4), 0, 1)
-  const depth = Math.log(1 + oneMinusAsymmetry * Math.min(depthAcross, c.largestDiameter))
+  const depth = Math.log(1 + oneMinusAsymmetry * Math.min(depthAcross, fit.largestDiameter))
   const chord = clamp(depthThrough / Math.max(depthAcross, 1e-4), 0, 1)
   const exponent =
-    c.constant +
-    c.part * part +
-    c.depth * depth +
-    c.chord * chord +
-    c.part2 * part ** 2 +
-    c.depth2 * depth ** 2 +
-    c.chord2 * chord ** 2 +
-    c.partDepth * part * depth +
-    c.partChord * part * chord +
-    c.depthChord * depth * chord
+    fit.constant +
+    fit.part * part +
+    fit.depth * depth +
+    fit.chord * chord +
+    fit.part2 * part ** 2 +
+    fit.depth2 * depth ** 2 +
+    fit.chord2 * chord ** 2 +
+    fit.partDepth * part * depth +
+    fit.partChord * part * chord +
+    fit.depthChord * depth * chord
   return Math.exp(exponent)
 }
 

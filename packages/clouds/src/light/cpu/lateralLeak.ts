@@ -1,22 +1,23 @@
-// Exponent of the lateral leak, the share of a slab's multiply scattered light that a sphere keeps: a
-// polynomial in the sample's part of the way through the cloud along the ray of light, x; in
-// ln(1 + (1 − g′) D), with D the sphere's scaled optical diameter; and in the length of that way over the
-// diameter, q.
-//
-// Fitted by scripts/fit-leak.ts to Monte-Carlo solutions of spheres with D from 0.3 to 40 and g′ from 0 to
-// 0.61, against slabs of thickness qD with the light at their zenith: within 9 % (root mean square, weighted
-// by the light), where slabs alone are off by factors of 2 to 10.
-
-export const constant = 0.4876
-export const part = 0.2232
-export const depth = -0.373
-export const chord = -2.6435
-export const part2 = -0.1733
-export const depth2 = -0.0288
-export const chord2 = 0.9428
-export const partDepth = -0.5389
-export const partChord = 0.0721
-export const depthChord = 0.8093
-
-/** Largest scaled optical diameter that the fit knows; the leak of larger ones is taken to be the same. */
-export const largestDiameter = 40
+/**
+ * Exponent of the lateral leak, the share of a slab's multiply scattered light that a sphere keeps: a polynomial in
+ * the sample's part of the way through the cloud along the ray of light, x; in ln(1 + (1 − g′) D), with D the
+ * sphere's scaled optical diameter; and in the length of that way over the diameter, q.
+ *
+ * Fitted by scripts/fit-leak.ts to Monte-Carlo solutions of spheres with D from 0.3 to 40 and g′ from 0 to
+ * 0.61, against slabs of thickness qD with the light at their zenith: within 9 % (root mean square, weighted
+ * by the light), where slabs alone are off by factors of 2 to 10.
+ */
+export const lateralLeakFit = {
+  constant: 0.4876,
+  part: 0.2232,
+  depth: -0.373,
+  chord: -2.6435,
+  part2: -0.1733,
+  depth2: -0.0288,
+  chord2: 0.9428,
+  partDepth: -0.5389,
+  partChord: 0.0721,
+  depthChord: 0.8093,
+  /** Largest scaled optical diameter that the fit knows; the leak of larger ones is taken to be the same. */
+  largestDiameter: 40
+} as const

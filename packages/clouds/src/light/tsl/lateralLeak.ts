@@ -1,5 +1,5 @@
 import type { CloudLight } from '../CloudLightTable'
-import * as c from '../cpu/lateralLeak'
+import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import type { Float } from '../../tsl-types'
 
 /** Extent of a cloud about a sample. All depths are scaled optical depths. */
@@ -22,19 +22,19 @@ export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
   const { depthToLight, depthThrough, depthAcross, layered } = sample
   const part = depthToLight.div(depthThrough.max(1e-4)).clamp().toConst()
   const depth = light.oneMinusAsymmetry
-    .mul(depthAcross.min(c.largestDiameter))
+    .mul(depthAcross.min(fit.largestDiameter))
     .add(1)
     .log()
     .toConst()
   const chord = depthThrough.div(depthAcross.max(1e-4)).clamp().toConst()
-  const byPart = part.mul(c.part2).add(depth.mul(c.partDepth)).add(chord.mul(c.partChord))
-  const byDepth = depth.mul(c.depth2).add(chord.mul(c.depthChord)).add(c.depth)
+  const byPart = part.mul(fit.part2).add(depth.mul(fit.partDepth)).add(chord.mul(fit.partChord))
+  const byDepth = depth.mul(fit.depth2).add(chord.mul(fit.depthChord)).add(fit.depth)
   return byPart
-    .add(c.part)
+    .add(fit.part)
     .mul(part)
     .add(byDepth.mul(depth))
-    .add(chord.mul(c.chord2).add(c.chord).mul(chord))
-    .add(c.constant)
+    .add(chord.mul(fit.chord2).add(fit.chord).mul(chord))
+    .add(fit.constant)
     .mul(layered.oneMinus())
     .exp()
 }
