@@ -25,7 +25,7 @@ const steps = [
   { id: 'visual', title: 'Visual regression', script: 'test:visual' },
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer' }
 ]
-const stepMinutes = 30
+const stepMinutes = 40
 
 const { values } = parseArgs({ options: { only: { type: 'string' } } })
 const chosen = values.only?.split(',')

@@ -136,5 +136,5 @@ gpuTest(
     atmosphere.dispose()
   },
   // How the clouds look is the same where their density is: see `clouds/density`.
-  { backends: ['webgpu'], timeoutSeconds: 120 }
+  { backends: ['webgpu'], timeoutSeconds: 240 }
 )

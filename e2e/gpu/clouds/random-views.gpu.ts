@@ -112,7 +112,7 @@ gpuTest(
     expectTrue(cloudy >= CLOUDY[t.backend], `clouds in only ${cloudy} of ${rounds} pictures`)
     dispose()
   },
-  { timeoutSeconds: 120 }
+  { timeoutSeconds: 240 }
 )
 
 const presets: CloudPresetName[] = ['congestus', 'overcast', 'cumulonimbus', 'mixed']

@@ -52,7 +52,7 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
           logarithmicDepthBuffer: depth === 'logarithmic'
         }
       ),
-    { timeoutSeconds: 60 }
+    { timeoutSeconds: 120 }
   )
 }
 

@@ -373,5 +373,5 @@ gpuTest(
     shared.light.dispose()
     atmosphere.dispose()
   },
-  { timeoutSeconds: 120 }
+  { timeoutSeconds: 240 }
 )
