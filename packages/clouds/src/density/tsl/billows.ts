@@ -54,8 +54,8 @@ const NEARER = [
   [1 / 25, 0.3]
 ] as const
 
-/** Footprint over the period of detail below which its nearer octaves are looked up. */
-const NEARER_FROM = 1 / 24
+/** Footprint over the period of a nearer octave below which it is looked up. */
+const NEARER_FROM = 5 / 24
 
 /**
  * Detail finer than billows, of unit deviation near by: three octaves of one noise, down to a
@@ -78,7 +78,7 @@ export function detail(
   }
   const sum = octave(1).toVar() as Float
   for (const [period, amplitude] of NEARER) {
-    If(width.lessThan(NEARER_FROM * period * 5), () => {
+    If(width.lessThan(NEARER_FROM * period), () => {
       sum.addAssign(octave(period).mul(amplitude))
     })
   }

@@ -112,16 +112,14 @@ export function sampleLayerAt(
     })
   }
   return bodies.map(({ sample, height, weather, body, edge }, i) => {
-    const density = densityOf(strengths[i], body, edge).toVar() as Float
+    const near = densityOf(strengths[i], body, edge).mul(densityAtHeight(layer, height))
+    const density = near.toVar() as Float
     const { unresolvedFraction, filteredCoverage } = weather
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
       const cosine = direction?.dot(sample.up).toConst() as Float | undefined
       const mean = unresolvedDensity(field, layer, filteredCoverage, height, unresolved, cosine)
-      const near = density.mul(densityAtHeight(layer, height))
-      density.assign(mixedDensity(mean.columnDepth, near, mean.density, unresolvedFraction))
+      density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
       strengths[i].assign(strengths[i].max(0))
-    }).Else(() => {
-      density.mulAssign(densityAtHeight(layer, height))
     })
     const extinction = layer.density.mul(density).toConst() as Float
     return { extinction, strength: strengths[i] }
