@@ -5,15 +5,15 @@ import type { Backend } from '../harness/backend'
 export type Path = 'volume' | 'march'
 
 /** A place, as the sky volume sees it. */
-export interface EyePlace {
+export interface Viewpoint {
   /** Above the ground [m]. */
   altitude: number
   /** Sun against zenith. */
   cosLight: number
 }
 
-/** A ray from an eye. */
-export interface RayRequest extends EyePlace {
+/** A ray from a viewpoint. */
+export interface RayRequest extends Viewpoint {
   cosView: number
   cosViewLight: number
   /** Length of a segment; absent for the whole ray [m]. */
@@ -48,7 +48,7 @@ const sinDegrees = (degrees: number): number => Math.sin((degrees * Math.PI) / 1
 /**
  * A ray from the angles of the reference files.
  *
- * @param heightKm - Of the eye above the ground [km].
+ * @param heightKm - Of the viewpoint above the ground [km].
  * @param viewZenith - Of the ray [°].
  * @param sunZenith - Of the sun [°].
  * @param azimuth - Of the ray from the sun's azimuth [°].

@@ -101,7 +101,7 @@ function voxelTexture({ text, nx, ny, nz }: CloudLightRequest['voxels']): Data3D
 function viewFrom(view: ViewNodes, shift: Vec3): ViewNodes {
   return Object.create(view, {
     height: { value: view.height.add(shift.dot(view.up)) },
-    place: { value: (offset: Vec3) => view.place(offset.add(shift)) }
+    localCoordinates: { value: (offset: Vec3) => view.localCoordinates(offset.add(shift)) }
   }) as ViewNodes
 }
 

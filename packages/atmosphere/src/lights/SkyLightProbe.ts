@@ -99,7 +99,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
       const view = this.#view
       const { air } = view
       const offset = view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosLight, up } = view.place(offset)
+      const { altitude, cosLight, up } = view.localCoordinates(offset)
       const normal = view.toMapped(normalView).normalize().toConst()
       const cosNormal = normal.dot(up)
       const clear = skyIrradiance(

@@ -66,7 +66,7 @@ const SETTINGS = ['strength', 'quality', 'enabled'] as const
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
- *   about the eye); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
+ *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
  */
 export class LightShafts implements AirShadows {
   /** Shared, not owned. */
@@ -150,7 +150,7 @@ export class LightShafts implements AirShadows {
 
   /** True if there are shadows to be drawn, as of the last {@link prepare} for the camera. */
   get isActive(): boolean {
-    return this.#map.reach.value > 0
+    return this.#map.maximumRho.value > 0
   }
 
   upTo(depthNode: Node): SkyLayer {

@@ -232,7 +232,7 @@ export class CloudField {
   }
 
   /**
-   * Copies a layer's parameters, and its anchors for the eye and the point of the ground below it: what
+   * Copies a layer's parameters, and its anchors for the camera and the point of the ground below it: what
    * `layerAt` reads.
    */
   #write(index: number): void {

@@ -83,7 +83,7 @@ export const billowForm = {
    */
   fineFrom: 0.3,
   fineOver: 0.5,
-  /** Height in the layer below which detail makes wisps, not heads, in [0, 1] (*Cumulus*). */
+  /** Height in the layer below which detail makes wisps, not billows, in [0, 1] (*Cumulus*). */
   wispHeight: 0.1,
   /**
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the

@@ -58,7 +58,7 @@ interface CloudState {
   /** Values that have to stay the same. */
   readonly inputs: readonly unknown[]
   /** Rotations of the layers by the wind. */
-  readonly turns: readonly Quaternion[]
+  readonly rotations: readonly Quaternion[]
   /** Direction to the moon times its strength; 0 by day. */
   readonly moonlight: Vector3
 }
@@ -149,19 +149,19 @@ export class CloudEnvironment implements SkyOverlay {
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
-      turns: field.rotations.map(turn => turn.clone()),
+      rotations: field.rotations.map(rotation => rotation.clone()),
       moonlight: moonDirection.value.clone().multiplyScalar(moonIrradiance.value.y)
     }
   }
 
   #isAsDrawn(): boolean {
     if (this.#drawn === null) return false
-    const { inputs, turns, moonlight } = this.#drawn
+    const { inputs, rotations, moonlight } = this.#drawn
     const now = this.#state()
     const maxAngle = this.drift / this.clouds.atmosphere.parameters.bottomRadius
     return (
       inputs.every((input, i) => input === now.inputs[i]) &&
-      turns.every((turn, i) => turn.angleTo(now.turns[i]) <= maxAngle) &&
+      rotations.every((turn, i) => turn.angleTo(now.rotations[i]) <= maxAngle) &&
       moonlight.distanceTo(now.moonlight) <= MOON_CHANGE * moonlight.length()
     )
   }
@@ -191,7 +191,7 @@ export class CloudEnvironment implements SkyOverlay {
     field.pixelAngle.value = 2 / this.#target.width
     field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance
-    // On a clock that stands still: the turns are the other field's.
+    // On a clock that stands still: the rotations are the other field's.
     field.update(view, 0)
     this.#storedScale = STORED_SCALE * nightGain(view, field.radius.value)
     this.#fromMapped.value.copy(view.viewToMapped).invert()

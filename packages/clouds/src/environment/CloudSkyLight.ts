@@ -58,8 +58,10 @@ export class CloudSkyLight {
     const { field, light, isDisposed } = this.clouds
     if (isDisposed) return clear
     // Between two cameras; a metre more or less is no matter to the weather.
-    const eye = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
-    const offset = plane.offset.add(eye(plane.view).sub(eye(field.view))).toConst() as Vec3
+    const viewpoint = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
+    const offset = plane.offset
+      .add(viewpoint(plane.view).sub(viewpoint(field.view)))
+      .toConst() as Vec3
     const without = clear.toConst() as Vec4
     const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
     return mix(without, cloudy, float(this.#strength))

@@ -73,7 +73,7 @@ const shareOf = (weights: readonly number[], index: number): number =>
   weights[index] ** 2 / (weights.reduce((sum, weight) => sum + weight ** 2, 0) || 1)
 
 /**
- * Periods of a layer's noise [m]: tall clouds are broad and have large heads. In powers of 2, or else every
+ * Periods of a layer's noise [m]: tall clouds are broad and have large billows. In powers of 2, or else every
  * change of an altitude would move the noise, which is anchored at the planet's centre.
  */
 export function layerPeriods({

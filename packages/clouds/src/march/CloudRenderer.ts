@@ -70,7 +70,7 @@ export class CloudRenderer {
   readonly #frame: FrameUniforms
   readonly #marchedTarget = cloudTarget('Marched')
   readonly #cellsTarget = cloudTarget('Cells')
-  /** History and the picture that is drawn from it, in turns. */
+  /** History and the target drawn from it: swapped in each frame. */
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
   readonly #march: FragmentPass
   readonly #gather: FragmentPass

@@ -87,7 +87,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly light: CloudLightTable
   /** Optical depths towards the sun about the camera. */
   readonly shadows: CloudShadowMap
-  /** Temporal accumulation on or off; without it, pictures are coarse. */
+  /** Temporal accumulation on or off; without it, clouds are coarse. */
   accumulates = true
   /** After `dispose`: it casts no shadows any more. */
   isDisposed = false
@@ -291,7 +291,7 @@ export class CloudsNode extends AtmosphereNode {
     })()
   }
 
-  /** Frees its pictures and maps, and the noise and the light table if they are the node's own. */
+  /** Frees its render targets and maps, and the noise and the light table if they are the node's own. */
   override dispose(): void {
     this.isDisposed = true
     // three compiles all materials again: those that had the clouds' shadows read freed textures.

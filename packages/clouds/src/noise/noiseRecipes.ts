@@ -119,7 +119,7 @@ export const weatherChannels: readonly NoiseChannel[] = [
     statistics: [0.4781, 0.2843]
   },
   {
-    // Sheets, which the ground cuts in streaks wherever they do not lie flat.
+    // Layers, which the ground cuts in streaks wherever they do not lie flat.
     terms: [...octaves('perlin', [2, 3, 9], 2, 1), ...octaves('perlin', [5, 5, 24], 1, 0.6)],
     encoding: 'uniform',
     statistics: [-0.0005, 0.3727],

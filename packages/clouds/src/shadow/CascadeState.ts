@@ -43,15 +43,15 @@ export class CascadeState {
   }
 
   /**
-   * Puts the middle on the texel nearest to a place. All in the mapped space, from the planet's centre.
+   * Moves the cascade: its middle to the texel nearest to a point. All in the mapped space, from the planet's centre.
    *
    * @param light - Direction to the light.
    * @param anchor - The plane's origin [m].
-   * @param wanted - Place nearest to which the middle is put [m].
+   * @param wanted - Point nearest to which the middle is put [m].
    * @param halfWidth - [m].
    * @param rotations - Rotations of the layers' noise by the wind.
    */
-  place(
+  moveTo(
     light: Vector3,
     anchor: Vector3,
     wanted: Vector3,

@@ -158,7 +158,7 @@ export class CloudShadowMap {
       if (!cascade.isDrawn || !this.#fits(state, halfWidth)) {
         if (cascade === this.#current) this.#current = null
         if (cascade === oldest) oldest = null
-        this.#place(state, halfWidth)
+        this.#move(state, halfWidth)
         this.#render(renderer, state, 0, SIZE)
         cascade.isDrawn = true
       } else if (this.#current === null && this.#isStale(state)) {
@@ -169,7 +169,7 @@ export class CloudShadowMap {
     if (this.#current === null) {
       this.#current = oldest
       this.#strip = 0
-      this.#place(this.#spare, oldest.state.halfWidth)
+      this.#move(this.#spare, oldest.state.halfWidth)
     }
     const rows = SIZE / STRIPS
     this.#render(renderer, this.#spare, this.#strip * rows, rows)
@@ -243,8 +243,8 @@ export class CloudShadowMap {
     )
   }
 
-  #place(state: CascadeState, halfWidth: number): void {
-    state.place(this.#light, this.#anchor, _below, halfWidth, this.field.rotations)
+  #move(state: CascadeState, halfWidth: number): void {
+    state.moveTo(this.#light, this.#anchor, _below, halfWidth, this.field.rotations)
     state.inputs = this.#inputs
     state.order = this.#order++
   }

@@ -179,11 +179,11 @@ export function weatherAt(
       .multiplyScalar(layer.shear * rise)
   }
   const [bendX, bendY] = bendAt(shift)
-  const foot = subpoint.sub(lean).applyQuaternion(layerRotation)
+  const subpointInLayer = subpoint.sub(lean).applyQuaternion(layerRotation)
   const bend = new Vector3(bendX, bendY, (bendX - bendY) / Math.SQRT2).add(shift).toArray()
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const clouds = sample(
-    shifted(placeIn(foot, latticeRotations.weather, period), bend, 1 / period),
+    shifted(placeIn(subpointInLayer, latticeRotations.weather, period), bend, 1 / period),
     level
   )
 

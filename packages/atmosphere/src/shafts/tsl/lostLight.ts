@@ -18,7 +18,7 @@ export interface ShadowedAir {
   readonly map: TextureNode
   readonly frame: PolarFrame
   /** Greatest ρ at which there may be shadows [m]. */
-  readonly reach: Float
+  readonly maximumRho: Float
 }
 
 /** A view ray, and as far as it is marched. */
@@ -51,7 +51,7 @@ export interface ShaftSteps {
  */
 export function lostLight(
   view: ViewUniforms,
-  { map, frame, reach }: ShadowedAir,
+  { map, frame, maximumRho }: ShadowedAir,
   { direction, cosView, cosViewLight, distance }: ShaftRay,
   { groups, samples }: ShaftSteps,
   jitter: Float
@@ -60,7 +60,7 @@ export function lostLight(
   const { uniforms } = air
   const limits = rayLimits(viewpoint, cosView)
   const polar = polarRay(frame, direction, cosViewLight)
-  const end = limits.start.add(limits.length).min(distance).min(reach.div(polar.sinViewLight))
+  const end = limits.start.add(limits.length).min(distance).min(maximumRho.div(polar.sinViewLight))
   const length = end.sub(limits.start).toConst() as Float
   const lost = vec4(0).toVar()
   If(length.greaterThan(0), () => {

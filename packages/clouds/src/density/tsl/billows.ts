@@ -25,7 +25,7 @@ export interface Billows {
 }
 
 /**
- * Billows: round heads that meet in creases, each octave stirred by a curl of its own size, which the
+ * Billows: round bulges that meet in creases, each octave stirred by a curl of its own size, which the
  * noise has baked in. One texture read.
  *
  * @param offset - Displacement from the camera, in the mapped space [m].
@@ -88,6 +88,6 @@ export function detail(
 /** Most that detail adds, per its strength [–]. */
 export const MOST_DETAIL = 2.5
 
-/** Share of fine billows and detail that a body has, in [0, 1]: bodies have heads, crumbs do not. */
+/** Share of fine billows and detail that a body has, in [0, 1]: dense bodies have them, crumbs do not. */
 export const fineShare = (strength: Float): Float =>
   strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp(0, 1).toConst()

@@ -48,7 +48,7 @@ export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLi
       const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
       const way = middle.sub(sample.altitude).max(0).div(slope)
       const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
-      const { altitude, up } = view.place(offset)
+      const { altitude, up } = view.localCoordinates(offset)
       const there = { offset, altitude, up, distance: sample.distance }
       const subpoint = subpointOffset(field, there).toConst()
       const filteredCoverage = filteredCoverageAt(field, layer, subpoint, there)

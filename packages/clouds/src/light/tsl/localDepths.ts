@@ -9,7 +9,7 @@ const LOWEST_COSINE = 0.12
 
 /**
  * Distance towards the light that is probed sample by sample: per distance from the camera, at least and
- * at most [m]. Shorter: heads lose the shading of their own bumps; longer: few samples miss them. See the
+ * at most [m]. Shorter: billows lose the shading of their own bumps; longer: few samples miss them. See the
  * story "Cumulus from the ground".
  */
 const PROBED_GROWTH = 0.02
@@ -72,7 +72,7 @@ export function localDepths(
     const middle = isUpwards.select(rise.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
     const direction = isUpwards.select(sample.up, toLight) as Vec3
     const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
-    const { altitude, up } = field.view.place(offset)
+    const { altitude, up } = field.view.localCoordinates(offset)
     const { distance } = sample
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
     found.addAssign(

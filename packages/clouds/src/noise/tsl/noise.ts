@@ -65,8 +65,8 @@ export const hashCell = /*#__PURE__*/ Fn(
 /** Index of a cell in a lattice that repeats after `cells`. `corner` is whole. */
 const wrapped = (corner: Vec3, cells: Vec3): UVec3 => {
   // + ½: the division is not exact on every GPU.
-  const turns = floor(corner.add(0.5).div(cells))
-  return uvec3(corner.sub(turns.mul(cells)).add(0.5))
+  const periods = floor(corner.add(0.5).div(cells))
+  return uvec3(corner.sub(periods.mul(cells)).add(0.5))
 }
 
 /** A place's cell, with its index for `hashBits`. */
@@ -179,7 +179,7 @@ export const curl = /*#__PURE__*/ Fn(
 ) as unknown as (p: Vec3, cells: Float, seed: Float) => Vec3
 
 /**
- * 1 − F₁, with F₁ the distance to the nearest of the points scattered one in each cell: round heads
+ * 1 − F₁, with F₁ the distance to the nearest of the points scattered one in each cell: round bulges
  * that meet in sharp creases, as on cauliflowers. Period 1, in [0, 1]. Parameters as of `perlin`.
  *
  * The eight nearest cells are visited first, then others, unless they lie beyond the nearest point so
