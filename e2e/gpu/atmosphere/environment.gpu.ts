@@ -67,9 +67,9 @@ function mirrorScene(at: Vector3, direction: Vector3): { scene: Scene; camera: C
   const camera = new OrthographicCamera(-1, 1, 1, -1, 0.1, 10)
   // Seen at less than 60°, from a side that is not the direction itself.
   const side = new Vector3(0.31, 0.53, -0.79).cross(direction).normalize()
-  const toEye = direction.clone().add(side).normalize()
-  mirror.position.copy(at).addScaledVector(toEye, -3)
-  mirror.lookAt(mirror.position.clone().add(toEye).add(direction))
+  const toCamera = direction.clone().add(side).normalize()
+  mirror.position.copy(at).addScaledVector(toCamera, -3)
+  mirror.lookAt(mirror.position.clone().add(toCamera).add(direction))
   camera.position.copy(at)
   camera.lookAt(mirror.position)
   scene.add(mirror)

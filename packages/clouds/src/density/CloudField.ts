@@ -12,8 +12,7 @@ import type { NoiseName } from '../noise/noiseSizes'
 import { latticeRotations, layerRotation } from './lattice'
 import {
   LAYER_STRIDE,
-  REGION_PERIOD,
-  FIELD_PERIOD,
+  noisePeriods,
   layerForms,
   layerPeriods,
   weatherScales
@@ -255,8 +254,8 @@ export class CloudField {
       ...lattice(detail, periods.detail, _position, 1 / stretch),
       // The weather is the same all the way up: it is looked up at the subpoint.
       ...lattice(weather, periods.weather, _subpoint),
-      ...lattice(fields, periods.weather * FIELD_PERIOD, _subpoint),
-      ...lattice(region, REGION_PERIOD, _subpoint),
+      ...lattice(fields, periods.weather * noisePeriods.fields, _subpoint),
+      ...lattice(region, noisePeriods.regions, _subpoint),
       [...windAxis(parameters.wind, _up, _axis).multiplyScalar(parameters.shear), bend],
       [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
       [column.columnDensity, column.insideDensity, column.profileMean, parameters.densityGrowth],

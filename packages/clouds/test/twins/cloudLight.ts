@@ -13,7 +13,7 @@ export interface CloudSourceSample {
   /** Across that ray: the diameter of a sphere. Of no effect on a deck. */
   depthAcross: number
   /** From the viewpoint to the sample, in the cloud. */
-  depthToEye: number
+  depthToCamera: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
   /** The light against the local up. */
@@ -64,7 +64,7 @@ export function cloudSource(
   table: Float32Array,
   sample: CloudSourceSample
 ): number {
-  const { depthToLight, depthThrough, depthToEye, layered, cosViewLight } = sample
+  const { depthToLight, depthThrough, depthToCamera, layered, cosViewLight } = sample
   const { depthScale, moments } = scalePhase(phase)
   const sign = sample.cosLight < 0 ? -1 : 1
   // The slab's normal: up (or down, under a light below the horizon) for decks, towards the light for isolated clouds.
@@ -88,7 +88,7 @@ export function cloudSource(
   const leak = lateralLeak(sample, 1 - moments[1]) ** (1 - layered)
   const exact = cloudPhase(phase, cosViewLight)
   const towards = clamp(10 * cosViewLight - 9, 0, 1)
-  const aureole = aureolePhase(phase, cosViewLight, depthToLight + depthToEye)
+  const aureole = aureolePhase(phase, cosViewLight, depthToLight + depthToCamera)
   const single = exact + (aureole - exact) * towards
   const scattered = (phase.scatteringAlbedo / depthScale) * single * Math.exp(-depthToLight)
   return Math.max(diffuse * leak, 0) + scattered

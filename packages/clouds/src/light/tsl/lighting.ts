@@ -45,7 +45,7 @@ export function sourceAt(context: ShadingContext, place: ShadedSample): CloudSha
     depthToLight: depths.toLight.mul(scale).toConst(),
     depthThrough,
     depthAcross: depthThrough,
-    depthToEye: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst(),
+    depthToCamera: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst(),
     layered,
     cosLight: source.cosine,
     cosView,
