@@ -5,7 +5,7 @@ import { float, Fn, screenCoordinate, texture, uniform, vec4 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type NodeFrame } from 'three/webgpu'
 import type { CloudShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
 import { QualityUniforms, resolveQuality } from '../../../packages/clouds/src/march/quality'
-import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
+import { litClouds } from '../../../packages/clouds/src/march/tsl/shadePoints'
 import { number } from '../../../packages/clouds/src/uniforms'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -54,7 +54,7 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
     const pixel = screenCoordinate.xy.floor()
     const jitter = pixel.x.mul(0.754877666).add(pixel.y.mul(0.569840296)).fract()
     const ray = { direction, end: float(3e6), jitter }
-    const marched = marchClouds({ field, light: light.nodes, shadows, quality }, ray)
+    const marched = litClouds({ field, light: light.nodes, shadows, quality }, ray)
     return vec4(marched.radiance.y, marched.transmittance, 0, 0)
   })() as never
   const quad = new QuadMesh(material)

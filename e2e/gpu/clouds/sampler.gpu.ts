@@ -1,14 +1,14 @@
 import { cloudPreset } from '@welkin/clouds'
-import { int, vec4 } from 'three/tsl'
+import { float, int, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
-import { rayWeather } from '../../../packages/clouds/src/density/tsl/rayWeather'
 import type { CloudSample } from '../../../packages/clouds/src/density/tsl/sample'
 import {
   cloudExtinction,
   extinctionNearby,
   sampleLayerPair,
-  samplePair
+  samplePair,
+  weatherCacheAt
 } from '../../../packages/clouds/src/density/tsl/sampler'
 import { altitudeIn, cloudScene, offsets } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -35,15 +35,7 @@ gpuTest(
         })
       const range = { first: int(0), last: int(layers.length) }
       const pairAt = (sample: CloudSample) =>
-        samplePair(
-          field,
-          rayWeather(),
-          sample.distance,
-          [sample, sample],
-          () => sample,
-          sample.up,
-          range
-        )
+        samplePair(field, undefined, vec4(0).toVar(), sample, float(0), sample.up, range)
       const pixels = await evaluate(sample => {
         const { extinction, likelyDistance } = pairAt(sample)
         return vec4(cloudExtinction(field, sample, true), extinction, likelyDistance)
@@ -66,7 +58,8 @@ gpuTest(
       expectTrue(clear > 100, `${name}: only ${clear} places have a distance to clouds`)
       if (layers.length === 1) {
         const coarse = await evaluate(sample => {
-          const { extinction, weather } = pairAt(sample)
+          const { extinction } = pairAt(sample)
+          const weather = weatherCacheAt(field, sample, range)
           const layer = layerAt(field, int(0))
           const shadow = sampleLayerPair(field, layer, sample, [sample, sample]).x
           const light = extinctionNearby(field, weather, sample)

@@ -23,7 +23,7 @@ import type { NodeFrame, WebGPURenderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
-import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
+import { litClouds } from '../../../packages/clouds/src/march/tsl/shadePoints'
 import { CloudShadowMap } from '../../../packages/clouds/src/shadow/CloudShadowMap'
 import { interleavedNoise } from '../../../packages/clouds/src/temporal/tsl/noisePattern'
 import type { Float, LevelTexture, Vec2, Vec3 } from '../../../packages/clouds/src/tsl-types'
@@ -159,7 +159,7 @@ async function draw(renderer: WebGPURenderer, request: CloudLightRequest): Promi
       const jitter = interleavedNoise(pixel, float(0))
       const ray = { direction, end: float(2 * DISTANCE), jitter }
       const context = { field: marched, light: light.nodes, shadows: maps, quality: uniforms }
-      return vec4(marchClouds(context, ray).radiance)
+      return vec4(litClouds(context, ray).radiance)
     })()
   )
 

@@ -66,15 +66,17 @@ export interface LevelTexture<UV> extends Node {
   sample(uv: UV): { level(level: Float | number): Vec4 }
 }
 
-/** A shader with two outputs: `color` assigns the properties that `output` is a struct of. */
-export interface TwoOutputs {
+/** A shader with several outputs: `color` assigns the properties that `output` is a struct of. */
+export interface Outputs {
   color: Vec4
   output: Node
 }
 
-/** Two outputs from a function that assigns them. */
-export function twoOutputs(assign: (outputs: [Vec4, Vec4]) => Vec4): TwoOutputs {
-  const first = property('vec4') as unknown as Vec4
-  const second = property('vec4') as unknown as Vec4
-  return { color: assign([first, second]), output: outputStruct(first, second) }
+/** Several outputs from a function that assigns them. */
+export function outputs<T extends Vec4[]>(
+  count: T['length'],
+  assign: (outputs: T) => Vec4
+): Outputs {
+  const all = Array.from({ length: count }, () => property('vec4') as unknown as Vec4)
+  return { color: assign(all as T), output: outputStruct(...all) }
 }

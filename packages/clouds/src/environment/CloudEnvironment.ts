@@ -22,7 +22,7 @@ import {
   type CloudQualityName
 } from '../march/quality'
 import { withAerialPerspective } from '../march/tsl/aerialPerspective'
-import { marchClouds } from '../march/tsl/march'
+import { litClouds } from '../march/tsl/shadePoints'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { groundDistance } from '../march/tsl/layerBoundaries'
 import type { LevelTexture, Mat3, Mat4, Vec2, Vec3 } from '../tsl-types'
@@ -214,7 +214,7 @@ export class CloudEnvironment implements SkyOverlay {
       const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
       const jitter = interleavedNoise(pixel, float(0))
       const ray = { direction, end, jitter }
-      const marched = marchClouds(
+      const marched = litClouds(
         { field, light: light.nodes, shadows: maps, quality: this.#quality },
         ray
       )

@@ -1,8 +1,9 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import { UnsignedByteType } from 'three'
-import type { RenderTarget, Texture } from 'three'
-import { Fn, texture, uv, vec4 } from 'three/tsl'
+import { FloatType, NearestFilter, UnsignedByteType } from 'three'
+import type { RenderTarget, Texture, Vector3 } from 'three'
+import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { WeatherMap } from '../density/WeatherMap'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import type { FrameUniforms } from './FrameUniforms'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
@@ -12,8 +13,16 @@ import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
+import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
-import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
+import {
+  outputs,
+  type Float,
+  type LevelTexture,
+  type Outputs,
+  type Vec2,
+  type Vec4
+} from '../tsl-types'
 
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
@@ -27,6 +36,22 @@ function cloudTarget(name: string, isPacked = false): RenderTarget {
   return target
 }
 
+/** Textures of the march: what rays see, not lit yet. */
+interface MarchedTargets {
+  /** Distances of `SeenPoints` [m], and their shares. */
+  readonly distances: LevelTexture<Vec2>
+  readonly shares: LevelTexture<Vec2>
+  /** log₂ of the clouds' distance, log₂ of the distance of what was drawn, transmittance, steps over 256. */
+  readonly ray: LevelTexture<Vec2>
+}
+
+/** Render target of {@link MarchedTargets}: distances of points are too fine for half floats. */
+function marchedTarget(): RenderTarget {
+  const target = tableTarget('Welkin.CloudsMarched', 1, 1, 3, NearestFilter)
+  target.textures[0].type = FloatType
+  return target
+}
+
 function texturesOf({ textures }: RenderTarget): CloudTargets {
   const [light, distances] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
   return { light, distances }
@@ -36,46 +61,75 @@ function texturesOf({ textures }: RenderTarget): CloudTargets {
 const textureNode = (value: Texture): LevelTexture<Vec2> & { value: Texture } =>
   texture(value) as unknown as LevelTexture<Vec2> & { value: Texture }
 
-/** Marches one pixel of each block: light with the air in front of it, and its distances. */
-function marchPixels(scene: CloudScene): TwoOutputs {
-  const { field, viewRays } = scene
+/** Pixel of each block that is marched, of a picture with one texel for each block. */
+function marchedPixel({ viewRays }: CloudScene): { at: Vec2; noise: Float } {
   const { frame } = viewRays
-  return twoOutputs(([color, distances]) =>
+  const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
+  const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
+  const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
+  return { at, noise: interleavedNoise(block, frame.noiseShift) }
+}
+
+/** Marches one pixel of each block: {@link MarchedTargets}. */
+function marchPixels(scene: CloudScene): Outputs {
+  const { viewRays } = scene
+  return outputs<[Vec4, Vec4, Vec4]>(3, ([distances, shares, ray]) =>
     Fn(() => {
-      const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
-      const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
-      const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
-      const ray = viewRayAt(viewRays, at)
-      const { direction, directionView } = ray
-      const end = viewRayEnd(viewRays, at, ray)
-      const marched = marchClouds(scene, {
-        direction,
-        end,
-        jitter: interleavedNoise(block, frame.noiseShift)
+      const { at, noise } = marchedPixel(scene)
+      const viewRay = viewRayAt(viewRays, at)
+      const end = viewRayEnd(viewRays, at, viewRay)
+      const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise })
+      const { points, transmittance, distance, steps } = marched
+      distances.assign(points.distances)
+      shares.assign(points.shares)
+      ray.assign(vec4(encodeDistance(distance), encodeDistance(end), transmittance, steps.div(256)))
+      return vec4(0)
+    })()
+  )
+}
+
+/** Shades what was marched: light with the air in front of it, and its distances. */
+function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
+  const { field, viewRays } = scene
+  return outputs<[Vec4, Vec4]>(2, ([color, distances]) =>
+    Fn(() => {
+      const { at, noise } = marchedPixel(scene)
+      const here = uv() as unknown as Vec2
+      const ray = marched.ray.sample(here).level(0).toConst() as Vec4
+      color.assign(vec4(0, 0, 0, 1))
+      distances.assign(vec4(ray.xy, 0, ray.w))
+      If(ray.z.lessThan(1), () => {
+        const points = {
+          distances: marched.distances.sample(here).level(0).toConst() as Vec4,
+          shares: marched.shares.sample(here).level(0).toConst() as Vec4
+        }
+        const { direction, directionView } = viewRayAt(viewRays, at)
+        const radiance = shadePoints(scene, direction, points, noise)
+        const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
+        color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
       })
-      color.assign(withAerialPerspective(field.view, marched, directionView, frame.gain))
-      const distance = encodeDistance(marched.distance)
-      distances.assign(vec4(distance, encodeDistance(end), 0, marched.steps.div(256)))
       return vec4(0)
     })()
   )
 }
 
 /**
- * Render targets and passes of a camera's clouds. A frame takes three passes: the march of one pixel of each
- * block, the statistics of the cells between marched pixels, and the upscale, which blends them into the
- * history of the frames before.
+ * Render targets and passes of a camera's clouds. A frame takes five passes: the weather around the camera, the
+ * march of one pixel of each block, its light, the statistics of the cells between marched pixels, and the upscale, which blends them
+ * into the history of the frames before.
  */
 export class CloudRenderer {
   readonly #frame: FrameUniforms
-  readonly #marchedTarget = cloudTarget('Marched')
+  readonly #marchedTarget = marchedTarget()
+  readonly #shadedTarget = cloudTarget('Shaded')
   readonly #cellsTarget = cloudTarget('Cells')
   /** History and the target drawn from it: swapped in each frame. */
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
+  readonly #weatherMap: WeatherMap
   readonly #march: FragmentPass
+  readonly #shade: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
-  readonly #marched = texturesOf(this.#marchedTarget)
   /** Accumulated light of the latest frame: the node stays, its texture changes. */
   readonly light = textureNode(this.#accumulatedTargets[0].textures[0])
   /** Distances of the latest frame, for debug views: accumulated, or marched if {@link showsMarched}. */
@@ -85,22 +139,27 @@ export class CloudRenderer {
   /** Index of the accumulated target that was drawn last. */
   #current = 0
 
-  constructor(scene: CloudScene) {
-    const { field, viewRays } = scene
+  constructor(inputs: Omit<CloudScene, 'weatherMap'>) {
+    const { field, viewRays } = inputs
+    this.#weatherMap = new WeatherMap(field)
+    const scene = { ...inputs, weatherMap: this.#weatherMap }
     this.#frame = viewRays.frame
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
-    const marched = this.#marched
-    this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, marched))
+    const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
+    const marched = { distances, shares, ray }
+    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, marched))
+    const shaded = texturesOf(this.#shadedTarget)
+    this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
     const cells = texturesOf(this.#cellsTarget)
     this.#upscale = this.#accumulatedTargets.map((_, i) => {
       const history = texturesOf(this.#accumulatedTargets[1 - i])
-      const output = upscale(viewRays, marched, cells, history)
+      const output = upscale(viewRays, shaded, cells, history)
       return new FragmentPass('Welkin.CloudsUpscale', output)
     })
   }
 
   get #targets(): RenderTarget[] {
-    return [this.#marchedTarget, this.#cellsTarget, ...this.#accumulatedTargets]
+    return [this.#marchedTarget, this.#shadedTarget, this.#cellsTarget, ...this.#accumulatedTargets]
   }
 
   /** Sizes the render targets [pixels]; where the size changes, their contents are gone. */
@@ -113,27 +172,35 @@ export class CloudRenderer {
     const across = Math.ceil(width / block)
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
+    this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
     this.#frame.size.value.set(width, height)
     this.#frame.marchedSize.value.set(across, down)
   }
 
-  /** Draws a frame; `FrameUniforms.next` goes first. */
-  render(renderer: Renderer): void {
+  /**
+   * Draws a frame; `FrameUniforms.next` goes first.
+   *
+   * @param up - Zenith of the camera, in the mapped space.
+   */
+  render(renderer: Renderer, up: Vector3): void {
+    this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
+    this.#shade.render(renderer, this.#shadedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
     const target = this.#accumulatedTargets[this.#current]
     this.#upscale[this.#current].render(renderer, target)
-    const shown = this.showsMarched ? this.#marchedTarget : target
+    const shown = this.showsMarched ? this.#shadedTarget : target
     this.light.value = target.textures[0]
     this.distances.value = shown.textures[1]
   }
 
   /** Frees the render targets. */
   dispose(): void {
+    this.#weatherMap.dispose()
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#march, this.#gather, ...this.#upscale]) {
+    for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
   }

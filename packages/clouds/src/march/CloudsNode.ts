@@ -233,7 +233,7 @@ export class CloudsNode extends AtmosphereNode {
     const { version } = light.texture
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.#renderer.showsMarched = this.debugView === 'steps'
-    this.#renderer.render(renderer)
+    this.#renderer.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value
   }
 

@@ -7,7 +7,7 @@ import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { inLattice, type LayerNodes } from './layer'
 
 /** Level of detail for a footprint; 0 where texels are wider. */
-const levelOf = (footprint: Float, texel: Float | number): Float =>
+export const levelOf = (footprint: Float, texel: Float | number): Float =>
   log2(footprint.div(texel).max(1e-3)).max(0).toConst()
 
 /** Noise of unit deviation from its encoded values. */
@@ -20,8 +20,6 @@ export interface Billows {
   readonly fine: Float
   /** Two components of the turbulence [–]. */
   readonly curl: Vec2
-  /** Level of detail: what is finer than the sample's footprint is left out [octaves]. */
-  readonly level: Float
 }
 
 /**
@@ -30,7 +28,7 @@ export interface Billows {
  *
  * @param offset - Displacement from the camera, in the mapped space [m].
  * @param shift - Of `WeatherBackground`.
- * @param footprint - Width of what the sample stands for [m].
+ * @param level - `Resolution.shapeLevel`: what is finer than the sample's footprint is left out.
  * @see Schneider & Vos 2015, "The real-time volumetric cloudscapes of Horizon: Zero Dawn", "Modeling"
  * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2
  */
@@ -39,13 +37,12 @@ export function billows(
   layer: LayerNodes,
   offset: Vec3,
   shift: Vec2,
-  footprint: Float
+  level: Float
 ): Billows {
   const { perShapePeriod } = layer
   const place = layer.shapeLattice(offset).add(inLattice(shift).mul(perShapePeriod)) as Vec3
-  const level = levelOf(footprint.mul(perShapePeriod), 1 / NOISE_SIZE.shape)
   const noise = decoded(field.textures.shape.sample(place).level(level))
-  return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst(), level }
+  return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() }
 }
 
 /** Periods of the nearer octaves of detail, in those of the detail, and their amplitudes. */

@@ -33,7 +33,7 @@ function mappedCoverage(
 export function coverageAt(
   field: CloudField,
   layer: LayerNodes,
-  { up }: CloudSample,
+  { up }: Pick<CloudSample, 'up'>,
   footprint: Float,
   shift: Vec3
 ): Float {

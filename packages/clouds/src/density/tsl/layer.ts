@@ -1,4 +1,4 @@
-import { int, vec3, vec4 } from 'three/tsl'
+import { If, int, vec3, vec4 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { latticeRotations } from '../lattice'
@@ -165,4 +165,19 @@ export function forLayers(field: CloudField, body: (index: Int) => void, range?:
   const { length } = field.layers
   if (length === 1) body(int(0))
   else loop('layer', range?.last ?? length, body, range?.first)
+}
+
+/**
+ * The same with code for each layer of its own, whose parameters are read as constants: faster, and longer.
+ */
+export function forEachLayer(
+  field: CloudField,
+  body: (index: Int) => void,
+  { first, last }: LayerRange
+): void {
+  const { length } = field.layers
+  for (let i = 0; i < length; i++) {
+    if (length === 1) body(int(0))
+    else If(first.lessThanEqual(int(i)).and(last.greaterThan(int(i))), () => body(int(i)))
+  }
 }

@@ -1,15 +1,16 @@
-import { If } from 'three/tsl'
+import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import type { Float, Vec2, Vec3 } from '../../tsl-types'
+import type { Float, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL } from './billows'
 import { densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
+import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
-import { billowsLost, columnStrength } from './strength'
+import { columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
 import { cloudWeather, leanAt, type CloudWeather } from './weather'
-import { unpackBackground, type PackedBackground } from './weatherBackground'
+import { unpackBackground, type PackedBackground, type WeatherBackground } from './weatherBackground'
 
 /** A layer at a place. */
 export interface LayerSample {
@@ -36,14 +37,11 @@ export interface SampleOptions {
 interface Body {
   readonly sample: CloudSample
   readonly height: Float
-  readonly footprint: Float
   readonly weather: CloudWeather
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
-  /** Strength over which density rises. */
-  readonly edge: Float
-  /** Strength of detail, per deviation of its noise. */
+  /** Strength of detail, per deviation of its noise [–]. */
   readonly detailStrength: Float
 }
 
@@ -51,35 +49,31 @@ interface Body {
 function bodyAt(
   field: CloudField,
   layer: LayerNodes,
-  packed: PackedBackground,
-  sample: CloudSample
+  background: WeatherBackground,
+  sample: CloudSample,
+  resolution: Resolution
 ): Body {
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
-  const background = unpackBackground(packed)
-  const footprint = footprintOf(field, sample)
-  const shape = billows(field, layer, sample.offset, background.shift, footprint)
+  const shape = billows(field, layer, sample.offset, background.shift, resolution.shapeLevel)
   const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
-  const bend = shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst() as Vec2
   const weather = cloudWeather(
     field,
     layer,
     background,
     subpoint.toConst(),
-    bend,
-    footprint,
+    shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst(),
+    resolution,
     'where unresolved'
   )
-  const lost = billowsLost(shape.level)
   const amount = billowStrength(layer, height)
-  const body = columnStrength(layer, weather, background.coverage, lost)
+  const body = columnStrength(layer, weather, background.coverage, resolution)
     .sub(neededStrength(layer, height))
     .add(shape.coarse.mul(amount.coarse))
     .toConst() as Float
   const share = fineShare(body)
   const strength = body.add(shape.fine.mul(amount.fine).mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  const edge = edgeAt(layer, height)
-  return { sample, height, footprint, weather, body, strength, edge, detailStrength }
+  return { sample, height, weather, body, strength, detailStrength }
 }
 
 /**
@@ -87,42 +81,46 @@ function bodyAt(
  * not wait for each other.
  *
  * @param background - `weatherBackground` around all of them.
+ * @param middle - Between them: what changes slowly with height and distance is taken from here.
  * @param samples - Within the layer's altitudes, or else they are taken to be at its boundary.
  */
 export function sampleLayerAt(
   field: CloudField,
   layer: LayerNodes,
   background: PackedBackground,
+  middle: CloudSample,
   samples: readonly CloudSample[],
   { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
 ): LayerSample[] {
-  const bodies = samples.map(sample => bodyAt(field, layer, background, sample))
-  const strengths = bodies.map(({ strength }) => strength.toVar() as Float)
-  if (hasDetail) {
-    bodies.forEach(({ sample, footprint, strength, edge, detailStrength }, i) => {
-      const most = detailStrength.abs().mul(MOST_DETAIL).toConst() as Float
-      const isAtEdge = strength
-        .greaterThan(most.negate())
-        .and(strength.lessThan(most.add(edge)))
-        .and(most.greaterThan(0))
-      If(isAtEdge, () => {
-        const fine = detail(field, layer, sample.offset, footprint)
-        strengths[i].addAssign(fine.mul(detailStrength))
-      })
+  const weather = unpackBackground(background)
+  const resolution = resolutionAt(layer, footprintOf(field, middle))
+  const { footprint, unresolvedFraction } = resolution
+  const middleHeight = heightIn(layer, middle.altitude).clamp(0, 1).toConst() as Float
+  const edge = edgeAt(layer, middleHeight)
+  const most = densityAtHeight(layer, middleHeight)
+  const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution))
+  return bodies.map(body => {
+    const { sample, height, strength, detailStrength } = body
+    const { filteredCoverage } = body.weather
+    const whole = strength.toVar() as Float
+    const density = float(0).toVar() as Float
+    const reach = hasDetail ? detailStrength.abs().mul(MOST_DETAIL).toConst() : float(0)
+    If(strength.greaterThan(reach.negate()), () => {
+      if (hasDetail) {
+        If(strength.lessThan(reach.add(edge)).and(reach.greaterThan(0)), () => {
+          const fine = detail(field, layer, sample.offset, footprint)
+          whole.addAssign(fine.mul(detailStrength))
+        })
+      }
+      density.assign(densityOf(whole, body.body, edge).mul(most))
     })
-  }
-  return bodies.map(({ sample, height, weather, body, edge }, i) => {
-    const near = densityOf(strengths[i], body, edge).mul(densityAtHeight(layer, height))
-    const density = near.toVar() as Float
-    const { unresolvedFraction, filteredCoverage } = weather
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
       const cosine = direction?.dot(sample.up).toConst() as Float | undefined
       const mean = unresolvedDensity(field, layer, filteredCoverage, height, unresolved, cosine)
       density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
-      strengths[i].assign(strengths[i].max(0))
+      whole.assign(whole.max(0))
     })
-    const extinction = layer.density.mul(density).toConst() as Float
-    return { extinction, strength: strengths[i] }
+    return { extinction: layer.density.mul(density).toConst(), strength: whole }
   })
 }
 
@@ -134,5 +132,5 @@ export function sampleLayer(
   sample: CloudSample,
   options: SampleOptions
 ): LayerSample {
-  return sampleLayerAt(field, layer, background, [sample], options)[0]
+  return sampleLayerAt(field, layer, background, sample, [sample], options)[0]
 }

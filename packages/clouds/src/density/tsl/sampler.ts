@@ -1,10 +1,10 @@
-import { If, float, int, vec2, vec4 } from 'three/tsl'
+import { If, float, int, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
+import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { densityAtHeight } from './heightForm'
-import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
+import { forEachLayer, forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
 import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
-import { backgroundAlong, clearLayer, type RayWeather } from './rayWeather'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
 import { weatherBackground, type PackedBackground } from './weatherBackground'
@@ -17,19 +17,20 @@ import { weatherBackground, type PackedBackground } from './weatherBackground'
 /** Options of the light march: no detail, and the inside of clouds, where its light is. */
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
 
-/** Background of the weather at a sample itself. */
-const backgroundAt = (
+/** Background of the weather at a sample: from a map, or looked up at the place itself. */
+function backgroundAt(
   field: CloudField,
   layer: LayerNodes,
-  sample: CloudSample
-): PackedBackground =>
-  weatherBackground(
-    field,
-    layer,
-    subpointOffset(field, sample).toConst(),
-    sample,
-    footprintOf(field, sample)
-  )
+  sample: CloudSample,
+  mapped?: { map: WeatherMap | undefined; index: Int }
+): PackedBackground {
+  const subpoint = subpointOffset(field, sample).toConst() as Vec3
+  const footprint = footprintOf(field, sample)
+  const { map, index } = mapped ?? {}
+  return map === undefined || index === undefined
+    ? weatherBackground(field, layer, subpoint, sample, footprint)
+    : map.sample(layer, index, subpoint, sample.up, footprint)
+}
 
 /**
  * Extinction of all clouds at a place, in the weather of that very place: what the samplers below come
@@ -52,9 +53,43 @@ export function cloudExtinction(field: CloudField, sample: CloudSample, detail: 
 
 /** The weather around a place, kept for places nearby: that of the layer which is densest there. */
 export interface WeatherCache {
-  readonly background: Vec4
+  readonly background: PackedBackground
   /** The layer's index. */
   readonly layer: Int
+}
+
+/** Weather around a place in the clouds. */
+export function weatherCacheAt(
+  field: CloudField,
+  sample: CloudSample,
+  range: LayerRange,
+  map?: WeatherMap
+): WeatherCache {
+  const background = vec4(0).toVar() as Vec4
+  const densest = int(0).toVar() as Int
+  if (field.givenExtinction) return { background, layer: densest }
+  const most = float(-1).toVar()
+  forLayers(
+    field,
+    index => {
+      const layer = layerAt(field, index)
+      If(isWithin(layer, heightIn(layer, sample.altitude)), () => {
+        const found = backgroundAt(field, layer, sample, { map, index })
+        if (field.layers.length === 1) {
+          background.assign(found)
+          return
+        }
+        const { extinction } = sampleLayer(field, layer, found, sample, LIT)
+        If(extinction.greaterThan(most), () => {
+          most.assign(extinction)
+          background.assign(found)
+          densest.assign(index)
+        })
+      })
+    },
+    range
+  )
+  return { background, layer: densest }
 }
 
 /** Two samples of all clouds near each other. */
@@ -65,73 +100,82 @@ export interface SamplePair {
   readonly likelyDistance: Float
   /** Greatest extinction that clouds have at their height [1/m]. */
   readonly greatest: Float
-  readonly weather: WeatherCache
 }
+
+/** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
+export type ClearLayers = Vec4 & { assign: (n: Vec4) => void }
+
+/** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */
+const sampleNearby = (
+  { offset, altitude, up, distance }: CloudSample,
+  direction: Vec3,
+  along: Float
+): CloudSample => ({
+  offset: offset.add(direction.mul(along)).toConst(),
+  altitude: altitude.add(direction.dot(up).mul(along)).toConst(),
+  up,
+  distance
+})
 
 /**
  * Samples clouds at two places near each other on a ray, with detail.
  *
- * @param kept - Weather along the ray: is looked up where it is not known yet.
- * @param middle - Distance between both places [m]; all have to be within the altitudes of the same layers.
- * @param samples - At the two places.
- * @param sampleAt - The ray's sample at a distance.
+ * @param map - Weather around the camera; left out, it is looked up at the place itself.
+ * @param clear - Is kept between samples of a ray.
+ * @param middle - The place between both, within the altitudes of the same layers.
+ * @param length - Distance between them [m].
  * @param direction - Direction of the ray, in the mapped space.
  * @param range - The layers that are looked at.
  */
 export function samplePair(
   field: CloudField,
-  kept: RayWeather,
-  middle: Float,
-  samples: readonly [CloudSample, CloudSample],
-  sampleAt: (distance: Float) => CloudSample,
+  map: WeatherMap | undefined,
+  clear: ClearLayers,
+  middle: CloudSample,
+  length: Float,
   direction: Vec3,
   range: LayerRange
 ): SamplePair {
   const { givenExtinction } = field
+  const places = [-0.5, 0.5].map(at => sampleNearby(middle, direction, length.mul(at)))
   if (givenExtinction) {
-    const [first, second] = samples.map(sample => givenExtinction(sample.offset))
+    const [first, second] = places.map(({ offset }) => givenExtinction(offset))
     const extinction = vec2(first, second).toConst() as Vec2
-    const weather = { background: vec4(0) as Vec4, layer: int(0) as Int }
-    return { extinction, likelyDistance: float(0), greatest: first.max(second), weather }
+    // Of given clouds nothing is known but what is found: steps are as short as in cloud everywhere.
+    const { density } = layerAt(field, int(0))
+    return { extinction, likelyDistance: float(0), greatest: density }
   }
   const sum = vec2(0).toVar() as Vec2
   const nearest = float(NOWHERE).toVar()
-  const background = vec4(0).toVar() as Vec4
-  const densest = int(0).toVar() as Int
-  const most = float(0).toVar()
   const greatest = float(0).toVar()
-  const { altitude } = sampleAt(middle)
-  const isAlone = range.last.sub(range.first).lessThan(int(2)).toConst()
-  const end = samples[1].distance
+  const end = middle.distance.add(length.mul(0.5)).toConst()
+  const isAlone = field.layers.length === 1
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
-    const height = heightIn(layer, altitude)
-    const clear = clearLayer(kept, index)
-    const isNear = clear.until.lessThan(end).toConst()
+    const height = heightIn(layer, middle.altitude)
+    /** 1 in the layer's component, 0 in the others. */
+    const own = vec4(0, 1, 2, 3).sub(float(index)).abs().min(1).oneMinus().toConst() as Vec4
+    const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
+    const isNear = clearUntil.lessThan(end).toConst()
     If(isWithin(layer, height).and(isNear.not()), () => {
-      nearest.assign(nearest.min(clear.until.sub(end)))
+      nearest.assign(nearest.min(clearUntil.sub(end)))
     })
     If(isWithin(layer, height).and(isNear), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
-      const here = backgroundAlong(field, kept, layer, index, isAlone, middle, sampleAt)
+      const background = backgroundAt(field, layer, middle, { map, index })
       const options = { detail: true, direction }
-      const [first, second] = sampleLayerAt(field, layer, here, samples, options)
-      const found = vec2(first.extinction, second.extinction).toConst() as Vec2
+      const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
       const likely = likelyDistance(layer, first.strength.max(second.strength)).toConst() as Float
-      clear.assign(likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0))
+      if (!isAlone) {
+        const until = likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0)
+        clear.assign(mix(clear, vec4(until), own))
+      }
       nearest.assign(nearest.min(likely))
-      sum.addAssign(found)
-      const both = found.x.add(found.y).toConst() as Float
-      If(both.greaterThan(most), () => {
-        most.assign(both)
-        background.assign(here)
-        densest.assign(index)
-      })
+      sum.addAssign(vec2(first.extinction, second.extinction))
     })
   }
-  forLayers(field, look, range)
-  const weather = { background, layer: densest }
-  return { extinction: sum, likelyDistance: nearest, greatest, weather }
+  forEachLayer(field, look, range)
+  return { extinction: sum, likelyDistance: nearest, greatest }
 }
 
 /**
@@ -172,7 +216,7 @@ export function sampleLayerPair(
     return vec2(first, second).toConst()
   }
   const background = backgroundAt(field, layer, middle)
-  const found = sampleLayerAt(field, layer, background, samples, { detail: false })
+  const found = sampleLayerAt(field, layer, background, middle, samples, { detail: false })
   const [first, second] = samples.map(({ altitude }, i) =>
     isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
   )

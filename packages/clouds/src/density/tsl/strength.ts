@@ -4,6 +4,7 @@ import type { Float } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import type { LayerNodes } from './layer'
 import { squared } from './squared'
+import type { Resolution } from './resolution'
 import type { CloudWeather } from './weather'
 
 /**
@@ -15,13 +16,12 @@ import type { CloudWeather } from './weather'
  *
  * @param weather - Its sum has variance 1: u is its rank.
  * @param coverage - c, in [0, 1].
- * @param billowsLost - Share of billows that levels of detail have lost, in [0, 1].
  */
 export function columnStrength(
   layer: LayerNodes,
-  { sum, unresolvedFraction }: Pick<CloudWeather, 'sum' | 'unresolvedFraction'>,
+  { sum }: Pick<CloudWeather, 'sum'>,
   coverage: Float,
-  billowsLost: Float
+  { billowsLost: lost, unresolvedFraction }: Pick<Resolution, 'billowsLost' | 'unresolvedFraction'>
 ): Float {
   const { strongest, leastCoverage, offset, coverageOffset, fullCoverageExcess } = strengthForm
   const { smoothOffset, smoothUntil } = strengthForm
@@ -30,7 +30,7 @@ export function columnStrength(
     .add(1)
     .max(0)
     .mul(smoothOffset)
-  const forBillows = billowsLost
+  const forBillows = lost
     .mix(coverage.mul(coverageOffset).add(offset), smooth)
     .mul(layer.shapeAmount)
   return cumulative(sum)

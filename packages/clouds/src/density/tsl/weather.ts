@@ -1,17 +1,12 @@
-import { If, float, smoothstep, vec3 } from 'three/tsl'
+import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
-import { noisePeriods, scaleWeights } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
+import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, type CloudSample } from './sample'
-import {
-  unpackBackground,
-  weatherBackground,
-  weatherLevel,
-  type WeatherBackground
-} from './weatherBackground'
+import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
 /** The weather of a layer at a place. */
 export interface CloudWeather {
@@ -19,31 +14,6 @@ export interface CloudWeather {
   readonly sum: Float
   /** Share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
   readonly filteredCoverage: Float
-  /** Unresolved fraction: 0 where samples resolve single clouds, 1 where they see their mean only. */
-  readonly unresolvedFraction: Float
-}
-
-/** Levels of detail by which a sample is coarser than single clouds, when these begin to be lost. */
-const UNRESOLVED_LEVELS = [0.5, 4.5] as const
-
-/** Share of a noise's variance that its levels of detail have lost. */
-const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
-
-/** Variance of the weather's sum that levels of detail have lost: none near by. */
-function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLevel: Float): Float {
-  const regionVariance = layer.regions
-    .mul(layer.regions)
-    .mul((1 + scaleWeights.regionCells ** 2) / 12)
-  const fieldVariance = layer.cloudVariance
-    .add(layer.planet.mul(layer.planet))
-    .add(regionVariance)
-    .oneMinus()
-  const fieldLevel = level.sub(Math.log2(noisePeriods.fields)).max(0)
-  const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
-  return layer.cloudVariance
-    .mul(lostShare(cloudLevel))
-    .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))
-    .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
 }
 
 /**
@@ -79,11 +49,10 @@ export function cloudWeather(
   background: WeatherBackground,
   subpoint: Vec3,
   bend: Vec2,
-  footprint: Float,
+  { weatherLevel: level, unresolvedFraction, lostVariance, gain }: Resolution,
   where: 'everywhere' | 'where unresolved'
 ): CloudWeather {
   const scale = layer.perWeatherPeriod
-  const level = weatherLevel(footprint, scale)
   const bent = inLattice(bend.add(background.shift))
   const clouds = field.textures.weather
     .sample(layer.weatherLattice(subpoint).add(bent.mul(scale)))
@@ -91,21 +60,13 @@ export function cloudWeather(
     .sub(0.5)
     .toConst() as Vec4
   const blurred = clouds.dot(layer.weights).add(background.sum).toConst() as Float
-  const cloudLevel = level.sub(layer.coarseness).toConst() as Float
-  const unresolvedFraction = smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst() as Float
-  const variance = float(0).toVar()
-  const sum = blurred.toVar() as Float
-  If(level.greaterThan(0), () => {
-    variance.assign(lostVariance(layer, footprint, level, cloudLevel))
-    sum.mulAssign(variance.oneMinus().max(strengthForm.leastVariance).inverseSqrt())
-  })
   const filteredCoverage = float(0).toVar()
   const filter = (): void => {
-    filteredCoverage.assign(coverageOf(layer, blurred, variance, background.coverage))
+    filteredCoverage.assign(coverageOf(layer, blurred, lostVariance, background.coverage))
   }
   if (where === 'everywhere') filter()
   else If(unresolvedFraction.greaterThan(0), filter)
-  return { sum, filteredCoverage, unresolvedFraction }
+  return { sum: blurred.mul(gain).toConst() as Float, filteredCoverage }
 }
 
 /**
@@ -124,6 +85,7 @@ export function filteredCoverageAt(
   const packed = weatherBackground(field, layer, subpoint, sample, footprint)
   const background = unpackBackground(packed)
   const still = vec3(0).xy as Vec2
-  return cloudWeather(field, layer, background, subpoint, still, footprint, 'everywhere')
+  const resolution = resolutionAt(layer, footprint)
+  return cloudWeather(field, layer, background, subpoint, still, resolution, 'everywhere')
     .filteredCoverage
 }

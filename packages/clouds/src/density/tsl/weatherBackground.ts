@@ -1,11 +1,11 @@
-import { int, log2, vec2, vec4 } from 'three/tsl'
+import { int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { noisePeriods, weatherShifts, scaleWeights, waveForm } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { coverageAt } from './coverage'
 import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
+import { weatherLevel } from './resolution'
 import type { CloudSample } from './sample'
 
 /**
@@ -30,10 +30,6 @@ export const unpackBackground = (packed: PackedBackground): WeatherBackground =>
   coverage: packed.y,
   shift: vec2(packed.z, packed.w).toConst()
 })
-
-/** Level of detail of the weather's noise for a footprint, looked up with a period [m]. */
-export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
-  log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst()
 
 /** Weather of whole regions and of the planet, which all layers share: where one is clear, others are. */
 function weatherSystems(
@@ -64,7 +60,7 @@ export function weatherBackground(
   field: CloudField,
   layer: LayerNodes,
   subpoint: Vec3,
-  sample: CloudSample,
+  sample: Pick<CloudSample, 'up'>,
   footprint: Float
 ): PackedBackground {
   const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, footprint)

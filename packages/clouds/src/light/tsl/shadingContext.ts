@@ -1,4 +1,5 @@
 import type { CloudField } from '../../density/CloudField'
+import type { WeatherMap } from '../../density/WeatherMap'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { WeatherCache } from '../../density/tsl/sampler'
 import type { QualityUniforms } from '../../march/quality'
@@ -10,6 +11,8 @@ import type { CloudLight } from '../CloudLightTable'
 /** Inputs of shading that are the same for all rays of a picture. */
 export interface ShadingContext {
   readonly field: CloudField
+  /** Weather around the camera; left out, it is looked up at each place itself. */
+  readonly weatherMap?: WeatherMap
   readonly light: CloudLight
   readonly shadows: CloudShadows
   readonly quality: QualityUniforms

@@ -2,7 +2,7 @@ import { aerialPerspectiveTo, linearSRGB } from '@welkin/atmosphere'
 import type { ViewNodes } from '@welkin/atmosphere'
 import { If, vec4 } from 'three/tsl'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import type { MarchedClouds } from './march'
+import type { LitClouds } from './shadePoints'
 
 /**
  * Marched clouds behind their air: linear light, dimmed by the air in front of them and with its
@@ -12,7 +12,7 @@ import type { MarchedClouds } from './march'
  */
 export function withAerialPerspective(
   view: ViewNodes,
-  { radiance, transmittance, distance }: MarchedClouds,
+  { radiance, transmittance, distance }: Pick<LitClouds, 'radiance' | 'transmittance' | 'distance'>,
   directionView: Vec3,
   gain: Float
 ): Vec4 {

@@ -1,11 +1,11 @@
 import { Fn, If, float, uv, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import {
-  twoOutputs,
+  outputs,
   type Bool,
   type Float,
   type Int,
-  type TwoOutputs,
+  type Outputs,
   type Vec2,
   type Vec4
 } from '../../tsl-types'
@@ -75,9 +75,9 @@ export function gatherCells(
   field: CloudField,
   viewRays: ViewRayNodes,
   marched: CloudTargets
-): TwoOutputs {
+): Outputs {
   const { frame } = viewRays
-  return twoOutputs(([light, distances]) =>
+  return outputs<[Vec4, Vec4]>(2, ([light, distances]) =>
     Fn(() => {
       const corner = uv().mul(frame.marchedSize.add(1)).floor().sub(1).toConst() as unknown as Vec2
       /** Sums of brightness and transmittance, and of their squares. */

@@ -1,5 +1,5 @@
 import { Fn, If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
-import { twoOutputs, type Float, type TwoOutputs, type Vec2, type Vec4 } from '../../tsl-types'
+import { outputs, type Float, type Outputs, type Vec2, type Vec4 } from '../../tsl-types'
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
@@ -74,9 +74,9 @@ export function upscale(
   marched: CloudTargets,
   cells: CloudTargets,
   history: CloudTargets
-): TwoOutputs {
+): Outputs {
   const { frame } = viewRays
-  return twoOutputs(([light, distances]) =>
+  return outputs<[Vec4, Vec4]>(2, ([light, distances]) =>
     Fn(() => {
       const pixel = uv().mul(frame.size).floor().toConst() as unknown as Vec2
       const middle = pixel.add(0.5).div(frame.size).toConst() as Vec2

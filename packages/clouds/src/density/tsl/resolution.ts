@@ -1,0 +1,73 @@
+import { If, float, log2, smoothstep } from 'three/tsl'
+import { strengthForm } from '../formConstants'
+import { noisePeriods, scaleWeights } from '../../layers/layerUniforms'
+import { NOISE_SIZE } from '../../noise/noiseSizes'
+import type { Float } from '../../tsl-types'
+import { levelOf } from './billows'
+import type { LayerNodes } from './layer'
+import { billowsLost } from './strength'
+
+/** Levels of detail at which a footprint is looked up, and what they lose. */
+export interface Resolution {
+  /** Width of what a sample stands for [m]. */
+  readonly footprint: Float
+  /** Levels of detail of the shape and of the weather's noise [octaves]. */
+  readonly shapeLevel: Float
+  readonly weatherLevel: Float
+  /** Unresolved fraction: 0 where samples resolve single clouds, 1 where they see their mean only. */
+  readonly unresolvedFraction: Float
+  /** Variance of the weather's sum that is lost, and the factor that makes up for it [–]. */
+  readonly lostVariance: Float
+  readonly gain: Float
+  /** Share of the billows that is lost, in [0, 1]. */
+  readonly billowsLost: Float
+}
+
+/** Level of detail of the weather's noise for a footprint, looked up with a period [m]. */
+export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
+  log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst()
+
+/** Levels of detail by which a sample is coarser than single clouds, when these begin to be lost. */
+const UNRESOLVED_LEVELS = [0.5, 4.5] as const
+
+/** Share of a noise's variance that its levels of detail have lost. */
+const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
+
+/** Variance of the weather's sum that levels of detail have lost: none near by. */
+function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLevel: Float): Float {
+  const regionVariance = layer.regions
+    .mul(layer.regions)
+    .mul((1 + scaleWeights.regionCells ** 2) / 12)
+  const fieldVariance = layer.cloudVariance
+    .add(layer.planet.mul(layer.planet))
+    .add(regionVariance)
+    .oneMinus()
+  const fieldLevel = level.sub(Math.log2(noisePeriods.fields)).max(0)
+  const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
+  return layer.cloudVariance
+    .mul(lostShare(cloudLevel))
+    .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))
+    .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
+}
+
+/** Resolution of a layer's samples of a footprint. To be called inside of a shader function. */
+export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
+  const level = weatherLevel(footprint, layer.perWeatherPeriod)
+  const shapeLevel = levelOf(footprint.mul(layer.perShapePeriod), 1 / NOISE_SIZE.shape)
+  const cloudLevel = level.sub(layer.coarseness).toConst() as Float
+  const variance = float(0).toVar()
+  const gain = float(1).toVar()
+  If(level.greaterThan(0), () => {
+    variance.assign(lostVariance(layer, footprint, level, cloudLevel))
+    gain.assign(variance.oneMinus().max(strengthForm.leastVariance).inverseSqrt())
+  })
+  return {
+    footprint,
+    shapeLevel,
+    weatherLevel: level,
+    unresolvedFraction: smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst() as Float,
+    lostVariance: variance,
+    gain,
+    billowsLost: billowsLost(shapeLevel).toConst() as Float
+  }
+}

@@ -1,0 +1,146 @@
+import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
+import type { Float, Vec2, Vec4 } from '../../tsl-types'
+
+// What a ray sees of the clouds, as a few points that stand for all of it: light is computed there, in a pass
+// of its own (shadePoints.ts), so that the march stays small and its rays stay together.
+
+/** Most points of a ray, each for an equal stratum of its opacity. More: light takes longer. */
+export const POINTS = 4
+
+/** Share of a ray's light from which a stratum is left to its layer, and the next layer gets one of its own [–]. */
+const LEAST_SHARE = 0.004
+
+/**
+ * Gap between clouds from which they count as apart: part of the distance, and at least [m]. The light of a
+ * point between two clouds would be that of neither.
+ */
+const GAP_GROWTH = 0.02
+const LEAST_GAP = 60
+
+/** A variable of a shader. */
+type Variable<T> = T & { assign: (n: T | number) => void; addAssign: (n: T | number) => void }
+
+/** Points that stand for all that a ray sees of the clouds, from the camera outwards. */
+export interface SeenPoints {
+  /** Their distances from the camera [m]. */
+  readonly distances: Vec4
+  /** Parts of the ray's light that come from what they stand for; 0 for none. Their sum is the opacity. */
+  readonly shares: Vec4
+}
+
+/** What a ray has seen so far. */
+export interface SeenState {
+  readonly transmittance: Variable<Float>
+  readonly distances: Variable<Vec4>
+  readonly shares: Variable<Vec4>
+  /** Index of the stratum that what comes next belongs to. */
+  readonly index: Variable<Float>
+  /** Share and sum of distances by share of the cloud that the ray is in, within this stratum; and the most. */
+  readonly run: Variable<Vec2>
+  readonly most: Variable<Float>
+  /** Distance of the latest cloud [m]. */
+  readonly latest: Variable<Float>
+  /** Sum of distances by opacity [m]. */
+  readonly weightedDistance: Variable<Float>
+}
+
+/** A ray that has met nothing yet. To be called inside of a shader function. */
+export const seenState = (): SeenState => ({
+  transmittance: float(1).toVar(),
+  distances: vec4(0).toVar(),
+  shares: vec4(0).toVar(),
+  index: float(0).toVar(),
+  run: vec2(0).toVar(),
+  most: float(0).toVar(),
+  latest: float(0).toVar(),
+  weightedDistance: float(0).toVar()
+})
+
+/** 1 in the component of an index, 0 in the others. */
+export const componentAt = (index: Float): Vec4 =>
+  vec4(0, 1, 2, 3).sub(index).abs().min(1).oneMinus().toConst() as Vec4
+
+/** Goes on to a stratum, if the ray is not in it yet. */
+function enterStratum({ index, run, most }: SeenState, next: Float): void {
+  If(next.greaterThan(index), () => {
+    index.assign(next)
+    run.assign(vec2(0))
+    most.assign(0)
+  })
+}
+
+/** Ends a stratum at a layer boundary: layers apart may be lit apart, a high one is in the sun when a low one is not. */
+export function separateLayers(state: SeenState): void {
+  const { shares, index } = state
+  const share = shares.dot(componentAt(index))
+  const next = index.add(share.greaterThan(LEAST_SHARE).select(1, 0)).min(POINTS - 1)
+  enterStratum(state, next.toConst() as Float)
+}
+
+/**
+ * Adds two steps: energy-conserving integration, L += T S (1 − e^{−τ}) for steps of any length. The source S
+ * is left open: one place of each stratum of opacity stands for it, the middle of the cloud that takes most
+ * of it.
+ *
+ * @param depth - Scaled optical depths of both steps.
+ * @param places - Distances of their samples [m].
+ * @see Hillaire 2016, "Physically based sky, atmosphere and cloud rendering in Frostbite" §5.6.3
+ */
+export function addPair(state: SeenState, depth: Vec2, places: readonly Float[]): void {
+  const { transmittance, distances, shares, index, run, most, latest, weightedDistance } = state
+  const through = depth.negate().exp().toConst() as Vec2
+  const seen = vec2(
+    transmittance.mul(through.x.oneMinus()),
+    transmittance.mul(through.x).mul(through.y.oneMinus())
+  ).toConst() as Vec2
+  const both = seen.x.add(seen.y).toConst()
+  const weighted = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
+  const stratum = transmittance.oneMinus().mul(POINTS).floor().min(POINTS - 1)
+  enterStratum(state, stratum.toConst() as Float)
+  const gap = places[0].mul(GAP_GROWTH).max(LEAST_GAP)
+  const goesOn = places[0].sub(latest).lessThan(gap).toConst()
+  run.assign(goesOn.select(run, vec2(0)).add(vec2(both, weighted)))
+  latest.assign(places[1])
+  const own = componentAt(index)
+  shares.addAssign(own.mul(both))
+  If(run.x.greaterThanEqual(most), () => {
+    most.assign(run.x)
+    distances.assign(mix(distances, vec4(run.y.div(run.x)), own))
+  })
+  weightedDistance.addAssign(weighted)
+  transmittance.mulAssign(through.x.mul(through.y))
+}
+
+/** Clouds on a ray that is done. */
+export interface SeenClouds {
+  readonly points: SeenPoints
+  /** Share of the light behind that passes, in [0, 1]. */
+  readonly transmittance: Float
+  /** Mean distance of what is seen, by what each place contributes; of the first layer if nothing is [m]. */
+  readonly distance: Float
+}
+
+/**
+ * Clouds of a ray that is done. As good as opaque is opaque: nothing bright may shine through.
+ *
+ * @param nothing - Distance where it met nothing [m].
+ */
+export function seenClouds(state: SeenState, nothing: Float): SeenClouds {
+  const { transmittance, distances, shares, weightedDistance } = state
+  const opacity = transmittance.oneMinus().toConst()
+  const passed = transmittance
+    .sub(LEAST_TRANSMITTANCE)
+    .max(0)
+    .div(1 - LEAST_TRANSMITTANCE)
+    .toConst() as Float
+  const all = passed.oneMinus().div(opacity.max(1e-6)).toConst() as Float
+  return {
+    points: { distances, shares: shares.mul(all).toConst() as Vec4 },
+    transmittance: passed,
+    distance: opacity
+      .greaterThan(1e-4)
+      .select(weightedDistance.div(opacity.max(1e-6)), nothing)
+      .toConst()
+  }
+}

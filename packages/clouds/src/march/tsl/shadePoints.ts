@@ -1,0 +1,58 @@
+import { If, float, vec3, vec4 } from 'three/tsl'
+import { weatherCacheAt } from '../../density/tsl/sampler'
+import type { CloudSample } from '../../density/tsl/sample'
+import { shade, sourceAt } from '../../light/tsl/lighting'
+import type { ShadingContext } from '../../light/tsl/shadingContext'
+import { loop, type Float, type Vec3, type Vec4 } from '../../tsl-types'
+import { layersAt } from './layerBoundaries'
+import { marchClouds, type CloudRay, type MarchedClouds } from './march'
+import { componentAt, POINTS, type SeenPoints } from './seenPoints'
+
+/** Clouds on a ray, with their light. */
+export interface LitClouds extends MarchedClouds {
+  /** Spectral radiance at the clouds for unit irradiance of the bare sun [1/sr]. */
+  readonly radiance: Vec4
+}
+
+/**
+ * Light of what a ray sees of the clouds, from the points that stand for it. To be called inside of a shader
+ * function.
+ *
+ * @param direction - Direction of the ray, in the mapped space.
+ * @param dither - Noise in [0, 1), in which cascades of the shadow map meet.
+ * @returns Spectral radiance at the clouds for unit irradiance of the bare sun [1/sr].
+ */
+export function shadePoints(
+  context: ShadingContext,
+  direction: Vec3,
+  { distances, shares }: SeenPoints,
+  dither: Float
+): Vec4 {
+  const { field } = context
+  const radiance = vec4(0).toVar() as Vec4
+  const seenBefore = float(0).toVar()
+  loop('point', POINTS, index => {
+    const own = componentAt(float(index))
+    const share = shares.dot(own).toConst() as Float
+    If(share.greaterThan(0), () => {
+      const distance = distances.dot(own).toConst() as Float
+      const offset = direction.mul(distance).toConst() as Vec3
+      const sample: CloudSample = { offset, ...field.view.localCoordinates(offset), distance }
+      const layers = layersAt(field, sample.altitude)
+      const weather = weatherCacheAt(field, sample, layers.range, context.weatherMap)
+      const transmittance = seenBefore.add(share.mul(0.5)).oneMinus().toConst() as Float
+      const place = { sample, weather, direction, transmittance, dither, layers }
+      const { direct, sky, ground } = sourceAt(context, place)
+      radiance.addAssign(shade(field, sample, vec3(direct, sky, ground).mul(share).toConst()))
+      seenBefore.addAssign(share)
+    })
+  })
+  return radiance
+}
+
+/** Marches a ray and computes its light at once, for pictures that have no pass for either. */
+export function litClouds(context: ShadingContext, ray: CloudRay): LitClouds {
+  const marched = marchClouds(context, ray)
+  const radiance = shadePoints(context, ray.direction, marched.points, ray.jitter)
+  return { ...marched, radiance }
+}
