@@ -38,7 +38,10 @@ export interface CloudEnvironmentOptions {
   drift?: number
 }
 
-/** Frames that the clouds' shadow maps take to follow a change: the map is drawn after them. */
+/**
+ * Frames that the clouds' shadow maps take to follow a change, three cascades of four strips: the map is
+ * drawn after them.
+ */
 const WAIT = 12
 
 /** Strips that the map is drawn in, one a frame. */
@@ -50,7 +53,10 @@ const STORED_SCALE = 1e-4
 const _center = new Vector3()
 const _pole = new Vector3(0, 0, 1)
 
-/** Change of the direction to the moon, or of its light's strength, that shows. */
+/**
+ * Change of the direction to the moon, or of its light's strength, for which the map is drawn again. Greater:
+ * reflections jump.
+ */
 const MOON_CHANGE = 2e-3
 
 /** State of the clouds that a map shows; compared to tell whether it is out of date. */

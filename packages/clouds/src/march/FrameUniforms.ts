@@ -21,33 +21,44 @@ const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
 
 /**
  * History's length while the view or the clouds move [frames], and at least [samples of a pixel]. Longer:
- * less noise, and clouds that change their form trail behind. See the story "Cumulus from the ground" with
- * "Time lapse".
+ * less noise, and clouds that change their form trail behind (*Cumulus* with "Time lapse").
  */
 const MOVING_FRAMES = 48
 const MOVING_SAMPLES = 8
 
-/** Samples after which nothing is left of the light before a change: (3/4)¹² is 3 %. */
+/**
+ * Samples of a pixel for which history stays short after a change of light or clouds: 3 % of what was before
+ * is left. Fewer: the old light stays in a picture that stands still again (*Cumulus*, after a change of "Hour").
+ */
 const FORGETTING_SAMPLES = 12
 
-/** History's length in a picture that stands still [samples of a pixel]. */
+/** History's length in a picture that stands still [samples of a pixel]. Shorter: its grain moves (*Cumulus*). */
 const STILL_SAMPLES = 256
 
 /**
  * Half width of the variance clip [standard deviations], moving and standing still. Wider: less flicker at
- * edges, and ghosts behind clouds that move.
+ * edges, and ghosts behind clouds that move (*Cumulus* with "Time lapse").
  */
 const MOVING_CLIP = 1.25
 const STILL_CLIP = 8
 
-/** Move of the camera within a frame after which history is rejected: in its heights, and at least [m]. */
+/**
+ * Move of the camera within a frame after which history is rejected: in its heights, and at least [m]. Greater:
+ * clouds of the place before shine through after a jump; smaller: grain while one flies fast (*World clouds*).
+ */
 const CUT_HEIGHTS = 0.3
 const CUT_METRES = 300
 
-/** Move of the clouds within a frame after which history is rejected [m]. */
+/**
+ * Move of the clouds within a frame after which history is rejected [m]: a clock was set. Greater: ghosts
+ * (*Cumulus*, "Hour").
+ */
 const CLOUD_CUT = 500
 
-/** Change of the gain within a frame after which history is rejected, as a factor. */
+/**
+ * Change of the gain within a frame after which history is rejected, as a factor. Greater: ghosts of the day
+ * by night (*Cumulus*, "Hour").
+ */
 const LIGHT_CUT = 4
 
 /** Greatest square of a move that counts as none, of the camera [m²] and of the sun's direction. */

@@ -39,10 +39,13 @@ export interface LightDepths {
   known: Float
 }
 
-/** Parts of a cascade's width that are left out at its edges. */
+/** Parts of a cascade's width that are left out at its edges: bilinear reads would mix in another one's. */
 const MARGIN = 0.02
 
-/** Parts of its width in which a cascade gives way to the next. */
+/**
+ * Parts of its width in which a cascade gives way to the next. Fewer: a line where shadows become coarser
+ * (*Shadows*).
+ */
 const FADE = 0.1
 
 /**
