@@ -31,7 +31,7 @@ export interface SkyRay extends Readonly<ViewRay> {
 export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewLight'> {
   /** Distance to a point [m]; absent for the sky. */
   readonly distance?: Float
-  /** For the sky: whether the planet is in the way. */
+  /** True if the planet is in the way of the sky. */
   readonly hitsGround?: Bool
 }
 

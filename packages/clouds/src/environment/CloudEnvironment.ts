@@ -32,9 +32,9 @@ import { matrix3, matrix4, number, vector3 } from '../uniforms'
 export interface CloudEnvironmentOptions {
   /** Edge of the square map of all directions, in [16, 2048] [pixels]. */
   size?: number
-  /** How finely clouds are marched; by default `'low'`. */
+  /** Fineness of the march; by default `'low'`. */
   quality?: CloudQualityName | CloudQuality
-  /** How far the wind may carry clouds before they are drawn again, > 0 [m]. */
+  /** Distance that the wind may carry clouds before they are drawn again, > 0 [m]. */
   drift?: number
 }
 
@@ -89,7 +89,7 @@ export class CloudEnvironment implements SkyOverlay {
   #drift = 200
   readonly #target: RenderTarget
   readonly #map: LevelTexture<Vec2>
-  /** How finely clouds are marched. */
+  /** Fineness of the march. */
   readonly quality: CloudQuality
   readonly #quality = new QualityUniforms()
   /** Axes of the map, east, north and zenith at its place, to those of the mapped space. */
@@ -98,9 +98,9 @@ export class CloudEnvironment implements SkyOverlay {
   readonly #fromMapped = matrix3()
   /** Stored light per light. */
   readonly #gain = number(1)
-  /** The same for light without a luminance scale. */
+  /** Scale of what is stored, for light without a luminance scale. */
   #storedScale = STORED_SCALE
-  /** From the camera of the shadow maps to the environment's [m]. */
+  /** Displacement from the camera of the shadow maps to the environment's [m]. */
   readonly #shift = vector3()
   #field: CloudField | null = null
   #pass: FragmentPass | null = null
@@ -124,7 +124,7 @@ export class CloudEnvironment implements SkyOverlay {
     this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
   }
 
-  /** How far the wind may carry clouds before they are drawn again, > 0 [m]. */
+  /** Distance that the wind may carry clouds before they are drawn again, > 0 [m]. */
   get drift(): number {
     return this.#drift
   }

@@ -71,7 +71,7 @@ const isSame = (values: readonly number[], before: readonly number[]): boolean =
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
   slot < 3 || slot > 18 ? [x, y, z, w] : []
 
-/** Everything that shapes and lights the clouds, as numbers. */
+/** Numbers of all that shapes and lights the clouds. */
 function cloudInputs({ values, night }: CloudField, lightVersion: number): number[] {
   const { moonDirection, moonIrradiance, skyRadiance } = night
   const light = [moonDirection, moonIrradiance, skyRadiance]
@@ -104,7 +104,10 @@ export class FrameUniforms {
   readonly far = number()
   /** Normalized device coordinates (x, y, 1) of a pixel to a ray through it, in view space. */
   readonly rays = matrix3()
-  /** The same to the clip space (x, y, w) of the last frame, into which the ray led. */
+  /**
+   * Normalized device coordinates (x, y, 1) to the clip space (x, y, w) of the last frame, into which the ray
+   * led.
+   */
   readonly raysBefore = matrix3()
   /**
    * Viewpoints of this frame in that space, one for each layer: shifted against the layer's drift, so that
@@ -133,7 +136,7 @@ export class FrameUniforms {
   /** Frames until history has forgotten what was before the last change of light or clouds. */
   #forgetting = 0
 
-  /** Has the next frame start anew. */
+  /** Forgets history: the next frame starts anew. */
   reset(): void {
     this.#camera = null
   }

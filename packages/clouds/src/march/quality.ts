@@ -117,7 +117,7 @@ const whole = (): UniformNode<'int', number> => uniform(1, 'int').setGroup(rende
 
 /** A {@link CloudQuality} as shader uniforms. */
 export class QualityUniforms {
-  /** Half as many as steps. */
+  /** Most pairs of samples: half as many as steps. */
   readonly pairs = whole()
   readonly stepGrowth = number()
   readonly shortestStep = number()

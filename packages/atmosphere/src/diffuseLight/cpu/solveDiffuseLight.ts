@@ -19,7 +19,7 @@ const PER_CELL = 4 * DIFFUSE_TILES
 export interface DiffuseLightQuality {
   /** Directions above and below the horizon each, over half a turn, and steps, for sunlight. */
   sun: { elevations: number; azimuths: number; steps: number }
-  /** The same for light that was scattered before. */
+  /** Counts for light that was scattered before. */
   diffuse: { elevations: number; azimuths: number; steps: number }
   /** Orders of scattering; those beyond are summed as a geometric series. */
   orders: number

@@ -36,7 +36,7 @@ function twoOutputs(body: () => Parts): TwoOutputs {
   return { color: assign(), output: outputStruct(first, second) }
 }
 
-/** The same ray from where it enters the air. */
+/** Ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   const { thickness } = air.uniforms
   const entry = pointAlong(air, ray, limits.start)

@@ -15,7 +15,7 @@ const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toCons
 
 /** Billows around a place, of unit deviation near by. */
 export interface Billows {
-  /** From a quarter of the shape's period on, and from a sixteenth on [–]. */
+  /** Sums of the octaves from a quarter of the shape's period on, and from a sixteenth on [–]. */
   readonly coarse: Float
   readonly fine: Float
   /** Two components of the turbulence [–]. */

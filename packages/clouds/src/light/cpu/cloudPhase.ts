@@ -1,4 +1,4 @@
-/** How cloud droplets scatter: two Henyey–Greenstein lobes. */
+/** Phase function of cloud droplets: two Henyey–Greenstein lobes. */
 export interface CloudPhaseParameters {
   /** Asymmetry g of the first lobe, in [0, 0.95]: the forward peak that makes silver linings. */
   readonly forwardAsymmetry: number

@@ -32,7 +32,7 @@ const ABOVE = 0.35
 
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
-  /** From the sample to the light. */
+  /** Depth from the sample to the light. */
   toLight: Float
   /** Optical depth of all clouds on the ray of light through the sample. */
   through: Float

@@ -38,7 +38,7 @@ export interface Estimate extends Neighbourhood {
 export interface CellPlace {
   /** Index of the cell's first corner. */
   readonly corner: Vec2
-  /** From there on, in [0, 1). */
+  /** Position from there on, in [0, 1). */
   readonly part: Vec2
 }
 
