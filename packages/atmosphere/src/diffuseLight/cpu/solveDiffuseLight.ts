@@ -1,3 +1,4 @@
+import { withDefaults } from '../../check'
 import { spectrumOf, type AtmosphereParameters } from '../../parameters/AtmosphereParameters'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
 import { distanceToGround, distanceToTop } from '../../air/cpu/boundary'
@@ -297,13 +298,14 @@ function gatherOrder(
  * The diffuse-light table by successive orders of scattering, without a GPU; takes seconds.
  *
  * @param p - Spectra may be of any four wavelengths: nothing but the numbers counts.
- * @param quality - How finely light is gathered.
+ * @param quality - Resolution with which light is gathered.
+ * @throws If an option is unknown.
  */
 export function solveDiffuseLight(
   p: AtmosphereParameters,
   quality: Partial<DiffuseLightQuality> = {}
 ): DiffuseLightData {
-  const { sun, diffuse, orders } = { ...STANDARD, ...quality }
+  const { sun, diffuse, orders } = withDefaults('solveDiffuseLight', STANDARD, quality)
   const gatherer = new Gatherer(p)
   const total = new Float64Array(COLUMNS * ROWS * PER_CELL)
   let before: Float64Array | null = null

@@ -23,7 +23,10 @@ export interface CloudWeather {
   readonly unresolvedFraction: Float
 }
 
-/** Levels of detail by which a sample is coarser than single clouds, when these begin to be lost. */
+/**
+ * Levels of detail over which single clouds pass into their mean: the first and the last. Smaller: clouds blur
+ * nearer to the camera; greater: far ones flicker (*Cockpit*).
+ */
 const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 
 /** Share of a noise's variance that its levels of detail have lost. */
