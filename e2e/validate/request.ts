@@ -1,14 +1,14 @@
 import type { AtmosphereParametersInit } from '@welkin/atmosphere'
 import type { Backend } from '../harness/backend'
 
-/** How light along rays is found: read from the sky volume, or marched. */
+/** Way to find light along rays: read from the sky volume, or marched. */
 export type Path = 'volume' | 'march'
 
-/** A place, as the sky volume sees it. */
+/** Viewpoint of a sky volume. */
 export interface Viewpoint {
-  /** Above the ground [m]. */
+  /** Altitude above the ground [m]. */
   altitude: number
-  /** Sun against zenith. */
+  /** μ_s, cosine between sun and zenith. */
   cosLight: number
 }
 

@@ -90,7 +90,7 @@ for (const [where, place] of places) {
   })
 }
 
-/** Without shape, whose coarse levels take float64 minutes. */
+/** Twin of the noise without shape, whose coarse levels take float64 minutes. */
 class ShapelessTwin extends NoiseTextures {
   override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {
     return name === 'shape' ? [0.5, 0.5, 0.5, 0.5] : twin.sample(name, p, level)

@@ -11,9 +11,9 @@ import { nextFrame } from '../harness/graphics'
 import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../harness/sky-plane'
 
 const canvas = { width: 192, height: 160 }
-/** Of the straightened picture [pixels]. */
+/** Edge of the straightened picture [pixels]. */
 const size = 128
-/** Decks are raised, so that there are many clouds in a picture [m]. */
+/** Altitude that decks are raised to, so that there are many clouds in a picture [m]. */
 const BASE = 4000
 /** Distance between their billows: four in a period of the shape [m]. */
 const BILLOWS = 650
@@ -23,7 +23,7 @@ interface View {
   readonly fov: number
   readonly pitch: number
   readonly square: SkySquare
-  /** So many waves at least to an edge of the square. */
+  /** Least number of waves to an edge of the square. */
   readonly longest: number
 }
 

@@ -15,7 +15,7 @@ import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 
 const size = { width: 48, height: 48 }
-/** Of the march towards the sun that shadows are held to. */
+/** Steps of the march towards the sun that shadows are compared with. */
 const STEPS = 64
 
 gpuTest('clouds cast their shadows on the ground', async t => {

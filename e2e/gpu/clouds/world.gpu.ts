@@ -135,7 +135,7 @@ function towards(elevation: number, azimuth: number): Vector3 {
   return new Vector3(Math.cos(e) * Math.sin(a), Math.sin(e), -Math.cos(e) * Math.cos(a))
 }
 
-/** Far from the maps, clouds of a world map that covers the western half shade that half. */
+/** Checks that far from the shadow maps a world map that covers the western half shades that half. */
 async function shadesTheGlobe(
   renderer: WebGPURenderer,
   atmosphere: Atmosphere,

@@ -25,7 +25,7 @@ async function drawChannels(
 export class CloudColumns {
   readonly #material = new NodeMaterial()
   readonly #quad: QuadMesh
-  /** How often the shader was built. */
+  /** Number of times that the shader was built. */
   builds = 0
   readonly #distance = uniform(2000)
 
@@ -76,7 +76,7 @@ export class CloudColumns {
     this.#quad = new QuadMesh(this.#material)
   }
 
-  /** From where the clouds are seen, all from equally far: sets the level of detail [m]. */
+  /** Distance that all clouds are seen from: sets the level of detail [m]. */
   set distance(metres: number) {
     this.#distance.value = metres
   }

@@ -105,7 +105,7 @@ export function worldMap(): DataTexture {
   return map
 }
 
-/** What the GPU reads of a map's finest level, by longitude and latitude [rad]. */
+/** Look-up of a map's finest level as the GPU does it, by longitude and latitude [rad]. */
 function coverOf(map: DataTexture): (longitude: number, latitude: number) => number {
   const { data, width, height } = map.image
   const texel = (x: number, y: number): number => {

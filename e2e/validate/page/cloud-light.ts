@@ -97,7 +97,7 @@ function voxelTexture({ text, nx, ny, nz }: CloudLightRequest['voxels']): Data3D
   return result
 }
 
-/** The same view for rays that start aside of the camera, by a displacement in the mapped space [m]. */
+/** View for rays that start aside of the camera, by a displacement in the mapped space [m]. */
 function viewFrom(view: ViewNodes, shift: Vec3): ViewNodes {
   return Object.create(view, {
     height: { value: view.height.add(shift.dot(view.up)) },

@@ -6,11 +6,8 @@ import { viewpointScalars } from '../../../packages/atmosphere/src/view/cpu/view
 import { groundIrradiance } from '../../../packages/atmosphere/src/diffuseLight/tsl/diffuseLight'
 import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/scattering/tsl/marchedAir'
 import { rayLimits, rayTargets } from '../../../packages/atmosphere/src/skyVolume/tsl/rayLimits'
-import {
-  viewRay,
-  sampleSky,
-  sampleVolume
-} from '../../../packages/atmosphere/src/skyVolume/tsl/skyVolume'
+import { sampleSky, sampleVolume } from '../../../packages/atmosphere/src/skyVolume/tsl/skyVolume'
+import { viewRay } from '../../../packages/atmosphere/src/skyVolume/tsl/viewRay'
 import { lightTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'

@@ -17,7 +17,7 @@ export interface SkyLitPlane {
   readonly view: ViewNodes
   /** Position from the camera, in the mapped space [m]. */
   readonly offset: Vec3
-  /** Above the ground [m]. */
+  /** Altitude above the ground [m]. */
   readonly altitude: Float
   /** Zenith there. */
   readonly up: Vec3

@@ -16,7 +16,10 @@ import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './sha
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
 
-/** Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in each. */
+/**
+ * Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in
+ * each.
+ */
 const qualities = {
   low: { rows: 512, groups: 3, samples: 3 },
   medium: { rows: 1024, groups: 4, samples: 3 },
@@ -24,7 +27,7 @@ const qualities = {
   reference: { rows: 2048, groups: 64, samples: 8 }
 } as const
 
-/** How finely light shafts are marched. */
+/** Fineness of the march of light shafts. */
 export type LightShaftsQuality = keyof typeof qualities
 
 const names = Object.keys(qualities) as LightShaftsQuality[]
@@ -128,7 +131,7 @@ export class LightShafts implements AirShadows {
     this.#setStrength = value
   }
 
-  /** How finely shafts are marched; `'reference'` is for comparisons. Nothing is compiled when it changes. */
+  /** Fineness of the march; `'reference'` is for comparisons. Nothing is compiled when it changes. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }

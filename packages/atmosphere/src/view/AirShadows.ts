@@ -8,7 +8,7 @@ import type { SkyLayer } from './SkyLayer'
  */
 export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'glow' | 'inScatter'> {
   /**
-   * The same for a post effect, computed once for its pixels and not by every material.
+   * Layer for a post effect, computed once for its pixels and not by every material.
    *
    * @param depthNode - Depth of the scene, as the renderer writes it.
    */

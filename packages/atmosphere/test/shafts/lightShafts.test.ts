@@ -10,7 +10,7 @@ const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
 const light = new SunDirectionalLight(atmosphere)
 
-/** What the compiler would not let pass. */
+/** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
 describe('bad input to light shafts', () => {

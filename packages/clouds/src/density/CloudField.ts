@@ -24,7 +24,10 @@ import { vec4Array, type Float, type LevelTexture, type Vec2, type Vec3 } from '
 import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
 
-/** Share of its coverage that a layer gains in a frame after its noise was drawn over several. */
+/**
+ * Share of its coverage that a layer gains in a frame after its noise was drawn over several. 1: clouds pop
+ * up (*Cumulus*, at its start).
+ */
 const FADE_IN_STEP = 1 / 48
 
 const _position = new Vector3()

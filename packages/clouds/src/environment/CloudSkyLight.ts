@@ -43,7 +43,7 @@ export class CloudSkyLight {
     _ofProbe.set(probe, this)
   }
 
-  /** How far clouds change the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */
+  /** Share of the clouds' effect on the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */
   get strength(): number {
     return this.#strength.value
   }
@@ -75,7 +75,7 @@ export class CloudSkyLight {
 }
 
 /**
- * Has a `SkyLightProbe` give the light that comes through clouds and from them: under an overcast less
+ * Light that comes through clouds and from them, given by a `SkyLightProbe`: under an overcast less
  * than all of a clear day's light, but more than its blue sky's; above the clouds that of the white below.
  *
  * ```ts

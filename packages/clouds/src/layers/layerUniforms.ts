@@ -72,7 +72,7 @@ export const scaleWeights = {
   regionCells: 0.6
 } as const
 
-/** Length over width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
+/** Ratio of length to width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
 const CIRRUS_STRETCH = 9
 
 const shareOf = (weights: readonly number[], index: number): number =>

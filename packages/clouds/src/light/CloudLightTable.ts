@@ -132,7 +132,7 @@ export class CloudLightTable {
     return this
   }
 
-  /** Has shaders know the phase function. */
+  /** Sets the uniforms of the phase function. */
   #apply(): void {
     const phase = this.#phase
     const { depthScale, moments } = scalePhase(phase)

@@ -28,7 +28,7 @@ const NOISE_SLICES = 12
 
 /** Options of {@link clouds}. */
 export interface CloudsOptions {
-  /** How finely clouds are marched; by default `'high'`. */
+  /** Fineness of the march; by default `'high'`. */
   quality?: CloudQualityName | CloudQuality
   /** Cloud cover of the whole planet: see `CloudFieldOptions`. */
   worldMap?: Texture | null
@@ -43,7 +43,7 @@ export interface CloudsOptions {
 
 /** Quantity shown instead of clouds, for debugging: white is most. */
 export type CloudsDebug =
-  /** How opaque they are, all along the line of sight. */
+  /** Opacity of the clouds all along the line of sight. */
   | 'density'
   /** Steps of the last ray marched nearby, of 256. */
   | 'steps'
@@ -89,7 +89,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly shadows: CloudShadowMap
   /** Temporal accumulation on or off; without it, clouds are coarse. */
   accumulates = true
-  /** After `dispose`: it casts no shadows any more. */
+  /** True after `dispose`: it casts no shadows any more. */
   isDisposed = false
   #time: number | null = null
   readonly #ownsLight: boolean
@@ -173,7 +173,7 @@ export class CloudsNode extends AtmosphereNode {
     return this.field.noise.isReady
   }
 
-  /** How finely clouds are marched. */
+  /** Fineness of the march. */
   get quality(): CloudQuality {
     return this.#quality
   }

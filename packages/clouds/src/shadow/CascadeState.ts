@@ -4,7 +4,10 @@ import { Vector3 } from 'three'
 /** Texels along an edge of a cascade. */
 export const CASCADE_SIZE = 256
 
-/** Sine of the least angle between rays of light and the plane that the map lies in. */
+/**
+ * Sine of the least angle between rays of light and the plane that the map lies in. Smaller: coarse shadows
+ * at dusk (*Cirrus*).
+ */
 const LEAST_SLOPE = 0.2
 
 const _normal = new Vector3()

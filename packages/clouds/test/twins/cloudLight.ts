@@ -4,15 +4,15 @@ import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
 import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
 import { aureolePhase, cloudPhase } from './cloudPhase'
 
-/** Place of a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
+/** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
 export interface CloudSourceSample {
-  /** From the sample to the light, ≥ 0. */
+  /** Depth from the sample to the light, ≥ 0. */
   depthToLight: number
   /** Through the whole cloud along the ray of light through the sample, ≥ `depthToLight`. */
   depthThrough: number
   /** Across that ray: the diameter of a sphere. Of no effect on a deck. */
   depthAcross: number
-  /** From the viewpoint to the sample, in the cloud. */
+  /** Depth from the viewpoint to the sample, in the cloud. */
   depthToCamera: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
@@ -94,11 +94,11 @@ export function cloudSource(
   return Math.max(diffuse * leak, 0) + scattered
 }
 
-/** Place of a sample between sky and ground. Depths are scaled optical depths along the vertical. */
+/** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientSample {
-  /** From the sample to the cloud's top. */
+  /** Depth from the sample to the cloud's top. */
   depthAbove: number
-  /** From the sample to its base. */
+  /** Depth from the sample to the cloud's base. */
   depthBelow: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number

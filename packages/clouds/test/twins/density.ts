@@ -256,7 +256,7 @@ function detailAt(
 export interface LayerSample {
   /** [1/m]. */
   readonly extinction: number
-  /** With all billows, less what the height needs [–]. */
+  /** Strength with all billows, less what the height needs [–]. */
   readonly strength: number
 }
 

@@ -32,7 +32,7 @@ export interface ShadowMapNodes {
   readonly metersPerDepth: UniformNode<'float', number>
 }
 
-/** How a renderer stores depths. */
+/** Encoding of a renderer's depths. */
 export interface DepthStorage {
   /** Greater is nearer. */
   readonly isReversed: boolean

@@ -15,7 +15,7 @@ const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toCons
 
 /** Billows around a place, of unit deviation near by. */
 export interface Billows {
-  /** From a quarter of the shape's period on, and from a sixteenth on [–]. */
+  /** Sums of the octaves from a quarter of the shape's period on, and from a sixteenth on [–]. */
   readonly coarse: Float
   readonly fine: Float
   /** Two components of the turbulence [–]. */
@@ -45,13 +45,19 @@ export function billows(
   return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() }
 }
 
-/** Periods of the nearer octaves of detail, in those of the detail, and their amplitudes. */
+/**
+ * Periods of the nearer octaves of detail, in those of the detail, and their amplitudes [–]. Greater amplitudes:
+ * frayed edges near the camera (*Inside a cloud*).
+ */
 const NEARER = [
   [1 / 5, 0.55],
   [1 / 25, 0.3]
 ] as const
 
-/** Footprint over the period of a nearer octave below which it is looked up. */
+/**
+ * Footprint over the period of a nearer octave below which it is looked up. Smaller: detail fades nearer to
+ * the camera (*Inside a cloud*).
+ */
 const NEARER_FROM = 5 / 24
 
 /**

@@ -22,7 +22,10 @@ export function verticalOpticalDepth(field: CloudField, sample: CloudSample): Fl
   return sum
 }
 
-/** A sun lower than this does not make its rays through a layer any longer. */
+/**
+ * Cosine of the lowest sun whose rays through a layer grow longer. Smaller: the ground beyond the shadow maps is
+ * black at sunset (*World clouds*).
+ */
 const LOWEST_COSINE = 0.1
 
 /**

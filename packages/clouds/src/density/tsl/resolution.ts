@@ -27,7 +27,10 @@ export interface Resolution {
 export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
   log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst()
 
-/** Levels of detail by which a sample is coarser than single clouds, when these begin to be lost. */
+/**
+ * Levels of detail over which single clouds pass into their mean: the first and the last. Smaller: clouds blur
+ * nearer to the camera; greater: far ones flicker (*Cockpit*).
+ */
 const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 
 /** Share of a noise's variance that its levels of detail have lost. */

@@ -6,9 +6,9 @@ import { singlePhase } from './cloudPhase'
 import { lateralLeak, type LeakNodes } from './lateralLeak'
 import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
-/** Place of a sample in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
+/** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
 export interface CloudSourceNodes extends LeakNodes {
-  /** From the viewpoint to the sample, in the cloud; left out, the aureole is sharper than it should be. */
+  /** Depth from the viewpoint to the sample, in the cloud; left out, the aureole is sharper than it should be. */
   depthToCamera?: Float
   /** The light against the local up. */
   cosLight: Float
@@ -72,11 +72,11 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
  */
 export const ISOLATED_DEPTH = 0.2
 
-/** Place of a sample between sky and ground. Depths are scaled optical depths along the vertical. */
+/** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientNodes {
-  /** From the sample to the cloud's top. */
+  /** Depth from the sample to the cloud's top. */
   depthAbove: Float
-  /** From the sample to its base. */
+  /** Depth from the sample to the cloud's base. */
   depthBelow: Float
   /** 1 for a cloud deck, 0 for an isolated cloud. */
   layered: Float
