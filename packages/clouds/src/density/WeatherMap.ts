@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import { Vector3 } from 'three'
+import type { Vector3 } from 'three'
 import { Fn, If, float, int, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Float, Int, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -57,7 +57,7 @@ export class WeatherMap {
     return Fn(() => {
       const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
       const index = field.layers.length === 1 ? int(0) : at.y.floor().toInt()
-      const layer = layerAt(field, index.toConst() as Int)
+      const layer = layerAt(field, index.toConst())
       const place = vec2(at.x, at.y.fract())
         .sub(0.5)
         .mul((2 * RIM * SIZE) / (SIZE - 2 * MARGIN))
@@ -109,8 +109,9 @@ export class WeatherMap {
         .div(distance.add(EVEN))
         .mul((SIZE - 2 * MARGIN) / (2 * RIM * SIZE))
         .add(0.5)
-      const at = layers.length === 1 ? place : vec2(place.x, place.y.add(float(index)).div(layers.length))
-      found.assign(this.#map.sample(at as Vec2).level(0))
+      const at =
+        layers.length === 1 ? place : vec2(place.x, place.y.add(float(index)).div(layers.length))
+      found.assign(this.#map.sample(at).level(0))
     }).Else(() => {
       found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint))
     })

@@ -68,9 +68,9 @@ export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
     footprint,
     shapeLevel,
     weatherLevel: level,
-    unresolvedFraction: smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst() as Float,
+    unresolvedFraction: smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst(),
     lostVariance: variance,
     gain,
-    billowsLost: billowsLost(shapeLevel).toConst() as Float
+    billowsLost: billowsLost(shapeLevel).toConst()
   }
 }

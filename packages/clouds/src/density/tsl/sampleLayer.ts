@@ -10,7 +10,11 @@ import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
 import { cloudWeather, leanAt, type CloudWeather } from './weather'
-import { unpackBackground, type PackedBackground, type WeatherBackground } from './weatherBackground'
+import {
+  unpackBackground,
+  type PackedBackground,
+  type WeatherBackground
+} from './weatherBackground'
 
 /** A layer at a place. */
 export interface LayerSample {

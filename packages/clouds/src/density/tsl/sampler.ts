@@ -3,7 +3,15 @@ import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { densityAtHeight } from './heightForm'
-import { forEachLayer, forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
+import {
+  forEachLayer,
+  forLayers,
+  heightIn,
+  isWithin,
+  layerAt,
+  type LayerNodes,
+  type LayerRange
+} from './layer'
 import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'

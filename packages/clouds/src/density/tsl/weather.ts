@@ -66,7 +66,7 @@ export function cloudWeather(
   }
   if (where === 'everywhere') filter()
   else If(unresolvedFraction.greaterThan(0), filter)
-  return { sum: blurred.mul(gain).toConst() as Float, filteredCoverage }
+  return { sum: blurred.mul(gain).toConst(), filteredCoverage }
 }
 
 /**

@@ -88,7 +88,7 @@ export function marchClouds(
       const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
       const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
       const accept = (): void => {
-        addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst() as Vec2, places)
+        addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
       }
       position.addAssign(advance(state, pair, quality, found, accept))
     })

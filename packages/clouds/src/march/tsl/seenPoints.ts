@@ -59,7 +59,7 @@ export const seenState = (): SeenState => ({
 
 /** 1 in the component of an index, 0 in the others. */
 export const componentAt = (index: Float): Vec4 =>
-  vec4(0, 1, 2, 3).sub(index).abs().min(1).oneMinus().toConst() as Vec4
+  vec4(0, 1, 2, 3).sub(index).abs().min(1).oneMinus().toConst()
 
 /** Goes on to a stratum, if the ray is not in it yet. */
 function enterStratum({ index, run, most }: SeenState, next: Float): void {
@@ -75,7 +75,7 @@ export function separateLayers(state: SeenState): void {
   const { shares, index } = state
   const share = shares.dot(componentAt(index))
   const next = index.add(share.greaterThan(LEAST_SHARE).select(1, 0)).min(POINTS - 1)
-  enterStratum(state, next.toConst() as Float)
+  enterStratum(state, next.toConst())
 }
 
 /**
@@ -96,8 +96,12 @@ export function addPair(state: SeenState, depth: Vec2, places: readonly Float[])
   ).toConst() as Vec2
   const both = seen.x.add(seen.y).toConst()
   const weighted = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
-  const stratum = transmittance.oneMinus().mul(POINTS).floor().min(POINTS - 1)
-  enterStratum(state, stratum.toConst() as Float)
+  const stratum = transmittance
+    .oneMinus()
+    .mul(POINTS)
+    .floor()
+    .min(POINTS - 1)
+  enterStratum(state, stratum.toConst())
   const gap = places[0].mul(GAP_GROWTH).max(LEAST_GAP)
   const goesOn = places[0].sub(latest).lessThan(gap).toConst()
   run.assign(goesOn.select(run, vec2(0)).add(vec2(both, weighted)))
@@ -136,7 +140,7 @@ export function seenClouds(state: SeenState, nothing: Float): SeenClouds {
     .toConst() as Float
   const all = passed.oneMinus().div(opacity.max(1e-6)).toConst() as Float
   return {
-    points: { distances, shares: shares.mul(all).toConst() as Vec4 },
+    points: { distances, shares: shares.mul(all).toConst() },
     transmittance: passed,
     distance: opacity
       .greaterThan(1e-4)
