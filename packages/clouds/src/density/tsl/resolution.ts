@@ -5,7 +5,6 @@ import { NOISE_SIZE } from '../../noise/noiseSizes'
 import type { Float } from '../../tsl-types'
 import { levelOf } from './billows'
 import type { LayerNodes } from './layer'
-import { billowsLost } from './strength'
 
 /** Levels of detail at which a footprint is looked up, and what they lose. */
 export interface Resolution {
@@ -71,6 +70,6 @@ export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
     unresolvedFraction: smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst(),
     lostVariance: variance,
     gain,
-    billowsLost: billowsLost(shapeLevel).toConst()
+    billowsLost: smoothstep(...strengthForm.billowLevels, shapeLevel).toConst()
   }
 }

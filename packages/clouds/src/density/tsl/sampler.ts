@@ -100,6 +100,12 @@ export function weatherCacheAt(
   return { background, layer: densest }
 }
 
+/**
+ * Likely distance to cloud in the clear air of a given field [m], of which nothing more is known: steps are
+ * `CAUTION` of it, about a cell of simulated ones.
+ */
+const CLEAR_OF_GIVEN = 100
+
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
   /** At the first and at the second place [1/m]. */
@@ -149,9 +155,8 @@ export function samplePair(
   if (givenExtinction) {
     const [first, second] = places.map(({ offset }) => givenExtinction(offset))
     const extinction = vec2(first, second).toConst() as Vec2
-    // Of given clouds nothing is known but what is found: steps are as short as in cloud everywhere.
-    const { density } = layerAt(field, int(0))
-    return { extinction, likelyDistance: float(0), greatest: density }
+    const likelyDistance = first.max(second).greaterThan(0).select(0, CLEAR_OF_GIVEN)
+    return { extinction, likelyDistance, greatest: layerAt(field, int(0)).density }
   }
   const sum = vec2(0).toVar() as Vec2
   const nearest = float(NOWHERE).toVar()

@@ -1,4 +1,3 @@
-import { smoothstep } from 'three/tsl'
 import { strengthForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
@@ -42,6 +41,3 @@ export function columnStrength(
     .add(squared(coverage, 5).mul(fullCoverageExcess))
     .toConst()
 }
-
-/** Share of the billows that a level of detail of the shape has lost, in [0, 1]. */
-export const billowsLost = (level: Float): Float => smoothstep(...strengthForm.billowLevels, level)

@@ -1,5 +1,5 @@
 import { Break, If, float, int, vec4 } from 'three/tsl'
-import { loop, type Float, type Int, type Vec2, type Vec3 } from '../../tsl-types'
+import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
 import { samplePair, type ClearLayers } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
