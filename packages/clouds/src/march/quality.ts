@@ -56,9 +56,9 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   medium: {
     steps: 256,
-    stepGrowth: 0.004,
-    shortestStep: 5,
-    depthStep: 0.35,
+    stepGrowth: 0.003,
+    shortestStep: 4,
+    depthStep: 0.25,
     layerSteps: 14,
     lightSteps: 2,
     block: 4

@@ -85,7 +85,7 @@ function bodyAt(
  * not wait for each other.
  *
  * @param background - `weatherBackground` around all of them.
- * @param middle - Between them: what changes slowly with height and distance is taken from here.
+ * @param middle - Between them: their level of detail is that of this place.
  * @param samples - Within the layer's altitudes, or else they are taken to be at its boundary.
  */
 export function sampleLayerAt(
@@ -99,9 +99,6 @@ export function sampleLayerAt(
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution
-  const middleHeight = heightIn(layer, middle.altitude).clamp(0, 1).toConst() as Float
-  const edge = edgeAt(layer, middleHeight)
-  const most = densityAtHeight(layer, middleHeight)
   const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution))
   return bodies.map(body => {
     const { sample, height, strength, detailStrength } = body
@@ -110,13 +107,14 @@ export function sampleLayerAt(
     const density = float(0).toVar() as Float
     const reach = hasDetail ? detailStrength.abs().mul(MOST_DETAIL).toConst() : float(0)
     If(strength.greaterThan(reach.negate()), () => {
+      const edge = edgeAt(layer, height)
       if (hasDetail) {
         If(strength.lessThan(reach.add(edge)).and(reach.greaterThan(0)), () => {
           const fine = detail(field, layer, sample.offset, footprint)
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      density.assign(densityOf(whole, body.body, edge).mul(most))
+      density.assign(densityOf(whole, body.body, edge).mul(densityAtHeight(layer, height)))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
       const cosine = direction?.dot(sample.up).toConst() as Float | undefined

@@ -30,6 +30,12 @@ const LOW_LIGHT_STEPS = 2
  */
 const ABOVE = 0.35
 
+/**
+ * Widest isolated clouds, over their layer's thickness: low light crosses no more of one where no shadow map is [–].
+ * Greater: far clouds are dark at sunset (*World clouds*).
+ */
+const WIDEST = 1.5
+
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
   /** Depth from the sample to the light. */
@@ -46,7 +52,7 @@ export interface LocalDepths {
  */
 export function localDepths(
   { field, shadows, quality }: ShadingContext,
-  { sample, weather, dither, layers: { base, top } }: ShadedSample,
+  { sample, weather, dither, layers: { base, top, layered } }: ShadedSample,
   { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
 ): LocalDepths {
   const rise = top.sub(sample.altitude).max(1).toConst()
@@ -89,7 +95,8 @@ export function localDepths(
   const known = far.known.mul(isMapped).toConst() as Float
   // Where no map is: as near, thinning out towards the top.
   const density = found.y.div(probed).toConst()
-  const guess = density.mul(toTop.sub(probed)).toConst()
+  const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
+  const guess = density.mul(toTop.min(widest).sub(probed).max(0)).toConst()
   const depthToLight = found.y.add(known.mix(guess, far.toLight)).toConst() as Float
   const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
   const through = known

@@ -5,7 +5,10 @@ import type { Float, Vec2, Vec4 } from '../../tsl-types'
 // What a ray sees of the clouds, as a few points that stand for all of it: light is computed there, in a pass
 // of its own (shadePoints.ts), so that the march stays small and its rays stay together.
 
-/** Most points of a ray, each for an equal stratum of its opacity. More: light takes longer. */
+/**
+ * Most points of a ray, each for a stratum of its opacity: equal ones of its root, since light changes most just
+ * inside of clouds. More: light takes longer.
+ */
 export const POINTS = 4
 
 /** Share of a ray's light from which a stratum is left to its layer, and the next layer gets one of its own [–]. */
