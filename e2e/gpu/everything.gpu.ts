@@ -10,6 +10,7 @@ import {
   airglow,
   distanceFog,
   heightFog,
+  lightShafts,
   milkyWay,
   moon,
   planetGround,
@@ -19,6 +20,7 @@ import {
   starsOverlay,
   sunFlare
 } from '@welkin/atmosphere'
+import type { LightShafts } from '@welkin/atmosphere'
 import { cloudEnvironment, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import {
   BoxGeometry,
@@ -77,6 +79,8 @@ class World {
   readonly cloudMap = worldMap()
   readonly #pass = pass(this.scene, this.camera, { samples: 0 })
   readonly #pipeline: RenderPipeline
+  readonly #sun: SunDirectionalLight
+  readonly shafts: LightShafts
   readonly #clouds
   readonly #cloudEnvironment
   readonly #environment
@@ -107,7 +111,10 @@ class World {
       distanceFog({ density: 1e-5 })
     )
     const depth = this.#pass.getTextureNode('depth')
-    const air = aerialPerspective(this.#pass.getTextureNode(), depth, camera, atmosphere)
+    const light = (this.#sun = new SunDirectionalLight(atmosphere, 200))
+    const shafts = (this.shafts = lightShafts(atmosphere, camera, { light }))
+    const drawn = this.#pass.getTextureNode()
+    const air = aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('mixed', 4)
     layers.at(3).set({ baseAltitude: 6000, topAltitude: 6500, coverage: 0.3 })
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
@@ -115,6 +122,7 @@ class World {
       worldMap: isMapped ? this.cloudMap : null
     })
     this.#clouds.time = 0
+    shafts.add(this.#clouds)
     this.#cloudEnvironment = cloudEnvironment(this.#clouds, { size: 16, quality: coarse })
     this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 256 })
     this.scene.environmentNode = this.#environment
@@ -127,7 +135,7 @@ class World {
 
   #addLights(): void {
     const { atmosphere, luna } = this
-    const sun = new SunDirectionalLight(atmosphere, 200)
+    const sun = this.#sun
     const moonlight = new MoonDirectionalLight(atmosphere, luna, 200)
     for (const light of [sun, moonlight] as DirectionalLight[]) {
       light.castShadow = true
@@ -142,7 +150,7 @@ class World {
     for (const probe of probes) cloudSkyLight(probe, this.#clouds)
     const lights: Light[] = [sun, moonlight, ...probes, new NightLightProbe(atmosphere)]
     this.scene.add(...lights)
-    this.#owned.push(sun, moonlight)
+    this.#owned.push(sun, moonlight, this.shafts)
   }
 
   #addThings(maps: readonly Texture[]): void {
@@ -257,6 +265,7 @@ gpuTest(
     const world = new World(renderer, false)
     world.setLights(35, 20)
     world.look(20)
+    world.atmosphere.add(world.shafts)
     world.scene.backgroundNode = skyBackground(world.atmosphere)
     world.scene.fogNode = aerialPerspectiveFog(world.atmosphere)
     const drawn = await drawForward(renderer, world.scene, world.camera, world.atmosphere)

@@ -30,6 +30,8 @@ export interface CameraShafts {
   readonly steps: ShaftSteps
   /** True if there are shadows to be drawn, as of the last `prepare`. */
   readonly isActive: boolean
+  /** Grows whenever its shader changes. */
+  readonly version: number
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   update(view: AtmosphereView): void
   /** Takes lost light from light, where shafts are on. */
@@ -49,6 +51,8 @@ export class ScreenShafts implements SkyLayer {
   readonly #halfSize = vector2()
   readonly #lost: TextureNode
   #pass: FragmentPass | null = null
+  /** Version of the shafts that the pass is of. */
+  #compiled = 0
 
   constructor(shafts: CameraShafts, depthNode: Node) {
     this.#shafts = shafts
@@ -67,7 +71,11 @@ export class ScreenShafts implements SkyLayer {
     if (!shafts.isActive) return
     // What is drawn here and now reads the view.
     shafts.view.update(view)
-    this.#pass ??= new FragmentPass('Welkin.LightShafts', this.#march())
+    if (this.#compiled !== shafts.version) this.#pass?.dispose()
+    if (this.#compiled !== shafts.version || this.#pass === null) {
+      this.#pass = new FragmentPass('Welkin.LightShafts', this.#march())
+      this.#compiled = shafts.version
+    }
     this.#pass.render(renderer, this.target)
   }
 
