@@ -80,6 +80,7 @@ class World {
   readonly #pass = pass(this.scene, this.camera, { samples: 0 })
   readonly #pipeline: RenderPipeline
   readonly #sun: SunDirectionalLight
+  readonly #lit = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
   readonly shafts: LightShafts
   readonly #clouds
   readonly #cloudEnvironment
@@ -154,7 +155,7 @@ class World {
   }
 
   #addThings(maps: readonly Texture[]): void {
-    const material = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
+    const material = this.#lit
     const names = ['map', 'normalMap', 'roughnessMap', 'metalnessMap', 'aoMap', 'emissiveMap']
     maps.forEach((map, i) => Object.assign(material, { [names[i]]: map }))
     const box = new Mesh(new BoxGeometry(20, 20, 20), material)
@@ -165,6 +166,11 @@ class World {
     for (const mesh of [box, floor]) mesh.receiveShadow = true
     this.scene.add(box, floor)
     this.#owned.push(material, box.geometry, floor.geometry)
+  }
+
+  /** Takes a map of the lit material away. */
+  dropMap(): void {
+    Object.assign(this.#lit, { emissiveMap: null, needsUpdate: true })
   }
 
   /** Looks at the horizon from an altitude, or down a little [m]. */
@@ -258,18 +264,22 @@ gpuTest(
 )
 
 gpuTest(
-  'a material with six maps takes haze, environment, shadows of sun, moon and clouds, and probes',
+  'a material with six maps takes haze, environment, shadows of sun, moon and clouds, and probes; with five light shafts',
   async t => {
     const renderer = await t.createRenderer(size)
     const shaders = watchFragmentShaders(renderer)
     const world = new World(renderer, false)
     world.setLights(35, 20)
     world.look(20)
-    world.atmosphere.add(world.shafts)
     world.scene.backgroundNode = skyBackground(world.atmosphere)
     world.scene.fogNode = aerialPerspectiveFog(world.atmosphere)
-    const drawn = await drawForward(renderer, world.scene, world.camera, world.atmosphere)
-    expectLight(drawn, 'forward')
+    const draw = () => drawForward(renderer, world.scene, world.camera, world.atmosphere)
+    expectLight(await draw(), 'six maps')
+    world.dropMap()
+    world.atmosphere.add(world.shafts)
+    await nextFrame()
+    const drawn = await draw()
+    expectLight(drawn, 'light shafts')
     const [red, green, blue] = drawn.at(size.width >> 1, size.height - 2)
     expectTrue(red > 0 && green > 0 && blue > 0, `the ground is ${red}, ${green}, ${blue}`)
     checkTextures(t, shaders)

@@ -243,10 +243,10 @@ gpuTest("has an occluder of one's own beyond all shadow maps", async t => {
   const dark = await draw()
   for (const y of [4, 12]) {
     const row = Array.from({ length: size.width }, (_, x) => dark.at(x, y)[1] / lit.at(x, y)[1])
-    const [west, east] = [row.slice(0, size.width / 2 - 1), row.slice(size.width / 2 + 1)]
+    const [west, east] = [row.slice(0, size.width / 2 - 4), row.slice(size.width / 2 + 4)]
     expectTrue(
       west.every(part => part === 1),
-      'the west is lit'
+      `the west is lit: ${Math.min(...west)}`
     )
     expectTrue(
       east.every(part => part < 0.8),

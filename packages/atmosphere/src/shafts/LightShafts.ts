@@ -1,6 +1,6 @@
 import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
-import { If, float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
+import { float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
@@ -8,11 +8,12 @@ import { checkCamera } from '../check'
 import type { Float, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
+import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
-import type { LayerRay, PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
+import type { LayerRay, PointRay, SkyRay } from '../view/SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
-import { ScreenShafts } from './ScreenShafts'
+import { ScreenShafts, without } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
@@ -94,7 +95,8 @@ export class LightShafts implements ShadowedShafts {
   readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
   /** Grows whenever something is added or removed. */
   version = 0
-  readonly #strength = number()
+  /** Part of the light that air in shadow loses; 0 where shafts are off. */
+  readonly strengthNow = number()
   readonly #screens: ScreenShafts[] = []
   #setStrength = 1
   /** Render whose shadows the map has. */
@@ -211,10 +213,21 @@ export class LightShafts implements ShadowedShafts {
     return this.#isActive
   }
 
-  upTo(depthNode: Node): SkyLayer {
-    const screen = new ScreenShafts(this, depthNode)
+  upTo(depthNode: Node, veil?: Veil): ScreenShadows {
+    const screen = new ScreenShafts(this, depthNode, veil)
     this.#screens.push(screen)
     return screen
+  }
+
+  /** True if a veil is drawn, by whose node shafts are. */
+  get isVeiled(): boolean {
+    return this.#screens.some(({ veil }) => veil?.isDrawn)
+  }
+
+  /** True if materials draw the shafts themselves. */
+  get isForward(): boolean {
+    const isPost = this.#screens.some(({ veil }) => veil === undefined)
+    return !isPost && this.atmosphere.layers.includes(this)
   }
 
   /** Called before it is added. @throws If it is another atmosphere's. */
@@ -254,30 +267,20 @@ export class LightShafts implements ShadowedShafts {
   }
 
   update({ camera }: AtmosphereView): void {
-    this.#strength.value = this.isActive && camera === this.camera ? this.#setStrength : 0
+    this.strengthNow.value = this.isActive && camera === this.camera ? this.#setStrength : 0
   }
 
-  /** Takes from light what {@link lostLight} gives, where shafts are on. */
-  subtract(light: Vec4, lost: () => Vec4): Vec4 {
-    const left = light.toVar()
-    If(this.#strength.greaterThan(0), () => {
-      const irradiance = this.source.irradiance as unknown as Vec4
-      left.subAssign(lost().mul(irradiance).mul(this.#strength).min(left))
-    })
-    return left
+  glow(ray: SkyRay, light: Vec4): Vec4 {
+    return this.#subtract(ray, light, float(1e10))
   }
 
-  glow(ray: SkyRay, without: Vec4): Vec4 {
-    return this.#subtract(ray, without, float(1e10))
+  inScatter(ray: PointRay, light: Vec4): Vec4 {
+    return this.#subtract(ray, light, ray.distance)
   }
 
-  inScatter(ray: PointRay, without: Vec4): Vec4 {
-    return this.#subtract(ray, without, ray.distance)
-  }
-
-  #subtract({ view, direction, cosView }: LayerRay, without: Vec4, distance: Float): Vec4 {
+  #subtract({ view, direction, cosView }: LayerRay, light: Vec4, distance: Float): Vec4 {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
-    return this.subtract(without, () => {
+    return without(light, this.strengthNow, lit, () => {
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance }
       const jitter = staggered(screenCoordinate.xy.floor())

@@ -11,6 +11,8 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
+import { number } from '../uniforms'
+import { debugPass } from './debugView'
 import { marchClouds } from './tsl/march'
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
 import { twoOutputs, type LevelTexture, type TwoOutputs, type Vec2 } from '../tsl-types'
@@ -67,7 +69,7 @@ function marchPixels(scene: CloudScene): TwoOutputs {
  * history of the frames before.
  */
 export class CloudRenderer {
-  readonly #frame: FrameUniforms
+  readonly frame: FrameUniforms
   readonly #marchedTarget = cloudTarget('Marched')
   readonly #cellsTarget = cloudTarget('Cells')
   /** History and the picture that is drawn from it, in turns. */
@@ -75,21 +77,27 @@ export class CloudRenderer {
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
-  readonly #marched = texturesOf(this.#marchedTarget)
-  /** Accumulated light of the latest frame: the node stays, its texture changes. */
-  readonly light = textureNode(this.#accumulatedTargets[0].textures[0])
-  /** Distances of the latest frame, for debug views: accumulated, or marched if {@link showsMarched}. */
-  readonly distances = textureNode(this.#accumulatedTargets[0].textures[1])
-  /** Choice of {@link distances}. */
-  showsMarched = false
+  /** Pixels that this frame has marched. */
+  readonly marched = texturesOf(this.#marchedTarget)
+  /** Accumulated light and distances of the latest frame: the nodes stay, their textures change. */
+  readonly accumulated = {
+    light: textureNode(this.#accumulatedTargets[0].textures[0]),
+    distances: textureNode(this.#accumulatedTargets[0].textures[1])
+  }
+  /** The same light, or a debug view. */
+  readonly shown = textureNode(this.#accumulatedTargets[0].textures[0])
+  /** Number of the debug view that is shown; 0 for the clouds. */
+  readonly debug = number()
+  #debugTarget: RenderTarget | null = null
+  #debugPass: FragmentPass | null = null
   /** Index of the accumulated target that was drawn last. */
   #current = 0
 
   constructor(scene: CloudScene) {
     const { field, viewRays } = scene
-    this.#frame = viewRays.frame
+    this.frame = viewRays.frame
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
-    const marched = this.#marched
+    const { marched } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, marched))
     const cells = texturesOf(this.#cellsTarget)
     this.#upscale = this.#accumulatedTargets.map((_, i) => {
@@ -108,14 +116,14 @@ export class CloudRenderer {
     const [first] = this.#accumulatedTargets
     if (first.width !== width || first.height !== height) {
       for (const target of this.#accumulatedTargets) target.setSize(width, height)
-      this.#frame.reset()
+      this.frame.reset()
     }
     const across = Math.ceil(width / block)
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
-    this.#frame.size.value.set(width, height)
-    this.#frame.marchedSize.value.set(across, down)
+    this.frame.size.value.set(width, height)
+    this.frame.marchedSize.value.set(across, down)
   }
 
   /** Draws a frame; `FrameUniforms.next` goes first. */
@@ -125,9 +133,18 @@ export class CloudRenderer {
     this.#current = 1 - this.#current
     const target = this.#accumulatedTargets[this.#current]
     this.#upscale[this.#current].render(renderer, target)
-    const shown = this.showsMarched ? this.#marchedTarget : target
-    this.light.value = target.textures[0]
-    this.distances.value = shown.textures[1]
+    const [light, distances] = target.textures
+    this.accumulated.light.value = this.shown.value = light
+    this.accumulated.distances.value = distances
+    if (this.debug.value > 0) this.#drawDebugView(renderer, target)
+  }
+
+  #drawDebugView(renderer: Renderer, { width, height }: RenderTarget): void {
+    this.#debugTarget ??= tableTarget('Welkin.CloudsDebug', 1, 1)
+    this.#debugPass ??= debugPass(this.debug, this.frame.gain, this.accumulated, this.marched)
+    this.#debugTarget.setSize(width, height)
+    this.#debugPass.render(renderer, this.#debugTarget)
+    this.shown.value = this.#debugTarget.texture
   }
 
   /** Frees the render targets. */
@@ -136,5 +153,7 @@ export class CloudRenderer {
     for (const pass of [this.#march, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
+    this.#debugTarget?.dispose()
+    this.#debugPass?.dispose()
   }
 }

@@ -24,19 +24,19 @@ interface ShadowingClouds {
 export class CloudAirShadow implements AirShadow {
   readonly #clouds: ShadowingClouds
   readonly #shafts: ShadowedShafts
-  readonly #onDispose: () => void
+  /** Called when it is taken out. */
+  onDispose: (() => void) | null = null
   /** Displacement from the clouds' camera, as their maps know it, to that of the shafts [m]. */
   readonly #shift = vector3()
   /** 1 while the maps are of the shafts' light. */
   readonly #isMapped = number(1)
 
   /** @throws If the clouds are of another atmosphere. */
-  constructor(clouds: ShadowingClouds, shafts: ShadowedShafts, onDispose: () => void) {
+  constructor(clouds: ShadowingClouds, shafts: ShadowedShafts) {
     if (shafts.atmosphere !== clouds.field.atmosphere)
       fail('CloudsNode', 'atmosphere must be that of the light shafts', clouds.field.atmosphere)
     this.#clouds = clouds
     this.#shafts = shafts
-    this.#onDispose = onDispose
   }
 
   get isCast(): boolean {
@@ -67,6 +67,6 @@ export class CloudAirShadow implements AirShadow {
   }
 
   dispose(): void {
-    this.#onDispose()
+    this.onDispose?.()
   }
 }

@@ -35,6 +35,8 @@ export interface ShaftRay {
   readonly cosViewLight: Float
   /** Distance to what is seen; beyond the air for the sky [m]. */
   readonly distance: Float
+  /** Part of the light from a distance [m] that reaches the picture; left out, all. */
+  readonly seenFrom?: (distance: Float) => Float
 }
 
 /** Number of samples on a ray. */
@@ -69,7 +71,7 @@ interface Stretch {
 export function lostLight(
   view: ViewUniforms,
   { map, frame, reach, shadows, toWorld }: ShadowedAir,
-  { direction, cosView, cosViewLight, distance }: ShaftRay,
+  { direction, cosView, cosViewLight, distance, seenFrom }: ShaftRay,
   { groups, samples }: ShaftSteps,
   jitter: Float
 ): Vec4 {
@@ -104,14 +106,14 @@ export function lostLight(
       }
       if (isMapped === null) readMap()
       else If(isMapped, readMap)
-      if (isMappedOnly) return dark
+      if (isMappedOnly) return seenFrom?.(fromEye).mul(dark) ?? dark
       If(dark.lessThan(1), () => {
         const offset = direction.mul(fromEye).toConst() as Vec3
         const place = { view, offset, jitter, positionWorld: () => toWorld(offset) }
         const passing = shadows.map(shadow => shadow.transmittance(place))
         dark.assign(passing.reduce((product, part) => product.mul(part)).oneMinus())
       })
-      return dark
+      return seenFrom?.(fromEye).mul(dark) ?? dark
     }
 
     const marchGroup = ({ from, width, isMapped, group }: Stretch): void => {
@@ -120,7 +122,7 @@ export function lostLight(
       loop('look', int(samples), look => {
         const part = float(look).add(jitter).mul(perSample).add(group).mul(perGroup)
         const position = part.mul(width).add(from).toConst() as Float
-        const here = darkAt(position, isMapped)
+        const here = darkAt(position, isMapped).toConst() as Float
         dark.addAssign(here)
         sum.addAssign(position.mul(here))
       })
