@@ -13,7 +13,7 @@ function readPackages(file) {
   }
 }
 
-/** Whether node_modules holds the versions that the lock file names. */
+/** True if node_modules holds the versions that the lock file names. */
 function isInstalled() {
   const wanted = readPackages('package-lock.json')
   const present = readPackages('node_modules/.package-lock.json')

@@ -18,7 +18,7 @@ import { gpuMilliseconds, gpuPasses, nextFrame } from '../headless/device'
 import { placeCamera, setSun } from './scene'
 import { median } from './statistics'
 
-/** Where the camera is: longitudes of a broken sky, and of a closed one to be inside of [°]. */
+/** Longitudes of the camera: under a broken sky, and inside of a closed one [°]. */
 export const cloudViews = [
   { name: 'ground', altitude: 2, pitch: 12, longitude: 151.75 },
   { name: 'among', altitude: 1500, pitch: 0, longitude: 151.75 },
@@ -111,7 +111,7 @@ export class CloudBench {
     this.#renderer.setRenderTarget(null)
   }
 
-  /** What a viewer sees, RGBA. */
+  /** Picture of the canvas as a viewer sees it, RGBA. */
   async picture(): Promise<Uint8Array> {
     const { width, height } = this.#target
     const pixels = await this.#renderer.readRenderTargetPixelsAsync(

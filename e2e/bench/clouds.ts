@@ -4,11 +4,11 @@ import { gpuMilliseconds, release, type HeadlessDevice } from '../headless/devic
 import { CloudBench, cloudViews, type CloudView } from './CloudBench'
 import { median } from './statistics'
 
-/** What is timed, and how near it comes to the reference. */
+/** Case that is timed and compared with the reference. */
 interface CloudCase {
   name: string
   view: CloudView
-  /** Without one: cumulus that cover 0.4 of the sky. */
+  /** Preset of the layers; default: cumulus that cover 0.4 of the sky. */
   preset?: CloudPresetName
   /** Elevation of the sun [°], default 40. */
   sunElevation?: number

@@ -11,7 +11,7 @@ import { Atmosphere, skyBackground, skyEnvironment } from '@welkin/atmosphere'
 import { gpuMilliseconds, type HeadlessDevice } from '../headless/device'
 import { median } from './statistics'
 
-/** What drawing the environment anew costs. */
+/** Cost of drawing the environment anew. */
 export interface EnvironmentCost {
   /** The most that it adds to a frame, GPU [ms]. */
   mostMs: number

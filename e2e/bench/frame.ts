@@ -5,18 +5,18 @@ import { median } from './statistics'
 
 const WARM_UP = 15
 
-/** What is drawn and timed. */
+/** Frame that is drawn and timed. */
 export interface FrameCase {
   path: Path
-  /** Of the camera [m]. */
+  /** Altitude of the camera [m]. */
   altitude: number
   /** False for the same scene without air, to be subtracted. */
   withAir?: boolean
-  /** Whether the sun moves on every frame, so that the sky volume is computed anew. */
+  /** True if the sun moves on every frame, so that the sky volume is computed anew. */
   sunMoves?: boolean
   /** Adds what else is in the sky. */
   decorate?: (atmosphere: Atmosphere) => void
-  /** How high the sun stands [°]. */
+  /** Elevation of the sun [°]. */
   elevation?: number
 }
 

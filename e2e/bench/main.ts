@@ -117,7 +117,7 @@ async function timeBake(): Promise<{ total: number; most: number; bytes: number 
   }
 }
 
-/** From no renderer to the first finished frame, tables baked: wall-clock. */
+/** Time to the first finished frame, from no renderer on, tables baked; wall-clock. */
 async function timeFirstFrame(): Promise<number> {
   const start = performance.now()
   const renderer = await device.renderer(320, 180)

@@ -18,7 +18,7 @@ import {
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 
-/** How the air is drawn: as background and fog, or as a post effect. */
+/** Way to draw the air: as background and fog, or as a post effect. */
 export type Path = 'forward' | 'post'
 
 export interface BenchScene {

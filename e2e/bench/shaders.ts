@@ -12,7 +12,7 @@ export interface ShaderCost {
   name: string
   wgsl: Stages
   glsl: Stages
-  /** From nothing to a compiled pipeline of WebGPU; wall-clock [ms]. */
+  /** Time from nothing to a compiled pipeline of WebGPU; wall-clock [ms]. */
   ms: number
 }
 
@@ -62,7 +62,7 @@ async function measureScene(device: HeadlessDevice, scene: string): Promise<Shad
   return costs
 }
 
-/** The same for every scene; a shader counts where it comes first, which `log` is told at once. */
+/** Shaders of every scene. One counts in the scene in which it comes first, which `log` is told at once. */
 export async function measureShaders(
   device: HeadlessDevice,
   log: (line: string) => void

@@ -52,7 +52,7 @@ async function time(
   return median(times.with) - median(times.without)
 }
 
-/** What shells of both models cost. */
+/** Cost of shells of both models. */
 export async function timeShells(
   device: HeadlessDevice,
   size: readonly [number, number],

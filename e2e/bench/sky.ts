@@ -26,9 +26,9 @@ export interface SkyCost {
 
 interface SkyCase {
   name: string
-  /** Of the sun [°]. */
+  /** Elevation of the sun [°]. */
   elevation: number
-  /** Whether the moon is in the picture rather than opposite the sun. */
+  /** True if the moon is in the picture rather than opposite the sun. */
   showsMoon?: boolean
 }
 

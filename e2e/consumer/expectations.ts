@@ -8,7 +8,7 @@ function at({ data, width }: PNG, x: number, y: number): Color {
   return [data[i], data[i + 1], data[i + 2]]
 }
 
-/** In words what is wrong with a pixel, given what it should be; nothing when it is right. */
+/** Error of a pixel in words, given the colour that it should have; none if it is right. */
 function difference(png: PNG, place: string, x: number, y: number, expected: Color): string[] {
   const color = at(png, x, y)
   return color.some((value, i) => Math.abs(value - expected[i]) > 2)
@@ -18,7 +18,7 @@ function difference(png: PNG, place: string, x: number, y: number, expected: Col
 
 const brightness = (color: Color): number => color.reduce((sum, value) => sum + value, 0)
 
-/** In words what is wrong when the sky is not blue, the ground not sunlit, or the ball casts no shadow. */
+/** Errors in words: a sky that is not blue, ground that is not sunlit, a ball without a shadow. */
 function checkQuickStart(png: PNG): string[] {
   const wrong: string[] = []
   const [skyRed, skyGreen, skyBlue] = at(png, 160, 10)
@@ -36,7 +36,7 @@ function checkQuickStart(png: PNG): string[] {
   return wrong
 }
 
-/** In words what is wrong when the sky has no clouds or nothing else, or the ground is black. */
+/** Errors in words: a sky without clouds or of clouds alone, black ground. */
 function checkClouds(png: PNG): string[] {
   const wrong: string[] = []
   let white = 0

@@ -69,7 +69,7 @@ function picture(seed: number): DataTexture {
   return made
 }
 
-/** All that there is, in one scene. */
+/** Scene with all features at once. */
 class World {
   readonly atmosphere = new Atmosphere().place({ longitude: 8, latitude: 46 })
   readonly scene = new Scene()

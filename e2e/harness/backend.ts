@@ -1,2 +1,2 @@
-/** Which of three's backends draws. */
+/** Backend of three that draws. */
 export type Backend = 'webgpu' | 'webgl'

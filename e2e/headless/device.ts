@@ -106,7 +106,7 @@ export async function gpuMilliseconds(renderer: WebGPURenderer): Promise<number>
   return gpuPasses(renderer).reduce((sum, value) => sum + value, 0)
 }
 
-/** The same for each pass, in the order in which they began; after `gpuMilliseconds`. */
+/** GPU time of each pass, in the order in which they began; after `gpuMilliseconds` [ms]. */
 export function gpuPasses(renderer: WebGPURenderer): number[] {
   const { timestampQueryPool } = renderer.backend as unknown as {
     timestampQueryPool: { render: { timestamps: Map<string, number> } }

@@ -7,7 +7,7 @@ export interface BuiltPipeline {
   name: string
   vertex: ShaderStats
   fragment: ShaderStats
-  /** From nothing to a compiled pipeline: generating the shader, and compiling it; wall-clock [ms]. */
+  /** Time from nothing to a compiled pipeline: generating the shader, and compiling it; wall-clock [ms]. */
   ms: number
 }
 

@@ -11,8 +11,13 @@ interface Budget {
   imports: Record<string, string[] | '*'>
   /** Imports that the app has anyway: only what comes on top of them counts. */
   onTopOf?: Record<string, string[] | '*'>
-  /** Most bytes, minified and gzipped, with three left out. */
+  /**
+   * Most bytes, minified and gzipped, with three left out: 5 % over what clear code takes. Where there is a goal
+   * or a limit below that, there is less room.
+   */
   budget: number
+  /** Bytes that it was to take at most. Where it takes more, that is said, and the budget keeps it from growing. */
+  goal?: number
   /** Text of the root README before and after the number of kB, where it states the size. */
   stated?: [before: string, after: string]
 }
@@ -75,16 +80,17 @@ const budgets = JSON.parse(readFileSync(file, 'utf8')) as Budget[]
 const report = new Report()
 
 const readme = readFileSync(new URL('../../README.md', import.meta.url), 'utf8')
-for (const { name, imports, onTopOf = {}, budget, stated } of budgets) {
+for (const { name, imports, onTopOf = {}, budget, goal = budget, stated } of budgets) {
   try {
     const added = async (external: string[]): Promise<number> =>
       (await gzippedSize([onTopOf, imports], external)) - (await gzippedSize([onTopOf], external))
     const total = await added([])
     const own = await added(['astronomy-engine'])
+    const missed = total > goal ? `, ${kilobytes(total - goal)} over its goal` : ''
     report.check(
       total <= budget,
       name,
-      `${kilobytes(total)} of ${kilobytes(budget)} gzipped, of which astronomy-engine ${kilobytes(total - own)}`
+      `${kilobytes(total)} of ${kilobytes(budget)} gzipped, of which astronomy-engine ${kilobytes(total - own)}${missed}`
     )
     if (stated !== undefined) {
       const size = statedSize(readme, stated)

@@ -151,7 +151,7 @@ export class StillView {
     this.#renderer.setRenderTarget(null)
   }
 
-  /** What a viewer sees, RGBA, rows top-down. */
+  /** Picture of the canvas as a viewer sees it, RGBA, rows top-down. */
   async picture(): Promise<Uint8Array> {
     const { width, height } = this.#target
     const pixels = this.#renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height)

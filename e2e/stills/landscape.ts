@@ -111,7 +111,7 @@ function trees(): Group {
   return group
 }
 
-/** What stands about the camera of a still, in a Y-up frame on the ground. */
+/** Landscape about the camera of a still, in a Y-up frame on the ground. */
 export class Landscape extends Group {
   /** @param radius - Of the planet [m]. */
   constructor(radius: number, soil: Soil, hasTrees: boolean) {

@@ -3,9 +3,9 @@ import type { CloudPresetName } from '@welkin/clouds'
 /** A still: what is in it, where the sun stands, and where the camera looks. */
 export interface Still {
   name: string
-  /** What to look for. */
+  /** Features to look for. */
   about: string
-  /** Without one the sky is clear. */
+  /** Preset of clouds; default: a clear sky. */
   clouds?: { preset: CloudPresetName; coverage?: number }
   planet?: 'mars'
   /** Camera above the ellipsoid [m]. */

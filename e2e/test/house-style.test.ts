@@ -18,7 +18,7 @@ const published = sources.filter(({ path }) => /^packages\/[^/]+\/src\//.test(pa
 /** Lines that a file may have: shader functions about 200, nodes about 350, anything 500. */
 function mostLines(path: string): number {
   if (!path.includes('/src/')) return 500
-  return path.includes('/tsl/') ? 230 : 375
+  return path.includes('/tsl/') ? 210 : 350
 }
 
 it('no file is longer than a reader takes in', () => {
@@ -30,8 +30,8 @@ it('no file is longer than a reader takes in', () => {
 })
 
 it('docs name their thing first', () => {
-  const opening = /\/\*\*[\s*]*(?:Of|By|What|Where|Whether)\b[^\n]*/g
-  const hidden = published.flatMap(({ path, text }) =>
+  const opening = /\/\*\*[\s*]*(?:Of|By|What|Where|Whether|How|Which|So|The same|From)\b[^\n]*/g
+  const hidden = sources.flatMap(({ path, text }) =>
     [...text.matchAll(opening)].map(([doc]) => `${path}: ${doc.replaceAll(/\s+/g, ' ')}`)
   )
   expect(hidden).toEqual([])

@@ -4,7 +4,7 @@ import { dirname, resolve } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { describe, expect, it } from 'vitest'
 import { fillCloudLight } from '../../packages/clouds/src/light/cpu/cloudLightTable'
-import { thicknesses, layers, positions } from '../../packages/clouds/src/light/cpu/cloudLightSize'
+import { slabTableForm } from '../../packages/clouds/src/light/cpu/slabTableForm'
 import { CloudLightTable } from '../../packages/clouds/src/light/CloudLightTable'
 import { brightStars } from '../../packages/atmosphere/src/stars/brightStars'
 
@@ -109,6 +109,7 @@ describe('numbers that pages take from the code', () => {
   const clouds = read('packages/clouds/README.md')
 
   it('has the steps of the cloud light table', () => {
+    const { positions, thicknesses, layers } = slabTableForm
     const data = new Float32Array(4 * positions * thicknesses * layers)
     const steps = [...fillCloudLight(new CloudLightTable().phase, data)].length
     expect(/in (\d+) steps of 2 to 5 ms/.exec(read('README.md'))?.[1]).toBe(`${steps}`)

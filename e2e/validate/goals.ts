@@ -40,7 +40,7 @@ export const cloudGoals: Record<'slab' | 'sphere', CloudGoal> = {
 /** Errors of the radiance that leaves a simulated cloud, and the largest median of a picture. */
 export const cloudLightGoal = { median: 0.1, p90: 0.25, pictureMedian: 0.2 }
 
-/** Of light that shadows take from the air, over all light scattered once. */
+/** Goals for light that shadows take from the air, over all light scattered once. */
 export const shaftGoal = { median: 0.01, p95: 0.05 }
 
 /** The largest error of irradiance that has a goal; undefined if none has. */

@@ -33,7 +33,7 @@ export interface IrradianceSample {
 /** A file like `reference/sky.json`: spectral values at up to four wavelengths. */
 export interface SkyReference {
   parameters: AtmosphereParametersInit
-  /** How many of the four values per ray the file has. */
+  /** Number of values per ray in the file, of four. */
   channels: number
   /** Irradiance of the sun above the air, per channel [W/m²/nm]. */
   solarIrradiance: Values

@@ -1,19 +1,19 @@
 import type { AtmosphereParametersInit } from '@welkin/atmosphere'
 import type { Backend } from '../harness/backend'
 
-/** How light along rays is found: read from the sky volume, or marched. */
+/** Way to find light along rays: read from the sky volume, or marched. */
 export type Path = 'volume' | 'march'
 
-/** A place, as the sky volume sees it. */
-export interface EyePlace {
-  /** Above the ground [m]. */
+/** Viewpoint of a sky volume. */
+export interface Viewpoint {
+  /** Altitude above the ground [m]. */
   altitude: number
-  /** Sun against zenith. */
+  /** μ_s, cosine between sun and zenith. */
   cosLight: number
 }
 
-/** A ray from an eye. */
-export interface RayRequest extends EyePlace {
+/** A ray from a viewpoint. */
+export interface RayRequest extends Viewpoint {
   cosView: number
   cosViewLight: number
   /** Length of a segment; absent for the whole ray [m]. */
@@ -48,7 +48,7 @@ const sinDegrees = (degrees: number): number => Math.sin((degrees * Math.PI) / 1
 /**
  * A ray from the angles of the reference files.
  *
- * @param heightKm - Of the eye above the ground [km].
+ * @param heightKm - Of the viewpoint above the ground [km].
  * @param viewZenith - Of the ray [°].
  * @param sunZenith - Of the sun [°].
  * @param azimuth - Of the ray from the sun's azimuth [°].

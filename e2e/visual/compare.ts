@@ -24,7 +24,7 @@ export interface Comparison {
 }
 
 /**
- * How far a channel lies outside the range of its neighbourhood in the expected picture: an edge
+ * Distance of a channel outside the range of its neighbourhood in the expected picture: an edge
  * that multisampling places a part of a pixel away is no change.
  */
 function distanceFromRange(expected: PNG, x: number, y: number, channel: number, value: number) {

@@ -15,7 +15,7 @@ import { makeTile, TILE_CELLS } from './terrain/tile.ts'
 
 const LEVELS = 4
 const CELLS = TILE_CELLS * 2 ** (LEVELS - 1)
-/** What stands on the ground is lower [m]. */
+/** Upper bound of the height of trees and houses [m]. */
 const TREE_HEIGHT = 20
 const DATA = new URL('../data/', import.meta.url)
 export const TERRAIN_DIRECTORY = fileURLToPath(new URL('../.cache/terrain', import.meta.url))

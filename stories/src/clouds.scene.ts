@@ -25,7 +25,7 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   timeLapse: number
   /** Takes the coverage from a map of the world. */
   world: boolean
-  /** How far the layers are made. */
+  /** Stage up to which the layers are made. */
   stage: Stage
   props: 'none' | 'cockpit' | 'balloons'
   /** [degrees] */

@@ -176,7 +176,7 @@ export const WorldClouds: Story = {
   tags: ['screenshot']
 }
 
-/** The same from 12,000 km. */
+/** Cloud cover of a real day, from 12,000 km. */
 export const WorldCloudsFromAfar: Story = {
   name: 'World clouds from 12,000 km',
   args: {

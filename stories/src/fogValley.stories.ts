@@ -69,10 +69,10 @@ export const Inside: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** The same valley by the post effect. */
+/** Valley by the post effect. */
 export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }
 
-/** Only ridges stand out. */
+/** Ridges that stand out of the fog. */
 export const FromAbove: Story = { args: { view: 'high', hour: 14, exposure: 0 } }
 
 /** Fog by distance alone, in the colour of the sky behind. */

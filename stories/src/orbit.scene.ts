@@ -14,7 +14,7 @@ import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface OrbitArgs extends RendererArgs {
-  /** Above the ellipsoid [km]. */
+  /** Altitude above the ellipsoid [km]. */
   altitude: number
   /** Along the orbit from where the sun is at the nadir's zenith [degrees]. */
   angle: number

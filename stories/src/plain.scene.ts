@@ -24,7 +24,7 @@ export interface PlainArgs extends RendererArgs, TimeArgs {
   height: number
 }
 
-/** Far enough to reach the horizon of a camera a few metres up [m]. */
+/** Radius of the ground: to the horizon of a camera a few metres up [m]. */
 const GROUND_RADIUS = 15_000
 
 /** A scene like any other of three: y up, metres, built-in materials. */

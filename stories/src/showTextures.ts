@@ -14,9 +14,9 @@ export interface Picture {
   /** Sides of the picture in texels: they set its proportions. */
   width: number
   height: number
-  /** For a 3D texture: which slice, in [0, 1]. */
+  /** Slice of a 3D texture, in [0, 1]. */
   slice?: number
-  /** For a 2D texture: the part to show, x, y, width, height in [0, 1]; default all of it. */
+  /** Part of a 2D texture to show: x, y, width, height in [0, 1]; default all of it. */
   region?: Region
   /** Factor before display; what is above 1 after it is white. Default 1. */
   scale?: number

@@ -43,7 +43,7 @@ const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 
 /** Illuminance by a star of magnitude 0 [lx]. */
 const VEGA = 2.54e-6
 
-/** Without a date, so that the frame of the stars is ECEF; its light is in cd/m². */
+/** Atmosphere without a date, so that the frame of the stars is ECEF; its light is in cd/m². */
 function stellarAtmosphere(): Atmosphere {
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef'

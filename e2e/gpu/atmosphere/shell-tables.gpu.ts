@@ -7,7 +7,7 @@ import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
 import { cameraAt, draw, size } from '../harness/shell'
 
-/** How often a renderer was told to draw the pass of this name. */
+/** Count of a renderer's draws of the pass of this name. */
 function countPasses(renderer: WebGPURenderer, name: string): () => number {
   let count = 0
   const render = renderer.render.bind(renderer)

@@ -17,7 +17,7 @@ import { gpuTest } from '../harness/gpu-test'
 
 const size = { width: 32, height: 18 }
 
-/** More textures than a shader may sample on any device that there is. */
+/** Number of textures that no shader may sample on any device that there is. */
 const TOO_MANY = 40
 
 function pictures(name: string, count: number): Texture[] {

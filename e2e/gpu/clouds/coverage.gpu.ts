@@ -16,7 +16,7 @@ gpuTest(
   'covers the share of the sky that a layer asks for, all over the planet',
   async t => {
     const layers = cloudPreset('fairWeather')
-    const { renderer, field, eye, update, dispose } = await cloudScene(t, layers, {
+    const { renderer, field, viewpoint, update, dispose } = await cloudScene(t, layers, {
       longitude: 20,
       latitude: 45
     })
@@ -27,7 +27,9 @@ gpuTest(
       const z = (2 * i + 1) / count - 1
       const [across, angle] = [Math.sqrt(1 - z * z), 2.399963 * i]
       const place = new Vector3(across * Math.cos(angle), across * Math.sin(angle), z)
-      return [...place.multiplyScalar(field.radius.value).sub(eye).toArray(), 2000].map(Math.fround)
+      return [...place.multiplyScalar(field.radius.value).sub(viewpoint).toArray(), 2000].map(
+        Math.fround
+      )
     })
     const steps = 12
     const misses: string[] = []
@@ -43,7 +45,7 @@ gpuTest(
       update()
       const depths = await evaluateOnGpu(renderer, inputs, input => {
         const ground = input.xyz
-        const zenith = field.view.place(ground).up.toConst()
+        const zenith = field.view.localCoordinates(ground).up.toConst()
         const depth = float(0).toVar()
         Loop(steps, ({ i }) => {
           const height = float(i as never)
@@ -52,7 +54,7 @@ gpuTest(
             .mul(topAltitude - baseAltitude)
             .add(baseAltitude)
           const offset = ground.add(zenith.mul(height)).toConst() as Node<'vec3'>
-          const sample = { offset, ...field.view.place(offset), distance: float(2000) }
+          const sample = { offset, ...field.view.localCoordinates(offset), distance: float(2000) }
           const extinction = cloudExtinction(field, sample, false)
           depth.addAssign(extinction.mul((topAltitude - baseAltitude) / steps))
         })
@@ -196,7 +198,7 @@ gpuTest(
       // Noise without a lattice: the highest of 6,000 powers, exponentially distributed, is about 9.
       expectTrue(ratio < 18, `a peak of ${ratio} times the noise floor at ${wave.join(', ')}`)
       if (place === places[0][1]) {
-        // The same noise as it repeats, for comparison: rows of puffs along its axes.
+        // The same noise as it repeats, for comparison: rows of clouds along its axes.
         const { shape } = scene.field.textures
         const inputs = Array.from({ length: size ** 2 }, (_, i) => [i % size, Math.floor(i / size)])
         const texels = await evaluateOnGpu(scene.renderer, inputs, input => {
@@ -207,8 +209,8 @@ gpuTest(
           inputs.map((_, i) => texels[4 * i]),
           size
         )
-        t.note(`rows of puffs: ${rows.ratio.toFixed(0)} at ${rows.wave.join(', ')}`)
-        expectTrue(rows.ratio > 36, `rows of puffs would pass, with a peak of ${rows.ratio}`)
+        t.note(`rows of clouds: ${rows.ratio.toFixed(0)} at ${rows.wave.join(', ')}`)
+        expectTrue(rows.ratio > 36, `rows of clouds would pass, with a peak of ${rows.ratio}`)
       }
       columns.dispose()
       scene.dispose()
@@ -247,14 +249,16 @@ gpuTest('has no seam in a world map', async t => {
     field.view.update({ renderer, camera } as unknown as NodeFrame)
     field.update(view, 0)
     field.pixelAngle.value = 0.002
-    const eye = view.up.clone().multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
+    const viewpoint = view.up
+      .clone()
+      .multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
     const inputs = points.map(point => {
-      const offset = atmosphere.space.position(point, new Vector3()).sub(eye)
+      const offset = atmosphere.space.position(point, new Vector3()).sub(viewpoint)
       return [...offset.toArray(), offset.length()].map(Math.fround)
     })
     const results = await evaluateOnGpu(renderer, inputs, input => {
       const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-      const { altitude, up } = field.view.place(offset)
+      const { altitude, up } = field.view.localCoordinates(offset)
       return verticalOpticalDepth(field, { offset, altitude, up, distance: input.w })
     })
     const depths = inputs.map((_, i) => results[4 * i])

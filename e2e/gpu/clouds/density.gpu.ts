@@ -64,13 +64,13 @@ for (const [where, place] of places) {
     scene.update(7200)
     let cloudy = 0
     for (const detail of [false, true]) {
-      const inputs = offsets(scene.eye, 60, 20_000, 7, altitudeIn(layers))
+      const inputs = offsets(scene.viewpoint, 60, 20_000, 7, altitudeIn(layers))
       const results = await evaluateOnGpu(scene.renderer, inputs, input =>
         scene.extinction(input.xyz, input.w, detail)
       )
       const state = scene.state()
       const differences = inputs.map(([x, y, z, distance], i) => {
-        const position = scene.eye.clone().add(new Vector3(x, y, z))
+        const position = scene.viewpoint.clone().add(new Vector3(x, y, z))
         const expected = extinctionTwin(state, twin, position, distance, detail)
         if (expected > 0) cloudy++
         return Math.abs(results[4 * i] - expected) / 0.1
@@ -90,7 +90,7 @@ for (const [where, place] of places) {
   })
 }
 
-/** Without shape, whose coarse levels take float64 minutes. */
+/** Twin of the noise without shape, whose coarse levels take float64 minutes. */
 class ShapelessTwin extends NoiseTextures {
   override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {
     return name === 'shape' ? [0.5, 0.5, 0.5, 0.5] : twin.sample(name, p, level)
@@ -105,14 +105,14 @@ gpuTest('puts clouds where float64 does, of a world map and where they blur', as
   const shapeless = new ShapelessTwin()
   // Their footprints are up to 1.2 km.
   scene.field.pixelAngle.value = 0.12
-  const inputs = offsets(scene.eye, 15, 2000, 7, altitudeIn(layers))
+  const inputs = offsets(scene.viewpoint, 15, 2000, 7, altitudeIn(layers))
   const results = await evaluateOnGpu(scene.renderer, inputs, input =>
     scene.extinction(input.xyz, input.w, false)
   )
   const state = scene.state()
   let cloudy = 0
   const differences = inputs.map(([x, y, z, distance], i) => {
-    const position = scene.eye.clone().add(new Vector3(x, y, z))
+    const position = scene.viewpoint.clone().add(new Vector3(x, y, z))
     const expected = extinctionTwin(state, shapeless, position, distance, false)
     if (expected > 0) cloudy++
     return Math.abs(results[4 * i] - expected) / 0.05
@@ -144,12 +144,12 @@ gpuTest('gives numbers for any parameters', async t => {
   const layers = new CloudLayers([{}, {}, {}, {}])
   const scene = await cloudScene(t, layers, { longitude: -75, latitude: -60, height: 3000 })
   const inputs = [
-    ...offsets(scene.eye, 400, 50_000, 5),
-    ...offsets(scene.eye, 100, 3_000_000, 6),
+    ...offsets(scene.viewpoint, 400, 50_000, 5),
+    ...offsets(scene.viewpoint, 100, 3_000_000, 6),
     [0, 0, 0, 0],
     [0, 0, 0, 1e9],
-    [scene.eye.x, scene.eye.y, scene.eye.z, 1e7],
-    [-scene.eye.x, -scene.eye.y, -scene.eye.z, 1e7]
+    [scene.viewpoint.x, scene.viewpoint.y, scene.viewpoint.z, 1e7],
+    [-scene.viewpoint.x, -scene.viewpoint.y, -scene.viewpoint.z, 1e7]
   ]
   for (let round = 0; round < 12; round++) {
     for (const layer of layers) {
@@ -178,7 +178,7 @@ gpuTest('gives numbers for any parameters', async t => {
     scene.update(pick(0, 1, 1e12))
     const results = await evaluateOnGpu(scene.renderer, inputs, input => {
       const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-      const { altitude, up } = scene.field.view.place(offset)
+      const { altitude, up } = scene.field.view.localCoordinates(offset)
       const sample = { offset, altitude, up, distance: input.w }
       return vec4(
         cloudExtinction(scene.field, sample, true),

@@ -34,7 +34,7 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
   field.bake(renderer)
 
   const size = 48
-  /** Of the view against straight down, away from the sun [rad]. */
+  /** Angle of the view against straight down, away from the sun [rad]. */
   const tilt = uniform(0)
   const map = texture(new DataTexture(new Uint8Array(4), 1, 1))
   const shadows = { map, cascades: [], count: 1, isMoonlit: number() } as unknown as CloudShadows

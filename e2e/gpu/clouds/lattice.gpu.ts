@@ -11,19 +11,19 @@ import { nextFrame } from '../harness/graphics'
 import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../harness/sky-plane'
 
 const canvas = { width: 192, height: 160 }
-/** Of the straightened picture [pixels]. */
+/** Edge of the straightened picture [pixels]. */
 const size = 128
-/** Decks are raised, so that there are many puffs in a picture [m]. */
+/** Altitude that decks are raised to, so that there are many clouds in a picture [m]. */
 const BASE = 4000
-/** The heads of their shape are so far apart: four in a period [m]. */
-const HEADS = 650
+/** Distance between their billows: four in a period of the shape [m]. */
+const BILLOWS = 650
 
 interface View {
   readonly name: string
   readonly fov: number
   readonly pitch: number
   readonly square: SkySquare
-  /** So many waves at least to an edge of the square. */
+  /** Least number of waves to an edge of the square. */
   readonly longest: number
 }
 
@@ -65,7 +65,7 @@ function axesOf(atmosphere: Atmosphere, turn: Quaternion): Map<string, number> {
 }
 
 gpuTest(
-  'shows no rows of puffs in marched skies, from below and towards the sun',
+  'shows no rows of clouds in marched skies, from below and towards the sun',
   async t => {
     const renderer = await t.createRenderer(canvas)
     const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
@@ -114,7 +114,9 @@ gpuTest(
         const [dx, dz] = [Math.cos(angle), Math.sin(angle)]
         const rowsOf = (value: number, i: number): number => {
           const [x, z] = placeIn(square, size, i)
-          return value * (1 + seen.deviation * Math.sin((2 * Math.PI * (x * dx + z * dz)) / HEADS))
+          return (
+            value * (1 + seen.deviation * Math.sin((2 * Math.PI * (x * dx + z * dz)) / BILLOWS))
+          )
         }
         const rows = alignment(contrasts(light.map(rowsOf), size, 12).values, size, longest)
         const { ratio, wave } = sky.peak

@@ -67,7 +67,7 @@ gpuTest('a scene is lit again when its clouds are disposed of, and shaded by the
   })
 )
 
-/** In which a picture of blocks of four pixels is whole, twice. */
+/** Frames in which a picture of blocks of four pixels becomes whole twice. */
 const FRAMES = 8
 
 gpuTest('two cameras with a node each in a frame see what each sees alone; so after a resize', t =>

@@ -49,7 +49,7 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
             depthToLight: input.x,
             depthThrough: input.y,
             depthAcross: input.y.mul(1.3),
-            depthToEye: float(0.3),
+            depthToCamera: float(0.3),
             layered: float(layered),
             cosLight: float(cosLight),
             cosView: input.z,
@@ -62,7 +62,7 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
           depthToLight,
           depthThrough,
           depthAcross: 1.3 * depthThrough,
-          depthToEye: 0.3,
+          depthToCamera: 0.3,
           layered,
           cosLight: cosLight,
           cosView,
@@ -148,7 +148,7 @@ gpuTest('gives no NaN at the ends of its domain', async t => {
           depthToLight: input.x,
           depthThrough: input.y,
           depthAcross: input.y,
-          depthToEye: input.x,
+          depthToCamera: input.x,
           cosLight: float(cosLight),
           cosViewLight: input.w
         })

@@ -26,11 +26,11 @@ gpuTest(
       for (const layer of layers) layer.set({ coverage: 0.7 })
       const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
       const { field } = scene
-      const inputs = offsets(scene.eye, 1024, 20_000, 9, altitudeIn(layers))
+      const inputs = offsets(scene.viewpoint, 1024, 20_000, 9, altitudeIn(layers))
       const evaluate = (value: (sample: CloudSample) => Node<'vec4'>): Promise<Float32Array> =>
         evaluateOnGpu(scene.renderer, inputs, input => {
           const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-          const { altitude, up } = field.view.place(offset)
+          const { altitude, up } = field.view.localCoordinates(offset)
           return value({ offset, altitude, up, distance: input.w })
         })
       const range = { first: int(0), last: int(layers.length) }

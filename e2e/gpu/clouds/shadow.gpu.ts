@@ -15,7 +15,7 @@ import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 
 const size = { width: 48, height: 48 }
-/** Of the march towards the sun that shadows are held to. */
+/** Steps of the march towards the sun that shadows are compared with. */
 const STEPS = 64
 
 gpuTest('clouds cast their shadows on the ground', async t => {
@@ -73,7 +73,7 @@ gpuTest('clouds cast their shadows on the ground', async t => {
     loop('step', STEPS, index => {
       const way = float(index).add(0.5).mul(length)
       const offset = start.add(field.view.lightDirection.mul(way)).toConst() as Vec3
-      const { altitude, up } = field.view.place(offset)
+      const { altitude, up } = field.view.localCoordinates(offset)
       const sample = { offset, altitude, up, distance: float(1000).toConst() }
       depth.addAssign(cloudExtinction(field, sample, false).mul(length))
     })
@@ -134,7 +134,11 @@ gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
       const [from, to] = [float(index), float(index).add(1)].map(at => at.mul(at).mul(0.5))
       const way = from.add(to).mul(0.5)
       const offset = start.add(field.view.lightDirection.mul(way)).toConst() as Vec3
-      const sample = { offset, ...field.view.place(offset), distance: float(15_000).toConst() }
+      const sample = {
+        offset,
+        ...field.view.localCoordinates(offset),
+        distance: float(15_000).toConst()
+      }
       marched.addAssign(cloudExtinction(field, sample, false).mul(to.sub(from)))
     })
     const { toLight, through, known } = sampleShadows(shadows.nodes, start, float(0))

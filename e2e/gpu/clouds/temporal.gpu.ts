@@ -13,7 +13,10 @@ import type { Picture } from '../harness/picture'
 
 const [width, height] = [64, 36]
 
-/** Of a picture whose pixels are as narrow as those of 1920×1080 at 50°, as presets have to do with [°]. */
+/**
+ * Size and field of view of a picture whose pixels are as narrow as those of 1920×1080 at 50°, which presets
+ * are made for [°].
+ */
 const narrow = { size: [128, 72], fieldOfView: 5 } as const
 const wide = { size: [width, height], fieldOfView: 20 } as const
 
@@ -22,7 +25,7 @@ const BLOCK = 4
 
 const sharp: CloudQuality = { ...cloudQualities.medium, block: 2 }
 
-/** What the skies of a test share. */
+/** Parts that the skies of a test share. */
 interface Shared {
   readonly renderer: WebGPURenderer
   readonly noise: CloudNoise
@@ -92,7 +95,7 @@ class Sky {
   }
 }
 
-/** What a screen shows, in [0, 1]. */
+/** Value on a screen, in [0, 1]. */
 const shown = (value: number): number => Math.min(value, 1) ** (1 / 2.2)
 
 /** Differences of colour as it is shown: of each pixel the largest. */

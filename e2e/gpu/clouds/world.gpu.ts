@@ -90,7 +90,7 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
   })
   const expected = rows.flatMap(([over, mu, under, cosNormal]) => {
     const deck = (thickness: number): twin.CloudDeck =>
-      twin.stackDecks([{ thickness, cover: 1 }], mu, oneMinusAsymmetry)
+      twin.stackDecks([{ thickness, coverage: 1 }], mu, oneMinusAsymmetry)
     const light = twin.cloudyIrradiance(
       {
         direct: { above: direct * mu, below: 0.9 * direct * mu },
@@ -135,7 +135,7 @@ function towards(elevation: number, azimuth: number): Vector3 {
   return new Vector3(Math.cos(e) * Math.sin(a), Math.sin(e), -Math.cos(e) * Math.cos(a))
 }
 
-/** Far from the maps, clouds of a world map that covers the western half shade that half. */
+/** Checks that far from the shadow maps a world map that covers the western half shades that half. */
 async function shadesTheGlobe(
   renderer: WebGPURenderer,
   atmosphere: Atmosphere,
@@ -260,14 +260,14 @@ gpuTest(
     const probe = new SkyLightProbe(atmosphere)
     const cloudy = cloudSkyLight(probe, node)
     scene.add(plane, probe, sun)
-    const eye = new PerspectiveCamera(50, 1, 0.1, 100)
+    const planeCamera = new PerspectiveCamera(50, 1, 0.1, 100)
     const look = async (altitude: number, facing: 1 | -1): Promise<Picture> => {
       plane.position.y = altitude
       plane.rotation.x = (-facing * Math.PI) / 2
-      eye.position.y = altitude + 2 * facing
-      eye.lookAt(plane.position)
-      eye.updateMatrixWorld()
-      return drawToFloat(renderer, () => renderer.render(scene, eye))
+      planeCamera.position.y = altitude + 2 * facing
+      planeCamera.lookAt(plane.position)
+      planeCamera.updateMatrixWorld()
+      return drawToFloat(renderer, () => renderer.render(scene, planeCamera))
     }
     const green = async (altitude: number, facing: 1 | -1): Promise<number> =>
       (await look(altitude, facing)).at(12, 8)[1]
@@ -316,26 +316,26 @@ gpuTest(
       layers.at(0).set({ coverage })
       await draw()
       let frames = 0
-      while (environment.redraws === redraws && frames++ < 40) renderer.render(scene, eye)
+      while (environment.redraws === redraws && frames++ < 40) renderer.render(scene, planeCamera)
       expectTrue(frames === overlay.steps + 15, `drawn again after ${frames} frames`)
     }
 
     // Broken clouds are where the camera sees them.
     await redraw(0.5)
     const picture = await draw()
-    const sight = new Vector3()
-    const sights = Array.from({ length: size.width * size.height }, (_, i) => {
+    const viewDirection = new Vector3()
+    const directions = Array.from({ length: size.width * size.height }, (_, i) => {
       const [x, y] = [i % size.width, Math.floor(i / size.width)]
-      sight.set((2 * x + 1) / size.width - 1, 1 - (2 * y + 1) / size.height, 0.5)
-      sight.unproject(camera).sub(camera.position).normalize()
-      return atmosphere.space.direction(sight, new Vector3()).toArray()
+      viewDirection.set((2 * x + 1) / size.width - 1, 1 - (2 * y + 1) / size.height, 0.5)
+      viewDirection.unproject(camera).sub(camera.position).normalize()
+      return atmosphere.space.direction(viewDirection, new Vector3()).toArray()
     })
-    const overlaid = await evaluateOnGpu(renderer, sights, ({ xyz }) =>
+    const overlaid = await evaluateOnGpu(renderer, directions, ({ xyz }) =>
       vec4(overlay.over(viewNodes(atmosphere, camera), xyz, vec4(0).xyz), 1)
     )
     const likeness = correlation(
-      sights.map((_, i) => overlaid[4 * i + 1]),
-      sights.map((_, i) => picture.data[4 * i + 1])
+      directions.map((_, i) => overlaid[4 * i + 1]),
+      directions.map((_, i) => picture.data[4 * i + 1])
     )
     t.note(`alike by ${likeness.toFixed(2)}`)
     expectTrue(likeness > 0.5, `overlay and picture are alike by ${likeness}`)
@@ -343,7 +343,7 @@ gpuTest(
     await redraw(0)
     const cleared = (await look(2, 1)).at(12, 8)
     expectTrue(cleared[2] > 2 * cleared[0], `the sky is mirrored grey: ${cleared.join(' ')}`)
-    for (let i = 0; i < 30; i++) renderer.render(scene, eye)
+    for (let i = 0; i < 30; i++) renderer.render(scene, planeCamera)
     expectTrue(environment.redraws === 3, 'nothing changes, and it is drawn again')
 
     // The moon counts by night only.
@@ -354,7 +354,7 @@ gpuTest(
     atmosphere.setSunAngles(-40, 250)
     luna.phase = 0.5
     await draw()
-    for (let i = 0; i < 30; i++) renderer.render(scene, eye)
+    for (let i = 0; i < 30; i++) renderer.render(scene, planeCamera)
     const drawn = overlay.version
     await draw()
     expectTrue(overlay.version === drawn, 'a moon that stands still counts')

@@ -25,7 +25,7 @@ async function drawChannels(
 export class CloudColumns {
   readonly #material = new NodeMaterial()
   readonly #quad: QuadMesh
-  /** How often the shader was built. */
+  /** Number of times that the shader was built. */
   builds = 0
   readonly #distance = uniform(2000)
 
@@ -67,7 +67,7 @@ export class CloudColumns {
         const square = level.dot(level).toConst()
         const drop = square.div(radius.mul(radius).sub(square).sqrt().add(radius))
         const offset = level.add(up.mul(height.sub(drop))).toConst() as unknown as Node<'vec3'>
-        const { altitude, up: zenith } = field.view.place(offset)
+        const { altitude, up: zenith } = field.view.localCoordinates(offset)
         const sample = { offset, altitude, up: zenith, distance }
         depth.addAssign(cloudExtinction(field, sample, false).mul((top - base) / steps))
       })
@@ -76,7 +76,7 @@ export class CloudColumns {
     this.#quad = new QuadMesh(this.#material)
   }
 
-  /** From where the clouds are seen, all from equally far: sets the level of detail [m]. */
+  /** Distance that all clouds are seen from: sets the level of detail [m]. */
   set distance(metres: number) {
     this.#distance.value = metres
   }
@@ -125,7 +125,7 @@ export class PlanetColumns {
         .fract()
         .mul(2 * Math.PI)
       const up = vec3(across.mul(angle.cos()), across.mul(angle.sin()), z).toConst()
-      const eye = field.view.up.mul(field.radius.add(field.view.height)).toConst()
+      const viewpoint = field.view.up.mul(field.radius.add(field.view.height)).toConst()
       const thickness = this.#thickness as unknown as Node<'float'>
       const distance = this.#distance as unknown as Node<'float'>
       const depth = float(0).toVar()
@@ -136,7 +136,7 @@ export class PlanetColumns {
           .mul(thickness)
           .add(this.#base)
           .toConst()
-        const offset = up.mul(field.radius.add(altitude)).sub(eye).toConst()
+        const offset = up.mul(field.radius.add(altitude)).sub(viewpoint).toConst()
         const sample = { offset, altitude, up, distance }
         depth.addAssign(cloudExtinction(field, sample, false).mul(thickness.div(steps)))
       })

@@ -26,7 +26,7 @@ export interface CloudScene {
   renderer: WebGPURenderer
   field: CloudField
   /** The camera from the planet's centre, in the mapped space. */
-  eye: Vector3
+  viewpoint: Vector3
   update: (seconds?: number) => void
   extinction: (offset: Node<'vec3'>, distance: Node<'float'>, detail: boolean) => Node<'float'>
   state: () => CloudState
@@ -45,12 +45,12 @@ export async function cloudScene(
   const camera = new PerspectiveCamera()
   camera.updateMatrixWorld()
   const field = new CloudField(atmosphere, layers, undefined, { worldMap: map })
-  const eye = new Vector3()
+  const viewpoint = new Vector3()
   const update = (seconds = 0): void => {
     const view = atmosphere.update(renderer, camera)
     field.view.update({ renderer, camera } as unknown as NodeFrame)
     field.update(view, seconds)
-    eye.copy(view.up).multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
+    viewpoint.copy(view.up).multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
   }
   update()
   expectTrue(field.values[0].z === 0, 'clouds before their noise is drawn')
@@ -60,17 +60,17 @@ export async function cloudScene(
   return {
     renderer,
     field,
-    eye,
+    viewpoint,
     update,
     extinction(offset, distance, detail) {
-      const { altitude, up } = field.view.place(offset)
+      const { altitude, up } = field.view.localCoordinates(offset)
       return cloudExtinction(field, { offset, altitude, up, distance }, detail)
     },
     state: () => ({
       layers: [...layers].map(layer => layer.parameters),
       rotations: field.rotations,
       bottomRadius: atmosphere.parameters.bottomRadius,
-      zenith: eye.clone().normalize(),
+      zenith: viewpoint.clone().normalize(),
       pixelAngle: field.pixelAngle.value,
       depthScale: field.depthScale.value,
       axialRatio: field.axialRatio,
@@ -105,7 +105,7 @@ export function worldMap(): DataTexture {
   return map
 }
 
-/** What the GPU reads of a map's finest level, by longitude and latitude [rad]. */
+/** Look-up of a map's finest level as the GPU does it, by longitude and latitude [rad]. */
 function coverOf(map: DataTexture): (longitude: number, latitude: number) => number {
   const { data, width, height } = map.image
   const texel = (x: number, y: number): number => {
@@ -121,28 +121,28 @@ function coverOf(map: DataTexture): (longitude: number, latitude: number) => num
   }
 }
 
-/** Offsets from an eye to points at random altitudes, up to a horizontal distance away. */
+/** Offsets from a viewpoint to points at random altitudes, up to a horizontal distance away. */
 export function offsets(
-  eye: Vector3,
+  viewpoint: Vector3,
   count: number,
   reach: number,
   seed: number,
   altitude = (share: number): number => 12_000 * share ** 2
 ): number[][] {
   const draw = random(seed)
-  const up = eye.clone().normalize()
+  const up = viewpoint.clone().normalize()
   const side = new Vector3(up.y, up.z, up.x).cross(up).normalize()
   const other = side.clone().cross(up)
-  const ground = eye.length()
+  const ground = viewpoint.length()
   return Array.from({ length: count }, () => {
     const angle = 2 * Math.PI * draw()
     const away = reach * Math.sqrt(draw())
-    const point = eye
+    const point = viewpoint
       .clone()
       .addScaledVector(side, away * Math.cos(angle))
       .addScaledVector(other, away * Math.sin(angle))
       .setLength(ground + altitude(draw()))
-      .sub(eye)
+      .sub(viewpoint)
     return [...point.toArray(), point.length()].map(Math.fround)
   })
 }

@@ -12,7 +12,7 @@ import type { Picture } from './picture'
 /** Size of the views' pictures. */
 export const viewSize = { width: 24, height: 14 }
 
-/** For tests of what does not depend on steps. */
+/** Quality for tests of features that do not depend on steps. */
 export const coarse: CloudQuality = {
   steps: 32,
   stepGrowth: 0.02,
@@ -54,7 +54,7 @@ export const fog: Partial<CloudLayerParameters> = {
   wind: { east: 0, north: 0 }
 }
 
-/** What the views of a test share. */
+/** Parts that the views of a test share. */
 export interface Shared {
   readonly noise: CloudNoise
   readonly light: CloudLightTable
@@ -108,7 +108,7 @@ export class CloudView {
   }
 }
 
-/** At sea level, y up, under a sun 40° high. */
+/** Atmosphere about a point at sea level, y up, under a sun 40° high. */
 export const onGround = (): Atmosphere => {
   const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 }).setSunAngles(40, 150)
   atmosphere.luminanceScale = 3e-5

@@ -3,11 +3,11 @@ declare global {
   var filterSamples: number | undefined
 }
 
-/** Enough that what a rough ball mirrors is within a few per cent. */
+/** Number of samples with which reflections on a rough ball are within a few per cent. */
 const FEW = 32
 
 /**
- * From now on, has three filter environments with an eighth of its samples: at 256 a software renderer
+ * Has three, from now on, filter environments with an eighth of its samples: at 256 a software renderer
  * takes seconds for one, longer than for all else in most tests.
  *
  * @param isCoarse - False: from now on, as users have it.

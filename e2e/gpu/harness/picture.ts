@@ -17,7 +17,7 @@ export class Picture {
   }
 }
 
-/** How a render target's numbers are spread over the elements that a read-back returns. */
+/** Numbers of a render target in float32, from the elements that a read-back returns. */
 function toFloats(raw: ArrayLike<number>, isHalf: boolean, isByte: boolean): Float32Array {
   if (isHalf) return Float32Array.from(raw, half => DataUtils.fromHalfFloat(half))
   if (isByte) return Float32Array.from(raw, value => value / 255)
@@ -37,7 +37,7 @@ function flipRows(data: Float32Array, width: number, height: number): void {
 }
 
 export interface ReadOptions {
-  /** Which attachment of a multiple render target. */
+  /** Attachment of a multiple render target. */
   textureIndex?: number
   /** Layer of an array or 3D target, face of a cube. */
   layer?: number

@@ -103,7 +103,7 @@ export async function keepTables(): Promise<void> {
 }
 
 /**
- * From now on, has atmospheres take tables of diffuse light that this or another page of the browser's
+ * Has atmospheres, from now on, take tables of diffuse light that this or another page of the browser's
  * run of tests has baked, of the same parameters on the same backend: bit for bit what they would bake, for
  * a hundredth of the time. A software renderer takes seconds for a bake, longer than for most tests.
  *

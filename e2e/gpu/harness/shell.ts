@@ -67,5 +67,5 @@ export const VIEWS = [
   [1.0005, -0.02]
 ] as const
 
-/** From so far that the air is marched, with a telescope [°]. */
+/** View from so far that the air is marched, with a telescope: distance, azimuth, field of view [°]. */
 export const FAR_VIEW = [25, -Math.PI / 2, 6] as const

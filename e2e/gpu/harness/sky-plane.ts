@@ -81,7 +81,7 @@ function between(a: number, b: number): number {
   return Math.min(turn, Math.PI - turn)
 }
 
-/** How much waves stand out from others of their length. */
+/** Alignment of a picture's waves: how far they stand out from others of their length. */
 export interface Alignment {
   /** The wave that stands out the most, and its power by the noise floor's. */
   readonly peak: { readonly ratio: number; readonly wave: readonly [number, number] }

@@ -25,27 +25,27 @@ export interface RayNodes {
   distance: Float
 }
 
-/** Rays from many eyes, a pixel each, drawn eye by eye. */
+/** Rays from many viewpoints, a pixel each, drawn viewpoint by viewpoint. */
 export class RayBatch {
   readonly #count: number
-  readonly #eyes: Set<number>
+  readonly #viewpoints: Set<number>
   readonly #source: DataTexture
   readonly #target: RenderTarget
   readonly #pass: FragmentPass
-  readonly #eye = uniform(0)
+  readonly #viewpoint = uniform(0)
 
   /**
-   * @param rays - With the number of each one's eye.
+   * @param rays - With the number of each one's viewpoint.
    * @param body - What is computed per ray.
    */
-  constructor(rays: (RayRequest & { eye: number })[], body: (ray: RayNodes) => Vec4) {
+  constructor(rays: (RayRequest & { viewpoint: number })[], body: (ray: RayNodes) => Vec4) {
     const rows = Math.max(Math.ceil(rays.length / COLUMNS), 1)
     const texels = new Float32Array(4 * COLUMNS * rows).fill(-1)
-    rays.forEach(({ cosView, cosViewLight, distance = 0, eye }, i) =>
-      texels.set([cosView, cosViewLight, distance, eye], 4 * i)
+    rays.forEach(({ cosView, cosViewLight, distance = 0, viewpoint }, i) =>
+      texels.set([cosView, cosViewLight, distance, viewpoint], 4 * i)
     )
     this.#count = rays.length
-    this.#eyes = new Set(rays.map(ray => ray.eye))
+    this.#viewpoints = new Set(rays.map(ray => ray.viewpoint))
     this.#source = new DataTexture(texels, COLUMNS, rows, RGBAFormat, FloatType)
     this.#source.minFilter = this.#source.magFilter = NearestFilter
     this.#source.needsUpdate = true
@@ -56,7 +56,7 @@ export class RayBatch {
       Fn(() => {
         const pixel = ivec2(int(screenCoordinate.x), int(screenCoordinate.y))
         const ray = textureLoad(this.#source, pixel).toConst()
-        If(ray.w.notEqual(this.#eye), () => {
+        If(ray.w.notEqual(this.#viewpoint), () => {
           Discard()
         })
         return vec4(
@@ -70,10 +70,10 @@ export class RayBatch {
     )
   }
 
-  /** Draws the rays of one eye. */
-  render(renderer: WebGPURenderer, eye: number): void {
-    if (!this.#eyes.has(eye)) return
-    this.#eye.value = eye
+  /** Draws the rays of one viewpoint. */
+  render(renderer: WebGPURenderer, viewpoint: number): void {
+    if (!this.#viewpoints.has(viewpoint)) return
+    this.#viewpoint.value = viewpoint
     this.#pass.render(renderer, this.#target)
   }
 

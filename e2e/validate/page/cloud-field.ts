@@ -113,7 +113,11 @@ window.welkinOpenCloudField = async request => {
       .add(axes[1].mul(y))
       .add(axes[2].mul(altitude.sub(drop).sub(field.view.height)))
       .toConst() as Node<'vec3'>
-    const sample = { offset, ...field.view.place(offset), distance: float(cell / SAMPLES) }
+    const sample = {
+      offset,
+      ...field.view.localCoordinates(offset),
+      distance: float(cell / SAMPLES)
+    }
     return cloudExtinction(field, sample, true)
   }
   const pass = new FragmentPass(

@@ -97,11 +97,11 @@ function voxelTexture({ text, nx, ny, nz }: CloudLightRequest['voxels']): Data3D
   return result
 }
 
-/** The same view for rays that start aside of the camera, by a displacement in the mapped space [m]. */
+/** View for rays that start aside of the camera, by a displacement in the mapped space [m]. */
 function viewFrom(view: ViewNodes, shift: Vec3): ViewNodes {
   return Object.create(view, {
     height: { value: view.height.add(shift.dot(view.up)) },
-    place: { value: (offset: Vec3) => view.place(offset.add(shift)) }
+    localCoordinates: { value: (offset: Vec3) => view.localCoordinates(offset.add(shift)) }
   }) as ViewNodes
 }
 

@@ -48,14 +48,14 @@ function slabRadiance(light: CloudLight, input: Vec4): Float {
   const thickness = input.x.mul(light.depthScale).toConst()
   const [cosLight, cosView, cosViewLight] = [input.y, input.z, input.w]
   const slope = cosView.abs().toConst()
-  return march(thickness.div(slope), depthToEye => {
-    const below = depthToEye.mul(slope)
+  return march(thickness.div(slope), depthToCamera => {
+    const below = depthToCamera.mul(slope)
     const depth = cosView.greaterThan(0).select(thickness.sub(below), below)
     return cloudSource(light, {
       depthToLight: depth.div(cosLight),
       depthThrough: thickness.div(cosLight),
       depthAcross: float(0),
-      depthToEye,
+      depthToCamera,
       layered: float(1),
       cosLight,
       cosView,
@@ -73,8 +73,8 @@ function sphereRadiance(light: CloudLight, input: Vec4): Float {
   const square = radius.mul(radius).toConst()
   const offAxis = sunward.mul(sunward).add(aside.mul(aside)).toConst()
   const half = square.sub(offAxis).max(0).sqrt().toConst()
-  return march(half.mul(2), depthToEye => {
-    const z = depthToEye.sub(half).toConst()
+  return march(half.mul(2), depthToCamera => {
+    const z = depthToCamera.sub(half).toConst()
     const towardsSun = sunward.mul(sine).add(z.mul(cosine)).toConst()
     const fromAxis = offAxis.add(z.mul(z)).sub(towardsSun.mul(towardsSun))
     const chord = square.sub(fromAxis).max(0).sqrt().toConst()
@@ -82,7 +82,7 @@ function sphereRadiance(light: CloudLight, input: Vec4): Float {
       depthToLight: chord.sub(towardsSun).max(0),
       depthThrough: chord.mul(2),
       depthAcross: radius.mul(2),
-      depthToEye,
+      depthToCamera,
       layered: float(0),
       // There is no up.
       cosLight: float(1),

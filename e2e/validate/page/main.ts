@@ -6,17 +6,14 @@ import { viewpointScalars } from '../../../packages/atmosphere/src/view/cpu/view
 import { groundIrradiance } from '../../../packages/atmosphere/src/diffuseLight/tsl/diffuseLight'
 import { marchedAir, marchedSky } from '../../../packages/atmosphere/src/scattering/tsl/marchedAir'
 import { rayLimits, rayTargets } from '../../../packages/atmosphere/src/skyVolume/tsl/rayLimits'
-import {
-  viewRay,
-  sampleSky,
-  sampleVolume
-} from '../../../packages/atmosphere/src/skyVolume/tsl/skyVolume'
+import { sampleSky, sampleVolume } from '../../../packages/atmosphere/src/skyVolume/tsl/skyVolume'
+import { viewRay } from '../../../packages/atmosphere/src/skyVolume/tsl/viewRay'
 import { lightTransmittance } from '../../../packages/atmosphere/src/transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { createContext } from '../../gpu/harness/context'
 import { evaluateOnGpu } from '../../gpu/harness/evaluate'
-import type { EvaluationRequest, EvaluationResult, EyePlace, Path, RayRequest } from '../request'
+import type { EvaluationRequest, EvaluationResult, Viewpoint, Path, RayRequest } from '../request'
 import { RayBatch, type RayNodes } from './RayBatch'
 import './clouds'
 import './cloud-field'
@@ -58,15 +55,18 @@ function airInSegment({ air, viewpoint, volume }: ViewNodes, path: Path, ray: Ra
     : marchedAir(air, viewpoint, cosView, cosViewLight, limits, distance, MARCH_STEPS)
 }
 
-/** The eyes of rays, each once, with the numbers of the eyes of all rays. */
-function distinctEyes(rays: EyePlace[]): { eyes: EyePlace[]; eyeOf: (ray: EyePlace) => number } {
-  const key = (ray: EyePlace): string => `${ray.altitude} ${ray.cosLight}`
-  const eyes = [...new Map(rays.map(ray => [key(ray), ray])).values()]
-  const numbers = new Map(eyes.map((eye, i) => [key(eye), i]))
-  return { eyes, eyeOf: ray => numbers.get(key(ray))! }
+/** The viewpoints of rays, each once, with the numbers of the viewpoints of all rays. */
+function distinctViewpoints(rays: Viewpoint[]): {
+  viewpoints: Viewpoint[]
+  viewpointOf: (ray: Viewpoint) => number
+} {
+  const key = (ray: Viewpoint): string => `${ray.altitude} ${ray.cosLight}`
+  const viewpoints = [...new Map(rays.map(ray => [key(ray), ray])).values()]
+  const numbers = new Map(viewpoints.map((viewpoint, i) => [key(viewpoint), i]))
+  return { viewpoints, viewpointOf: ray => numbers.get(key(ray))! }
 }
 
-/** Evaluates rays from many eyes: a volume is computed once for all the rays of an eye. */
+/** Evaluates rays from many viewpoints: a volume is computed once for all the rays of a viewpoint. */
 async function evaluateRays(
   renderer: WebGPURenderer,
   atmosphere: Atmosphere,
@@ -74,10 +74,10 @@ async function evaluateRays(
 ): Promise<Pick<EvaluationResult, 'sky' | 'inscatter' | 'transmittance'>> {
   const { parameters, tables } = atmosphere
   const view = viewNodes(atmosphere)
-  const { eyes, eyeOf } = distinctEyes([...sky, ...segments])
+  const { viewpoints, viewpointOf } = distinctViewpoints([...sky, ...segments])
   const batch = (rays: RayRequest[], body: (ray: RayNodes) => Vec4): RayBatch =>
     new RayBatch(
-      rays.map(ray => ({ ...ray, eye: eyeOf(ray) })),
+      rays.map(ray => ({ ...ray, viewpoint: viewpointOf(ray) })),
       body
     )
   const batches = {
@@ -85,7 +85,7 @@ async function evaluateRays(
     inscatter: batch(segments, ray => airInSegment(view, path, ray).radiance),
     transmittance: batch(segments, ray => airInSegment(view, path, ray).depth.negate().exp())
   }
-  eyes.forEach(({ altitude, cosLight }, i) => {
+  viewpoints.forEach(({ altitude, cosLight }, i) => {
     const scalars = viewpointScalars(parameters, altitude, cosLight)
     const volume =
       path === 'volume' ? tables.volumes.volumeFor(renderer, scalars, tables.version) : null

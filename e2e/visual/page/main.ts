@@ -4,7 +4,7 @@ import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 
-/** What a story's scene module offers; Storybook and this page drive the same thing. */
+/** Interface of a story's scene module, which Storybook and this page drive alike. */
 interface SceneView {
   ready: Promise<void>
   resize: (width: number, height: number, pixelRatio: number) => void

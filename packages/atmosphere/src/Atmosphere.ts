@@ -82,7 +82,7 @@ const isNear = (radius: number, { radii }: Ellipsoid): boolean =>
  * node that uses them is first rendered, and again when `parameters` change.
  */
 export class Atmosphere extends ScenePlanet {
-  /** For type testing. */
+  /** Type tag: true. */
   readonly isAtmosphere = true
   /** Composition of the air. Change it with `parameters.set(…)`. */
   readonly parameters: AtmosphereParameters

@@ -1,6 +1,6 @@
 import fc from 'fast-check'
 
-/** The same cases in every run; a failure still prints its counterexample. */
+/** Seed and number of cases: the same cases in every run; a failure still prints its counterexample. */
 export const runs = { seed: 20260621, numRuns: 300 }
 
 export const number = (min: number, max: number): fc.Arbitrary<number> =>

@@ -19,7 +19,7 @@ const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
 const layers = new CloudLayers()
 
-/** What the compiler would not let pass. */
+/** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
 const make = (options = {}, given = layers) =>

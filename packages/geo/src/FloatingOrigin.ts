@@ -10,7 +10,7 @@ export interface FloatingOriginOptions {
 }
 
 export interface FloatingOriginEventMap {
-  /** After a rebase: what stands at `offset` in the old world frame is at the origin in the new one. */
+  /** Fired after a rebase: what stands at `offset` in the old world frame is at the origin in the new one. */
   rebase: { offset: Vector3 }
 }
 

@@ -87,7 +87,7 @@ export function visibleDistance(
 interface TangentRay {
   /** ECEF, unit length. */
   direction: Vector3
-  /** From the viewpoint to the tangent point [m]. */
+  /** Distance from the viewpoint to the tangent point [m]. */
   distance: number
   /** Angle below the level [rad]. */
   dip: number

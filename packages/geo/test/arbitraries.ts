@@ -1,7 +1,7 @@
 import fc from 'fast-check'
 import { Vector3 } from 'three'
 
-/** The same cases in every run; a failure still prints its counterexample. */
+/** Seed and number of cases: the same cases in every run; a failure still prints its counterexample. */
 export const runs = { seed: 20260621, numRuns: 400 }
 
 export const number = (min: number, max: number): fc.Arbitrary<number> =>

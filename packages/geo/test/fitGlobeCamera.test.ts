@@ -8,12 +8,16 @@ import { direction, latitude, longitude, magnitude, number, runs } from './arbit
 const earth = Ellipsoid.WGS84
 const lowest = earth.grown(-500)
 
-function look(camera: PerspectiveCamera | OrthographicCamera, eye: Vector3, at: Vector3): void {
-  camera.position.copy(eye)
+function look(
+  camera: PerspectiveCamera | OrthographicCamera,
+  viewpoint: Vector3,
+  at: Vector3
+): void {
+  camera.position.copy(viewpoint)
   // three's lookAt() wants an up that is not along the view.
-  const view = at.clone().sub(eye).normalize()
-  const up = earth.surfaceNormal(eye)
-  const north = new Vector3(0, 1, 0).transformDirection(earth.eastNorthUpFrame(eye))
+  const view = at.clone().sub(viewpoint).normalize()
+  const up = earth.surfaceNormal(viewpoint)
+  const north = new Vector3(0, 1, 0).transformDirection(earth.eastNorthUpFrame(viewpoint))
   camera.up.copy(Math.abs(view.dot(up)) < 0.7 ? up : north)
   camera.lookAt(at)
   camera.updateMatrixWorld(true)
@@ -27,20 +31,20 @@ const ground = fc.record({
 })
 
 function placeGround(
-  eye: Vector3,
+  viewpoint: Vector3,
   { distance, azimuth, height }: { distance: number; azimuth: number; height: number }
 ): Vector3 {
-  const scale = Math.max(1, earth.heightAt(eye) / 1e5)
+  const scale = Math.max(1, earth.heightAt(viewpoint) / 1e5)
   const beside = new Vector3(Math.sin(azimuth), Math.cos(azimuth), 0)
     .multiplyScalar(distance * scale)
-    .applyMatrix4(earth.eastNorthUpFrame(earth.footPoint(eye)))
+    .applyMatrix4(earth.eastNorthUpFrame(earth.footPoint(viewpoint)))
   const { longitude, latitude } = earth.ecefToGeodetic(beside)
   return earth.geodeticToECEF({ longitude, latitude, height })
 }
 
-function isHidden(eye: Vector3, point: Vector3): boolean {
-  const ray = point.clone().sub(eye)
-  const hit = lowest.intersectRayDistance(eye, ray)
+function isHidden(viewpoint: Vector3, point: Vector3): boolean {
+  const ray = point.clone().sub(viewpoint)
+  const hit = lowest.intersectRayDistance(viewpoint, ray)
   return hit !== null && hit < ray.length() - 1
 }
 
@@ -55,15 +59,15 @@ describe.each<DepthKind>(['standard', 'reversed', 'logarithmic'])('%s depth', de
         ground,
         number(10, 110),
         (lon, lat, height, at, fov) => {
-          const eye = earth.geodeticToECEF({ longitude: lon, latitude: lat, height })
+          const viewpoint = earth.geodeticToECEF({ longitude: lon, latitude: lat, height })
           // Below the highest mountains, the nearest ground is where the camera stands.
           const point = placeGround(
-            eye,
+            viewpoint,
             height > 9000 ? at : { ...at, height: Math.min(at.height, 0) }
           )
-          if (isHidden(eye, point)) return
+          if (isHidden(viewpoint, point)) return
           const camera = new PerspectiveCamera(fov, 16 / 9)
-          look(camera, eye, point.clone().multiplyScalar(0.999).lerp(eye, 0.1))
+          look(camera, viewpoint, point.clone().multiplyScalar(0.999).lerp(viewpoint, 0.1))
           fitGlobeCamera(camera, { depth })
           const view = point.clone().applyMatrix4(camera.matrixWorldInverse)
           const clip = view.clone().applyMatrix4(camera.projectionMatrix)
@@ -121,12 +125,14 @@ it('gives near to what is known to be far', () => {
 })
 
 it('works in other world frames and units', () => {
-  const eye = earth.geodeticToECEF({ longitude: 139.77, latitude: 35.68, height: 5e4 })
+  const viewpoint = earth.geodeticToECEF({ longitude: 139.77, latitude: 35.68, height: 5e4 })
   const ecef = new PerspectiveCamera()
-  look(ecef, eye, new Vector3())
+  look(ecef, viewpoint, new Vector3())
   fitGlobeCamera(ecef)
   const local = new PerspectiveCamera()
-  const worldToECEF = earth.localYUpFrame(eye).multiply(new Matrix4().makeScale(1000, 1000, 1000))
+  const worldToECEF = earth
+    .localYUpFrame(viewpoint)
+    .multiply(new Matrix4().makeScale(1000, 1000, 1000))
   fitGlobeCamera(local, { worldToECEF })
   expect(local.near * 1000).toBeCloseTo(ecef.near, 4)
   expect(local.far * 1000).toBeCloseTo(ecef.far, 2)

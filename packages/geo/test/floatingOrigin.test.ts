@@ -40,13 +40,13 @@ describe('FloatingOrigin', () => {
         const position = earth.geodeticToECEF({ longitude: lon, latitude: lat, height })
         const { world, marker, camera } = globeScene(position)
         const before = viewOf(marker, camera)
-        const eyeECEF = camera.position.clone()
+        const cameraECEF = camera.position.clone()
         const origin = new FloatingOrigin(world, camera)
         expect(origin.update()).toBe(true)
         expect(camera.position.length()).toBeLessThan(1)
         expectSame(viewOf(marker, camera), before, 1e-7)
         const again = camera.position.clone().applyMatrix4(origin.worldToECEF)
-        expect(again.distanceTo(eyeECEF)).toBeLessThan(1e-8)
+        expect(again.distanceTo(cameraECEF)).toBeLessThan(1e-8)
         expect(origin.update()).toBe(false)
       }),
       runs

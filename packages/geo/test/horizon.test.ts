@@ -26,14 +26,17 @@ describe('on a sphere', () => {
         magnitude(0.1, 1e9),
         number(-180, 540),
         (lon, lat, h, azimuthDegrees) => {
-          const eye = ellipsoid.geodeticToECEF({ longitude: lon, latitude: lat, height: h })
+          const viewpoint = ellipsoid.geodeticToECEF({ longitude: lon, latitude: lat, height: h })
           const options = { ellipsoid, azimuthDegrees }
           const distance = Math.sqrt(h * (2 * radius + h))
-          expect(horizonDistance(eye, options) / distance).toBeCloseTo(1, 7)
-          expect(horizonDip(eye, options)).toBeCloseTo(Math.atan(distance / radius), 7)
+          expect(horizonDistance(viewpoint, options) / distance).toBeCloseTo(1, 7)
+          expect(horizonDip(viewpoint, options)).toBeCloseTo(Math.atan(distance / radius), 7)
           const top = radius + 9000
           const beyond = Math.sqrt(top * top - radius * radius)
-          expect(visibleDistance(eye, 9000, 0, options) / (distance + beyond)).toBeCloseTo(1, 7)
+          expect(visibleDistance(viewpoint, 9000, 0, options) / (distance + beyond)).toBeCloseTo(
+            1,
+            7
+          )
         }
       ),
       runs
@@ -41,11 +44,11 @@ describe('on a sphere', () => {
   })
 
   it('has limbs at other heights', () => {
-    const eye = above(400e3, ellipsoid)
+    const viewpoint = above(400e3, ellipsoid)
     const to = (height: number): number => Math.sqrt((radius + 400e3) ** 2 - (radius + height) ** 2)
-    expect(tangentLimbDistance(eye, 60e3, { ellipsoid })).toBeCloseTo(to(60e3), 3)
-    expect(tangentLimbDistance(eye, -500, { ellipsoid })).toBeCloseTo(to(-500), 3)
-    expect(tangentLimbDistance(eye, 500e3, { ellipsoid })).toBe(0)
+    expect(tangentLimbDistance(viewpoint, 60e3, { ellipsoid })).toBeCloseTo(to(60e3), 3)
+    expect(tangentLimbDistance(viewpoint, -500, { ellipsoid })).toBeCloseTo(to(-500), 3)
+    expect(tangentLimbDistance(viewpoint, 500e3, { ellipsoid })).toBe(0)
   })
 })
 
@@ -69,18 +72,20 @@ describe('on the Earth', () => {
         magnitude(1, 1e9),
         number(0, 360),
         (lon, lat, h, azimuth) => {
-          const eye = earth.geodeticToECEF({ longitude: lon, latitude: lat, height: h })
+          const viewpoint = earth.geodeticToECEF({ longitude: lon, latitude: lat, height: h })
           const options = { azimuthDegrees: azimuth }
-          const dip = horizonDip(eye, options)
+          const dip = horizonDip(viewpoint, options)
           const angle = (azimuth * Math.PI) / 180
-          const sight = new Vector3(
+          const viewDirection = new Vector3(
             Math.sin(angle) * Math.cos(dip),
             Math.cos(angle) * Math.cos(dip),
             -Math.sin(dip)
-          ).transformDirection(earth.eastNorthUpFrame(eye))
-          const touch = eye.clone().addScaledVector(sight, horizonDistance(eye, options))
+          ).transformDirection(earth.eastNorthUpFrame(viewpoint))
+          const touch = viewpoint
+            .clone()
+            .addScaledVector(viewDirection, horizonDistance(viewpoint, options))
           expect(Math.abs(earth.heightAt(touch))).toBeLessThan(1e-6 + 1e-13 * h)
-          expect(Math.abs(sight.dot(earth.surfaceNormal(touch)))).toBeLessThan(1e-6)
+          expect(Math.abs(viewDirection.dot(earth.surfaceNormal(touch)))).toBeLessThan(1e-6)
         }
       ),
       runs
@@ -88,9 +93,9 @@ describe('on the Earth', () => {
   })
 
   it('is nearer where the Earth bends more', () => {
-    const eye = earth.geodeticToECEF({ longitude: 0, latitude: 0, height: 100 })
-    const north = horizonDistance(eye, { azimuthDegrees: 0 })
-    const east = horizonDistance(eye, { azimuthDegrees: 90 })
+    const viewpoint = earth.geodeticToECEF({ longitude: 0, latitude: 0, height: 100 })
+    const north = horizonDistance(viewpoint, { azimuthDegrees: 0 })
+    const east = horizonDistance(viewpoint, { azimuthDegrees: 90 })
     // √(M / N) at the equator = b / a.
     expect(north / east).toBeCloseTo(6356752.3142 / 6378137, 5)
   })

@@ -8,7 +8,7 @@ const LIGHT_FOREST: Colour = [90, 104, 60]
 const PASTURE: Colour = [112, 120, 70]
 const FIELD: Colour = [142, 132, 90]
 const ROCK: Colour = [122, 113, 99]
-/** What the globe around the tileset looks like: see `surfaceNodes` in src/globe/earthSurface.ts. */
+/** Colour of the globe around the tileset: see `surfaceNodes` in src/globe/earthSurface.ts. */
 const SURROUNDINGS: Colour = [88, 117, 52]
 
 function mix(a: Colour, b: Colour, t: number): Colour {
@@ -21,7 +21,7 @@ function smoothstep(low: number, high: number, x: number): number {
 }
 
 /**
- * How likely it is that woods cover a place, in [0, 1]: they grow on slopes and heights, and in patches elsewhere.
+ * Likelihood of woods at a point, in [0, 1]: they grow on slopes and heights, and in patches elsewhere.
  *
  * @param height - Above sea level [m].
  * @param slope - Rise over run.

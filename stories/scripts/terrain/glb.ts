@@ -3,7 +3,7 @@ export interface Primitive {
   positions: Float32Array
   /** Unit vectors as signed 16-bit fractions, four per vertex: the fourth pads to a multiple of 4 bytes. */
   normals: Int16Array
-  /** Of the tile's image. */
+  /** Texture coordinates in the tile's image. */
   uvs?: Float32Array
   /** Linear RGBA, 8 bits each; multiplies the image if there is one. */
   colors?: Uint8Array

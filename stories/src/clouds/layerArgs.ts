@@ -99,7 +99,7 @@ export const layerArgTypes: ArgTypes<LayerArgs> = {
     0.01,
     'Small: tops at all heights; great: nearly all at one height'
   ),
-  shapeAmount: range('Shape', 0, 1, 0.01, 'Billows: heads and creases'),
+  shapeAmount: range('Shape', 0, 1, 0.01, 'Billows: bulges that meet in creases'),
   detailAmount: range('Detail', 0, 1, 0.01, 'What is finer than the billows'),
   weatherScale: range('Weather scale', 0.1, 10, 0.05, 'Size and distance of single clouds'),
   shapeScale: range('Shape scale', 0.1, 10, 0.05, 'Size of billows'),

@@ -79,13 +79,13 @@ export function createWater(radius: number): Water {
 
   material.normalNode = Fn(() => {
     const normal = vec3(wave.x.negate(), 1, wave.y.negate()).normalize().toConst()
-    const toEye = cameraPosition.sub(positionWorld).normalize().toConst()
-    const mirrored = reflect(toEye.negate(), normal).toConst()
+    const toCamera = cameraPosition.sub(positionWorld).normalize().toConst()
+    const mirrored = reflect(toCamera.negate(), normal).toConst()
     // A ray that dips meets the next wave and goes up from there; so do most of those that a pixel blurs.
     const lift = wave.z.sqrt().mul(3).add(TEXELS).toConst()
     const height = mirrored.y.mul(mirrored.y).add(lift.mul(lift)).sqrt()
     const lifted = vec3(mirrored.x, height, mirrored.z).normalize()
-    return transformNormalToView(lifted.add(toEye).normalize())
+    return transformNormalToView(lifted.add(toCamera).normalize())
   })()
   // GGX: α² is twice the variance of slopes, and α the square of three's roughness.
   material.roughnessNode = wave.z.mul(2).sqrt().sqrt().add(0.02).min(1)

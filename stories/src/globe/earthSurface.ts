@@ -24,14 +24,17 @@ import { groundDetail } from './detailNoise'
 
 /** The finest level of the imagery. */
 const IMAGERY_LEVEL = 2
-/** The finest level of the geometry: tiles of 600 m, whose chords are a fraction of a millimetre below the ellipsoid. */
+/**
+ * The finest level of the geometry: tiles of 600 m, whose chords are a fraction of a millimetre below the
+ * ellipsoid.
+ */
 const GEOMETRY_LEVEL = 15
 /**
  * The coarsest level that is drawn. Pieces of coarser ones are as much as 35 km below the ellipsoid, these 500 m,
  * and they are only ever seen from far away.
  */
 const COARSEST_LEVEL = 3
-/** More than any view forgives [m]. */
+/** Error that no view forgives [m]. */
 const NEVER_ENOUGH = 1e6
 /** Periods of the detail noise around the equator: 78 km each. */
 const DETAIL_PERIODS = 512
@@ -58,7 +61,8 @@ interface Tiling {
 }
 
 /**
- * Earth's surface in tiles that load as one comes near: Natural Earth's images, on geometry that goes on dividing where the images end.
+ * Earth's surface in tiles that load as one comes near: Natural Earth's images, on geometry that goes on
+ * dividing where the images end.
  *
  * Without that the surface would be flat pieces of 3°, as much as 2 km below the ellipsoid.
  */

@@ -14,13 +14,16 @@ import type { Place } from './places'
 import { aimShadow, prepareShadow } from './sunShadow'
 import { createTerrain } from './terrain'
 
-/** The Earth in tiles, pictures of all of it and terrain of one valley, under a sky, and a camera that moves about it. */
+/**
+ * The Earth in tiles, pictures of all of it and terrain of one valley, under a sky, and a camera that moves
+ * about it.
+ */
 export interface Land {
   readonly renderer: WebGPURenderer
   readonly scene: Scene
   readonly camera: PerspectiveCamera
   readonly air: Air
-  /** For what else stands on the land. */
+  /** Noise for all else that stands on the land. */
   readonly noise: DataTexture
 }
 

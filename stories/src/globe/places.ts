@@ -9,11 +9,11 @@ export interface Place {
   longitude: number
   /** [degrees] */
   latitude: number
-  /** Above the ellipsoid [m]. */
+  /** Height above the ellipsoid [m]. */
   height: number
   /** Clockwise from north [degrees]. */
   heading: number
-  /** Above the horizontal [degrees]. */
+  /** Angle above the horizontal [degrees]. */
   pitch: number
 }
 

@@ -5,7 +5,7 @@ import type { PerspectiveCamera } from 'three'
 const MAP_SIZE = 2048
 const SMALLEST = 150
 const LARGEST = 15_000
-/** Above this no shadow is big enough to see [m]. */
+/** Height above which no shadow is big enough to see [m]. */
 const CEILING = 40_000
 
 const forward = new Vector3()

@@ -92,7 +92,7 @@ export class PrefilteredCube {
     this.#next = 0
   }
 
-  /** Has materials see what was made. */
+  /** Copies the finished map to the one that materials see. */
   #finish(renderer: Renderer): void {
     this.#next = 0
     if (this.#maps === null) return

@@ -45,7 +45,7 @@ export class SkyCube {
   /** Factors from the luminance scale of now to that of the cube, and from that of the map to now's. */
   readonly #toCube = uniform(1).setGroup(renderGroup)
   readonly #fromMap = uniform(1).setGroup(renderGroup)
-  /** Those that the shader has. */
+  /** Layers that the shader has. */
   #layers: readonly SkyLayer[] | null = null
   readonly #overlay: SkyOverlay | null
   /** Faces drawn, negative while there are steps of the overlay to go; null while it rests. */
@@ -139,7 +139,7 @@ export class SkyCube {
     return isComplete
   }
 
-  /** Has materials see what was completed last at the luminance scale of now. */
+  /** Shows materials the map that was completed last, at the luminance scale of now. */
   show(): void {
     this.#fromMap.value = this.#atmosphere.luminanceScale / this.#completedScale
   }

@@ -107,7 +107,7 @@ export class DayCycle {
     this.#requestedSeason = null
   }
 
-  /** The same as a date, a copy. */
+  /** Time as a date, a copy. */
   get date(): Date {
     return new Date(this.#time)
   }

@@ -4,7 +4,8 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
-import { viewRay, sampleSky } from '../skyVolume/tsl/skyVolume'
+import { sampleSky } from '../skyVolume/tsl/skyVolume'
+import { viewRay } from '../skyVolume/tsl/viewRay'
 import type { Bool, Float } from '../tsl-types'
 
 /** Options of {@link DistanceFog}. */

@@ -68,7 +68,7 @@ export class Flare {
   }
 
   /** @param isVisible - The source is above the horizon and shines. */
-  updateReach(isVisible: boolean): void {
+  updateMaximumAngle(isVisible: boolean): void {
     // Square of the angle at which a lobe falls to MIN_RADIANCE.
     const square = (power: number, strength: number): number =>
       (2 / power) * Math.log(((power + 1) * strength) / (2 * Math.PI * MIN_RADIANCE))

@@ -37,7 +37,7 @@ export class SunFlare extends Flare implements SkyLayer {
     const { parameters } = view.atmosphere
     const radius = parameters.bottomRadius + Math.max(view.height, 0)
     this.#visibleFraction.value = visibleDisc(parameters, radius, view.up.dot(view.lightDirection))
-    this.updateReach(this.#visibleFraction.value > 0)
+    this.updateMaximumAngle(this.#visibleFraction.value > 0)
   }
 
   background(ray: SkyRay, farther: Vec4): Vec4 {

@@ -17,7 +17,7 @@ export interface SkyLitPlane {
   readonly view: ViewNodes
   /** Position from the camera, in the mapped space [m]. */
   readonly offset: Vec3
-  /** Above the ground [m]. */
+  /** Altitude above the ground [m]. */
   readonly altitude: Float
   /** Zenith there. */
   readonly up: Vec3
@@ -99,7 +99,7 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
       const view = this.#view
       const { air } = view
       const offset = view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosLight, up } = view.place(offset)
+      const { altitude, cosLight, up } = view.localCoordinates(offset)
       const normal = view.toMapped(normalView).normalize().toConst()
       const cosNormal = normal.dot(up)
       const clear = skyIrradiance(

@@ -93,7 +93,7 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
     node.colorNode = Fn(() => {
       const { uniforms, transmittance } = this.#view.air
       const offset = this.#view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosLight } = this.#view.place(offset)
+      const { altitude, cosLight } = this.#view.localCoordinates(offset)
       const sunlight = lightTransmittance(uniforms, transmittance, altitude, cosLight)
       return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
     })()

@@ -79,10 +79,10 @@ export class MoonUniforms {
     const phaseFactor = surfacePhaseFactor(phaseAngle)
     this.sunlit.value.fromArray(full.map(value => 2 * value * phaseFactor))
     this.earthlit.value.fromArray(full.map((value, i) => value * shine[i]))
-    const eyeRadius = parameters.bottomRadius + Math.max(view.height, 0)
-    const visible = visibleDisc(parameters, eyeRadius, view.up.dot(this.directionMapped.value))
+    const cameraRadius = parameters.bottomRadius + Math.max(view.height, 0)
+    const visible = visibleDisc(parameters, cameraRadius, view.up.dot(this.directionMapped.value))
     this.irradiance.value.set(...moon.irradiance).multiplyScalar(visible)
-    halo.updateReach(this.irradiance.value.y > 0)
+    halo.updateMaximumAngle(this.irradiance.value.y > 0)
     this.cosNearSun.value = cosWidened(CORONA_RADII * parameters.sunAngularRadius)
     this.cosNearMoon.value = Math.min(cosWidened(angularRadius), halo.uniforms.cosMaxAngle.value)
   }

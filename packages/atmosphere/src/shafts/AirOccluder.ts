@@ -8,11 +8,11 @@ import type { ViewUniforms } from '../view/ViewUniforms'
 
 /** A place in the air that a camera looks through, as shader nodes. */
 export interface AirPlace {
-  /** The camera's view in the light whose shadow it is; `view.place(offset)` has altitude and zenith. */
+  /** The camera's view in the light whose shadow it is; `view.localCoordinates(offset)` has altitude and zenith. */
   readonly view: ViewUniforms
-  /** From the camera, in the mapped space [m]. */
+  /** Displacement from the camera, in the mapped space [m]. */
   readonly offset: Vec3
-  /** The same place in world space [world units]. */
+  /** Position in world space [world units]. */
   readonly positionWorld: () => Vec3
   /** Noise in (0, 1), for what is read in steps. */
   readonly jitter: Float

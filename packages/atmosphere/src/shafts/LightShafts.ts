@@ -18,7 +18,10 @@ import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './sha
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
 
-/** Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in each. */
+/**
+ * Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in
+ * each.
+ */
 const qualities = {
   low: { rows: 512, groups: 3, samples: 3 },
   medium: { rows: 1024, groups: 4, samples: 3 },
@@ -26,7 +29,7 @@ const qualities = {
   reference: { rows: 2048, groups: 64, samples: 8 }
 } as const
 
-/** How finely light shafts are marched. */
+/** Fineness of the march of light shafts. */
 export type LightShaftsQuality = keyof typeof qualities
 
 const names = Object.keys(qualities) as LightShaftsQuality[]
@@ -73,7 +76,7 @@ const _axes = new Matrix4()
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
- *   about the eye); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
+ *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
  */
 export class LightShafts implements ShadowedShafts {
   /** Shared, not owned. */
@@ -119,11 +122,11 @@ export class LightShafts implements ShadowedShafts {
     this.source = (light as { source?: LightSource }).source ?? atmosphere.sun
     this.view = viewNodes(atmosphere, camera, this.source)
     const shadows = this.#shadows
-    const { map, frame, reach } = this.#map
+    const { map, frame, maximumRho } = this.#map
     this.shadowedAir = {
       map,
       frame,
-      reach,
+      maximumRho,
       get shadows() {
         return [...shadows.values()]
       },
@@ -188,7 +191,7 @@ export class LightShafts implements ShadowedShafts {
     this.#setStrength = value
   }
 
-  /** How finely shafts are marched; `'reference'` is for comparisons. Nothing is compiled when it changes. */
+  /** Fineness of the march; `'reference'` is for comparisons. Nothing is compiled when it changes. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }

@@ -26,7 +26,7 @@ interface PolarView {
 }
 
 /**
- * Shadow map in polar coordinates about the eye with the source of light as pole: for each ray of light the
+ * Shadow map in polar coordinates about the camera with the source of light as pole: for each ray of light the
  * angle of its first occluder. A view ray stays in one row of it, whatever its length; a row's texels
  * are a third of a degree wide, finer than the sun's disc, and its columns grow with the distance.
  */
@@ -42,7 +42,7 @@ export class SunPolarMap {
     columns: number(1)
   }
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
-  readonly reach = number()
+  readonly maximumRho = number()
   #sources: ShadowMapNodes[] = []
   #pass: FragmentPass | null = null
 
@@ -55,7 +55,7 @@ export class SunPolarMap {
   }
 
   /**
-   * Draws it for an eye.
+   * Draws it for a camera.
    *
    * @param rows - Number of directions around the light; there are half as many columns.
    */
@@ -66,7 +66,7 @@ export class SunPolarMap {
     maps: readonly ShadowMap[],
     rows: number
   ): void {
-    this.reach.value = 0
+    this.maximumRho.value = 0
     // Without maps, too: what has drawn with the texture in this frame must find it at its end.
     this.target.setSize(rows / 2, rows)
     this.frame.columns.value = rows / 2
@@ -119,15 +119,18 @@ export class SunPolarMap {
       source.depth.value = depth
       source.size.value.set(width, height)
       source.bounds.value.copy(bounds)
-      // From the eye in the mapped space to world axes, to the world, to the map; float64 all the way.
+      // From the camera in the mapped space to world axes, to the world, to the map; float64 all the way.
       space.displacement(_axes.identity(), _linear)
       _toMap.setFromMatrix3(_linear.invert()).premultiply(_axes.copyPosition(camera.matrixWorld))
       _toMap.premultiply(matrix)
       source.matrix.value.copy(_toMap)
       _fromMap.copy(_toMap).invert()
-      const eye = _end.set(0, 0, 0).applyMatrix4(_toMap)
+      const viewpoint = _end.set(0, 0, 0).applyMatrix4(_toMap)
       const { x, y, z, w } = bounds
-      least = Math.min(least, distance(MathUtils.clamp(eye.x, x, z), MathUtils.clamp(eye.y, y, w)))
+      least = Math.min(
+        least,
+        distance(MathUtils.clamp(viewpoint.x, x, z), MathUtils.clamp(viewpoint.y, y, w))
+      )
       greatest = Math.max(greatest, distance(x, y), distance(z, y), distance(x, w), distance(z, w))
       const e = _toMap.elements
       source.metersPerDepth.value = 1 / lightDirection.dot(_end.set(e[2], e[6], e[10]))
@@ -138,7 +141,7 @@ export class SunPolarMap {
     this.frame.evenDistance.value = even
     logScale.value = 1 / (last - first)
     logOffset.value = -first / (last - first)
-    this.reach.value = greatest
+    this.maximumRho.value = greatest
   }
 
   /** Frees the map. */
@@ -147,6 +150,6 @@ export class SunPolarMap {
     this.#pass?.dispose()
     this.#pass = null
     this.#sources = []
-    this.reach.value = 0
+    this.maximumRho.value = 0
   }
 }

@@ -36,7 +36,7 @@ function slotsOf(shadow: LightShadow): ShadowSlot[] {
   return slots
 }
 
-/** Has a plain shadow drawn by a node that {@link drawShadow} finds; not once three has made one. */
+/** Lets a node that {@link drawShadow} finds draw a plain shadow; not once three has made one. */
 export function claimShadow(light: ParallelLight): void {
   const { shadow } = light as { shadow: Shadow & { shadowNode?: unknown } }
   const isPlain = (shadow as { isDirectionalLightShadow?: boolean }).isDirectionalLightShadow
@@ -44,7 +44,7 @@ export function claimShadow(light: ParallelLight): void {
 }
 
 /**
- * Has three draw a shadow map now, if it would draw it later in the frame, or not at all since nothing in
+ * Draws a shadow map now, if it would draw it later in the frame, or not at all since nothing in
  * view takes shadows. Cascades are drawn by three alone.
  *
  * @returns Whether the map is that of the frame.

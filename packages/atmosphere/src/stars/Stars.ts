@@ -42,7 +42,7 @@ export interface StarsOptions {
  * (34′ at the horizon; nothing else in the sky has it) are left out.
  */
 export class Stars implements SkyLayer {
-  /** For type testing. */
+  /** Type tag: true. */
   readonly isStars = true
   readonly isAdditive = true
   /** Stars that are drawn. */

@@ -6,7 +6,7 @@ import { fail } from '@welkin/geo'
 const _features = new WeakMap<Texture, string>()
 const _limited = new WeakSet<NodeBuilder>()
 
-/** Has errors about too many textures name the feature that a user's texture was given to. */
+/** Names the feature that a user's texture was given to in errors about too many textures. */
 export function nameTexture(texture: Texture, feature: string): void {
   _features.set(texture, feature)
 }

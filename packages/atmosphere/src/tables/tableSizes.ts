@@ -10,7 +10,7 @@ export const DIFFUSE_SIZE = [96, 16] as const
  */
 export const DIFFUSE_TILES = 8
 
-/** How those tiles lie in their texture: columns × rows. */
+/** Columns × rows of those tiles in their texture. */
 export const DIFFUSE_LAYOUT = [2, 4] as const
 
 /** Sky volume: azimuth × elevation × distance. */

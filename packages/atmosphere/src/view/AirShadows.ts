@@ -27,7 +27,7 @@ export interface ScreenShadows extends SkyLayer {
  */
 export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'glow' | 'inScatter'> {
   /**
-   * The same for a post effect, computed once for its pixels and not by every material.
+   * Layer for a post effect, computed once for its pixels and not by every material.
    *
    * @param depthNode - Depth of the scene, as the renderer writes it.
    * @param veil - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.

@@ -5,7 +5,8 @@ import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView, ViewedAtmosphere } from './AtmosphereView'
 import type { LightSource } from './LightSource'
 import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
-import type { MediumSegment, ViewRay, VolumeSegment } from '../skyVolume/tsl/skyVolume'
+import type { MediumSegment, VolumeSegment } from '../skyVolume/tsl/skyVolume'
+import type { ViewRay } from '../skyVolume/tsl/viewRay'
 import type { ViewUniforms } from './ViewUniforms'
 
 /** Air this many times as bright as something faint in the sky hides it: less than half a grey level. */
@@ -30,7 +31,7 @@ export interface SkyRay extends Readonly<ViewRay> {
 export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' | 'cosViewLight'> {
   /** Distance to a point [m]; absent for the sky. */
   readonly distance?: Float
-  /** For the sky: whether the planet is in the way. */
+  /** True if the planet is in the way of the sky. */
   readonly hitsGround?: Bool
 }
 

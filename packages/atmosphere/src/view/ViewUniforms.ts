@@ -54,11 +54,11 @@ export class ViewUniforms {
   }
 
   /**
-   * Altitude, sun and zenith of a point.
+   * Local coordinates of a point: altitude [m], cosine between the light and the zenith, zenith in the mapped space.
    *
    * @param offset - From the camera, in the mapped space [m].
    */
-  place(offset: Vec3): { altitude: Float; cosLight: Float; up: Vec3 } {
+  localCoordinates(offset: Vec3): { altitude: Float; cosLight: Float; up: Vec3 } {
     const { bottomRadius, thickness } = this.air.uniforms
     const { height, up } = offsetPoint(offset, this.up, this.height, bottomRadius)
     return {

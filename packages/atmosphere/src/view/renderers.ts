@@ -9,7 +9,7 @@ export function checkRenderer(where: string, renderer: Renderer): void {
 }
 
 /**
- * For what keeps textures that one renderer draws.
+ * Checks that a renderer is the one that drew an object's textures.
  *
  * @param owner - The renderer that drew them, or null.
  * @throws If it is no WebGPURenderer, or the owner is another one that was not disposed of.
@@ -32,7 +32,7 @@ type Hooked = Scene & { onBeforeRender: OnBeforeRender }
 const _watched = new WeakSet<Object3D>()
 
 /**
- * Has the scene that a light is in throw when a renderer without nodes draws it. That one would light it
+ * Watches the scene that a light is in: it throws when a renderer without nodes draws it. That one would light it
  * white under a black sky, and calls nothing else of ours. The first right renderer ends the watch.
  */
 export function watchScene(where: string, light: Object3D): void {

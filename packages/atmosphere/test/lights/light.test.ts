@@ -78,30 +78,30 @@ describe('colour', () => {
   })
 })
 
-describe('eye', () => {
+describe('viewpoint', () => {
   it('sees the horizon where geometry has it', () => {
     fc.assert(
       fc.property(number(-1e5, 6e7), cosine, (altitude, cosLight) => {
-        const eye = viewpointScalars(earth, altitude, cosLight)
+        const viewpoint = viewpointScalars(earth, altitude, cosLight)
         const height = Math.max(altitude, LOWEST_VIEWPOINT)
         const { bottomRadius } = earth
         // From afar the radius is what float32 has, and all else is the geometry of that radius.
         const exact = bottomRadius + height
-        const radius = height > bottomRadius ? eye.radius : exact
-        expect(Math.abs(eye.radius / exact - 1)).toBeLessThan(
+        const radius = height > bottomRadius ? viewpoint.radius : exact
+        expect(Math.abs(viewpoint.radius / exact - 1)).toBeLessThan(
           height > bottomRadius ? 2 ** -23 : 1e-15
         )
-        expect(eye.altitude).toBe(height)
-        expect(eye.sinHorizon).toBeCloseTo(bottomRadius / radius, 12)
+        expect(viewpoint.altitude).toBe(height)
+        expect(viewpoint.sinHorizon).toBeCloseTo(bottomRadius / radius, 12)
         const above = height > bottomRadius ? radius - bottomRadius : height
         const cosHorizon = -Math.sqrt(above * (2 * bottomRadius + above)) / radius
-        expect(eye.toHorizon / (above * (2 * bottomRadius + above))).toBeCloseTo(1, 12)
-        expect(Math.abs(eye.cosHorizon - cosHorizon)).toBeLessThan(1e-9)
-        expect(Object.values(eye).every(Number.isFinite)).toBe(true)
-        expect(eye.belowScale).toBeGreaterThan(0)
-        expect(eye.aboveScale).toBeGreaterThan(0)
-        expect(eye.groundGrowth).toBeCloseTo(Math.exp(1 / eye.groundStretch) - 1, 9)
-        expect(eye.skyGrowth).toBeCloseTo(Math.exp(1 / eye.skyStretch) - 1, 9)
+        expect(viewpoint.toHorizon / (above * (2 * bottomRadius + above))).toBeCloseTo(1, 12)
+        expect(Math.abs(viewpoint.cosHorizon - cosHorizon)).toBeLessThan(1e-9)
+        expect(Object.values(viewpoint).every(Number.isFinite)).toBe(true)
+        expect(viewpoint.belowScale).toBeGreaterThan(0)
+        expect(viewpoint.aboveScale).toBeGreaterThan(0)
+        expect(viewpoint.groundGrowth).toBeCloseTo(Math.exp(1 / viewpoint.groundStretch) - 1, 9)
+        expect(viewpoint.skyGrowth).toBeCloseTo(Math.exp(1 / viewpoint.skyStretch) - 1, 9)
       }),
       runs
     )

@@ -31,7 +31,7 @@ const arcMinutes = degrees / 60
 const catalogue = brightStars()
 
 /**
- * From the Hipparcos catalogue (ESA SP-1200): right ascension [h, m, s] and declination [°, ′, ″] of J2000,
+ * Stars of the Hipparcos catalogue (ESA SP-1200): right ascension [h, m, s] and declination [°, ′, ″] of J2000,
  * proper motion in both [mas/a], V.
  */
 const PUBLISHED = {

@@ -12,8 +12,7 @@ import type { NoiseName } from '../noise/noiseSizes'
 import { latticeRotations, layerRotation } from './lattice'
 import {
   LAYER_STRIDE,
-  REGION_PERIOD,
-  FIELD_PERIOD,
+  noisePeriods,
   layerForms,
   layerPeriods,
   weatherScales
@@ -25,7 +24,10 @@ import { vec4Array, type Float, type LevelTexture, type Vec2, type Vec3 } from '
 import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
 
-/** Share of its coverage that a layer gains in a frame after its noise was drawn over several. */
+/**
+ * Share of its coverage that a layer gains in a frame after its noise was drawn over several. 1: clouds pop
+ * up (*Cumulus*, at its start).
+ */
 const FADE_IN_STEP = 1 / 48
 
 const _position = new Vector3()
@@ -232,7 +234,7 @@ export class CloudField {
   }
 
   /**
-   * Copies a layer's parameters, and its anchors for the eye and the point of the ground below it: what
+   * Copies a layer's parameters, and its anchors for the camera and the point of the ground below it: what
    * `layerAt` reads.
    */
   #write(index: number): void {
@@ -255,8 +257,8 @@ export class CloudField {
       ...lattice(detail, periods.detail, _position, 1 / stretch),
       // The weather is the same all the way up: it is looked up at the subpoint.
       ...lattice(weather, periods.weather, _subpoint),
-      ...lattice(fields, periods.weather * FIELD_PERIOD, _subpoint),
-      ...lattice(region, REGION_PERIOD, _subpoint),
+      ...lattice(fields, periods.weather * noisePeriods.fields, _subpoint),
+      ...lattice(region, noisePeriods.regions, _subpoint),
       [...windAxis(parameters.wind, _up, _axis).multiplyScalar(parameters.shear), bend],
       [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
       [column.columnDensity, column.insideDensity, column.profileMean, parameters.densityGrowth],

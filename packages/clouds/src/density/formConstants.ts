@@ -18,7 +18,7 @@ export const strengthForm = {
   coverageOffset: 0.93,
   fullCoverageExcess: 1.7,
   /**
-   * The same offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
+   * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
    * fraction at which it is 0 (*Cockpit*).
    */
   smoothOffset: 0.77,
@@ -83,7 +83,7 @@ export const billowForm = {
    */
   fineFrom: 0.3,
   fineOver: 0.5,
-  /** Height in the layer below which detail makes wisps, not heads, in [0, 1] (*Cumulus*). */
+  /** Height in the layer below which detail makes wisps, not billows, in [0, 1] (*Cumulus*). */
   wispHeight: 0.1,
   /**
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
@@ -112,9 +112,15 @@ export const columnForm = {
    * would. Smaller: far fields of cumulus show the ground between them at the horizon (*Cockpit*).
    */
   slantAspect: 5,
-  /** Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World clouds*). */
+  /**
+   * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
+   * clouds*).
+   */
   tops: 3.7,
-  /** Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share (*World clouds*). */
+  /**
+   * Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share
+   * (*World clouds*).
+   */
   hiddenBelow: 0.4,
   hiddenByAnvil: 0.75,
   leastSeen: 0.3,

@@ -18,8 +18,8 @@ function seededTilt(seed: number, tilt: number): Quaternion {
 }
 
 /**
- * Rotations of the lattices that noise is looked up in, from the frame of a layer: each askew to the
- * planet's axes and to the others, so that rows of one never fall on rows of another. The weather is tilted
+ * Rotations of the lattices that noise is looked up in, from the frame of a layer: each rotated against
+ * the planet's axes and the others, so that rows of one never fall on rows of another. The weather is tilted
  * but a little: the ground cuts what lies flat in it, as cirrus does, into streaks from west to east.
  */
 export const latticeRotations = {

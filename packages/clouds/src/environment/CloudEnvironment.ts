@@ -32,13 +32,16 @@ import { matrix3, matrix4, number, vector3 } from '../uniforms'
 export interface CloudEnvironmentOptions {
   /** Edge of the square map of all directions, in [16, 2048] [pixels]. */
   size?: number
-  /** How finely clouds are marched; by default `'low'`. */
+  /** Fineness of the march; by default `'low'`. */
   quality?: CloudQualityName | CloudQuality
-  /** How far the wind may carry clouds before they are drawn again, > 0 [m]. */
+  /** Distance that the wind may carry clouds before they are drawn again, > 0 [m]. */
   drift?: number
 }
 
-/** Frames that the clouds' shadow maps take to follow a change: the map is drawn after them. */
+/**
+ * Frames that the clouds' shadow maps take to follow a change, three cascades of four strips: the map is
+ * drawn after them.
+ */
 const WAIT = 12
 
 /** Strips that the map is drawn in, one a frame. */
@@ -50,7 +53,10 @@ const STORED_SCALE = 1e-4
 const _center = new Vector3()
 const _pole = new Vector3(0, 0, 1)
 
-/** Change of the direction to the moon, or of its light's strength, that shows. */
+/**
+ * Change of the direction to the moon, or of its light's strength, for which the map is drawn again. Greater:
+ * reflections jump.
+ */
 const MOON_CHANGE = 2e-3
 
 /** State of the clouds that a map shows; compared to tell whether it is out of date. */
@@ -58,7 +64,7 @@ interface CloudState {
   /** Values that have to stay the same. */
   readonly inputs: readonly unknown[]
   /** Rotations of the layers by the wind. */
-  readonly turns: readonly Quaternion[]
+  readonly rotations: readonly Quaternion[]
   /** Direction to the moon times its strength; 0 by day. */
   readonly moonlight: Vector3
 }
@@ -83,7 +89,7 @@ export class CloudEnvironment implements SkyOverlay {
   #drift = 200
   readonly #target: RenderTarget
   readonly #map: LevelTexture<Vec2>
-  /** How finely clouds are marched. */
+  /** Fineness of the march. */
   readonly quality: CloudQuality
   readonly #quality = new QualityUniforms()
   /** Axes of the map, east, north and zenith at its place, to those of the mapped space. */
@@ -92,9 +98,9 @@ export class CloudEnvironment implements SkyOverlay {
   readonly #fromMapped = matrix3()
   /** Stored light per light. */
   readonly #gain = number(1)
-  /** The same for light without a luminance scale. */
+  /** Scale of what is stored, for light without a luminance scale. */
   #storedScale = STORED_SCALE
-  /** From the camera of the shadow maps to the environment's [m]. */
+  /** Displacement from the camera of the shadow maps to the environment's [m]. */
   readonly #shift = vector3()
   #field: CloudField | null = null
   #pass: FragmentPass | null = null
@@ -118,7 +124,7 @@ export class CloudEnvironment implements SkyOverlay {
     this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
   }
 
-  /** How far the wind may carry clouds before they are drawn again, > 0 [m]. */
+  /** Distance that the wind may carry clouds before they are drawn again, > 0 [m]. */
   get drift(): number {
     return this.#drift
   }
@@ -149,19 +155,19 @@ export class CloudEnvironment implements SkyOverlay {
         illuminance,
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
-      turns: field.rotations.map(turn => turn.clone()),
+      rotations: field.rotations.map(rotation => rotation.clone()),
       moonlight: moonDirection.value.clone().multiplyScalar(moonIrradiance.value.y)
     }
   }
 
   #isAsDrawn(): boolean {
     if (this.#drawn === null) return false
-    const { inputs, turns, moonlight } = this.#drawn
+    const { inputs, rotations, moonlight } = this.#drawn
     const now = this.#state()
     const maxAngle = this.drift / this.clouds.atmosphere.parameters.bottomRadius
     return (
       inputs.every((input, i) => input === now.inputs[i]) &&
-      turns.every((turn, i) => turn.angleTo(now.turns[i]) <= maxAngle) &&
+      rotations.every((turn, i) => turn.angleTo(now.rotations[i]) <= maxAngle) &&
       moonlight.distanceTo(now.moonlight) <= MOON_CHANGE * moonlight.length()
     )
   }
@@ -191,7 +197,7 @@ export class CloudEnvironment implements SkyOverlay {
     field.pixelAngle.value = 2 / this.#target.width
     field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance
-    // On a clock that stands still: the turns are the other field's.
+    // On a clock that stands still: the rotations are the other field's.
     field.update(view, 0)
     this.#storedScale = STORED_SCALE * nightGain(view, field.radius.value)
     this.#fromMapped.value.copy(view.viewToMapped).invert()

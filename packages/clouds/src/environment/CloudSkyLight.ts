@@ -43,7 +43,7 @@ export class CloudSkyLight {
     _ofProbe.set(probe, this)
   }
 
-  /** How far clouds change the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */
+  /** Share of the clouds' effect on the light, in [0, 1]: 1 is right, 0 leaves a clear sky. */
   get strength(): number {
     return this.#strength.value
   }
@@ -58,8 +58,10 @@ export class CloudSkyLight {
     const { field, light, isDisposed } = this.clouds
     if (isDisposed) return clear
     // Between two cameras; a metre more or less is no matter to the weather.
-    const eye = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
-    const offset = plane.offset.add(eye(plane.view).sub(eye(field.view))).toConst() as Vec3
+    const viewpoint = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
+    const offset = plane.offset
+      .add(viewpoint(plane.view).sub(viewpoint(field.view)))
+      .toConst() as Vec3
     const without = clear.toConst() as Vec4
     const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
     return mix(without, cloudy, float(this.#strength))
@@ -73,7 +75,7 @@ export class CloudSkyLight {
 }
 
 /**
- * Has a `SkyLightProbe` give the light that comes through clouds and from them: under an overcast less
+ * Light that comes through clouds and from them, given by a `SkyLightProbe`: under an overcast less
  * than all of a clear day's light, but more than its blue sky's; above the clouds that of the white below.
  *
  * ```ts

@@ -24,7 +24,7 @@ export interface CloudLayerParameters {
    * greater: nearly all of them reach the same height, as under an inversion.
    */
   readonly profileExponent: number
-  /** Amount of billows that make heads and creases, in [0, 1]; 0 leaves smooth mounds. */
+  /** Amount of billows, bulges that meet in creases, in [0, 1]; 0 leaves smooth mounds. */
   readonly shapeAmount: number
   /** Amount of detail finer than the billows, down to 1 m near the camera, in [0, 1]. */
   readonly detailAmount: number

@@ -20,7 +20,7 @@ export class CloudLayers implements Iterable<CloudLayer> {
   /**
    * @param layers - Layers, shared with the caller, or parameters of new ones. Left out: one
    *   layer of scattered fair-weather cumulus.
-   * @param count - How many layers there are at least, for a later `copy`: further ones cover nothing.
+   * @param count - Least number of layers, for a later `copy`: further ones cover nothing.
    * @throws Error when there is no layer, more than four, or a parameter is out of its range.
    */
   constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}], count = 0) {

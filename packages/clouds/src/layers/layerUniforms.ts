@@ -4,38 +4,36 @@ import { densityForm } from '../density/formConstants'
 /** Vectors that a layer takes in the uniform array of all layers. */
 export const LAYER_STRIDE = 23
 
-/**
- * Period of the weather texture for a layer of cumulus 1200 m thick, and of other kinds [m]. Greater: larger
- * clouds, farther apart (*Cumulus*).
- */
-const CUMULUS_PERIOD = 6400
-const WEATHER_PERIOD = 12_800
-
-/** Period of the shape texture for such a layer [m]. Greater: broader billows, smoother clouds (*Cumulus*). */
-const SHAPE_PERIOD = 6400 / 3
-
-/** Period of the detail texture in those of the shape. Greater: coarser wisps at edges (*Inside a cloud*). */
-const DETAIL_PERIOD = 3 / 16
-
-/**
- * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
- * and clear zones (*World clouds from afar*, without its map).
- */
-export const REGION_PERIOD = 2_300_000
-
-/**
- * The weather is looked up a second time for the fields that clouds gather in, in a lattice without a
- * common period with the first. Its period in those of the first.
- */
-export const FIELD_PERIOD = 3 * Math.sqrt(6)
+/** Periods of a layer's look-ups of noise, for a layer 1200 m thick. */
+export const noisePeriods = {
+  /**
+   * Period of the weather texture for cumulus, and for other kinds [m]. Greater: larger clouds, farther apart
+   * (*Cumulus*).
+   */
+  cumulus: 6400,
+  weather: 12_800,
+  /** Period of the shape texture [m]. Greater: broader billows, smoother clouds (*Cumulus*). */
+  shape: 6400 / 3,
+  /** Period of the detail texture, in periods of the shape. Greater: coarser wisps at edges (*Inside a cloud*). */
+  detail: 3 / 16,
+  /**
+   * Period of the weather texture where it holds the fields that clouds gather in, in periods of the weather:
+   * irrational, so that both have no common period. Greater: larger fields, farther apart (*Cockpit*).
+   */
+  fields: 3 * Math.sqrt(6),
+  /**
+   * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
+   * and clear zones (*World clouds from afar*, without its map).
+   */
+  regions: 2_300_000
+} as const
 
 /**
  * Displacement of all of a layer's look-ups by its fields, and by the regions [periods of the weather]:
  * repetitions fall out of step. 0: the same clouds and billows again and again, in rows (*World clouds*,
  * without its map); much greater: clouds are drawn out.
  */
-export const FIELD_SHIFT = 0.25
-export const REGION_SHIFT = 0.5
+export const weatherShifts = { fields: 0.25, regions: 0.5 } as const
 
 /**
  * Shift of a world map's look-up by the fields, for a map of so many texels around the planet: half a
@@ -44,36 +42,44 @@ export const REGION_SHIFT = 0.5
  */
 export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
 
-/**
- * Waves around the planet: of each axis in the next two [rad], and how far they shift the regions, in
- * periods. Without that shift regions repeat every 2,300 km (*World clouds from afar*, without its map).
- */
-export const NEXT_WAVES = 3.1
-export const LAST_WAVES = 1.7
-export const PLANET_WARP = 0.22
+/** Waves around the planet. */
+export const waveForm = {
+  /**
+   * Wave numbers of each axis along the two others [rad]. Greater: shorter waves (*World clouds from afar*,
+   * without its map).
+   */
+  next: 3.1,
+  last: 1.7,
+  /**
+   * Shift of the regions by the waves [periods of the regions]. 0: regions repeat every 2,300 km (*World clouds
+   * from afar*, without its map).
+   */
+  warp: 0.22
+} as const
 
 /**
- * Weights of the scales that the weather is the sum of, with that of single clouds 1: fields of tens of
- * kilometres, of the layer's own weather and of large cells; regions; the planet. A greater one
- * gathers clouds more at its scale, with more clear sky between: *Cockpit* for fields, *World clouds from
+ * Weights of the scales that the weather is the sum of, with that of single clouds 1. A greater one gathers
+ * clouds more at its scale, with more clear sky between: *Cockpit* for fields and cells, *World clouds from
  * afar* without its map for the others.
  */
-export const FIELD_WEIGHT = 0.6
-const CELL_WEIGHT = 0.5
-const REGION_WEIGHT = 0.65
-const PLANET_WEIGHT = 0.4
+export const scaleWeights = {
+  /** Fields of tens of kilometres, of the layer's own weather and of large cells. */
+  fields: 0.6,
+  cells: 0.5,
+  regions: 0.65,
+  planet: 0.4,
+  /** Share of finer cells in the regions. 0: their edges have no finer structure. */
+  regionCells: 0.6
+} as const
 
-/** Share of finer cells in the regions. 0: their edges have no finer structure (*World clouds from afar*, without its map). */
-export const REGION_CELLS = 0.6
-
-/** Length over width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
+/** Ratio of length to width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
 const CIRRUS_STRETCH = 9
 
 const shareOf = (weights: readonly number[], index: number): number =>
   weights[index] ** 2 / (weights.reduce((sum, weight) => sum + weight ** 2, 0) || 1)
 
 /**
- * Periods of a layer's noise [m]: tall clouds are broad and have large heads. In powers of 2, or else every
+ * Periods of a layer's noise [m]: tall clouds are broad and have large billows. In powers of 2, or else every
  * change of an altitude would move the noise, which is anchored at the planet's centre.
  */
 export function layerPeriods({
@@ -88,11 +94,11 @@ export function layerPeriods({
   const scale = (share: number): number =>
     2 ** Math.min(Math.max(Math.round(share * octaves), -2), 2)
   const isCumulus = shareOf(weatherWeights, 0) > 0.5
-  const shape = SHAPE_PERIOD * scale(0.5) * shapeScale
+  const shape = noisePeriods.shape * scale(0.5) * shapeScale
   return {
-    weather: (isCumulus ? CUMULUS_PERIOD : WEATHER_PERIOD) * scale(0.45) * weatherScale,
+    weather: (isCumulus ? noisePeriods.cumulus : noisePeriods.weather) * scale(0.45) * weatherScale,
     shape,
-    detail: DETAIL_PERIOD * shape * detailScale
+    detail: noisePeriods.detail * shape * detailScale
   }
 }
 
@@ -126,19 +132,22 @@ export function weatherScales(
   const unit = weights.map(weight => weight / size)
   // Large cells are the third channel.
   const fieldVariance =
-    FIELD_WEIGHT ** 2 + CELL_WEIGHT ** 2 + 2 * FIELD_WEIGHT * CELL_WEIGHT * (unit[2] ?? 0)
+    scaleWeights.fields ** 2 +
+    scaleWeights.cells ** 2 +
+    2 * scaleWeights.fields * scaleWeights.cells * (unit[2] ?? 0)
   const large = hasMap ? 0 : 1
-  const variance = 1 + fieldVariance + large * (REGION_WEIGHT ** 2 + PLANET_WEIGHT ** 2)
+  const variance =
+    1 + fieldVariance + large * (scaleWeights.regions ** 2 + scaleWeights.planet ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   // From closed cells to open ones by way of cumulus: the variance stays.
   const closed = 1 - 2 * openCells
   return {
     clouds: [Math.hypot(a, b * Math.sqrt(1 - closed ** 2)), b * closed, c, d],
-    fields: FIELD_WEIGHT,
-    cells: CELL_WEIGHT * factor,
-    regions: (large * REGION_WEIGHT * factor) / Math.hypot(1, REGION_CELLS),
-    planet: (large * PLANET_WEIGHT) / Math.sqrt(variance),
+    fields: scaleWeights.fields,
+    cells: scaleWeights.cells * factor,
+    regions: (large * scaleWeights.regions * factor) / Math.hypot(1, scaleWeights.regionCells),
+    planet: (large * scaleWeights.planet) / Math.sqrt(variance),
     cloudVariance: 1 / variance,
     fieldVariance: fieldVariance / variance
   }

@@ -15,7 +15,7 @@ import { layerForms } from './layerUniforms'
 export interface MeanColumn {
   /** Density of an even column that lets as much light through as cloudy columns do in the mean [–]. */
   readonly columnDensity: number
-  /** The same where all is covered [–]. */
+  /** Mean density of columns where all is covered [–]. */
   readonly fullDensity: number
   /** Mean density inside of clouds, straight up through the middle of strong columns [–]. */
   readonly insideDensity: number

@@ -8,7 +8,7 @@ import { cloudPreset, type CloudPresetName } from './presets'
 export interface METAROptions {
   /** Elevation of the aerodrome above the ellipsoid, in [−500, 9000] [m]; default 0. */
   readonly stationElevation?: number
-  /** How many layers there are at least, to `copy` other reports later; default 1. */
+  /** Least number of layers, to `copy` other reports later; default 1. */
   readonly count?: number
 }
 

@@ -4,7 +4,7 @@ import type { UniformNode } from 'three/webgpu'
 import { withDefaults } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
-import { thicknesses, layers, positions } from './cpu/cloudLightSize'
+import { slabTableForm } from './cpu/slabTableForm'
 import { fillCloudLight } from './cpu/cloudLightTable'
 import type { LevelTexture, Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
@@ -82,6 +82,7 @@ export class CloudLightTable {
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   constructor(phase: Partial<CloudPhaseParameters> = {}) {
+    const { positions, thicknesses, layers } = slabTableForm
     const texels = new Uint16Array(4 * positions * thicknesses * layers)
     this.texture = new Data3DTexture(texels, positions, thicknesses, layers)
     this.texture.name = 'Welkin.CloudLight'
@@ -131,7 +132,7 @@ export class CloudLightTable {
     return this
   }
 
-  /** Has shaders know the phase function. */
+  /** Sets the uniforms of the phase function. */
   #apply(): void {
     const phase = this.#phase
     const { depthScale, moments } = scalePhase(phase)

@@ -9,13 +9,15 @@ const HIGHEST = 30_000
 /**
  * Depression of the sun at which moonlight sets in, where the sun's own light reaches no cloud any more, and
  * how much deeper it is when all of the moonlight counts: before, twilight outshines it [rad]. Earlier: a
- * full moon shows at dusk; later: clouds are black for a while. See the stories "Moon" and
- * "Clouds" with the sun below the horizon.
+ * full moon shows at dusk; later: clouds are black for a while (*Cirrus*, a later "Hour").
  */
 const NIGHTFALL = MathUtils.degToRad(6)
 const DUSK = MathUtils.degToRad(2)
 
-/** Orders of magnitude by which light is raised in deep night, and the sine of the sun's depression there. */
+/**
+ * Orders of magnitude by which light is raised in deep night, for half floats, and the sine of the sun's
+ * depression there. Fewer: steps of grey in dark clouds.
+ */
 const NIGHT_ORDERS = 5
 const NIGHT_SINE = 0.3
 

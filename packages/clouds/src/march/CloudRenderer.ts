@@ -72,7 +72,7 @@ export class CloudRenderer {
   readonly frame: FrameUniforms
   readonly #marchedTarget = cloudTarget('Marched')
   readonly #cellsTarget = cloudTarget('Cells')
-  /** History and the picture that is drawn from it, in turns. */
+  /** History and the target drawn from it: swapped in each frame. */
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
   readonly #march: FragmentPass
   readonly #gather: FragmentPass
@@ -84,7 +84,7 @@ export class CloudRenderer {
     light: textureNode(this.#accumulatedTargets[0].textures[0]),
     distances: textureNode(this.#accumulatedTargets[0].textures[1])
   }
-  /** The same light, or a debug view. */
+  /** Accumulated light, or a debug view. */
   readonly shown = textureNode(this.#accumulatedTargets[0].textures[0])
   /** Number of the debug view that is shown; 0 for the clouds. */
   readonly debug = number()

@@ -36,7 +36,7 @@ const NOISE_SLICES = 12
 
 /** Options of {@link clouds}. */
 export interface CloudsOptions {
-  /** How finely clouds are marched; by default `'high'`. */
+  /** Fineness of the march; by default `'high'`. */
   quality?: CloudQualityName | CloudQuality
   /** Cloud cover of the whole planet: see `CloudFieldOptions`. */
   worldMap?: Texture | null
@@ -82,9 +82,9 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
   readonly light: CloudLightTable
   /** Optical depths towards the sun about the camera. */
   readonly shadows: CloudShadowMap
-  /** Temporal accumulation on or off; without it, pictures are coarse. */
+  /** Temporal accumulation on or off; without it, clouds are coarse. */
   accumulates = true
-  /** After `dispose`: it casts no shadows any more. */
+  /** True after `dispose`: it casts no shadows any more. */
   isDisposed = false
   #time: number | null = null
   readonly #ownsLight: boolean
@@ -170,7 +170,7 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     return this.field.noise.isReady
   }
 
-  /** How finely clouds are marched. */
+  /** Fineness of the march. */
   get quality(): CloudQuality {
     return this.#quality
   }
@@ -306,7 +306,7 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     })()
   }
 
-  /** Frees its pictures and maps, and the noise and the light table if they are the node's own. */
+  /** Frees its render targets and maps, and the noise and the light table if they are the node's own. */
   override dispose(): void {
     this.isDisposed = true
     // three compiles all materials again: those that had the clouds' shadows read freed textures.

@@ -21,33 +21,44 @@ const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
 
 /**
  * History's length while the view or the clouds move [frames], and at least [samples of a pixel]. Longer:
- * less noise, and clouds that change their form trail behind. See the story "Cumulus from the ground" with
- * "Time lapse".
+ * less noise, and clouds that change their form trail behind (*Cumulus* with "Time lapse").
  */
 const MOVING_FRAMES = 48
 const MOVING_SAMPLES = 8
 
-/** Samples after which nothing is left of the light before a change: (3/4)¹² is 3 %. */
+/**
+ * Samples of a pixel for which history stays short after a change of light or clouds: 3 % of what was before
+ * is left. Fewer: the old light stays in a picture that stands still again (*Cumulus*, after a change of "Hour").
+ */
 const FORGETTING_SAMPLES = 12
 
-/** History's length in a picture that stands still [samples of a pixel]. */
+/** History's length in a picture that stands still [samples of a pixel]. Shorter: its grain moves (*Cumulus*). */
 const STILL_SAMPLES = 256
 
 /**
  * Half width of the variance clip [standard deviations], moving and standing still. Wider: less flicker at
- * edges, and ghosts behind clouds that move.
+ * edges, and ghosts behind clouds that move (*Cumulus* with "Time lapse").
  */
 const MOVING_CLIP = 1.25
 const STILL_CLIP = 8
 
-/** Move of the camera within a frame after which history is rejected: in its heights, and at least [m]. */
+/**
+ * Move of the camera within a frame after which history is rejected: in its heights, and at least [m]. Greater:
+ * clouds of the place before shine through after a jump; smaller: grain while one flies fast (*World clouds*).
+ */
 const CUT_HEIGHTS = 0.3
 const CUT_METRES = 300
 
-/** Move of the clouds within a frame after which history is rejected [m]. */
+/**
+ * Move of the clouds within a frame after which history is rejected [m]: a clock was set. Greater: ghosts
+ * (*Cumulus*, "Hour").
+ */
 const CLOUD_CUT = 500
 
-/** Change of the gain within a frame after which history is rejected, as a factor. */
+/**
+ * Change of the gain within a frame after which history is rejected, as a factor. Greater: ghosts of the day
+ * by night (*Cumulus*, "Hour").
+ */
 const LIGHT_CUT = 4
 
 /** Greatest square of a move that counts as none, of the camera [m²] and of the sun's direction. */
@@ -60,7 +71,7 @@ const isSame = (values: readonly number[], before: readonly number[]): boolean =
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
   slot < 3 || slot > 18 ? [x, y, z, w] : []
 
-/** Everything that shapes and lights the clouds, as numbers. */
+/** Numbers of all that shapes and lights the clouds. */
 function cloudInputs({ values, night }: CloudField, lightVersion: number): number[] {
   const { moonDirection, moonIrradiance, skyRadiance } = night
   const light = [moonDirection, moonIrradiance, skyRadiance]
@@ -93,7 +104,10 @@ export class FrameUniforms {
   readonly far = number()
   /** Normalized device coordinates (x, y, 1) of a pixel to a ray through it, in view space. */
   readonly rays = matrix3()
-  /** The same to the clip space (x, y, w) of the last frame, into which the ray led. */
+  /**
+   * Normalized device coordinates (x, y, 1) to the clip space (x, y, w) of the last frame, into which the ray
+   * led.
+   */
   readonly raysBefore = matrix3()
   /**
    * Viewpoints of this frame in that space, one for each layer: shifted against the layer's drift, so that
@@ -122,7 +136,7 @@ export class FrameUniforms {
   /** Frames until history has forgotten what was before the last change of light or clouds. */
   #forgetting = 0
 
-  /** Has the next frame start anew. */
+  /** Forgets history: the next frame starts anew. */
   reset(): void {
     this.#camera = null
   }

@@ -6,7 +6,7 @@ import type { Float, Vec2 } from '../tsl-types'
 
 /** Quantity shown instead of clouds, for debugging: white is most. */
 export type CloudsDebug =
-  /** How opaque they are, all along the line of sight. */
+  /** Opacity of the clouds all along the line of sight. */
   | 'density'
   /** Steps of the last ray marched nearby, of 256. */
   | 'steps'

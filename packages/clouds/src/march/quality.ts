@@ -6,21 +6,36 @@ import { number } from '../uniforms'
 
 /** Fineness of the march. All may be changed at any time; nothing is recompiled. */
 export interface CloudQuality {
-  /** Most steps of a ray, in [1, 1024]. Rays that need more end early, with too little cloud. */
+  /**
+   * Most steps of a ray, in [1, 1024]. Fewer: rays end early, and clouds thin out towards the horizon
+   * (*Cumulus*).
+   */
   readonly steps: number
-  /** Length of a step in clouds per distance from the camera, in [0.0001, 1]. */
+  /**
+   * Length of a step in clouds per distance from the camera, in [0.0001, 1]. Greater: grain on far clouds
+   * (*Cockpit*).
+   */
   readonly stepGrowth: number
-  /** Shortest step in clouds [m], in [0.1, 1000]. */
+  /** Shortest step in clouds [m], in [0.1, 1000]. Greater: near edges lose their detail (*Inside a cloud*). */
   readonly shortestStep: number
-  /** Scaled optical depth of a step in clouds, in [0.01, 10]: parts of a mean free path. */
+  /**
+   * Scaled optical depth of a step in clouds, in [0.01, 10]: parts of a mean free path. Greater: flat
+   * shading, soft edges (*Cumulus*).
+   */
   readonly depthStep: number
-  /** Least number of steps through a layer, in [1, 256]. */
+  /**
+   * Least number of steps through a layer, in [1, 256]. Fewer: small clouds are missed by some rays, as grain
+   * (*Cirrus*).
+   */
   readonly layerSteps: number
-  /** Samples of the clouds towards sun or moon, near each shaded place, in [1, 16]. */
+  /**
+   * Samples of the clouds towards sun or moon, near each shaded place, in [1, 16]. Fewer: billows cast no
+   * shadows on each other (*Storm*).
+   */
   readonly lightSteps: number
   /**
-   * A frame marches one pixel of each block of so many by so many, 1, 2, 3 or 4; what was marched before
-   * fills the rest.
+   * Edge of the blocks of which a frame marches one pixel each: 1, 2, 3 or 4; history has the rest. Greater:
+   * coarse clouds while one turns or flies (*Cockpit*).
    */
   readonly block: number
 }
@@ -102,7 +117,7 @@ const whole = (): UniformNode<'int', number> => uniform(1, 'int').setGroup(rende
 
 /** A {@link CloudQuality} as shader uniforms. */
 export class QualityUniforms {
-  /** Half as many as steps. */
+  /** Most pairs of samples: half as many as steps. */
   readonly pairs = whole()
   readonly stepGrowth = number()
   readonly shortestStep = number()

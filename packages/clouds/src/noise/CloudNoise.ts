@@ -129,7 +129,7 @@ const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3): 
  * GPU in fragment passes. About 11 MB.
  *
  * Weather is a volume too, of which the planet's surface is a slice: it has neither seams nor poles,
- * and since the lattice lies askew to the ground, no two tiles of it look alike.
+ * and since the lattice is tilted against the ground, no two tiles of it look alike.
  */
 export class CloudNoise {
   /** Coarse and fine billows, by `shapeChannels`, and two components of a curl. */

@@ -8,7 +8,7 @@ export interface Stir {
   readonly amount: number
 }
 
-/** One sort of noise in a channel: `perlin` or `billow` of tsl/noise.ts. */
+/** One sort of noise in a channel: `perlin` or `billow` of tsl/gradientNoise.ts and tsl/billow.ts. */
 export interface NoiseTerm {
   readonly kind: 'perlin' | 'billow'
   readonly cells: Cells
@@ -62,7 +62,10 @@ const octaves = (
   }))
 }
 
-/** Displacement of billows by curls of half as many cells, in cells of the billows. */
+/**
+ * Displacement of billows by curls of half as many cells, in cells of the billows. 0: round balls; greater:
+ * torn threads (*Cumulus*).
+ */
 const STIR = 0.4
 
 /** Two octaves of billows, each displaced by a curl of its own size on top of the one before. */
@@ -119,7 +122,7 @@ export const weatherChannels: readonly NoiseChannel[] = [
     statistics: [0.4781, 0.2843]
   },
   {
-    // Sheets, which the ground cuts in streaks wherever they do not lie flat.
+    // Layers, which the ground cuts in streaks wherever they do not lie flat.
     terms: [...octaves('perlin', [2, 3, 9], 2, 1), ...octaves('perlin', [5, 5, 24], 1, 0.6)],
     encoding: 'uniform',
     statistics: [-0.0005, 0.3727],

@@ -4,7 +4,10 @@ import { Vector3 } from 'three'
 /** Texels along an edge of a cascade. */
 export const CASCADE_SIZE = 256
 
-/** Sine of the least angle between rays of light and the plane that the map lies in. */
+/**
+ * Sine of the least angle between rays of light and the plane that the map lies in. Smaller: coarse shadows
+ * at dusk (*Cirrus*).
+ */
 const LEAST_SLOPE = 0.2
 
 const _normal = new Vector3()
@@ -43,15 +46,15 @@ export class CascadeState {
   }
 
   /**
-   * Puts the middle on the texel nearest to a place. All in the mapped space, from the planet's centre.
+   * Moves the cascade: its middle to the texel nearest to a point. All in the mapped space, from the planet's centre.
    *
    * @param light - Direction to the light.
    * @param anchor - The plane's origin [m].
-   * @param wanted - Place nearest to which the middle is put [m].
+   * @param wanted - Point nearest to which the middle is put [m].
    * @param halfWidth - [m].
    * @param rotations - Rotations of the layers' noise by the wind.
    */
-  place(
+  moveTo(
     light: Vector3,
     anchor: Vector3,
     wanted: Vector3,

@@ -59,7 +59,7 @@ export class CloudAirShadow implements AirShadow {
     const { shadow, known } = sampleShadows(shadows.nodes, place, jitter)
     const depth = shadow.toVar()
     If(known.mul(this.#isMapped).equal(0), () => {
-      const { altitude, cosLight } = view.place(offset)
+      const { altitude, cosLight } = view.localCoordinates(offset)
       depth.assign(meanDepthTowards(field, altitude, cosLight))
     })
     // What is scattered within the forward peak arrives with the sun.

@@ -11,28 +11,47 @@ import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
 import { number, vector3, vector4 } from '../uniforms'
 
-/** Half widths of the cascades for a camera near the ground [m]. */
+/**
+ * Half widths of the cascades for a camera near the ground [m]. Greater: blurred shadows near by; smaller:
+ * they end nearer (*Shadows*).
+ */
 const HALF_WIDTHS = [5000, 20_000, 80_000] as const
 
-/** Cascades double in width with each doubling of the camera's height above this [m]. */
+/**
+ * Height of the camera above which cascades double in width with each doubling of it [m]. Greater: shadows
+ * end within the picture (*Shadows*).
+ */
 const WIDENING_HEIGHT = 6000
 
-/** Highest camera for which maps are drawn [m]: farther away the clouds are a thin skin. */
+/**
+ * Highest camera for which maps are drawn [m]: from farther away, clouds are a thin skin without shadows of
+ * their own (*World clouds*).
+ */
 const HIGHEST = 150_000
 
-/** Cosine of the angle about the planet's centre after which the plane's origin follows the camera. */
+/**
+ * Cosine of the angle about the planet's centre after which the plane's origin follows the camera: 32 km on
+ * the Earth.
+ */
 const ANCHOR_COSINE = Math.cos(0.005)
 
-/** Change of the light's direction, or of the place in widths, that has all cascades drawn at once. */
+/**
+ * Change of the light's direction, or of the place in half widths, that has all cascades drawn at once.
+ * Greater: shadows follow a jump late (*Shadows*).
+ */
 const LIGHT_JUMP = 0.01
 const PLACE_JUMP = 0.5
 
-/** Frames over which a cascade is drawn anew. */
+/**
+ * Frames over which a cascade is drawn anew, a strip in each. More: frames take less long, shadows follow
+ * later (*Shadows*).
+ */
 const STRIPS = 4
 
 /**
  * Changes for which a cascade is drawn anew: moves of its middle [texels], moves of layers against each
  * other [texels], and of the light's direction, which move the far end of its rays by a tenth of a texel.
+ * Greater: shadows jump instead of drifting (*Shadows*, which has "Time lapse"); smaller: they are drawn in every frame.
  */
 const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
@@ -158,7 +177,7 @@ export class CloudShadowMap {
       if (!cascade.isDrawn || !this.#fits(state, halfWidth)) {
         if (cascade === this.#current) this.#current = null
         if (cascade === oldest) oldest = null
-        this.#place(state, halfWidth)
+        this.#move(state, halfWidth)
         this.#render(renderer, state, 0, SIZE)
         cascade.isDrawn = true
       } else if (this.#current === null && this.#isStale(state)) {
@@ -169,7 +188,7 @@ export class CloudShadowMap {
     if (this.#current === null) {
       this.#current = oldest
       this.#strip = 0
-      this.#place(this.#spare, oldest.state.halfWidth)
+      this.#move(this.#spare, oldest.state.halfWidth)
     }
     const rows = SIZE / STRIPS
     this.#render(renderer, this.#spare, this.#strip * rows, rows)
@@ -243,8 +262,8 @@ export class CloudShadowMap {
     )
   }
 
-  #place(state: CascadeState, halfWidth: number): void {
-    state.place(this.#light, this.#anchor, _below, halfWidth, this.field.rotations)
+  #move(state: CascadeState, halfWidth: number): void {
+    state.moveTo(this.#light, this.#anchor, _below, halfWidth, this.field.rotations)
     state.inputs = this.#inputs
     state.order = this.#order++
   }

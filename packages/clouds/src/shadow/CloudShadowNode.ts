@@ -91,7 +91,7 @@ export class CloudShadowNode extends Node<'float'> {
       const depth = shadow.toVar()
       If(known.mul(this.#isMapped).equal(0), () => {
         const distance = offset.length()
-        const sample = { offset, ...field.view.place(offset), distance }
+        const sample = { offset, ...field.view.localCoordinates(offset), distance }
         depth.assign(opticalDepthTowards(field, sample, this.#view.lightDirection))
       })
       // What is scattered within the forward peak arrives with the sun.

@@ -10,7 +10,7 @@ import { layerRotation } from '../../src/density/lattice'
 import {
   layerForms,
   layerPeriods,
-  REGION_CELLS,
+  scaleWeights,
   weatherScales
 } from '../../src/layers/layerUniforms'
 import { neededStrength } from '../../src/layers/meanColumn'
@@ -236,7 +236,7 @@ describe('layer uniforms', () => {
             (sum, w, i) => sum + (scales.fields * w + (i === 2 ? scales.cells : 0)) ** 2,
             0
           ) / 12
-        const regions = (scales.regions ** 2 * (1 + REGION_CELLS ** 2)) / 12
+        const regions = (scales.regions ** 2 * (1 + scaleWeights.regionCells ** 2)) / 12
         expect(clouds).toBeCloseTo(scales.cloudVariance)
         expect(fields).toBeCloseTo(scales.fieldVariance)
         expect(clouds + fields + regions + scales.planet ** 2).toBeCloseTo(1)

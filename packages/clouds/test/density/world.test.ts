@@ -21,7 +21,7 @@ const node = clouds(vec4(0), float(0), camera, atmosphere, new CloudLayers())
 const radius = atmosphere.parameters.bottomRadius
 const degrees = Math.PI / 180
 
-/** What the night needs of a view, with the sun at an elevation [°]. */
+/** View as the night needs it, with the sun at an elevation [°]. */
 const viewAt = (elevation: number, height = 2, world = atmosphere): AtmosphereView => {
   const angle = elevation * degrees
   const view: Partial<AtmosphereView> = {

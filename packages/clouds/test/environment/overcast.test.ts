@@ -80,7 +80,7 @@ describe('stackDecks', () => {
   it('takes two layers one above the other for one', () => {
     fc.assert(
       fc.property(thicknesses, thicknesses, cosines, (a, b, mu0) => {
-        const layers = [a, b].map(thickness => ({ thickness, cover: 1 }))
+        const layers = [a, b].map(thickness => ({ thickness, coverage: 1 }))
         const { diffuse, direct, beam } = stackDecks(layers, mu0, oneMinusAsymmetry)
         expect(diffuse).toBeCloseTo(eddingtonDiffuse(a + b, oneMinusAsymmetry), 9)
         expect(beam).toBeCloseTo(Math.exp(-(a + b) / mu0), 9)
@@ -94,8 +94,8 @@ describe('stackDecks', () => {
   it('passes no less where clouds cover less', () => {
     fc.assert(
       fc.property(thicknesses, cosines, fc.double({ min: 0, max: 1, noNaN: true }), (a, mu, c) => {
-        const some = stackDecks([{ thickness: a, cover: c }], mu, oneMinusAsymmetry)
-        const all = stackDecks([{ thickness: a, cover: 1 }], mu, oneMinusAsymmetry)
+        const some = stackDecks([{ thickness: a, coverage: c }], mu, oneMinusAsymmetry)
+        const all = stackDecks([{ thickness: a, coverage: 1 }], mu, oneMinusAsymmetry)
         for (const part of ['diffuse', 'direct', 'beam'] as const) {
           expect(some[part]).toBeCloseTo(1 - c + c * all[part], 9)
         }
@@ -164,7 +164,7 @@ describe('cloudyIrradiance', () => {
       plane: 0.12,
       albedo: 0.2
     }
-    const deck = stackDecks([{ thickness: 12, cover: 1 }], 0.85, oneMinusAsymmetry)
+    const deck = stackDecks([{ thickness: 12, coverage: 1 }], 0.85, oneMinusAsymmetry)
     const light = cloudyIrradiance(clear, deck, none, 1)
     expect(light).toBeGreaterThan(0.12)
     expect(light).toBeLessThan(0.3 * 0.92)

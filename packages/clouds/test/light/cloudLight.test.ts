@@ -104,7 +104,7 @@ describe('aureole', () => {
   })
 })
 
-const isolated = { depthToEye: 0, layered: 0, cosLight: 1, cosView: 1, cosViewLight: 1 }
+const isolated = { depthToCamera: 0, layered: 0, cosLight: 1, cosView: 1, cosViewLight: 1 }
 
 describe('lateral leak', () => {
   it('gives spheres the light that Monte Carlo gives them, for phase functions between those fitted', () => {

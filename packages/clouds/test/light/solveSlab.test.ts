@@ -30,7 +30,7 @@ const integrate = (end: number, f: (x: number, i: number) => number): number =>
 
 const legendre2 = (mu: number): number => (3 * mu * mu - 1) / 2
 
-/** Light scattered once plus more often, towards an eye that looks at μ, at azimuth φ from the sun. */
+/** Light scattered once plus more often, towards a viewpoint seen under μ, at azimuth φ from the sun. */
 function source(
   { albedo, moments: [, chi1, chi2] }: ScaledPhase,
   m: SourceMoments,
@@ -120,7 +120,7 @@ describe('SlabSolver', () => {
     }
   })
 
-  it('is reciprocal: swapping sun and eye scales radiance by their cosines', () => {
+  it('is reciprocal: swapping sun and viewpoint scales radiance by their cosines', () => {
     const phase = scalePhase({ ...lobes, scatteringAlbedo: 0.99 })
     fc.assert(
       fc.property(

@@ -27,7 +27,7 @@ import { NOISE_SIZE, type NoiseName } from '../../src/noise/noiseSizes'
 const unit = fc.double({ min: 0, max: 1, noNaN: true })
 const place = fc.tuple(unit, unit, unit)
 const whole = fc.integer({ min: -3, max: 3 })
-const turns = fc.tuple(whole, whole, whole)
+const periods = fc.tuple(whole, whole, whole)
 const cells = fc.tuple(...[1, 2, 3].map(() => fc.integer({ min: 1, max: 24 })))
 const moved = (p: Vec3Array, by: Vec3Array): Vec3Array => [p[0] + by[0], p[1] + by[1], p[2] + by[2]]
 
@@ -63,7 +63,7 @@ describe.for([
 ] as const)('%s', ([, noise, least, most]) => {
   it('tiles, and keeps to its range', () => {
     fc.assert(
-      fc.property(place, turns, cells, (p, by, count) => {
+      fc.property(place, periods, cells, (p, by, count) => {
         const value = noise(p, count as never, 7)
         expect(noise(moved(p, by), count as never, 7)).toBeCloseTo(value, 9)
         expect(value).toBeGreaterThanOrEqual(least)
@@ -139,7 +139,7 @@ describe('curl', () => {
 
   it('tiles, and is continuous', () => {
     fc.assert(
-      fc.property(place, turns, counts, (p, by, count) => {
+      fc.property(place, periods, counts, (p, by, count) => {
         const value = curl(p, count, 7)
         const there = curl(moved(p, by), count, 7)
         const close = curl(moved(p, [1e-7, 1e-7, 1e-7]), count, 7)

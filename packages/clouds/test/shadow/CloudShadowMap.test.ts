@@ -17,7 +17,7 @@ class Sky {
   readonly layers
   readonly field
   readonly shadows
-  /** Of the camera, east of where it was [m]. */
+  /** Distance of the camera, east of where it was [m]. */
   east = 0
   height = 2
   sun = new Vector3(0.5, 0.6, 0.7).normalize()
@@ -63,7 +63,7 @@ class Sky {
     return this.drawn.reduce((sum, texels) => sum + texels, 0) / 256 ** 2
   }
 
-  /** Where a cascade has a place, from the planet's centre in the mapped space [texels, texels, m]. */
+  /** Texel of a point given from the planet's centre, in the mapped space, in a cascade [texels, texels, m]. */
   texelOf(cascade: number, place: Vector3): Vector3 {
     const { u, v, w } = this.shadows.nodes.cascades[cascade]
     const offset = place.clone().sub(this.up.multiplyScalar(radius + this.height))

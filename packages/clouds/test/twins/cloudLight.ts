@@ -4,16 +4,16 @@ import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
 import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
 import { aureolePhase, cloudPhase } from './cloudPhase'
 
-/** Place of a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
+/** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
 export interface CloudSourceSample {
-  /** From the sample to the light, ≥ 0. */
+  /** Depth from the sample to the light, ≥ 0. */
   depthToLight: number
   /** Through the whole cloud along the ray of light through the sample, ≥ `depthToLight`. */
   depthThrough: number
   /** Across that ray: the diameter of a sphere. Of no effect on a deck. */
   depthAcross: number
-  /** From the viewpoint to the sample, in the cloud. */
-  depthToEye: number
+  /** Depth from the viewpoint to the sample, in the cloud. */
+  depthToCamera: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
   /** The light against the local up. */
@@ -64,7 +64,7 @@ export function cloudSource(
   table: Float32Array,
   sample: CloudSourceSample
 ): number {
-  const { depthToLight, depthThrough, depthToEye, layered, cosViewLight } = sample
+  const { depthToLight, depthThrough, depthToCamera, layered, cosViewLight } = sample
   const { depthScale, moments } = scalePhase(phase)
   const sign = sample.cosLight < 0 ? -1 : 1
   // The slab's normal: up (or down, under a light below the horizon) for decks, towards the light for isolated clouds.
@@ -88,17 +88,17 @@ export function cloudSource(
   const leak = lateralLeak(sample, 1 - moments[1]) ** (1 - layered)
   const exact = cloudPhase(phase, cosViewLight)
   const towards = clamp(10 * cosViewLight - 9, 0, 1)
-  const aureole = aureolePhase(phase, cosViewLight, depthToLight + depthToEye)
+  const aureole = aureolePhase(phase, cosViewLight, depthToLight + depthToCamera)
   const single = exact + (aureole - exact) * towards
   const scattered = (phase.scatteringAlbedo / depthScale) * single * Math.exp(-depthToLight)
   return Math.max(diffuse * leak, 0) + scattered
 }
 
-/** Place of a sample between sky and ground. Depths are scaled optical depths along the vertical. */
+/** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientSample {
-  /** From the sample to the cloud's top. */
+  /** Depth from the sample to the cloud's top. */
   depthAbove: number
-  /** From the sample to its base. */
+  /** Depth from the sample to the cloud's base. */
   depthBelow: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number

@@ -1,17 +1,15 @@
 import type { CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
-import { thicknesses, layers, positions, lightAngles } from '../../src/light/cpu/cloudLightSize'
-import {
-  CLOUD_LIGHT_BEND,
-  CLOUD_LIGHT_THICKEST,
-  fillCloudLight
-} from '../../src/light/cpu/cloudLightTable'
+import { fillCloudLight } from '../../src/light/cpu/cloudLightTable'
+import { slabTableForm } from '../../src/light/cpu/slabTableForm'
 import type { SourceMoments } from '../../src/light/cpu/solveSlab'
 
-const stretch = (depth: number): number => Math.log1p(depth / CLOUD_LIGHT_BEND)
+const { bend, layers, lightAngles, positions, thickest, thicknesses } = slabTableForm
+
+const stretch = (depth: number): number => Math.log1p(depth / bend)
 
 /** Row of a thickness, in [0, 1]. */
 export function slabRow(thickness: number): number {
-  return Math.min(stretch(thickness) / stretch(CLOUD_LIGHT_THICKEST), 1)
+  return Math.min(stretch(thickness) / stretch(thickest), 1)
 }
 
 /**

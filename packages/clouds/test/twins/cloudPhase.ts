@@ -25,7 +25,7 @@ export function cloudPhase(phase: CloudPhaseParameters, cosScatter: number): num
  * terms become Σ_n g^{n(l−3)} X^{n−1} e^{−X}/n!, here A h^{l−3} with A = (1 − e^{−X})/X, their sum, and
  * h = g^{1/A}, as 1/A is the mean of n.
  *
- * @param depth - Scaled depth from the light to the sample and on to the eye.
+ * @param depth - Scaled depth from the light to the sample and on to the camera.
  */
 export function aureolePhase(
   phase: CloudPhaseParameters,

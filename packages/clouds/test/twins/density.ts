@@ -3,18 +3,13 @@ import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { billowForm, strengthForm } from '../../src/density/formConstants'
 import { latticeRotations } from '../../src/density/lattice'
 import {
-  FIELD_PERIOD,
-  FIELD_SHIFT,
-  FIELD_WEIGHT,
-  LAST_WAVES,
+  noisePeriods,
+  weatherShifts,
+  scaleWeights,
+  waveForm,
   layerForms,
   layerPeriods,
   mapShift,
-  NEXT_WAVES,
-  PLANET_WARP,
-  REGION_CELLS,
-  REGION_PERIOD,
-  REGION_SHIFT,
   weatherScales
 } from '../../src/layers/layerUniforms'
 import {
@@ -114,9 +109,9 @@ function coverageAt(
 function planetWaves(zenith: Vector3, layerRotation: Quaternion): Vec3Array {
   const { x, y, z } = zenith.clone().applyQuaternion(layerRotation)
   return [
-    Math.sin(NEXT_WAVES * y + LAST_WAVES * z),
-    Math.sin(NEXT_WAVES * z + LAST_WAVES * x),
-    Math.sin(NEXT_WAVES * x + LAST_WAVES * y)
+    Math.sin(waveForm.next * y + waveForm.last * z),
+    Math.sin(waveForm.next * z + waveForm.last * x),
+    Math.sin(waveForm.next * x + waveForm.last * y)
   ]
 }
 
@@ -152,20 +147,24 @@ export function weatherAt(
 
   const waves = planetWaves(zenith, state.rotations[0])
   const inSystems = subpoint.clone().applyQuaternion(state.rotations[0])
-  const regionLevel = levelOf(footprint, REGION_PERIOD / NOISE_SIZE.weather)
+  const regionLevel = levelOf(footprint, noisePeriods.regions / NOISE_SIZE.weather)
   const region = sample(
-    shifted(placeIn(inSystems, latticeRotations.region, REGION_PERIOD), waves, PLANET_WARP),
+    shifted(
+      placeIn(inSystems, latticeRotations.region, noisePeriods.regions),
+      waves,
+      waveForm.warp
+    ),
     regionLevel
   )
   const inLayer = subpoint.clone().applyQuaternion(layerRotation)
-  const fieldPeriod = period * FIELD_PERIOD
+  const fieldPeriod = period * noisePeriods.fields
   const fieldLevel = levelOf(footprint, fieldPeriod / NOISE_SIZE.weather)
   const fields = sample(
-    shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, REGION_SHIFT),
+    shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, weatherShifts.regions),
     fieldLevel
   )
   const [shiftX, shiftY] = [0, 1].map(
-    axis => (FIELD_SHIFT * fields[axis] + REGION_SHIFT * region[axis]) * period
+    axis => (weatherShifts.fields * fields[axis] + weatherShifts.regions * region[axis]) * period
   )
   const shift = new Vector3(shiftX, shiftY, (shiftX - shiftY) / Math.SQRT2)
   const coverage = coverageAt(state, layer, zenith, new Vector3(fields[2], fields[0], fields[1]))
@@ -179,24 +178,24 @@ export function weatherAt(
       .multiplyScalar(layer.shear * rise)
   }
   const [bendX, bendY] = bendAt(shift)
-  const foot = subpoint.sub(lean).applyQuaternion(layerRotation)
+  const subpointInLayer = subpoint.sub(lean).applyQuaternion(layerRotation)
   const bend = new Vector3(bendX, bendY, (bendX - bendY) / Math.SQRT2).add(shift).toArray()
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const clouds = sample(
-    shifted(placeIn(foot, latticeRotations.weather, period), bend, 1 / period),
+    shifted(placeIn(subpointInLayer, latticeRotations.weather, period), bend, 1 / period),
     level
   )
 
   const blurred =
     dot(clouds) +
-    FIELD_WEIGHT * dot(fields) +
+    scaleWeights.fields * dot(fields) +
     scales.cells * fields[2] +
-    scales.regions * (region[2] + REGION_CELLS * region[0]) +
+    scales.regions * (region[2] + scaleWeights.regionCells * region[0]) +
     (scales.planet * (waves[0] + waves[1] + waves[2])) / Math.sqrt(1.5)
   const lost =
     scales.cloudVariance * lostShare(level - coarseness) +
     scales.fieldVariance * lostShare(fieldLevel - 0.5) +
-    (scales.regions ** 2 * (1 + REGION_CELLS ** 2) * lostShare(regionLevel - 0.8)) / 12
+    (scales.regions ** 2 * (1 + scaleWeights.regionCells ** 2) * lostShare(regionLevel - 0.8)) / 12
   const variance = level > 0 ? lost : 0
   const { edgeSoftness, leastEdgeSoftness, leastVariance } = strengthForm
   const odds = clamp(coverage, 1e-6, 1 - 1e-6)
@@ -257,7 +256,7 @@ function detailAt(
 export interface LayerSample {
   /** [1/m]. */
   readonly extinction: number
-  /** With all billows, less what the height needs [–]. */
+  /** Strength with all billows, less what the height needs [–]. */
   readonly strength: number
 }
 

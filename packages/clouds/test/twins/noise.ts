@@ -115,7 +115,7 @@ export function curl(p: Vec3Array, cells: number, seed: number): Vec3Array {
 
 /**
  * Float64 twin of `billow`: 1 − F₁, with F₁ the distance to the nearest of the points scattered one
- * in each cell: round heads that meet in sharp creases. Period 1, in [0, 1].
+ * in each cell: round bulges that meet in sharp creases. Period 1, in [0, 1].
  */
 export function billow(p: Vec3Array, cells: Vec3Array, seed: number): number {
   const [x, y, z] = [p[0] * cells[0], p[1] * cells[1], p[2] * cells[2]]

@@ -15,7 +15,7 @@ export interface CloudCover {
   /** Scaled optical thickness. */
   readonly thickness: number
   /** Part of the sky. */
-  readonly cover: number
+  readonly coverage: number
 }
 
 /**
@@ -50,22 +50,22 @@ export function stackDecks(
   oneMinusAsymmetry: number
 ): CloudDeck {
   const mu = Math.max(cosLight, LOWEST_COSINE)
-  const mean = (cover: number, through: number): number => 1 - cover + cover * through
+  const mean = (coverage: number, through: number): number => 1 - coverage + coverage * through
   const series = (parts: number[]): number =>
     1 / parts.reduce((sum, part) => sum + 1 / part, 1 - parts.length)
   return {
     diffuse: series(
-      layers.map(({ cover, thickness }) =>
-        mean(cover, eddingtonDiffuse(thickness, oneMinusAsymmetry))
+      layers.map(({ coverage, thickness }) =>
+        mean(coverage, eddingtonDiffuse(thickness, oneMinusAsymmetry))
       )
     ),
     direct: series(
-      layers.map(({ cover, thickness }) =>
-        mean(cover, eddingtonTransmittance(thickness, mu, oneMinusAsymmetry))
+      layers.map(({ coverage, thickness }) =>
+        mean(coverage, eddingtonTransmittance(thickness, mu, oneMinusAsymmetry))
       )
     ),
     beam: layers.reduce(
-      (part, { cover, thickness }) => part * mean(cover, Math.exp(-thickness / mu)),
+      (part, { coverage, thickness }) => part * mean(coverage, Math.exp(-thickness / mu)),
       1
     )
   }

@@ -1,3 +1,4 @@
+import { withDefaults } from '../../check'
 import { spectrumOf, type AtmosphereParameters } from '../../parameters/AtmosphereParameters'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
 import { distanceToGround, distanceToTop } from '../../air/cpu/boundary'
@@ -19,7 +20,7 @@ const PER_CELL = 4 * DIFFUSE_TILES
 export interface DiffuseLightQuality {
   /** Directions above and below the horizon each, over half a turn, and steps, for sunlight. */
   sun: { elevations: number; azimuths: number; steps: number }
-  /** The same for light that was scattered before. */
+  /** Counts for light that was scattered before. */
   diffuse: { elevations: number; azimuths: number; steps: number }
   /** Orders of scattering; those beyond are summed as a geometric series. */
   orders: number
@@ -297,13 +298,14 @@ function gatherOrder(
  * The diffuse-light table by successive orders of scattering, without a GPU; takes seconds.
  *
  * @param p - Spectra may be of any four wavelengths: nothing but the numbers counts.
- * @param quality - How finely light is gathered.
+ * @param quality - Resolution with which light is gathered.
+ * @throws If an option is unknown.
  */
 export function solveDiffuseLight(
   p: AtmosphereParameters,
   quality: Partial<DiffuseLightQuality> = {}
 ): DiffuseLightData {
-  const { sun, diffuse, orders } = { ...STANDARD, ...quality }
+  const { sun, diffuse, orders } = withDefaults('solveDiffuseLight', STANDARD, quality)
   const gatherer = new Gatherer(p)
   const total = new Float64Array(COLUMNS * ROWS * PER_CELL)
   let before: Float64Array | null = null

@@ -14,8 +14,8 @@ export interface GroundAngles {
  * Oren–Nayar reflectance of rough ground, over that of Lambertian ground.
  *
  * @param roughness - σ, standard deviation of the facets' slope angles [rad].
- * @see Oren & Nayar 1994, qualitative model; in the form of Fujii, "A tiny improvement of Oren–Nayar
- * reflectance model", which keeps it free of tangents.
+ * @see Oren & Nayar 1994, "Generalization of Lambert's reflectance model", "Qualitative model"; in the form of
+ *   Fujii, "A tiny improvement of Oren–Nayar reflectance model", which keeps it free of tangents.
  */
 export function orenNayar(angles: GroundAngles, roughness: Float): Float {
   const variance = roughness.mul(roughness).toConst()

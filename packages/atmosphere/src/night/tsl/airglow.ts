@@ -92,8 +92,8 @@ export function thinLayerVanRhijnFactor(
   bottomRadius: Float
 ): Float {
   const radius = bottomRadius.add(layer.altitude)
-  const eye = bottomRadius.add(altitude).toConst()
-  const start = eye.mul(cosView).toConst()
-  const square = layer.altitude.sub(altitude).mul(radius.add(eye)).add(start.mul(start))
+  const cameraRadius = bottomRadius.add(altitude).toConst()
+  const start = cameraRadius.mul(cosView).toConst()
+  const square = layer.altitude.sub(altitude).mul(radius.add(cameraRadius)).add(start.mul(start))
   return radius.mul(square.max(1).inverseSqrt())
 }

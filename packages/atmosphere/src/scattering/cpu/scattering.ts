@@ -22,7 +22,7 @@ export interface RayNumbers {
   cosViewLight: number
 }
 
-/** The same ray where it enters the air; null if it misses. */
+/** Ray from where it enters the air; null if it misses. */
 export function enterAir(p: AtmosphereParameters, ray: RayNumbers): RayNumbers | null {
   if (ray.radius <= p.topRadius) return ray
   const { radius, cosView, cosLight, cosViewLight } = ray

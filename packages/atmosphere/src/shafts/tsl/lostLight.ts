@@ -4,7 +4,8 @@ import { densities } from '../../air/tsl/medium'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
 import { pointAlong } from '../../scattering/tsl/ray'
 import { rayLimits } from '../../skyVolume/tsl/rayLimits'
-import { EXTINCTION_SCALE, meanExtinction, viewRay } from '../../skyVolume/tsl/skyVolume'
+import { EXTINCTION_SCALE, meanExtinction } from '../../skyVolume/tsl/meanExtinction'
+import { viewRay } from '../../skyVolume/tsl/viewRay'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { slicePosition } from '../../skyVolume/tsl/volumeMapping'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
@@ -19,7 +20,7 @@ export interface ShadowedAir {
   readonly map: TextureNode
   readonly frame: PolarFrame
   /** Greatest ρ at which the map may have shadows [m]. */
-  readonly reach: Float
+  readonly maximumRho: Float
   /** Shadows of clouds and the like. */
   readonly shadows: readonly Pick<AirShadow, 'transmittance'>[]
   /** World position of a displacement from the camera in the mapped space [m]. */
@@ -49,7 +50,7 @@ export interface ShaftSteps {
 
 /** Stretch of a ray that is marched in some groups of samples, whatever its length. */
 interface Stretch {
-  /** Parts of the ray's light before it, and in it. */
+  /** Light of the ray before it, and in it, as parts of all. */
   readonly from: Float
   readonly width: Float
   /** True where the map has shadows; null where all of the ray is. */
@@ -70,7 +71,7 @@ interface Stretch {
  */
 export function lostLight(
   view: ViewUniforms,
-  { map, frame, reach, shadows, toWorld }: ShadowedAir,
+  { map, frame, maximumRho, shadows, toWorld }: ShadowedAir,
   { direction, cosView, cosViewLight, distance, seenFrom }: ShaftRay,
   { groups, samples }: ShaftSteps,
   jitter: Float
@@ -79,7 +80,7 @@ export function lostLight(
   const { uniforms } = air
   const limits = rayLimits(viewpoint, cosView)
   const polar = polarRay(frame, direction, cosViewLight)
-  const mapped = reach.div(polar.sinViewLight).toConst() as Float
+  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
   const isMappedOnly = shadows.length === 0
   const seen = limits.start.add(limits.length).min(distance)
   const end = isMappedOnly ? seen.min(mapped) : seen

@@ -24,7 +24,7 @@ export interface ShadowMapNodes {
   readonly depth: TextureNode & { value: DepthTexture }
   /** Size of the texture [texels]. */
   readonly size: UniformNode<'vec2', Vector2>
-  /** Displacements from the eye in the mapped space [m] to the map's coordinates. */
+  /** Displacements from the camera in the mapped space [m] to the map's coordinates. */
   readonly matrix: UniformNode<'mat4', Matrix4>
   /** First coordinates that are the map's, and last: a part of the texture where maps share one. */
   readonly bounds: UniformNode<'vec4', Vector4>
@@ -32,7 +32,7 @@ export interface ShadowMapNodes {
   readonly metersPerDepth: UniformNode<'float', number>
 }
 
-/** How a renderer stores depths. */
+/** Encoding of a renderer's depths. */
 export interface DepthStorage {
   /** Greater is nearer. */
   readonly isReversed: boolean

@@ -3,7 +3,7 @@ import type { TextureNode } from 'three/webgpu'
 import { sampleLevel0, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 
 /**
- * Polar coordinates about the eye with the source of light as pole: θ from the source, φ around it, ρ the
+ * Polar coordinates about the camera with the source of light as pole: θ from the source, φ around it, ρ the
  * distance from the line between both. A view ray has one θ and one φ, a ray of light one φ and one ρ. All in
  * the mapped space.
  */
@@ -53,7 +53,7 @@ export function polarRay(
   }
 }
 
-/** A texel's ray of light: the displacement from the eye of its point nearest to the eye, and ρ [m]. */
+/** A texel's ray of light: the displacement from the camera of its point nearest to the camera, and ρ [m]. */
 export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distance: Float } {
   const { across, along, evenDistance, logScale, logOffset, columns } = frame
   const position = uv.x.mul(columns).sub(0.5).div(columns.sub(1))
@@ -65,7 +65,7 @@ export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distanc
 }
 
 /**
- * Texture coordinate of the rays of light at a distance from the eye's.
+ * Texture coordinate of the rays of light at a distance from the camera's.
  *
  * @param distance - ρ ≥ 0 [m].
  */

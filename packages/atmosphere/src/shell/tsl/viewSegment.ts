@@ -24,7 +24,7 @@ export interface ShellView {
 
 /** Part of a fragment's view ray that is in the air of a shell. */
 export interface ViewSegment extends AirSegment {
-  /** The same segment in terms of the camera. Its length is 0 if the ray misses the air. */
+  /** Segment in terms of the camera. Its length is 0 if the ray misses the air. */
   fromCamera: AirRay
   /**
    * Point whose depth the shell is drawn with, in view space [world units]: the middle of the segment to

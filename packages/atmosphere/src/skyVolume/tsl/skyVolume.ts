@@ -1,51 +1,21 @@
 import { float, vec2 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Texels } from '../../tables/TableAtlas'
-import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
-import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
+import { RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
+import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import type { Viewpoint } from '../../view/tsl/viewpoint'
 import { miePhase } from '../../air/tsl/phase'
 import { rowAndColumn } from '../../tables/tsl/texels'
-import { sine } from '../../math/tsl/trigonometry'
 import type { RayLimits } from './rayLimits'
-import { azimuthColumn, elevationPosition, elevationTexel, slicePosition } from './volumeMapping'
+import { EXTINCTION_SCALE, meanExtinction } from './meanExtinction'
+import { viewRay, type ViewRay } from './viewRay'
+import { azimuthColumn, elevationTexel, slicePosition } from './volumeMapping'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS] = VOLUME_TILES
-const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
 
 /** Number of the tile that holds all the air along a ray and the ground behind it. */
 export const SKY_TILE = DISTANCES
-
-/** Reads the viewpoint's table of {@link DEPTH_SIZE} at a row, in texels. */
-function readDepth(
-  atlas: Texels,
-  viewpoint: Viewpoint,
-  { elevation, hitsGround }: Elevation,
-  row: Float
-): Vec4 {
-  const column = elevationTexel(elevation, hitsGround, DEPTH_ELEVATIONS)
-  return atlas.at(vec2(column, row).add(viewpoint.depthOrigin))
-}
-
-/**
- * Mean extinction from where a ray enters the air to a position among the distances
- * [1/{@link EXTINCTION_SCALE} m].
- *
- * Depth over distance varies little between elevations, even just below the horizon, where the distance
- * to the ground varies most.
- */
-export function meanExtinction(
-  atlas: Texels,
-  viewpoint: Viewpoint,
-  elevation: Elevation,
-  position: Float
-): Vec4 {
-  return readDepth(atlas, viewpoint, elevation, position.mul(DEPTH_DISTANCES).max(1).sub(0.5))
-}
-
-/** Extinction is stored per this many metres, to stay clear of subnormal half floats. */
-export const EXTINCTION_SCALE = 1e5
 
 /** Medium between the viewpoint and a point: the light that it adds, and its optical depth. */
 export interface MediumSegment {
@@ -53,32 +23,6 @@ export interface MediumSegment {
   radiance: Vec4
   /** Optical depth; in front of the sky that of layers alone. */
   depth: Vec4
-}
-
-/** View ray as the sky volumes of its viewpoint have it, whatever lights them. */
-export interface ViewRay {
-  /** μ, against the zenith of the viewpoint. */
-  cosView: Float
-  /** √(1 − μ²). */
-  sinView: Float
-  /** True if the ray meets the ground. */
-  hitsGround: Bool
-  /** Position of the elevation in its half, below or above the horizon, in [0, 1] from the horizon. */
-  elevation: Float
-}
-
-/** Part of a view ray that tables without azimuths depend on. */
-type Elevation = Pick<ViewRay, 'hitsGround' | 'elevation'>
-
-/** @param cosView - μ, direction against the zenith of the viewpoint. */
-export function viewRay(
-  viewpoint: Viewpoint,
-  cosView: Float,
-  hitsGround: Bool,
-  sinView: Float = sine(cosView).toConst()
-): ViewRay {
-  const elevation = elevationPosition(viewpoint, cosView, hitsGround, sinView).toConst() as Float
-  return { cosView, sinView, hitsGround, elevation }
 }
 
 /** Texel of the atlas of a direction in a tile, of the light by molecules. */
@@ -221,9 +165,4 @@ export function sampleAir(
   const mean = meanExtinction(atlas, viewpoint, ray, float(1))
   const light = readTile(atlas, at, miePhase(uniforms, cosViewLight))
   return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
-}
-
-/** Transmittance of all the air in a direction; 1 where there is none. */
-export function skyTransmittance(atlas: Texels, viewpoint: Viewpoint, elevation: Elevation): Vec4 {
-  return readDepth(atlas, viewpoint, elevation, float(DEPTH_DISTANCES + 0.5)).toConst()
 }

@@ -8,7 +8,8 @@ import type { Viewpoint } from '../../view/tsl/viewpoint'
 import { groundRadiance } from '../../scattering/tsl/scattering'
 import { pointAlong, type Air, type Ray } from '../../scattering/tsl/ray'
 import { scatterSegment, segmentDepth } from '../../scattering/tsl/segment'
-import { EXTINCTION_SCALE, SKY_TILE, meanExtinction } from './skyVolume'
+import { EXTINCTION_SCALE, meanExtinction } from './meanExtinction'
+import { SKY_TILE } from './skyVolume'
 import { columnCosine, elevationCosine, sliceDistance } from './volumeMapping'
 import { rayLimits, type RayLimits } from './rayLimits'
 import { rowAndColumn } from '../../tables/tsl/texels'
@@ -35,7 +36,7 @@ function twoOutputs(body: () => Parts): TwoOutputs {
   return { color: assign(), output: outputStruct(first, second) }
 }
 
-/** The same ray from where it enters the air. */
+/** Ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   const { thickness } = air.uniforms
   const entry = pointAlong(air, ray, limits.start)

@@ -22,7 +22,7 @@ export interface ViewpointScalars<T> {
   sinHorizon: T
   /** 1/tan(α/2) of the largest angle α below the horizon, the nadir's. */
   belowScale: T
-  /** The same above the horizon: to the zenith, or from outside the air to its top limb. */
+  /** Scale above the horizon: to the zenith, or from outside the air to its top limb. */
   aboveScale: T
   /** 1/κ of the distances along rays to the ground: t(x) = t_max (e^{κx} − 1)/(e^κ − 1). */
   groundStretch: T

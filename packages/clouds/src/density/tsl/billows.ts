@@ -15,7 +15,7 @@ const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toCons
 
 /** Billows around a place, of unit deviation near by. */
 export interface Billows {
-  /** From a quarter of the shape's period on, and from a sixteenth on [–]. */
+  /** Sums of the octaves from a quarter of the shape's period on, and from a sixteenth on [–]. */
   readonly coarse: Float
   readonly fine: Float
   /** Two components of the turbulence [–]. */
@@ -25,7 +25,7 @@ export interface Billows {
 }
 
 /**
- * Billows: round heads that meet in creases, each octave stirred by a curl of its own size, which the
+ * Billows: round bulges that meet in creases, each octave stirred by a curl of its own size, which the
  * noise has baked in. One texture read.
  *
  * @param offset - Displacement from the camera, in the mapped space [m].
@@ -48,13 +48,19 @@ export function billows(
   return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst(), level }
 }
 
-/** Periods of the nearer octaves of detail, in those of the detail, and their amplitudes. */
+/**
+ * Periods of the nearer octaves of detail, in those of the detail, and their amplitudes [–]. Greater amplitudes:
+ * frayed edges near the camera (*Inside a cloud*).
+ */
 const NEARER = [
   [1 / 5, 0.55],
   [1 / 25, 0.3]
 ] as const
 
-/** Footprint over the period of a nearer octave below which it is looked up. */
+/**
+ * Footprint over the period of a nearer octave below which it is looked up. Smaller: detail fades nearer to
+ * the camera (*Inside a cloud*).
+ */
 const NEARER_FROM = 5 / 24
 
 /**
@@ -88,6 +94,6 @@ export function detail(
 /** Most that detail adds, per its strength [–]. */
 export const MOST_DETAIL = 2.5
 
-/** Share of fine billows and detail that a body has, in [0, 1]: bodies have heads, crumbs do not. */
+/** Share of fine billows and detail that a body has, in [0, 1]: dense bodies have them, crumbs do not. */
 export const fineShare = (strength: Float): Float =>
   strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp(0, 1).toConst()

@@ -22,7 +22,10 @@ export function verticalOpticalDepth(field: CloudField, sample: CloudSample): Fl
   return sum
 }
 
-/** A sun lower than this does not make its rays through a layer any longer. */
+/**
+ * Cosine of the lowest sun whose rays through a layer grow longer. Smaller: the ground beyond the shadow maps is
+ * black at sunset (*World clouds*).
+ */
 const LOWEST_COSINE = 0.1
 
 /** Goes through layers that cast shadows: the part of each above an altitude, and the cosine by which light crosses it. */
@@ -61,7 +64,7 @@ export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLi
     const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
     const way = middle.sub(sample.altitude).max(0).div(slope)
     const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
-    const { altitude, up } = view.place(offset)
+    const { altitude, up } = view.localCoordinates(offset)
     const there = { offset, altitude, up, distance: sample.distance }
     const subpoint = subpointOffset(field, there).toConst()
     const filteredCoverage = filteredCoverageAt(field, layer, subpoint, there)
@@ -70,7 +73,7 @@ export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLi
   return sum
 }
 
-/** The same in the mean over a layer's clouds and gaps, without a look-up. */
+/** Optical depth from an altitude to sun or moon in the mean over clouds and gaps, without a look-up. */
 export function meanDepthTowards(field: CloudField, altitude: Float, cosLight: Float): Float {
   const sum = float(0).toVar()
   forShadowingLayers(field, altitude, cosLight, (layer, above, slope) => {

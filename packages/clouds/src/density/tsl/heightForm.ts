@@ -62,7 +62,7 @@ export function billowStrength(
   const { coarse, fine, detail, coarseGrowth, fineGrowth, wispHeight } = billowForm
   const growing = (growth: number): Float => height.mul(2 * growth).add(1 - growth)
   const finer = growing(fineGrowth).mul(shapeAmount).toConst()
-  // Detail turns over: what are heads above hangs down as wisps at the base.
+  // Detail turns over: billows above hang down as wisps at the base.
   const sign = height.div(wispHeight).sub(1).min(1)
   return {
     coarse: growing(coarseGrowth).mul(shapeAmount).mul(coarse).toConst(),

@@ -2,7 +2,7 @@ import { int, vec3, vec4 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { latticeRotations } from '../lattice'
-import { LAYER_STRIDE, REGION_PERIOD } from '../../layers/layerUniforms'
+import { LAYER_STRIDE, noisePeriods } from '../../layers/layerUniforms'
 import {
   loop,
   type Bool,
@@ -118,7 +118,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
       const [x, y, z] = [0, 1, 2].map(row =>
         read(15 + row)
           .xyz.dot(v)
-          .mul(REGION_PERIOD)
+          .mul(noisePeriods.regions)
       )
       return rotate(fromRegions, vec3(x, y, z))
     },

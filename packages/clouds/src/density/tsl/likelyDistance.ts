@@ -10,7 +10,10 @@ export const NOWHERE = 1e6
  */
 const LIKELY = 0.012
 
-/** Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. */
+/**
+ * Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. Greater:
+ * faster, and small clouds are missed here and there, as grain (*Cumulus*).
+ */
 export const CAUTION = 0.3
 
 /**

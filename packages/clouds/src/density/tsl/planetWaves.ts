@@ -1,4 +1,4 @@
-import { LAST_WAVES, NEXT_WAVES } from '../../layers/layerUniforms'
+import { waveForm } from '../../layers/layerUniforms'
 import type { Vec3 } from '../../tsl-types'
 
 /**
@@ -28,4 +28,4 @@ function sine(x: Vec3): Vec3 {
  * @param zenith - In the frame that drifts with the layer, unit length.
  */
 export const planetWaves = (zenith: Vec3): Vec3 =>
-  sine(zenith.yzx.mul(NEXT_WAVES).add(zenith.zxy.mul(LAST_WAVES)))
+  sine(zenith.yzx.mul(waveForm.next).add(zenith.zxy.mul(waveForm.last)))

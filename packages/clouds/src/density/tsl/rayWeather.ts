@@ -11,7 +11,7 @@ import { weatherBackground, type PackedBackground } from './weatherBackground'
  */
 const SPAN = 0.05
 
-/** The same for far samples [footprints]. */
+/** Distance for far samples [footprints]. */
 const FAR_SPAN = 16
 
 /** The background of a layer's weather along a ray, looked up once in a while. */

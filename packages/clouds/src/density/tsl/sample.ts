@@ -5,7 +5,7 @@ import type { Float, Vec3 } from '../../tsl-types'
 export interface CloudSample {
   /** Displacement from the camera [m]. */
   offset: Vec3
-  /** Altitude above the sphere: `ViewNodes.place(offset).altitude` [m]. */
+  /** Altitude above the sphere: `ViewNodes.localCoordinates(offset).altitude` [m]. */
   altitude: Float
   /** Zenith there, unit length. */
   up: Vec3

@@ -57,9 +57,9 @@ function bodyAt(
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
   const background = unpackBackground(packed)
   const footprint = footprintOf(field, sample)
-  const heads = billows(field, layer, sample.offset, background.shift, footprint)
+  const shape = billows(field, layer, sample.offset, background.shift, footprint)
   const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
-  const bend = heads.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst() as Vec2
+  const bend = shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst() as Vec2
   const weather = cloudWeather(
     field,
     layer,
@@ -69,14 +69,14 @@ function bodyAt(
     footprint,
     'where unresolved'
   )
-  const lost = billowsLost(heads.level)
+  const lost = billowsLost(shape.level)
   const amount = billowStrength(layer, height)
   const body = columnStrength(layer, weather, background.coverage, lost)
     .sub(neededStrength(layer, height))
-    .add(heads.coarse.mul(amount.coarse))
+    .add(shape.coarse.mul(amount.coarse))
     .toConst() as Float
   const share = fineShare(body)
-  const strength = body.add(heads.fine.mul(amount.fine).mul(share)).toConst() as Float
+  const strength = body.add(shape.fine.mul(amount.fine).mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
   const edge = edgeAt(layer, height)
   return { sample, height, footprint, weather, body, strength, edge, detailStrength }

@@ -44,7 +44,10 @@ export function effectiveOpticalDepth(
   return blocked.oneMinus().max(1e-30).log().negate().div(field.depthScale).toConst()
 }
 
-/** Least cosine between a ray and the zenith by which clouds are taken to hide more. */
+/**
+ * Least cosine between a ray and the zenith by which clouds are taken to hide more. Smaller: an opaque line
+ * at the horizon (*Cockpit*).
+ */
 const LEAST_COSINE = 0.05
 
 /**

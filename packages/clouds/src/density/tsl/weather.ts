@@ -1,7 +1,7 @@
 import { If, float, smoothstep, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
-import { FIELD_PERIOD, REGION_CELLS, REGION_PERIOD } from '../../layers/layerUniforms'
+import { noisePeriods, scaleWeights } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
@@ -23,7 +23,10 @@ export interface CloudWeather {
   readonly unresolvedFraction: Float
 }
 
-/** Levels of detail by which a sample is coarser than single clouds, when these begin to be lost. */
+/**
+ * Levels of detail over which single clouds pass into their mean: the first and the last. Smaller: clouds blur
+ * nearer to the camera; greater: far ones flicker (*Cockpit*).
+ */
 const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 
 /** Share of a noise's variance that its levels of detail have lost. */
@@ -31,13 +34,15 @@ const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels
 
 /** Variance of the weather's sum that levels of detail have lost: none near by. */
 function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLevel: Float): Float {
-  const regionVariance = layer.regions.mul(layer.regions).mul((1 + REGION_CELLS ** 2) / 12)
+  const regionVariance = layer.regions
+    .mul(layer.regions)
+    .mul((1 + scaleWeights.regionCells ** 2) / 12)
   const fieldVariance = layer.cloudVariance
     .add(layer.planet.mul(layer.planet))
     .add(regionVariance)
     .oneMinus()
-  const fieldLevel = level.sub(Math.log2(FIELD_PERIOD)).max(0)
-  const regionLevel = weatherLevel(footprint, 1 / REGION_PERIOD)
+  const fieldLevel = level.sub(Math.log2(noisePeriods.fields)).max(0)
+  const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
   return layer.cloudVariance
     .mul(lostShare(cloudLevel))
     .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))

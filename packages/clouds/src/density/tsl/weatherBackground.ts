@@ -1,15 +1,7 @@
 import { int, log2, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
-import {
-  FIELD_PERIOD,
-  FIELD_SHIFT,
-  FIELD_WEIGHT,
-  PLANET_WARP,
-  REGION_CELLS,
-  REGION_PERIOD,
-  REGION_SHIFT
-} from '../../layers/layerUniforms'
+import { noisePeriods, weatherShifts, scaleWeights, waveForm } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { coverageAt } from './coverage'
 import { layerAt, type LayerNodes } from './layer'
@@ -55,8 +47,8 @@ function weatherSystems(
   const systems = isAlone ? layer : layerAt(field, int(0))
   const waves = planetWaves(systems.directionInLayer(up).toConst())
   const regions = field.textures.weather
-    .sample(systems.regionLattice(subpoint).add(waves.mul(PLANET_WARP)))
-    .level(weatherLevel(footprint, 1 / REGION_PERIOD))
+    .sample(systems.regionLattice(subpoint).add(waves.mul(waveForm.warp)))
+    .level(weatherLevel(footprint, 1 / noisePeriods.regions))
     .xyz.sub(0.5)
     .toConst() as Vec3
   return { regions, waves }
@@ -76,17 +68,17 @@ export function weatherBackground(
   footprint: Float
 ): PackedBackground {
   const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, footprint)
-  const scale = layer.perWeatherPeriod.div(FIELD_PERIOD).toConst() as Float
+  const scale = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
   const fields = field.textures.weather
-    .sample(layer.fieldLattice(subpoint).add(regions.mul(REGION_SHIFT)))
+    .sample(layer.fieldLattice(subpoint).add(regions.mul(weatherShifts.regions)))
     .level(weatherLevel(footprint, scale))
     .sub(0.5)
     .toConst() as Vec4
   const sum = fields
     .dot(layer.weights)
-    .mul(FIELD_WEIGHT)
+    .mul(scaleWeights.fields)
     .add(fields.z.mul(layer.cells))
-    .add(regions.z.add(regions.x.mul(REGION_CELLS)).mul(layer.regions))
+    .add(regions.z.add(regions.x.mul(scaleWeights.regionCells)).mul(layer.regions))
     .add(
       waves.x
         .add(waves.y)
@@ -95,7 +87,10 @@ export function weatherBackground(
         .mul(Math.sqrt(2 / 3))
     )
   const period = layer.perWeatherPeriod.reciprocal()
-  const shift = fields.xy.mul(FIELD_SHIFT).add(regions.xy.mul(REGION_SHIFT)).mul(period)
+  const shift = fields.xy
+    .mul(weatherShifts.fields)
+    .add(regions.xy.mul(weatherShifts.regions))
+    .mul(period)
   const coverage = coverageAt(field, layer, sample, footprint, fields.zxy)
   return vec4(sum, coverage, shift).toConst()
 }

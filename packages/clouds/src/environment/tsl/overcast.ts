@@ -25,9 +25,11 @@ export type PlacedDeck = CloudDeckNodes & { top: Float }
 /** Cosine of the lowest light; one below it counts as this. */
 export const LOWEST_COSINE = 0.05
 
-/** Light comes from clouds within this many times their height over a plane, and at least so far [m]. */
-const REACH_HEIGHTS = 2
-const LEAST_REACH = 1500
+/**
+ * Footprint on the clouds that light a plane: in heights of the clouds above it, and at least [m]. Smaller:
+ * light under broken clouds changes with every gap (*Shadows*).
+ */
+const footprintForm = { heights: 2, least: 1500 } as const
 
 /** Transmittances of a cloud by Eddington's approximation. Twin: test/twins/overcast.ts */
 export function eddington(
@@ -71,7 +73,7 @@ export function decksAround(
     const layer = layerAt(field, index)
     If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
       const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
-      const footprint = rise.mul(REACH_HEIGHTS).max(LEAST_REACH)
+      const footprint = rise.mul(footprintForm.heights).max(footprintForm.least)
       const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
       const sample = { offset, altitude, up, distance: seen }
       const subpoint = subpointOffset(field, sample).toConst()

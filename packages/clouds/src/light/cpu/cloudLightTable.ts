@@ -1,24 +1,19 @@
 import type { CloudPhaseParameters } from './cloudPhase'
-import { lightAngles, positions, thicknesses } from './cloudLightSize'
 import { scalePhase } from './cloudPhase'
+import { slabTableForm } from './slabTableForm'
 import { SlabSolver } from './solveSlab'
 
-/** Depths well below this are spaced evenly, those well above it by their logarithm. */
-export const CLOUD_LIGHT_BEND = 0.4
+const { bend, lightAngles, positions, thickest, thicknesses } = slabTableForm
 
-/** Scaled optical thickness of the thickest slab; thicker ones look like it from their ends. */
-export const CLOUD_LIGHT_THICKEST = 200
-
-const stretch = (depth: number): number => Math.log1p(depth / CLOUD_LIGHT_BEND)
+const stretch = (depth: number): number => Math.log1p(depth / bend)
 
 /** Thickness of a row: rows are even in ln(1 + T/b). */
-const thicknessOfRow = (row: number): number =>
-  CLOUD_LIGHT_BEND * Math.expm1(row * stretch(CLOUD_LIGHT_THICKEST))
+const thicknessOfRow = (row: number): number => bend * Math.expm1(row * stretch(thickest))
 
 /** Depth of a column: (1 + d/b) e^{−s} = (1 + (T − d)/b) with s = (2w − 1) ln(1 + T/b). */
 function depthOfColumn(column: number, thickness: number): number {
   const ratio = Math.exp((2 * column - 1) * stretch(thickness))
-  return (ratio * (CLOUD_LIGHT_BEND + thickness) - CLOUD_LIGHT_BEND) / (1 + ratio)
+  return (ratio * (bend + thickness) - bend) / (1 + ratio)
 }
 
 /** Cosine of the lowest light; one still lower over a slab gives the same moments. */

@@ -1,4 +1,4 @@
-/** How cloud droplets scatter: two Henyey–Greenstein lobes. */
+/** Phase function of cloud droplets: two Henyey–Greenstein lobes. */
 export interface CloudPhaseParameters {
   /** Asymmetry g of the first lobe, in [0, 0.95]: the forward peak that makes silver linings. */
   readonly forwardAsymmetry: number
@@ -27,7 +27,8 @@ export interface ScaledPhase {
  * Delta-scaling by the fourth Legendre coefficient: f = χ₃, χ′_l = (χ_l − f)/(1 − f),
  * τ′ = (1 − ωf) τ, ω′ = ω (1 − f)/(1 − ωf).
  *
- * @see Wiscombe 1977, "The delta-M method"
+ * @see Wiscombe 1977, "The delta-M method", J. Atmos. Sci. 34, 1408: forward peak f = χ₃ for three moments, and the
+ *   scaling of optical depth, albedo and moments by it
  */
 export function scalePhase(phase: CloudPhaseParameters): ScaledPhase {
   const { forwardAsymmetry, backwardAsymmetry, forwardShare, scatteringAlbedo } = phase

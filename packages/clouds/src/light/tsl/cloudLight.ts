@@ -1,15 +1,15 @@
 import { Fn, float, vec2 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import { lightAngles } from '../cpu/cloudLightSize'
+import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
 import { lateralLeak, type LeakNodes } from './lateralLeak'
-import { legendreSeries, readLayer, slabPlace } from './slabTable'
+import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
-/** Place of a sample in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
+/** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
 export interface CloudSourceNodes extends LeakNodes {
-  /** From the viewpoint to the sample, in the cloud; left out, the aureole is sharper than it should be. */
-  depthToEye?: Float
+  /** Depth from the viewpoint to the sample, in the cloud; left out, the aureole is sharper than it should be. */
+  depthToCamera?: Float
   /** The light against the local up. */
   cosLight: Float
   /** The view ray against the local up. */
@@ -32,7 +32,7 @@ export interface CloudSourceNodes extends LeakNodes {
  *   atmospheres using a truncation approximation" (TMS)
  */
 export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float {
-  const { depthToLight, depthThrough, depthToEye, layered, cosViewLight } = sample
+  const { depthToLight, depthThrough, depthToCamera, layered, cosViewLight } = sample
   return Fn(() => {
     const isolated = layered.oneMinus().toConst()
     // The slab's normal: up (or down, under a light below the horizon) for decks, towards the light for isolated clouds.
@@ -48,16 +48,16 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     const cosView = side.mul(sample.cosView).add(isolated.mul(cosViewLight)).mul(scale).toConst()
     const thickness = depthThrough.mul(cosSlabLight).toConst()
     const depth = depthToLight.mul(cosSlabLight).clamp(0, thickness).toConst()
-    const place = slabPlace(depth, thickness).toConst()
-    const layer = cosSlabLight.mul(lightAngles - 1).toConst()
-    const first = readLayer(light, place, layer)
-    const second = readLayer(light, place, layer.add(lightAngles))
+    const uv = slabCoordinates(depth, thickness).toConst()
+    const layer = cosSlabLight.mul(slabTableForm.lightAngles - 1).toConst()
+    const first = readLayer(light, uv, layer)
+    const second = readLayer(light, uv, layer.add(slabTableForm.lightAngles))
     const along = cosViewLight.sub(cosView.mul(cosSlabLight)).toConst()
     const sines = cosView.mul(cosView).oneMinus().mul(cosSlabLight.mul(cosSlabLight).oneMinus())
     const diffuse = legendreSeries(first, cosView)
       .add(first.w.add(second.x.mul(cosView)).mul(along))
       .add(second.y.mul(along.mul(along).mul(2).sub(sines)))
-    const path = depthToEye === undefined ? depthToLight : depthToLight.add(depthToEye)
+    const path = depthToCamera === undefined ? depthToLight : depthToLight.add(depthToCamera)
     const single = singlePhase(light, cosViewLight, path)
       .mul(light.scatteringScale)
       .mul(depthToLight.negate().exp())
@@ -72,11 +72,11 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
  */
 export const ISOLATED_DEPTH = 0.2
 
-/** Place of a sample between sky and ground. Depths are scaled optical depths along the vertical. */
+/** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientNodes {
-  /** From the sample to the cloud's top. */
+  /** Depth from the sample to the cloud's top. */
   depthAbove: Float
-  /** From the sample to its base. */
+  /** Depth from the sample to the cloud's base. */
   depthBelow: Float
   /** 1 for a cloud deck, 0 for an isolated cloud. */
   layered: Float
@@ -98,15 +98,15 @@ export function cloudAmbientShares(
     .toConst()
   const above = depthAbove.max(0).mul(openness).toConst()
   const below = depthBelow.max(0).mul(openness).toConst()
-  const place = slabPlace(above, above.add(below)).toConst()
-  const at = (uv: Vec2, cosine: Float): Float =>
-    legendreSeries(readLayer(light, uv, float(2 * lightAngles)), cosine)
+  const uv = slabCoordinates(above, above.add(below)).toConst()
+  const at = (coordinates: Vec2, cosine: Float): Float =>
+    legendreSeries(readLayer(light, coordinates, float(2 * slabTableForm.lightAngles)), cosine)
       .max(0)
       .toConst()
   return {
-    sky: at(place, cosView),
+    sky: at(uv, cosView),
     // The same slab seen from below.
-    ground: at(vec2(place.x.oneMinus(), place.y), cosView.negate().toConst())
+    ground: at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
   }
 }
 

@@ -39,7 +39,7 @@ const lowTerms = (asymmetry: Float, cosScatter: Float): Float => {
  * scattered within the peak on the way. Twins: cpu/cloudPhase.ts (`cloudPhase`, `aureolePhase`)
  *
  * @param cosScatter - Of the scattering angle.
- * @param depth - Scaled depth from the light to the sample and on to the eye.
+ * @param depth - Scaled depth from the light to the sample and on to the camera.
  */
 export function singlePhase(light: CloudLight, cosScatter: Float, depth: Float): Float {
   const { forwardAsymmetry: g, backwardAsymmetry, forwardShare, scatteringScale } = light

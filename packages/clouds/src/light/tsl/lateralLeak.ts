@@ -4,7 +4,7 @@ import type { Float } from '../../tsl-types'
 
 /** Extent of a cloud about a sample. All depths are scaled optical depths. */
 export interface LeakNodes {
-  /** From the sample to the light, ≥ 0. */
+  /** Depth from the sample to the light, ≥ 0. */
   depthToLight: Float
   /** Through the whole cloud along the ray of light through the sample, ≥ `depthToLight`. */
   depthThrough: Float

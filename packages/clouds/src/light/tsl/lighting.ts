@@ -8,7 +8,10 @@ import { localDepths } from './localDepths'
 import { isNight, nightShare } from './night'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
 
-/** Transmittance below which a ray ends: what is behind is not seen. */
+/**
+ * Transmittance below which a ray ends: what is behind is not seen. Greater: the sun's disc is cut off
+ * sharply by clouds (*Cumulus*).
+ */
 export const LEAST_TRANSMITTANCE = 0.01
 
 /** Source function of a place, as shares of the light that reaches it: per scaled extinction. */
@@ -45,7 +48,7 @@ export function sourceAt(context: ShadingContext, place: ShadedSample): CloudSha
     depthToLight: depths.toLight.mul(scale).toConst(),
     depthThrough,
     depthAcross: depthThrough,
-    depthToEye: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst(),
+    depthToCamera: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst(),
     layered,
     cosLight: source.cosine,
     cosView,

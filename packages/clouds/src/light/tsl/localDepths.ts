@@ -9,8 +9,7 @@ const LOWEST_COSINE = 0.12
 
 /**
  * Distance towards the light that is probed sample by sample: per distance from the camera, at least and
- * at most [m]. Shorter: heads lose the shading of their own bumps; longer: few samples miss them. See the
- * story "Cumulus from the ground".
+ * at most [m]. Shorter: billows lose the shading of their own bumps; longer: few samples miss them (*Cumulus*).
  */
 const PROBED_GROWTH = 0.02
 const LEAST_PROBED = 60
@@ -18,19 +17,22 @@ const MOST_PROBED = 600
 
 /**
  * Low light stays among clouds for longer: cosines between which it counts as low, the distance probed then
- * [m], and how many steps more. Less: clouds glow through each other at sunset. See the story "Cirrus at dusk".
+ * [m], and how many steps more. Less: clouds glow through each other at sunset (*Cirrus*).
  */
 const LOW_LIGHT = 0.35
 const LOWEST_LIGHT = 0.12
 const LOW_LIGHT_PROBED = 700
 const LOW_LIGHT_STEPS = 2
 
-/** Height at which the cloud above is probed, as a part of the way to the top. */
+/**
+ * Height at which the cloud above is probed, as a part of the way to the top. Higher: towers count as
+ * shallow, too bright from the sky (*Storm*).
+ */
 const ABOVE = 0.35
 
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
-  /** From the sample to the light. */
+  /** Depth from the sample to the light. */
   toLight: Float
   /** Optical depth of all clouds on the ray of light through the sample. */
   through: Float
@@ -72,7 +74,7 @@ export function localDepths(
     const middle = isUpwards.select(rise.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
     const direction = isUpwards.select(sample.up, toLight) as Vec3
     const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
-    const { altitude, up } = field.view.place(offset)
+    const { altitude, up } = field.view.localCoordinates(offset)
     const { distance } = sample
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
     found.addAssign(

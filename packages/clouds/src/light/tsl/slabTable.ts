@@ -1,17 +1,18 @@
 import { vec2, vec3 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
-import { thicknesses, layers, positions } from '../cpu/cloudLightSize'
-import { CLOUD_LIGHT_BEND, CLOUD_LIGHT_THICKEST } from '../cpu/cloudLightTable'
+import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2, Vec4 } from '../../tsl-types'
 
-const stretch = (depth: Float): Float => depth.div(CLOUD_LIGHT_BEND).add(1).log()
+const { bend, layers, positions, thickest, thicknesses } = slabTableForm
 
-/** Texture coordinates of a place in a slab. Twins: `slabColumn` and `slabRow` */
-export function slabPlace(depth: Float, thickness: Float): Vec2 {
+const stretch = (depth: Float): Float => depth.div(bend).add(1).log()
+
+/** Texture coordinates of a depth in a slab. Twins: `slabColumn` and `slabRow` */
+export function slabCoordinates(depth: Float, thickness: Float): Vec2 {
   const whole = stretch(thickness.max(1e-4)).toConst()
   const difference = stretch(depth).sub(stretch(thickness.sub(depth)))
   const column = difference.div(whole).mul(0.5).add(0.5).clamp()
-  const row = whole.div(Math.log1p(CLOUD_LIGHT_THICKEST / CLOUD_LIGHT_BEND)).clamp()
+  const row = whole.div(Math.log1p(thickest / bend)).clamp()
   return vec2(
     column
       .mul(positions - 1)
@@ -25,9 +26,9 @@ export function slabPlace(depth: Float, thickness: Float): Vec2 {
 }
 
 /** Reads a layer of the table. */
-export const readLayer = ({ table }: CloudLight, place: Vec2, layer: Float): Vec4 =>
+export const readLayer = ({ table }: CloudLight, coordinates: Vec2, layer: Float): Vec4 =>
   table
-    .sample(vec3(place, layer.add(0.5).div(layers)))
+    .sample(vec3(coordinates, layer.add(0.5).div(layers)))
     .level(0)
     .toConst()
 

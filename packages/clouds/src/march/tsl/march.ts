@@ -70,7 +70,7 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
   const sampleAt = (distance: Float): CloudSample => {
     const at = distance.toConst() as Float
     const offset = direction.mul(at).toConst() as Vec3
-    return { offset, ...view.place(offset), distance: at }
+    return { offset, ...view.localCoordinates(offset), distance: at }
   }
   const sum = rayLight()
   const state = stepState(jitter)
@@ -91,7 +91,7 @@ export function marchClouds(context: ShadingContext, ray: CloudRay): MarchedClou
       const boundary = nextLayerBoundary(field, cosView, position.mul(1 + 1e-6).add(0.01))
         .min(end)
         .toConst() as Float
-      const { altitude } = view.place(direction.mul(position.add(boundary).mul(0.5)))
+      const { altitude } = view.localCoordinates(direction.mul(position.add(boundary).mul(0.5)))
       const density = enterSegment(field, segment, boundary, altitude).mul(light.depthScale)
       enterSteps(state, field, quality, density, position, boundary)
       If(segment.base.greaterThan(segment.top), () => {

@@ -10,7 +10,10 @@ import { FAR_AWAY } from './layerBoundaries'
 // back, and then steps are parts of the mean free path. It may depend on the distance, the segment between
 // two layer boundaries, the quality, noise, and what the pair before found; never on what is seen of the light.
 
-/** Least number of steps through a layer that is thinner than a few samples are wide. */
+/**
+ * Least number of steps through a layer that is thinner than a few samples are wide. Fewer: grain in far
+ * cirrus (*Cirrus*).
+ */
 const LEAST_STEPS = 4
 
 /**
@@ -19,7 +22,10 @@ const LEAST_STEPS = 4
  */
 const CLEAR_GROWTH = 4
 
-/** Steps through clear air longer than this many in clouds go back where they find one. */
+/**
+ * Steps through clear air longer than this many in clouds go back where they find one. Greater: near edges
+ * are ragged (*Inside a cloud*).
+ */
 const LOOK_BACK = 1.6
 
 /** State of the step policy. */

@@ -19,7 +19,7 @@ export interface ViewRay {
   length: Float
   /** Unit length, in the mapped space. */
   direction: Vec3
-  /** The same direction in view space, for each metre of the mapped space [world units/m]. */
+  /** Direction in view space, for each metre of the mapped space [world units/m]. */
   directionView: Vec3
 }
 

@@ -7,7 +7,8 @@ import {
   type NoiseChannel
 } from '../noiseRecipes'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
-import { billow, curl, perlin } from './noise'
+import { billow } from './billow'
+import { curl, perlin } from './gradientNoise'
 
 const terms = { perlin, billow }
 

@@ -23,26 +23,29 @@ export interface CloudShadows {
   readonly tileCount: number
   /** 1 for a map of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
-  /** From the camera of the map to the one of the shader, if they are two [m]. */
+  /** Displacement from the camera of the map to the one of the shader, if they are two [m]. */
   readonly shift?: UniformNode<'vec3', Vector3>
 }
 
 /** Optical depths on the ray of light through a place, not scaled. */
 export interface LightDepths {
-  /** From the place to the light. */
+  /** Optical depth from the point to the light. */
   toLight: Float
-  /** From end to end of the ray. */
+  /** Optical depth from end to end of the ray. */
   through: Float
-  /** From the place to the light, of layers that cast shadows. */
+  /** Optical depth from the point to the light, of layers that cast shadows. */
   shadow: Float
   /** 1 where the map has the place; 0 where it does not, and the depths are 0. */
   known: Float
 }
 
-/** Parts of a cascade's width that are left out at its edges. */
+/** Parts of a cascade's width that are left out at its edges: bilinear reads would mix in another one's. */
 const MARGIN = 0.02
 
-/** Parts of its width in which a cascade gives way to the next. */
+/**
+ * Parts of its width in which a cascade gives way to the next. Fewer: a line where shadows become coarser
+ * (*Shadows*).
+ */
 const FADE = 0.1
 
 /**

@@ -19,7 +19,7 @@ const SEARCHES = 2
 
 /** The search for the edge of a cloud between a clear place and one in it. */
 interface EdgeSearch {
-  /** Distance of the last place known to be clear, and of the first in the cloud [m]. */
+  /** Distance of the last point that is clear, and of the first in the cloud [m]. */
   readonly clear: Float & Assignable<Float>
   readonly cloudy: Float & Assignable<Float>
   /** Cuts that this search still makes, and searches that the ray may still make. */

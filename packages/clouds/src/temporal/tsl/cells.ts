@@ -110,7 +110,7 @@ export function gatherCells(
       light.assign(vec4(mean.x, transmittance, deviation))
       const middle = corner.add(0.5).mul(frame.block).add(frame.jitter).add(0.5).div(frame.size)
       const { direction } = viewRayAt(viewRays, middle.toConst())
-      const { altitude } = field.view.place(direction.mul(distance.exp2()))
+      const { altitude } = field.view.localCoordinates(direction.mul(distance.exp2()))
       distances.assign(
         vec4(
           distance,

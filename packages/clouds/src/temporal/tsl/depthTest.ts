@@ -1,6 +1,9 @@
 import type { Float, Vec4 } from '../../tsl-types'
 
-/** Difference of log₂ distances below which two pixels see the same surface: 7 %. */
+/**
+ * Difference of log₂ distances below which two pixels see the same surface: 7 %. Greater: clouds smear over what
+ * stands before them; smaller: grain on slopes (*Shadows*).
+ */
 export const SAME_DISTANCE = 0.1
 
 /**

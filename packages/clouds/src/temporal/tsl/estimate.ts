@@ -7,10 +7,16 @@ import { SAMPLE_STEPS } from './packing'
 import { brightness, type CloudTargets } from './renderTargets'
 import type { Neighbourhood } from './varianceClip'
 
-/** Sharpness s of the kernel e^{−s d²} that interpolates marched pixels, d in marched pixels. */
+/**
+ * Sharpness s of the kernel e^{−s d²} that interpolates marched pixels, d in marched pixels. Greater: blocks
+ * show while one turns; smaller: blur (*Cumulus*).
+ */
 const INTERPOLATION_SHARPNESS = 7
 
-/** Sharpness of the kernel by which a marched pixel's weight falls off around it, per pixel squared. */
+/**
+ * Sharpness of the kernel by which a marched pixel's weight falls off around it, per pixel squared. Smaller:
+ * still clouds blur (*Cumulus*).
+ */
 const WEIGHT_SHARPNESS = 5
 
 /** Least weight: that of pixels with no marched one near by. */
@@ -32,7 +38,7 @@ export interface Estimate extends Neighbourhood {
 export interface CellPlace {
   /** Index of the cell's first corner. */
   readonly corner: Vec2
-  /** From there on, in [0, 1). */
+  /** Position from there on, in [0, 1). */
   readonly part: Vec2
 }
 
@@ -122,7 +128,7 @@ function gatherCorners(
  * where the pixel passes its depth test; or else from those corners that it passes alone.
  *
  * @param end - log₂ of the distance at which the pixel ends.
- * @see Kopf et al. 2007, "Joint bilateral upsampling": weights by distance in the image and by depth
+ * @see Kopf et al. 2007, "Joint bilateral upsampling", eq. 3: weights by distance in the image and by depth
  */
 export function estimate(
   viewRays: ViewRayNodes,

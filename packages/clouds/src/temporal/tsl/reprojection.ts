@@ -8,16 +8,21 @@ import { sharpSample } from './sharpSample'
 
 /**
  * Motion below which history is read at the pixel's own texel, so that filtering does not blur a picture
- * that stands still [pixels]. Greater: slow clouds lag behind; 0: still ones blur. See the story
- * "Cumulus from the ground" with "Time lapse".
+ * that stands still [pixels]. Greater: slow clouds lag behind; 0: still ones blur (*Cumulus* with "Time lapse").
  */
 const STILL_MOTION = 0.02
 
-/** Motion after which history is no more than a stopgap [pixels], and what it is worth then [samples]. */
+/**
+ * Motion after which history is no more than a stopgap [pixels], and what it is worth then [samples].
+ * Greater: clouds blur while one turns (*Cockpit*).
+ */
 const FAST_MOTION = 10
 const FAST_SAMPLES = 0.1
 
-/** Error of the reprojection at which history is rejected: clouds at another distance than this pixel's [pixels]. */
+/**
+ * Error of the reprojection at which history is rejected: clouds at another distance than this pixel's [pixels].
+ * Greater: near clouds trail over far ones as one flies past (*Storm*).
+ */
 const MAX_PARALLAX = 4
 
 /** Reprojected history of a pixel. */

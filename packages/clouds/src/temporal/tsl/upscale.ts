@@ -10,19 +10,24 @@ import { CLEAR, type CloudTargets } from './renderTargets'
 import { reprojectHistory, type ReprojectedHistory } from './reprojection'
 import { varianceClip } from './varianceClip'
 
-/** Weight above which an estimate is a pixel's own sample rather than its neighbours'. */
+/**
+ * Weight above which an estimate is a pixel's own sample rather than its neighbours'. Smaller: still clouds
+ * blur (*Cumulus*).
+ */
 const OWN_SAMPLE = 0.5
 
 /**
  * Extra clip tolerance of history, in units of brightness and of transmittance: of stationary pixels and of
  * all others. Details smaller than a block are not marched in every frame; without tolerance they flicker in
- * a still picture, with more of it clouds leave trails when they move. See the story "Cumulus
- * from the ground" with "Time lapse".
+ * a still picture, with more of it clouds leave trails when they move (*Cumulus* with "Time lapse").
  */
 const STATIONARY_SLACK = 1
 const LEAST_SLACK = 0.01
 
-/** Accumulated samples over which stationary history gains that tolerance: younger history may be a trail. */
+/**
+ * Accumulated samples over which stationary history gains that tolerance: younger history may be a trail
+ * (*Cumulus* with "Time lapse").
+ */
 const YOUNG_SAMPLES = 1.5
 const OLD_SAMPLES = 4
 

@@ -1,0 +1,104 @@
+import {
+  Fn,
+  bitAnd,
+  bitOr,
+  cross,
+  float,
+  shiftLeft,
+  shiftRight,
+  uint,
+  uvec3,
+  vec3
+} from 'three/tsl'
+import { layout, loop, type Float, type Vec3 } from '../../tsl-types'
+import { ONE, cellOf, digitsOf, fromBits, hashBits, hashCell, wrapped, type UInt } from './cellHash'
+
+/** Weights of a corner along each axis, from those of the corner beyond. */
+const cornerWeights = (offset: Vec3, fade: Vec3): Vec3 =>
+  offset.mul(fade.mul(2).sub(1)).add(fade.oneMinus())
+
+/** Quintic fade curve of Perlin noise. */
+const fadeOf = (part: Vec3): Vec3 =>
+  part
+    .mul(part)
+    .mul(part)
+    .mul(part.mul(part.mul(6).sub(15)).add(10))
+
+/**
+ * Gradient noise of period 1 in each coordinate, about [−1, 1].
+ *
+ * @param p - Any place, in [−1, 2] for full precision.
+ * @param cells - Cells in a period along each axis, whole.
+ * @param seed - Whole, below 2¹⁶.
+ * @see Perlin 2002, "Improving noise", on the fade curve. Twin: test/twins/noise.ts
+ */
+export const perlin = /*#__PURE__*/ Fn(
+  ([p, cells, seed]: [Vec3, Vec3, Float]) => {
+    const { base, part, origin, index } = cellOf(p, cells, seed)
+    const stride = wrapped(base.add(1), cells).sub(origin).toConst('stride')
+    const fade = fadeOf(part).toConst('fade')
+    const sum = float(0).toVar('sum')
+    loop('corner', 8, corner => {
+      const digits = digitsOf(corner, 2).toConst('digits')
+      const offset = vec3(digits).toConst('offset')
+      const gradient = hashCell(index.add(stride.mul(digits)))
+        .mul(2)
+        .sub(1)
+      const weights = cornerWeights(offset, fade).toConst('weights')
+      const weight = weights.x.mul(weights.y).mul(weights.z)
+      sum.addAssign(weight.mul(gradient.dot(part.sub(offset))))
+    })
+    return sum.mul(1.5)
+  },
+  layout('welkinPerlin', 'float', { p: 'vec3', cells: 'vec3', seed: 'float' })
+) as unknown as (p: Vec3, cells: Vec3, seed: Float) => Float
+
+/** Gradient from 30 of a hash's bits, ten for each component, in (−1, 1). */
+const gradientOf = (bits: UInt): Vec3 => {
+  const high = uvec3(
+    shiftRight(bits as never, uint(9)),
+    shiftLeft(bits as never, uint(1)),
+    shiftLeft(bits as never, uint(11))
+  )
+  const mantissa = bitAnd(high as never, uvec3(0x7fe000) as never)
+  return fromBits(bitOr(mantissa, uvec3(ONE) as never))
+    .mul(2)
+    .sub(3 - 1 / 1024)
+}
+
+/**
+ * Curl of three Perlin potentials, which has no sinks and no sources: displacements by it neither
+ * gather nor thin out what they move. Period 1; per cell. Parameters as of `perlin`.
+ *
+ * The potentials' gradients at a corner share a hash. With weights w, gradients a, b, c and heights
+ * h = (a·d, b·d, c·d) of the corners, the potentials are Σ w h and their curl is Σ ∇w × h + w ∇ × h.
+ *
+ * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2. Twin: test/twins/noise.ts
+ */
+export const curl = /*#__PURE__*/ Fn(
+  ([p, cells, seed]: [Vec3, Float, Float]) => {
+    const { base, part, origin, index } = cellOf(p, vec3(cells), seed)
+    const stride = wrapped(base.add(1), vec3(cells)).sub(origin).toConst('stride')
+    const fade = fadeOf(part).toConst('fade')
+    const slope = part.mul(part.oneMinus()).mul(part.mul(part.oneMinus())).mul(30).toConst('slope')
+    const sum = vec3(0).toVar('sum')
+    loop('corner', 8, corner => {
+      const digits = digitsOf(corner, 2).toConst('digits')
+      const offset = vec3(digits).toConst('offset')
+      const bits = hashBits(index.add(stride.mul(digits))).toConst('bits')
+      const a = gradientOf(bits.x).toConst('a')
+      const b = gradientOf(bits.y).toConst('b')
+      const c = gradientOf(bits.z).toConst('c')
+      const way = part.sub(offset).toConst('way')
+      const heights = vec3(a.dot(way), b.dot(way), c.dot(way))
+      const weights = cornerWeights(offset, fade).toConst('weights')
+      const slopes = offset.mul(2).sub(1).mul(slope).toConst('slopes')
+      const gradient = slopes.mul(weights.yzx).mul(weights.zxy)
+      const turning = vec3(c.y.sub(b.z), a.z.sub(c.x), b.x.sub(a.y))
+      sum.addAssign(cross(gradient, heights))
+      sum.addAssign(turning.mul(weights.x.mul(weights.y).mul(weights.z)))
+    })
+    return sum
+  },
+  layout('welkinCurl', 'vec3', { p: 'vec3', cells: 'float', seed: 'float' })
+) as unknown as (p: Vec3, cells: Float, seed: Float) => Vec3
