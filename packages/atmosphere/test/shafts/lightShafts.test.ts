@@ -14,6 +14,9 @@ const light = new SunDirectionalLight(atmosphere)
 /** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
+/** An occluder that takes nothing. */
+const occluder: AirOccluder = { castInto: () => ({ transmittance: () => float(1) }) }
+
 describe('bad input to light shafts', () => {
   const cases: [string, () => unknown][] = [
     [
