@@ -18,7 +18,7 @@ export function cornetteShanksFactor(asymmetry: number): number {
  * @param asymmetry - g, in (−1, 1).
  * @param cosViewLight - ν, cosine of the scattering angle.
  * @see Cornette & Shanks 1992, "Physically reasonable analytic expression for the single-scattering phase
- *   function", Applied Optics 31, 3152
+ *   function", Applied Optics 31, 3152, eq. 8
  */
 export function cornetteShanksPhase(asymmetry: number, cosViewLight: number): number {
   const squaredChord = 1 + asymmetry ** 2 - 2 * asymmetry * cosViewLight

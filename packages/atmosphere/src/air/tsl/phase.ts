@@ -19,7 +19,7 @@ export function rayleighPhase(cosViewLight: Float): Float {
  *
  * @param cosViewLight - ν, cosine of the scattering angle, in [−1, 1].
  * @see Cornette & Shanks 1992, "Physically reasonable analytic expression for the single-scattering phase
- *   function", Applied Optics 31, 3152. Twin: cpu/phase.ts
+ *   function", Applied Optics 31, 3152, eq. 8. Twin: cpu/phase.ts
  */
 export function miePhase(uniforms: AtmosphereUniforms, cosViewLight: Float): Vec4 {
   const { mieAsymmetry, mieIsGrey, miePhaseFactor } = uniforms

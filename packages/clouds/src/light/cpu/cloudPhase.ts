@@ -27,8 +27,8 @@ export interface ScaledPhase {
  * Delta-scaling by the fourth Legendre coefficient: f = χ₃, χ′_l = (χ_l − f)/(1 − f),
  * τ′ = (1 − ωf) τ, ω′ = ω (1 − f)/(1 − ωf).
  *
- * @see Wiscombe 1977, "The delta-M method", J. Atmos. Sci. 34, 1408: forward peak f = χ₃ for three moments, and the
- *   scaling of optical depth, albedo and moments by it
+ * @see Wiscombe 1977, "The delta-M method", J. Atmos. Sci. 34, 1408, eqs. 14 (moments), 15 (f) and 20 (depth and
+ *   albedo), for M = 3/2
  */
 export function scalePhase(phase: CloudPhaseParameters): ScaledPhase {
   const { forwardAsymmetry, backwardAsymmetry, forwardShare, scatteringAlbedo } = phase

@@ -8,7 +8,7 @@ import type { Float, LevelTexture, Vec2, Vec4 } from '../../tsl-types'
  * @param at - Place in the picture [pixels].
  * @param size - Of the picture [pixels].
  * @see Keys 1981, "Cubic convolution interpolation for digital image processing", IEEE TASSP 29 (6), "The cubic
- * convolution interpolation kernel", a = −½
+ * convolution interpolation kernel", p. 1155, a = −½
  */
 export function sharpSample(light: LevelTexture<Vec2>, at: Vec2, size: Vec2): Vec4 {
   const middle = at.sub(0.5).floor().add(0.5).toConst() as Vec2
