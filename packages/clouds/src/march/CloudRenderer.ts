@@ -141,7 +141,7 @@ export class CloudRenderer {
 
   #drawDebugView(renderer: Renderer, { width, height }: RenderTarget): void {
     this.#debugTarget ??= tableTarget('Welkin.CloudsDebug', 1, 1)
-    this.#debugPass ??= debugPass(this.debug, this.frame.gain, this.accumulated, this.marched)
+    this.#debugPass ??= debugPass(this.debug, this.accumulated, this.marched)
     this.#debugTarget.setSize(width, height)
     this.#debugPass.render(renderer, this.#debugTarget)
     this.shown.value = this.#debugTarget.texture

@@ -231,7 +231,7 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.#renderer.debug.value = debugViews.indexOf(this.#debugView)
     this.#renderer.render(renderer)
-    this.#exposure.value = 1 / this.#frame.gain.value
+    this.#exposure.value = this.#debugView === null ? 1 / this.#frame.gain.value : 1
     for (const screen of this.#screens) screen.prepare?.(renderer, view, frame)
   }
 

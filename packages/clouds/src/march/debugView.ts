@@ -25,14 +25,12 @@ export const debugViews: readonly (CloudsDebug | null)[] = [
 ]
 
 /**
- * A pass that draws a debug view as if it were clouds.
+ * Pass that draws a debug view as if it were clouds, of a gain of 1.
  *
  * @param debug - Its number.
- * @param gain - Stored light per light.
  */
 export function debugPass(
   debug: Float,
-  gain: Float,
   accumulated: CloudTargets,
   marched: CloudTargets
 ): FragmentPass {
@@ -54,7 +52,7 @@ export function debugPass(
         shown.assign(value)
       })
     })
-    return vec4(vec3(shown.mul(gain)), 0)
+    return vec4(vec3(shown), 0)
   })()
   return new FragmentPass('Welkin.CloudsDebug', output)
 }
