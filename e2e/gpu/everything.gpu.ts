@@ -10,6 +10,7 @@ import {
   airglow,
   distanceFog,
   heightFog,
+  lightShafts,
   milkyWay,
   moon,
   planetGround,
@@ -19,6 +20,7 @@ import {
   starsOverlay,
   sunFlare
 } from '@welkin/atmosphere'
+import type { LightShafts } from '@welkin/atmosphere'
 import { cloudEnvironment, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import {
   BoxGeometry,
@@ -77,6 +79,9 @@ class World {
   readonly cloudMap = worldMap()
   readonly #pass = pass(this.scene, this.camera, { samples: 0 })
   readonly #pipeline: RenderPipeline
+  readonly #sun: SunDirectionalLight
+  readonly #lit = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
+  readonly shafts: LightShafts
   readonly #clouds
   readonly #cloudEnvironment
   readonly #environment
@@ -107,7 +112,10 @@ class World {
       distanceFog({ density: 1e-5 })
     )
     const depth = this.#pass.getTextureNode('depth')
-    const air = aerialPerspective(this.#pass.getTextureNode(), depth, camera, atmosphere)
+    const light = (this.#sun = new SunDirectionalLight(atmosphere, 200))
+    const shafts = (this.shafts = lightShafts(atmosphere, camera, { light }))
+    const drawn = this.#pass.getTextureNode()
+    const air = aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('mixed', 4)
     layers.at(3).set({ baseAltitude: 6000, topAltitude: 6500, coverage: 0.3 })
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
@@ -115,6 +123,7 @@ class World {
       worldMap: isMapped ? this.cloudMap : null
     })
     this.#clouds.time = 0
+    shafts.add(this.#clouds)
     this.#cloudEnvironment = cloudEnvironment(this.#clouds, { size: 16, quality: coarse })
     this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 256 })
     this.scene.environmentNode = this.#environment
@@ -127,7 +136,7 @@ class World {
 
   #addLights(): void {
     const { atmosphere, luna } = this
-    const sun = new SunDirectionalLight(atmosphere, 200)
+    const sun = this.#sun
     const moonlight = new MoonDirectionalLight(atmosphere, luna, 200)
     for (const light of [sun, moonlight] as DirectionalLight[]) {
       light.castShadow = true
@@ -142,11 +151,11 @@ class World {
     for (const probe of probes) cloudSkyLight(probe, this.#clouds)
     const lights: Light[] = [sun, moonlight, ...probes, new NightLightProbe(atmosphere)]
     this.scene.add(...lights)
-    this.#owned.push(sun, moonlight)
+    this.#owned.push(sun, moonlight, this.shafts)
   }
 
   #addThings(maps: readonly Texture[]): void {
-    const material = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
+    const material = this.#lit
     const names = ['map', 'normalMap', 'roughnessMap', 'metalnessMap', 'aoMap', 'emissiveMap']
     maps.forEach((map, i) => Object.assign(material, { [names[i]]: map }))
     const box = new Mesh(new BoxGeometry(20, 20, 20), material)
@@ -157,6 +166,11 @@ class World {
     for (const mesh of [box, floor]) mesh.receiveShadow = true
     this.scene.add(box, floor)
     this.#owned.push(material, box.geometry, floor.geometry)
+  }
+
+  /** Takes a map of the lit material away. */
+  dropMap(): void {
+    Object.assign(this.#lit, { emissiveMap: null, needsUpdate: true })
   }
 
   /** Looks at the horizon from an altitude, or down a little [m]. */
@@ -250,7 +264,7 @@ gpuTest(
 )
 
 gpuTest(
-  'a material with six maps takes haze, environment, shadows of sun, moon and clouds, and probes',
+  'a material with six maps takes haze, environment, shadows of sun, moon and clouds, and probes; with five light shafts',
   async t => {
     const renderer = await t.createRenderer(size)
     const shaders = watchFragmentShaders(renderer)
@@ -259,8 +273,13 @@ gpuTest(
     world.look(20)
     world.scene.backgroundNode = skyBackground(world.atmosphere)
     world.scene.fogNode = aerialPerspectiveFog(world.atmosphere)
-    const drawn = await drawForward(renderer, world.scene, world.camera, world.atmosphere)
-    expectLight(drawn, 'forward')
+    const draw = () => drawForward(renderer, world.scene, world.camera, world.atmosphere)
+    expectLight(await draw(), 'six maps')
+    world.dropMap()
+    world.atmosphere.add(world.shafts)
+    await nextFrame()
+    const drawn = await draw()
+    expectLight(drawn, 'light shafts')
     const [red, green, blue] = drawn.at(size.width >> 1, size.height - 2)
     expectTrue(red > 0 && green > 0 && blue > 0, `the ground is ${red}, ${green}, ${blue}`)
     checkTextures(t, shaders)

@@ -1,28 +1,5 @@
-import {
-  aerialPerspective,
-  Atmosphere,
-  AtmosphereParameters,
-  lightShafts,
-  moon,
-  MoonDirectionalLight,
-  SunDirectionalLight,
-  type LightShafts,
-  type LightShaftsOptions,
-  type SpectralMatrix
-} from '@welkin/atmosphere'
-import { Ellipsoid } from '@welkin/geo'
-import {
-  BoxGeometry,
-  FloatType,
-  Mesh,
-  MeshLambertMaterial,
-  PerspectiveCamera,
-  PlaneGeometry,
-  Scene,
-  Vector3
-} from 'three'
-import { float, pass, vec3, vec4 } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import type { AirOccluder } from '@welkin/atmosphere'
+import { Vector3 } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { quantile } from '../../validate/score'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
@@ -30,118 +7,12 @@ import {
   inScatter,
   type RayNumbers
 } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
-import {
-  columnAt,
-  lightRayAt,
-  polarRay,
-  type PolarFrame
-} from '../../../packages/atmosphere/src/shafts/tsl/polarMap'
-import { warpedSteps } from '../../../packages/atmosphere/src/shafts/tsl/warpedSteps'
-import type { Float, Vec3 } from '../../../packages/atmosphere/src/tsl-types'
-import { warpedDistance } from '../../../packages/atmosphere/test/twins/shafts/warpedSteps'
-import { drawForward, drawToFloat, random } from '../harness/atmosphere'
+import { drawForward } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { countCompilations, countObjects, nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
-
-const size = { width: 64, height: 36 }
-
-/** Matrix to XYZ of which linear sRGB is the radiance at the first three wavelengths. */
-const unmixed: SpectralMatrix = [
-  [0.4124564 / 683, 0.3575761 / 683, 0.1804375 / 683, 0],
-  [0.2126729 / 683, 0.7151522 / 683, 0.072175 / 683, 0],
-  [0.0193339 / 683, 0.119192 / 683, 0.9503041 / 683, 0]
-]
-
-/** Air whose pictures have three wavelengths, per unit irradiance, on a sphere. */
-const parameters = (): AtmosphereParameters =>
-  new AtmosphereParameters({ spectralToXYZ: unmixed, solarIrradiance: [1, 1, 1, 1] })
-
-interface Stage {
-  scene: Scene
-  camera: PerspectiveCamera
-  atmosphere: Atmosphere
-  light: SunDirectionalLight
-  shafts: LightShafts
-  pipeline: RenderPipeline
-  /** The picture with shafts. */
-  draw: () => Promise<Picture>
-  dispose: () => void
-}
-
-/**
- * A scene with light shafts as a post effect; null for shafts draws the same without.
- *
- * @param elevation - Of the sun in the north, or of the full moon while the sun is down [°].
- */
-function stage(
-  renderer: WebGPURenderer,
-  elevation: number,
-  options: Omit<LightShaftsOptions, 'light'> | null = {},
-  isMoonlit = false
-): Stage {
-  renderer.shadowMap.enabled = true
-  const air = parameters()
-  const ellipsoid = new Ellipsoid(air.bottomRadius)
-  const atmosphere = new Atmosphere({ parameters: air, ellipsoid, luminanceScale: 1 })
-  atmosphere.setSunAngles(elevation, 0)
-  const scene = new Scene()
-  let light = new SunDirectionalLight(atmosphere, 6000)
-  if (isMoonlit) {
-    const luna = moon({ direction: atmosphere.sunDirection })
-    atmosphere.setSunAngles(-50, 180).add(luna)
-    light = new MoonDirectionalLight(atmosphere, luna, 6000)
-  }
-  light.castShadow = true
-  light.shadow.mapSize.setScalar(1024)
-  Object.assign(light.shadow.camera, { left: -4000, right: 4000, bottom: -4000, top: 4000 })
-  light.shadow.camera.far = 12_000
-  // Always drawn and never seen: three draws shadow maps for what takes shadows.
-  const receiver = new Mesh(new PlaneGeometry(0, 0), new MeshLambertMaterial())
-  receiver.frustumCulled = false
-  receiver.receiveShadow = true
-  scene.add(light, light.target, receiver)
-  const camera = new PerspectiveCamera(60, size.width / size.height, 1, 1e6)
-  camera.position.y = 2
-  const shafts = lightShafts(atmosphere, camera, { light, ...options })
-  const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
-  const pipeline = new RenderPipeline(renderer)
-  pipeline.outputColorTransform = false
-  const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
-  const given = options === null ? {} : { shafts }
-  pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere, given)
-  return {
-    scene,
-    camera,
-    atmosphere,
-    light,
-    shafts,
-    pipeline,
-    async draw() {
-      camera.updateMatrixWorld()
-      await nextFrame()
-      return drawToFloat(renderer, () => pipeline.render())
-    },
-    dispose() {
-      for (const owned of [scenePass, pipeline, shafts, light, atmosphere]) owned.dispose()
-    }
-  }
-}
-
-/** A box that casts shadows, by its middle and its edges [m]. */
-function addBox(scene: Scene, middle: [number, number, number], edges: [number, number, number]) {
-  const box = new Mesh(new BoxGeometry(...edges), new MeshLambertMaterial())
-  box.position.set(...middle)
-  box.castShadow = box.receiveShadow = true
-  scene.add(box)
-  return box
-}
-
-function expectSame(a: Picture, b: Picture, label: string): void {
-  const differs = a.data.findIndex((value, i) => value !== b.data[i])
-  expectTrue(differs < 0, `${label}: ${a.data[differs]} is not ${b.data[differs]} at ${differs}`)
-}
+import { addBox, expectSame, parameters, stage, stageSize as size } from '../harness/shaft-stage'
 
 gpuTest('leaves a scene without casters the same to the last bit', async t => {
   const renderer = await t.createRenderer(size)
@@ -355,92 +226,38 @@ gpuTest(
   }
 )
 
-gpuTest('spaces samples as the float64 twin does', async t => {
-  const { bottomRadius } = parameters()
-  const height = 8000
-  const next = random(12)
-  const rays = Array.from({ length: 64 }, () => [
-    60_000 * next() ** 3,
-    2 * next() - 1,
-    10 ** (1 + 4.5 * next()),
-    next()
-  ])
-  const uniforms = { bottomRadius: float(bottomRadius), homogeneousHeight: float(height) } as never
-  const results = await t.evaluate(rays, ray => {
-    const zero = float(0) as Float
-    const steps = warpedSteps(
-      uniforms,
-      { altitude: ray.x, cosView: ray.y, cosLight: zero, cosViewLight: zero },
-      ray.z
-    )
-    return vec4(
-      steps.distance(ray.w),
-      steps.slope(ray.w),
-      steps.distance(float(0)),
-      steps.distance(float(1))
-    )
-  })
-  rays.forEach(([altitude, cosView, length, part], i) => {
-    const at = (x: number): number =>
-      warpedDistance(bottomRadius + altitude, cosView, height, length, x)
-    const [distance, slope, first, last] = results.subarray(4 * i, 4 * i + 4)
-    const label = `ray ${rays[i].join(' ')}`
-    expectClose(distance, at(part), { absolute: 2e-5 * length }, label)
-    const step = 1e-5
-    const [from, to] = [Math.max(part - step, 0), Math.min(part + step, 1)]
-    expectClose(slope, (at(to) - at(from)) / (to - from), { relative: 2e-3 }, `${label}, slope`)
-    expectClose(first, 0, { absolute: 2e-5 * length }, `${label}, first`)
-    expectClose(last, length, { absolute: 2e-5 * length }, `${label}, last`)
-  })
-})
-
-gpuTest('has a view ray in the row of the rays of light that it crosses', async t => {
-  const columns = 512
-  const [even, greatest] = [30, 30_000]
-  const logScale = 1 / Math.log1p(greatest / even)
-  const light = new Vector3(0.3, 0.5, -0.6).normalize()
-  const across = new Vector3(0, 1, 0).cross(light).normalize()
-  const along = light.clone().cross(across)
-  const vector = ({ x, y, z }: Vector3): Vec3 => vec3(x, y, z)
-  const frame: PolarFrame = {
-    across: vector(across),
-    along: vector(along),
-    evenDistance: float(even),
-    logScale: float(logScale),
-    logOffset: float(0),
-    columns: float(columns)
+gpuTest("has an occluder of one's own beyond all shadow maps", async t => {
+  const renderer = await t.createRenderer(size)
+  const { camera, draw, shafts, atmosphere, dispose } = stage(renderer, 25)
+  const before = await draw()
+  // All is dark east of the camera, of which the scene is ten times as large in these units.
+  atmosphere.metersPerUnit = 0.1
+  camera.position.set(5000, 20, 300)
+  const lit = await draw()
+  const occluder: AirOccluder = {
+    castInto: () => ({
+      transmittance: ({ positionWorld }) => positionWorld().x.greaterThan(5000).select(0, 1)
+    })
   }
-  const next = random(5)
-  const texels = Array.from({ length: 32 }, () => [next(), next(), 1e4 * (2 * next() - 1)])
-  // From a texel's ray of light to a point of it, and back.
-  const results = await t.evaluate(texels, texel => {
-    const { offset, distance } = lightRayAt(frame, texel.xy)
-    const point = offset.add(vector(light).mul(texel.z)).toConst() as Vec3
-    const direction = point.normalize().toConst() as Vec3
-    const polar = polarRay(frame, direction, direction.dot(vector(light)))
-    const column = columnAt(frame, distance)
-    const crossing = polar.sinViewLight.mul(point.length()).div(distance)
-    return vec4(column, polar.row.fract(), polar.angle, crossing)
-  })
-  texels.forEach(([u, v, z], i) => {
-    const [column, row, angle, crossing] = results.subarray(4 * i, 4 * i + 4)
-    const position = Math.max((u * columns - 0.5) / (columns - 1), 0)
-    const distance = Math.max(even * Math.expm1(position / logScale), 1e-3 * even)
-    const turn = (row - v + 1.5) % 1
-    expectClose(column, u, { absolute: 2e-5 }, 'column')
-    // Near the line to the light float32 has few directions.
-    const blur = 3e-7 * (1 + Math.abs(z) / distance)
-    expectClose(turn, 0.5, { absolute: 2e-5 + blur }, 'row')
-    // WGSL asks 4096 units in the last place of atan2, and software gives no more.
-    expectClose(angle, -Math.atan2(z, distance), { absolute: 1e-4 }, 'angle')
-    // Of sine and cosine it asks 2⁻¹¹.
-    expectClose(
-      crossing,
-      1,
-      { absolute: 2 ** -11 + 4 * blur },
-      'distance from the line to the light'
+  shafts.add(occluder)
+  const dark = await draw()
+  for (const y of [4, 12]) {
+    const row = Array.from({ length: size.width }, (_, x) => dark.at(x, y)[1] / lit.at(x, y)[1])
+    const [west, east] = [row.slice(0, size.width / 2 - 4), row.slice(size.width / 2 + 4)]
+    expectTrue(
+      west.every(part => part === 1),
+      `the west is lit: ${Math.min(...west)}`
     )
-  })
+    expectTrue(
+      east.every(part => part < 0.8),
+      `the east is dark: ${Math.max(...east)}`
+    )
+  }
+  shafts.remove(occluder)
+  atmosphere.metersPerUnit = 1
+  camera.position.set(0, 2, 0)
+  expectSame(await draw(), before, 'taken out')
+  dispose()
 })
 
 gpuTest('frees its textures', async t => {

@@ -1,17 +1,19 @@
+import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
-import { If, float, screenCoordinate } from 'three/tsl'
+import { float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import type { Float, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
-import type { AirShadows } from '../view/AirShadows'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
+import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
-import type { LayerRay, PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
+import type { LayerRay, PointRay, SkyRay } from '../view/SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
-import { ScreenShafts } from './ScreenShafts'
+import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
+import { ScreenShafts, without } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
@@ -50,6 +52,9 @@ export interface LightShaftsOptions {
 
 const SETTINGS = ['strength', 'quality', 'enabled'] as const
 
+const _linear = new Matrix3()
+const _axes = new Matrix4()
+
 /**
  * Light shafts: what shadows take from the light that the air scatters to a camera.
  *
@@ -62,16 +67,18 @@ const SETTINGS = ['strength', 'quality', 'enabled'] as const
  * are added to the atmosphere: `atmosphere.add(shafts)`. Then each pixel marches, of every material.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
- * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit. The light scattered once is
+ * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. The light scattered once is
  * taken from air in shadow; light scattered more often, which comes from all sides, stays. A scene without
  * shadows is the same, bit for bit, as without shafts, and one whose light casts none costs nothing.
+ *
+ * Clouds and the like are added: `shafts.add(cloudsNode)`. They need no shadow map of the light.
  *
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
  *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
  */
-export class LightShafts implements AirShadows {
+export class LightShafts implements ShadowedShafts {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
   /** Camera whose picture has the shafts. */
@@ -86,13 +93,20 @@ export class LightShafts implements AirShadows {
   readonly steps = { groups: number(), samples: number() }
   readonly #map = new SunPolarMap()
   readonly shadowedAir: ShadowedAir
-  readonly #strength = number()
+  /** Shadows that were added, by what casts them. */
+  readonly #shadows = new Map<AirOccluder, AirShadow>()
+  readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
+  /** Grows whenever something is added or removed. */
+  version = 0
+  /** Part of the light that air in shadow loses; 0 where shafts are off. */
+  readonly strengthNow = number()
   readonly #screens: ScreenShafts[] = []
   #setStrength = 1
   /** Render whose shadows the map has. */
   #render = ''
   #quality: LightShaftsQuality = 'high'
   #enabled = true
+  #isActive = false
 
   /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
   constructor(atmosphere: Atmosphere, camera: Camera, options: LightShaftsOptions) {
@@ -107,7 +121,17 @@ export class LightShafts implements AirShadows {
     this.light = light
     this.source = (light as { source?: LightSource }).source ?? atmosphere.sun
     this.view = viewNodes(atmosphere, camera, this.source)
-    this.shadowedAir = this.#map
+    const shadows = this.#shadows
+    const { map, frame, maximumRho } = this.#map
+    this.shadowedAir = {
+      map,
+      frame,
+      maximumRho,
+      get shadows() {
+        return [...shadows.values()]
+      },
+      toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
+    }
     claimShadow(light)
     this.set(settings)
   }
@@ -119,6 +143,42 @@ export class LightShafts implements AirShadows {
    */
   set(settings: Omit<LightShaftsOptions, 'light'>): this {
     return setOptions('LightShafts', this, settings, ...SETTINGS)
+  }
+
+  /**
+   * Has something cast its shadow into the air, besides the shadow maps of the light: clouds, or an
+   * {@link AirOccluder} of one's own. Shaders are compiled anew. Clouds of the shafts' camera have these shafts in
+   * the air in front of them.
+   *
+   * @returns These shafts.
+   * @throws If something is no occluder, is there already, or is of another atmosphere; then nothing is added.
+   */
+  add(...occluders: AirOccluder[]): this {
+    occluders.forEach((occluder, i) => {
+      if (typeof occluder?.castInto !== 'function')
+        fail('LightShafts.add', 'occluder must be an AirOccluder, such as clouds', occluder)
+      if (this.#shadows.has(occluder) || occluders.indexOf(occluder) < i)
+        fail('LightShafts.add', 'occluder must not have been added already', occluder)
+    })
+    const added = occluders.map(occluder => [occluder, occluder.castInto(this)] as const)
+    for (const [occluder, shadow] of added) this.#shadows.set(occluder, shadow)
+    return this.#compileAnew()
+  }
+
+  /** Takes out what was added; what was not is passed over. @returns These shafts. */
+  remove(...occluders: AirOccluder[]): this {
+    for (const occluder of occluders) {
+      this.#shadows.get(occluder)?.dispose?.()
+      this.#shadows.delete(occluder)
+    }
+    return this.#compileAnew()
+  }
+
+  #compileAnew(): this {
+    this.version++
+    // A layer that comes again has materials compiled anew.
+    if (this.atmosphere.layers.includes(this)) this.atmosphere.remove(this).add(this)
+    return this
   }
 
   /** Part of the light that air in shadow loses, ≥ 0: 1 is physical, more than all is not taken [–]. */
@@ -153,13 +213,24 @@ export class LightShafts implements AirShadows {
 
   /** True if there are shadows to be drawn, as of the last {@link prepare} for the camera. */
   get isActive(): boolean {
-    return this.#map.maximumRho.value > 0
+    return this.#isActive
   }
 
-  upTo(depthNode: Node): SkyLayer {
-    const screen = new ScreenShafts(this, depthNode)
+  upTo(depthNode: Node, veil?: Veil): ScreenShadows {
+    const screen = new ScreenShafts(this, depthNode, veil)
     this.#screens.push(screen)
     return screen
+  }
+
+  /** True if a veil is drawn, by whose node shafts are. */
+  get isVeiled(): boolean {
+    return this.#screens.some(({ veil }) => veil?.isDrawn)
+  }
+
+  /** True if materials draw the shafts themselves. */
+  get isForward(): boolean {
+    const isPost = this.#screens.some(({ veil }) => veil === undefined)
+    return !isPost && this.atmosphere.layers.includes(this)
   }
 
   /** Called before it is added. @throws If it is another atmosphere's. */
@@ -182,35 +253,37 @@ export class LightShafts implements AirShadows {
     }
     const maps = isLit ? shadowMapsOf(this.light) : []
     this.#map.update(renderer, view!, atmosphere.space, maps, rows)
+    this.#isActive = maps.length > 0
+    if (isLit) this.#updateShadows(view)
     steps.groups.value = groups
     steps.samples.value = samples
   }
 
+  #updateShadows(view: AtmosphereView): void {
+    const { matrixWorld } = view.camera
+    this.atmosphere.space.displacement(_axes.identity(), _linear)
+    this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(matrixWorld)
+    for (const shadow of this.#shadows.values()) {
+      shadow.update?.(view)
+      this.#isActive ||= shadow.isCast ?? true
+    }
+  }
+
   update({ camera }: AtmosphereView): void {
-    this.#strength.value = this.isActive && camera === this.camera ? this.#setStrength : 0
+    this.strengthNow.value = this.isActive && camera === this.camera ? this.#setStrength : 0
   }
 
-  /** Takes from light what {@link lostLight} gives, where shafts are on. */
-  subtract(light: Vec4, lost: () => Vec4): Vec4 {
-    const left = light.toVar()
-    If(this.#strength.greaterThan(0), () => {
-      const irradiance = this.source.irradiance as unknown as Vec4
-      left.subAssign(lost().mul(irradiance).mul(this.#strength).min(left))
-    })
-    return left
+  glow(ray: SkyRay, light: Vec4): Vec4 {
+    return this.#subtract(ray, light, float(1e10))
   }
 
-  glow(ray: SkyRay, without: Vec4): Vec4 {
-    return this.#subtract(ray, without, float(1e10))
+  inScatter(ray: PointRay, light: Vec4): Vec4 {
+    return this.#subtract(ray, light, ray.distance)
   }
 
-  inScatter(ray: PointRay, without: Vec4): Vec4 {
-    return this.#subtract(ray, without, ray.distance)
-  }
-
-  #subtract({ view, direction, cosView }: LayerRay, without: Vec4, distance: Float): Vec4 {
+  #subtract({ view, direction, cosView }: LayerRay, light: Vec4, distance: Float): Vec4 {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
-    return this.subtract(without, () => {
+    return without(light, this.strengthNow, lit, () => {
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance }
       const jitter = staggered(screenCoordinate.xy.floor())
@@ -218,8 +291,9 @@ export class LightShafts implements AirShadows {
     })
   }
 
-  /** Frees its textures. It can be used again. */
+  /** Frees its textures. It can be used again. What was added stays, and is not its own. */
   dispose(): void {
+    this.#isActive = false
     this.#map.dispose()
     for (const screen of this.#screens) screen.dispose()
   }

@@ -1,13 +1,15 @@
 import { NearestFilter, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
-import { Fn, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
+import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
+import { linearSRGB } from '../air/tsl/color'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
-import { vector2 } from '../uniforms'
+import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { number, vector2 } from '../uniforms'
+import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { PointRay, SkyLayer, SkyRay } from '../view/SkyLayer'
+import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
 import { lostLight, staggered, type ShadowedAir, type ShaftSteps } from './tsl/lostLight'
 import { DepthRays } from '../view/DepthRays'
@@ -19,7 +21,28 @@ const OTHER_DEPTH = 0.6
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
+/** Distances that stand for the sky and for the planet where it was not drawn [m]. */
+const FAR = 1e10
+const PLANET = 1e8
+
+/** Part of the light from behind a veil that is not worth samples. */
+const OPAQUE = 0.01
+
 const _size = new Vector2()
+
+/** Light less what {@link lostLight} gives, and no less than none, where shafts are on. */
+export function without(
+  light: Vec4,
+  strength: Float,
+  { source }: ViewNodes,
+  lost: () => Vec4
+): Vec4 {
+  const left = light.toVar()
+  If(strength.greaterThan(0), () => {
+    left.subAssign(lost().mul(source.irradiance).mul(strength).min(left))
+  })
+  return left
+}
 
 /** Light shafts of a camera, as far as a picture of it asks them. */
 export interface CameraShafts {
@@ -30,17 +53,27 @@ export interface CameraShafts {
   readonly steps: ShaftSteps
   /** True if there are shadows to be drawn, as of the last `prepare`. */
   readonly isActive: boolean
+  /** Grows whenever its shader changes. */
+  readonly version: number
+  /** True if a veil is drawn, by whose node shafts are. */
+  readonly isVeiled: boolean
+  /** True if materials draw the shafts themselves. */
+  readonly isForward: boolean
+  /** Part of the light that air in shadow loses; 0 where shafts are off. */
+  readonly strengthNow: UniformNode<'float', number>
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   update(view: AtmosphereView): void
-  /** Takes lost light from light, where shafts are on. */
-  subtract(light: Vec4, lost: () => Vec4): Vec4
 }
 
 /**
  * Light shafts up to the depth of a picture, for post effects: marched for every second pixel of every
  * second row, then taken from the four around a pixel that are at its depth.
+ *
+ * Of a picture with a veil the light before it counts, and the light behind it as far as it passes: so the light
+ * is taken from the picture of both, at once.
  */
-export class ScreenShafts implements SkyLayer {
+export class ScreenShafts implements ScreenShadows {
+  readonly veil: Veil | undefined
   readonly target: RenderTarget
   readonly #shafts: CameraShafts
   readonly #rays: DepthRays
@@ -49,8 +82,15 @@ export class ScreenShafts implements SkyLayer {
   readonly #halfSize = vector2()
   readonly #lost: TextureNode
   #pass: FragmentPass | null = null
+  /** Version of the shafts that the pass is of. */
+  #compiled = 0
+  /** `strengthNow`; 0 while the node of a veil draws the shafts. */
+  readonly #strength = number()
+  /** 1 if what is behind the veil has shafts already. */
+  readonly #isForward = number()
 
-  constructor(shafts: CameraShafts, depthNode: Node) {
+  constructor(shafts: CameraShafts, depthNode: Node, veil?: Veil) {
+    this.veil = veil
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
@@ -59,6 +99,7 @@ export class ScreenShafts implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     const shafts = this.#shafts
+    if (this.#isElsewhere) return
     shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
@@ -67,20 +108,60 @@ export class ScreenShafts implements SkyLayer {
     if (!shafts.isActive) return
     // What is drawn here and now reads the view.
     shafts.view.update(view)
-    this.#pass ??= new FragmentPass('Welkin.LightShafts', this.#march())
+    if (this.#compiled !== shafts.version) this.#pass?.dispose()
+    if (this.#compiled !== shafts.version || this.#pass === null) {
+      this.#pass = new FragmentPass('Welkin.LightShafts', this.#march())
+      this.#compiled = shafts.version
+    }
     this.#pass.render(renderer, this.target)
   }
 
   update(view: AtmosphereView): void {
-    this.#shafts.update(view)
+    const shafts = this.#shafts
+    shafts.update(view)
+    this.#strength.value = this.#isElsewhere ? 0 : shafts.strengthNow.value
+    this.#isForward.value = shafts.isForward ? 1 : 0
   }
 
-  glow(_: SkyRay, without: Vec4): Vec4 {
-    return this.#shafts.subtract(without, this.#sample)
+  glow(_: SkyRay, light: Vec4): Vec4 {
+    return this.#subtract(light)
   }
 
-  inScatter(_: PointRay, without: Vec4): Vec4 {
-    return this.#shafts.subtract(without, this.#sample)
+  inScatter(_: PointRay, light: Vec4): Vec4 {
+    return this.#subtract(light)
+  }
+
+  /** True if the node of a veil draws the shafts, so that this one has no part in its shader. */
+  get #isElsewhere(): boolean {
+    return this.veil === undefined && this.#shafts.isVeiled
+  }
+
+  #subtract(light: Vec4): Vec4 {
+    if (this.#isElsewhere) return light
+    return without(light, this.#strength, this.#shafts.view, this.#sample)
+  }
+
+  dim(color: Vec3): Vec3 {
+    const { view } = this.#shafts
+    const left = color.toVar()
+    If(this.#strength.greaterThan(0), () => {
+      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength)
+      left.assign(left.sub(linearSRGB(view.air.uniforms, lost)).max(0))
+    })
+    return left
+  }
+
+  /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
+  #seen(at: Vec2): { seenFrom?: (distance: Float) => Float; most: Float } {
+    if (this.veil === undefined) return { most: float(FAR) }
+    const { distance, transmittance } = this.veil.seenAt(at)
+    // Behind the veil the shadows of materials are dimmed with them.
+    const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
+    const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
+    return {
+      seenFrom: from => from.lessThan(distance).select(before, behind),
+      most: behind.greaterThan(OPAQUE).select(FAR, distance).toConst()
+    }
   }
 
   #march(): Vec4 {
@@ -91,15 +172,24 @@ export class ScreenShafts implements SkyLayer {
       const { position, isSky } = this.#rays.at(renderer, at)
       const { view } = shafts
       const offset = view.toMapped(position).toConst()
-      const distance = isSky.select(1e10, offset.length()).toConst()
+      const jitter = staggered(pixel)
+      const { seenFrom, most } = this.#seen(at)
+      const distance = isSky.select(FAR, offset.length()).min(most).toConst()
       const towards = offset.normalize().toConst()
       const cosView = towards.dot(view.up).clamp(-1, 1).toConst() as Float
       const cosViewLight = towards.dot(view.lightDirection).toConst() as Float
-      const ray = { direction: towards, cosView, cosViewLight, distance }
-      return lostLight(view, shafts.shadowedAir, ray, shafts.steps, staggered(pixel)).mul(
-        RADIANCE_SCALE
-      )
+      const ray = { direction: towards, cosView, cosViewLight, distance, seenFrom }
+      return lostLight(view, shafts.shadowedAir, ray, shafts.steps, jitter).mul(RADIANCE_SCALE)
     })()
+  }
+
+  /** Distance by which pixels are told apart: where nothing was drawn there is sky, or the planet. */
+  #depthOf(renderer: Renderer, at: Vec2): Float {
+    const { position, isSky } = this.#rays.at(renderer, at)
+    const { up, viewpoint } = this.#shafts.view
+    const cosView = this.#shafts.view.toMapped(position).normalize().dot(up)
+    const background = cosView.lessThan(viewpoint.cosHorizon).select(PLANET, FAR)
+    return isSky.select(background, position.z.negate().max(1e-6)).toConst()
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
@@ -111,7 +201,7 @@ export class ScreenShafts implements SkyLayer {
   readonly #sample = (): Vec4 =>
     Fn(({ renderer }): Vec4 => {
       const at = uv() as unknown as Vec2
-      const depth = this.#rays.viewDepth(renderer, at)
+      const depth = this.#depthOf(renderer, at)
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -120,7 +210,7 @@ export class ScreenShafts implements SkyLayer {
           .add(vec2(i & 1, i >> 1))
           .min(this.#halfSize.sub(1))
           .toConst() as Vec2
-        const other = this.#rays.viewDepth(renderer, this.#uvOf(pixel))
+        const other = this.#depthOf(renderer, this.#uvOf(pixel))
         const apart = log2(depth.div(other)).abs()
         const weight = apart
           .sub(OTHER_DEPTH)

@@ -1,6 +1,25 @@
 import type { Node } from 'three/webgpu'
 import { checkOptions, fail } from '@welkin/geo'
+import type { Float, Vec2, Vec3 } from '../tsl-types'
 import type { SkyLayer } from './SkyLayer'
+
+/** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
+export interface Veil {
+  /** False while it is not drawn. */
+  readonly isDrawn: boolean
+  /**
+   * Its distance [m], and the part of the light from behind that passes.
+   *
+   * @param at - Place in the picture, as texture coordinates.
+   */
+  seenAt(at: Vec2): { distance: Float; transmittance: Float }
+}
+
+/** Shadows in the air of a picture. */
+export interface ScreenShadows extends SkyLayer {
+  /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
+  dim(color: Vec3): Vec3
+}
 
 /**
  * Shadows in the air, as `lightShafts` makes them: what they take from the light of an atmosphere is drawn by
@@ -11,8 +30,9 @@ export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'glow'
    * Layer for a post effect, computed once for its pixels and not by every material.
    *
    * @param depthNode - Depth of the scene, as the renderer writes it.
+   * @param veil - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.
    */
-  upTo(depthNode: Node): SkyLayer
+  upTo(depthNode: Node, veil?: Veil): ScreenShadows
 }
 
 /** Options of nodes that draw air. */

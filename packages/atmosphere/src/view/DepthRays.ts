@@ -11,9 +11,6 @@ import {
 import type { Node, Renderer, TextureNode } from 'three/webgpu'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
 
-/** Distance that stands for the sky [world units]. */
-const SKY = 1e10
-
 /** Positions in view space of what a camera has drawn, by its depth. */
 export class DepthRays {
   readonly #projectionInverse
@@ -33,13 +30,6 @@ export class DepthRays {
         ? (depth.sample(at) as unknown as { level(n: number): Node }).level(0)
         : depth
     return float((read as unknown as { r: Float }).r).toConst()
-  }
-
-  /** Distance before the camera of what is seen; very far for the sky [world units]. */
-  viewDepth(renderer: Renderer, at: Vec2): Float {
-    const depth = this.depthAt(at)
-    const z = this.position(renderer, at, depth).z.negate().max(1e-6)
-    return (isBackgroundDepth(depth) as Bool).select(SKY, z).toConst()
   }
 
   /** Position of what is seen; for the sky any in its direction. In view space [world units]. */

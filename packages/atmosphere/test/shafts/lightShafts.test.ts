@@ -1,8 +1,9 @@
 import fc from 'fast-check'
 import { DirectionalLight, PerspectiveCamera, PointLight } from 'three'
-import { vec4 } from 'three/tsl'
+import { float, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import { aerialPerspective, Atmosphere, lightShafts, SunDirectionalLight } from '@welkin/atmosphere'
+import type { AirOccluder } from '@welkin/atmosphere'
 import { claimShadow, shadowMapsOf } from '../../src/shafts/shadowMaps'
 import { warpedDistance } from '../twins/shafts/warpedSteps'
 
@@ -12,6 +13,9 @@ const light = new SunDirectionalLight(atmosphere)
 
 /** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
+
+/** An occluder that takes nothing. */
+const occluder: AirOccluder = { castInto: () => ({ transmittance: () => float(1) }) }
 
 describe('bad input to light shafts', () => {
   const cases: [string, () => unknown][] = [
@@ -56,6 +60,14 @@ describe('bad input to light shafts', () => {
       () => lightShafts(atmosphere, camera, { light: wrong(new PointLight()) })
     ],
     [
+      'LightShafts.add: occluder must be an AirOccluder, such as clouds, got a PerspectiveCamera',
+      () => lightShafts(atmosphere, camera, { light }).add(wrong(camera))
+    ],
+    [
+      'LightShafts.add: occluder must not have been added already',
+      () => lightShafts(atmosphere, camera, { light }).add(occluder, occluder)
+    ],
+    [
       'LightShafts: atmosphere must be that of its layers, got an Atmosphere',
       () => new Atmosphere().add(lightShafts(atmosphere, camera, { light }))
     ]
@@ -69,6 +81,29 @@ describe('bad input to light shafts', () => {
     expect(() => shafts.set({ strength: 2, quality: wrong('best') })).toThrow('quality')
     expect(shafts.strength).toBe(0.5)
     expect(shafts.quality).toBe('high')
+  })
+})
+
+describe('what is added to light shafts', () => {
+  it('is told when it is taken out, and can be added again', () => {
+    const calls: string[] = []
+    const added: AirOccluder = {
+      castInto: ({ camera: seen }) => {
+        calls.push(seen === camera ? 'cast' : 'other')
+        return { transmittance: () => float(1), dispose: () => calls.push('dispose') }
+      }
+    }
+    const shafts = lightShafts(atmosphere, camera, { light })
+    const { version } = shafts
+    shafts.add(occluder, added).remove(added, added).add(added)
+    expect(calls).toEqual(['cast', 'dispose', 'cast'])
+    expect(shafts.version).toBeGreaterThan(version)
+  })
+
+  it('is not added where one of several is refused', () => {
+    const shafts = lightShafts(atmosphere, camera, { light })
+    expect(() => shafts.add(occluder, wrong({}))).toThrow('occluder')
+    expect(shafts.shadowedAir.shadows).toHaveLength(0)
   })
 })
 

@@ -12,6 +12,8 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
+import { number } from '../uniforms'
+import { debugPass } from './debugView'
 import { marchClouds } from './tsl/march'
 import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
@@ -119,7 +121,7 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
  * into the history of the frames before.
  */
 export class CloudRenderer {
-  readonly #frame: FrameUniforms
+  readonly frame: FrameUniforms
   readonly #marchedTarget = marchedTarget()
   readonly #shadedTarget = cloudTarget('Shaded')
   readonly #cellsTarget = cloudTarget('Cells')
@@ -130,12 +132,19 @@ export class CloudRenderer {
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
-  /** Accumulated light of the latest frame: the node stays, its texture changes. */
-  readonly light = textureNode(this.#accumulatedTargets[0].textures[0])
-  /** Distances of the latest frame, for debug views: accumulated, or marched if {@link showsMarched}. */
-  readonly distances = textureNode(this.#accumulatedTargets[0].textures[1])
-  /** Choice of {@link distances}. */
-  showsMarched = false
+  /** Light and distances of the pixels that this frame has marched. */
+  readonly marched = texturesOf(this.#shadedTarget)
+  /** Accumulated light and distances of the latest frame: the nodes stay, their textures change. */
+  readonly accumulated = {
+    light: textureNode(this.#accumulatedTargets[0].textures[0]),
+    distances: textureNode(this.#accumulatedTargets[0].textures[1])
+  }
+  /** Accumulated light, or a debug view. */
+  readonly shown = textureNode(this.#accumulatedTargets[0].textures[0])
+  /** Number of the debug view that is shown; 0 for the clouds. */
+  readonly debug = number()
+  #debugTarget: RenderTarget | null = null
+  #debugPass: FragmentPass | null = null
   /** Index of the accumulated target that was drawn last. */
   #current = 0
 
@@ -143,12 +152,14 @@ export class CloudRenderer {
     const { field, viewRays } = inputs
     this.#weatherMap = new WeatherMap(field)
     const scene = { ...inputs, weatherMap: this.#weatherMap }
-    this.#frame = viewRays.frame
+    this.frame = viewRays.frame
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
-    const marched = { distances, shares, ray }
-    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, marched))
-    const shaded = texturesOf(this.#shadedTarget)
+    this.#shade = new FragmentPass(
+      'Welkin.CloudsShade',
+      shadePixels(scene, { distances, shares, ray })
+    )
+    const { marched: shaded } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
     const cells = texturesOf(this.#cellsTarget)
     this.#upscale = this.#accumulatedTargets.map((_, i) => {
@@ -167,15 +178,15 @@ export class CloudRenderer {
     const [first] = this.#accumulatedTargets
     if (first.width !== width || first.height !== height) {
       for (const target of this.#accumulatedTargets) target.setSize(width, height)
-      this.#frame.reset()
+      this.frame.reset()
     }
     const across = Math.ceil(width / block)
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
     this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
-    this.#frame.size.value.set(width, height)
-    this.#frame.marchedSize.value.set(across, down)
+    this.frame.size.value.set(width, height)
+    this.frame.marchedSize.value.set(across, down)
   }
 
   /**
@@ -191,9 +202,18 @@ export class CloudRenderer {
     this.#current = 1 - this.#current
     const target = this.#accumulatedTargets[this.#current]
     this.#upscale[this.#current].render(renderer, target)
-    const shown = this.showsMarched ? this.#shadedTarget : target
-    this.light.value = target.textures[0]
-    this.distances.value = shown.textures[1]
+    const [light, distances] = target.textures
+    this.accumulated.light.value = this.shown.value = light
+    this.accumulated.distances.value = distances
+    if (this.debug.value > 0) this.#drawDebugView(renderer, target)
+  }
+
+  #drawDebugView(renderer: Renderer, { width, height }: RenderTarget): void {
+    this.#debugTarget ??= tableTarget('Welkin.CloudsDebug', 1, 1)
+    this.#debugPass ??= debugPass(this.debug, this.accumulated, this.marched)
+    this.#debugTarget.setSize(width, height)
+    this.#debugPass.render(renderer, this.#debugTarget)
+    this.shown.value = this.#debugTarget.texture
   }
 
   /** Frees the render targets. */
@@ -203,5 +223,7 @@ export class CloudRenderer {
     for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
+    this.#debugTarget?.dispose()
+    this.#debugPass?.dispose()
   }
 }

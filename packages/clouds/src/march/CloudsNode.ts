@@ -1,16 +1,24 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
-import type { Atmosphere } from '@welkin/atmosphere'
+import type {
+  AirOccluder,
+  AirShadow,
+  Atmosphere,
+  ScreenShadows,
+  ShadowedShafts
+} from '@welkin/atmosphere'
 import { checkChoice, checkNonNegative, checkOptions, fail } from '@welkin/geo'
 import { Vector2 } from 'three'
 import type { Camera, DepthTexture, PerspectiveCamera, Texture } from 'three'
-import { Fn, If, exp2, uniform, uv, vec3, vec4 } from 'three/tsl'
+import { Fn, If, uniform, uv, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { CloudField } from '../density/CloudField'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
 import type { CloudNoise } from '../noise/CloudNoise'
 import { CloudRenderer } from './CloudRenderer'
+import { CloudAirShadow } from '../shadow/CloudAirShadow'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
+import { debugViews, type CloudsDebug } from './debugView'
 import { FrameUniforms } from './FrameUniforms'
 import {
   QualityUniforms,
@@ -18,7 +26,7 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import { unpack } from '../temporal/tsl/packing'
+import { cloudVeil } from './cloudVeil'
 import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
@@ -41,19 +49,6 @@ export interface CloudsOptions {
   light?: CloudLightTable
 }
 
-/** Quantity shown instead of clouds, for debugging: white is most. */
-export type CloudsDebug =
-  /** Opacity of the clouds all along the line of sight. */
-  | 'density'
-  /** Steps of the last ray marched nearby, of 256. */
-  | 'steps'
-  /** Distance, by its logarithm: black at 100 m, white at 1000 km. */
-  | 'depth'
-  /** Accumulated samples of a pixel, of 32. */
-  | 'history'
-
-const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', 'depth', 'history']
-
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
  * atmosphere's sun, sky and ground, in the night by its moon if that was added to it and by the night
@@ -72,7 +67,7 @@ const debugViews: readonly (CloudsDebug | null)[] = [null, 'density', 'steps', '
  * Layers may be changed at any time. What is transparent and writes no depth is taken to be where the
  * things behind it are. Knows standard, reversed and logarithmic depth.
  */
-export class CloudsNode extends AtmosphereNode {
+export class CloudsNode extends AtmosphereNode implements AirOccluder {
   static get type(): string {
     return 'CloudsNode'
   }
@@ -99,7 +94,9 @@ export class CloudsNode extends AtmosphereNode {
   #drawnBy: Renderer | null = null
   #renderer: CloudRenderer | undefined
   readonly #exposure = uniform(1)
-  readonly #debug = uniform(0)
+  #debugView: CloudsDebug | null = null
+  /** Light shafts of the picture with the clouds. */
+  readonly #screens = new Set<ScreenShadows>()
   #quality: CloudQuality
 
   /** @throws If an argument is missing or of the wrong kind. */
@@ -199,13 +196,13 @@ export class CloudsNode extends AtmosphereNode {
 
   /** Debug view shown instead of clouds; null, the default, for clouds. */
   get debugView(): CloudsDebug | null {
-    return debugViews[this.#debug.value]
+    return this.#debugView
   }
 
   /** @throws If there is no such view. */
   set debugView(view: CloudsDebug | null) {
     checkChoice('CloudsNode', 'debugView', view, debugViews)
-    this.#debug.value = debugViews.indexOf(view)
+    this.#debugView = view
   }
 
   override updateBefore(frame: NodeFrame): undefined {
@@ -232,9 +229,41 @@ export class CloudsNode extends AtmosphereNode {
     this.#renderer.setSize(width, height, this.#quality.block)
     const { version } = light.texture
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
-    this.#renderer.showsMarched = this.debugView === 'steps'
+    this.#renderer.debug.value = debugViews.indexOf(this.#debugView)
     this.#renderer.render(renderer, view.up)
-    this.#exposure.value = 1 / this.#frame.gain.value
+    this.#exposure.value = this.#debugView === null ? 1 / this.#frame.gain.value : 1
+    for (const screen of this.#screens) screen.prepare?.(renderer, view, frame)
+  }
+
+  override update(frame: NodeFrame): undefined {
+    super.update(frame)
+    const view = this.view.update(frame)
+    if (view === undefined) return
+    for (const screen of this.#screens) screen.update?.(view)
+  }
+
+  override customCacheKey(): number {
+    return 8 * super.customCacheKey() + this.#screens.size
+  }
+
+  /**
+   * Casts the shadow of the clouds into the air: `shafts.add(cloudsNode)` calls it. Shafts of the same
+   * camera are drawn with the clouds then, before and behind them.
+   */
+  castInto(shafts: ShadowedShafts): AirShadow {
+    const shadow = new CloudAirShadow(this, shafts)
+    if (shafts.camera !== this.camera) return shadow
+    const veil = cloudVeil(this, () => this.#renderer!)
+    const screen = shafts.upTo(this.depthNode, veil)
+    this.#screens.add(screen)
+    this.needsUpdate = true
+    shadow.onDispose = () => {
+      veil.isRemoved = true
+      this.#screens.delete(screen)
+      screen.dispose?.()
+      this.needsUpdate = true
+    }
+    return shadow
   }
 
   #createRenderer(renderer: Renderer): CloudRenderer {
@@ -265,29 +294,15 @@ export class CloudsNode extends AtmosphereNode {
     const textures = this.#renderer
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
-      const at = uv() as unknown as Vec2
-      const clouds = textures.light.sample(at).level(0).toConst()
+      const clouds = textures.shown.sample(uv()).level(0).toConst()
       const light = clouds.rgb.mul(this.#exposure)
-      const result = vec4(
-        color.rgb.mul(clouds.a).add(light),
-        color.a.mul(clouds.a).add(clouds.a.oneMinus())
-      ).toVar()
-      If(this.#debug.greaterThan(0), () => {
-        const distances = textures.distances.sample(at).level(0).toConst()
-        const { x: distance, z: samples } = unpack(distances)
-        const views = [
-          clouds.a.oneMinus(),
-          distances.w,
-          exp2(distance).log().sub(Math.log(100)).div(Math.log(1e4)).clamp(),
-          samples.abs().div(32)
-        ]
-        views.forEach((view, i) => {
-          If(this.#debug.equal(i + 1), () => {
-            result.assign(vec4(vec3(view), 1))
-          })
+      const result = color.rgb.mul(clouds.a).add(light).toVar()
+      if (this.#screens.size > 0) {
+        If(textures.debug.equal(0), () => {
+          for (const screen of this.#screens) result.assign(screen.dim(result))
         })
-      })
-      return result
+      }
+      return vec4(result, color.a.mul(clouds.a).add(clouds.a.oneMinus()))
     })()
   }
 

@@ -11,15 +11,20 @@ import { slicePosition } from '../../skyVolume/tsl/volumeMapping'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
+import type { AirShadow } from '../AirOccluder'
 import { occluderAngleAt, polarRay, type PolarFrame } from './polarMap'
 import { warpedSteps } from './warpedSteps'
 
-/** Sun-polar shadow map, as shaders read it. */
+/** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
 export interface ShadowedAir {
   readonly map: TextureNode
   readonly frame: PolarFrame
-  /** Greatest ρ at which there may be shadows [m]. */
+  /** Greatest ρ at which the map may have shadows [m]. */
   readonly maximumRho: Float
+  /** Shadows of clouds and the like. */
+  readonly shadows: readonly Pick<AirShadow, 'transmittance'>[]
+  /** World position of a displacement from the camera in the mapped space [m]. */
+  readonly toWorld: (offset: Vec3) => Vec3
 }
 
 /** A view ray, and as far as it is marched. */
@@ -31,6 +36,8 @@ export interface ShaftRay {
   readonly cosViewLight: Float
   /** Distance to what is seen; beyond the air for the sky [m]. */
   readonly distance: Float
+  /** Part of the light from a distance [m] that reaches the picture; left out, all. */
+  readonly seenFrom?: (distance: Float) => Float
 }
 
 /** Number of samples on a ray. */
@@ -41,19 +48,31 @@ export interface ShaftSteps {
   readonly samples: Float
 }
 
+/** Stretch of a ray that is marched in some groups of samples, whatever its length. */
+interface Stretch {
+  /** Light of the ray before it, and in it, as parts of all. */
+  readonly from: Float
+  readonly width: Float
+  /** True where the map has shadows; null where all of the ray is. */
+  readonly isMapped: Bool | null
+  /** Index of the group in its stretch. */
+  readonly group: Float
+}
+
 /**
  * Single scattering that shadows keep from a view ray, for unit irradiance of the source [1/sr]:
- * ∫ σ_s p(ν) T_light T_view over the dark parts of the ray.
+ * ∫ σ_s p(ν) T_light T_view (1 − V) over the ray, where V is the part of the light that occluders let through.
  *
  * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the look-ups
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
+ * Where there are shadows beyond the map, the ray goes on there in as many groups again.
  *
  * @param jitter - Place of samples in their steps, in (0, 1).
  */
 export function lostLight(
   view: ViewUniforms,
-  { map, frame, maximumRho }: ShadowedAir,
-  { direction, cosView, cosViewLight, distance }: ShaftRay,
+  { map, frame, maximumRho, shadows, toWorld }: ShadowedAir,
+  { direction, cosView, cosViewLight, distance, seenFrom }: ShaftRay,
   { groups, samples }: ShaftSteps,
   jitter: Float
 ): Vec4 {
@@ -61,7 +80,10 @@ export function lostLight(
   const { uniforms } = air
   const limits = rayLimits(viewpoint, cosView)
   const polar = polarRay(frame, direction, cosViewLight)
-  const end = limits.start.add(limits.length).min(distance).min(maximumRho.div(polar.sinViewLight))
+  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
+  const isMappedOnly = shadows.length === 0
+  const seen = limits.start.add(limits.length).min(distance)
+  const end = isMappedOnly ? seen.min(mapped) : seen
   const length = end.sub(limits.start).toConst() as Float
   const lost = vec4(0).toVar()
   If(length.greaterThan(0), () => {
@@ -74,23 +96,41 @@ export function lostLight(
     const mie = uniforms.mieScattering.mul(phases[1]).toConst()
     const perGroup = float(1).div(groups).toConst()
     const perSample = float(1).div(samples).toConst()
-    loop('group', int(groups), group => {
+
+    /** Part of the light that a place does not get. */
+    const darkAt = (position: Float, isMapped: Bool | null): Float => {
+      const fromEye = steps.distance(position).add(limits.start).toConst() as Float
+      const dark = float(0).toVar()
+      const readMap = (): void => {
+        const occluder = occluderAngleAt(map, frame, polar.row, fromEye.mul(polar.sinViewLight))
+        dark.assign(polar.angle.greaterThan(occluder).select(1, 0))
+      }
+      if (isMapped === null) readMap()
+      else If(isMapped, readMap)
+      if (isMappedOnly) return seenFrom?.(fromEye).mul(dark) ?? dark
+      If(dark.lessThan(1), () => {
+        const offset = direction.mul(fromEye).toConst() as Vec3
+        const place = { view, offset, jitter, positionWorld: () => toWorld(offset) }
+        const passing = shadows.map(shadow => shadow.transmittance(place))
+        dark.assign(passing.reduce((product, part) => product.mul(part)).oneMinus())
+      })
+      return seenFrom?.(fromEye).mul(dark) ?? dark
+    }
+
+    const marchGroup = ({ from, width, isMapped, group }: Stretch): void => {
       const dark = float(0).toVar()
       const sum = float(0).toVar()
       loop('look', int(samples), look => {
-        const part = float(look).add(jitter).mul(perSample).add(float(group)).mul(perGroup)
-        const position = part.toConst() as Float
-        const fromAxis = steps.distance(position).add(limits.start).mul(polar.sinViewLight)
-        const occluder = occluderAngleAt(map, frame, polar.row, fromAxis)
-        If(polar.angle.greaterThan(occluder), () => {
-          dark.addAssign(1)
-          sum.addAssign(position)
-        })
+        const part = float(look).add(jitter).mul(perSample).add(group).mul(perGroup)
+        const position = part.mul(width).add(from).toConst() as Float
+        const here = darkAt(position, isMapped).toConst() as Float
+        dark.addAssign(here)
+        sum.addAssign(position.mul(here))
       })
       If(dark.greaterThan(0), () => {
         const centre = sum.div(dark).toConst() as Float
         const inAir = steps.distance(centre).toConst() as Float
-        const width = steps.slope(centre).mul(dark).mul(perSample.mul(perGroup))
+        const share = dark.mul(width).mul(perSample.mul(perGroup))
         const place = pointAlong(air, ray, inAir)
         const slice = slicePosition(viewpoint, limits, inAir)
         const extinction = meanExtinction(volume, viewpoint, elevation, slice)
@@ -103,7 +143,26 @@ export function lostLight(
           place.altitude.min(uniforms.thickness),
           place.cosLight
         )
-        lost.addAssign(scattering.mul(light).mul(through).mul(width))
+        const stretch = steps.slope(centre).mul(share)
+        lost.addAssign(scattering.mul(light).mul(through).mul(stretch))
+      })
+    }
+
+    if (isMappedOnly) {
+      loop('group', int(groups), group => {
+        marchGroup({ from: float(0), width: float(1), isMapped: null, group: float(group) })
+      })
+      return
+    }
+    const near = steps.partAt(mapped.sub(limits.start).clamp(0, length)).toConst() as Float
+    loop('group', int(groups.mul(2)), group => {
+      const index = float(group)
+      const isMapped = index.lessThan(groups).toConst() as Bool
+      const from = isMapped.select(0, near).toConst() as Float
+      const width = isMapped.select(near, near.oneMinus()).toConst() as Float
+      If(width.greaterThan(0), () => {
+        const place = isMapped.select(index, index.sub(groups)).toConst() as Float
+        marchGroup({ from, width, isMapped, group: place })
       })
     })
   })

@@ -12,6 +12,8 @@ export interface WarpedSteps {
   distance(part: Float): Float
   /** Its derivative [m]. */
   slope(part: Float): Float
+  /** Inverse of `distance`, for distances on the ray. */
+  partAt(distance: Float): Float
 }
 
 /**
@@ -47,6 +49,9 @@ export function warpedSteps(
     slope(part) {
       const left = at(part).abs().oneMinus().toConst()
       return scale.mul(range).div(left.mul(left))
+    },
+    partAt(distance) {
+      return warp(distance).sub(first).div(range).clamp()
     }
   }
 }

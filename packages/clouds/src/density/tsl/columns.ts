@@ -2,7 +2,7 @@ import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
 import { slantCoverFactor, effectiveOpticalDepth } from './unresolved'
-import { forLayers, layerAt } from './layer'
+import { forLayers, layerAt, type LayerNodes } from './layer'
 import { subpointOffset, type CloudSample } from './sample'
 import { filteredCoverageAt } from './weather'
 
@@ -28,6 +28,28 @@ export function verticalOpticalDepth(field: CloudField, sample: CloudSample): Fl
  */
 const LOWEST_COSINE = 0.1
 
+/** Goes through layers that cast shadows: the part of each above an altitude, and the cosine by which light crosses it. */
+function forShadowingLayers(
+  field: CloudField,
+  altitude: Float,
+  cosLight: Float,
+  add: (layer: LayerNodes, above: Float, slope: Float) => void
+): void {
+  const slope = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
+  forLayers(field, index => {
+    const layer = layerAt(field, index)
+    const height = altitude.sub(layer.baseAltitude).mul(layer.perThickness)
+    const above = cosLight
+      .greaterThan(0)
+      .select(height.oneMinus(), height)
+      .clamp()
+      .toConst() as Float
+    If(above.mul(layer.shadow).mul(layer.coverage).greaterThan(0), () => {
+      add(layer, above, slope)
+    })
+  })
+}
+
 /**
  * Optical depth from a place to sun or moon of all clouds that cast shadows, from the weather alone: one
  * look-up a layer, where the ray crosses its middle.
@@ -38,29 +60,33 @@ export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLi
   const { view } = field
   const sum = float(0).toVar()
   const cosLight = sample.up.dot(toLight).toConst() as Float
-  const slope = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
-  forLayers(field, index => {
-    const layer = layerAt(field, index)
-    const height = sample.altitude.sub(layer.baseAltitude).mul(layer.perThickness)
-    const above = cosLight
-      .greaterThan(0)
-      .select(height.oneMinus(), height)
-      .clamp()
-      .toConst() as Float
-    If(above.mul(layer.shadow).mul(layer.coverage).greaterThan(0), () => {
-      const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
-      const way = middle.sub(sample.altitude).max(0).div(slope)
-      const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
-      const { altitude, up } = view.localCoordinates(offset)
-      const there = { offset, altitude, up, distance: sample.distance }
-      const subpoint = subpointOffset(field, there).toConst()
-      const filteredCoverage = filteredCoverageAt(field, layer, subpoint, there)
-      sum.addAssign(
-        effectiveOpticalDepth(field, layer, filteredCoverage)
-          .mul(above)
-          .mul(slantCoverFactor(layer, slope))
-      )
-    })
+  forShadowingLayers(field, sample.altitude, cosLight, (layer, above, slope) => {
+    const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
+    const way = middle.sub(sample.altitude).max(0).div(slope)
+    const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
+    const { altitude, up } = view.localCoordinates(offset)
+    const there = { offset, altitude, up, distance: sample.distance }
+    const subpoint = subpointOffset(field, there).toConst()
+    const filteredCoverage = filteredCoverageAt(field, layer, subpoint, there)
+    sum.addAssign(slantDepth(field, layer, filteredCoverage, slope).mul(above))
   })
   return sum
 }
+
+/** Optical depth from an altitude to sun or moon in the mean over clouds and gaps, without a look-up. */
+export function meanDepthTowards(field: CloudField, altitude: Float, cosLight: Float): Float {
+  const sum = float(0).toVar()
+  forShadowingLayers(field, altitude, cosLight, (layer, above, slope) => {
+    sum.addAssign(slantDepth(field, layer, layer.coverage, slope).mul(above))
+  })
+  return sum
+}
+
+/** Optical depth of a layer along a ray of light. */
+const slantDepth = (
+  field: CloudField,
+  layer: LayerNodes,
+  filteredCoverage: Float,
+  slope: Float
+): Float =>
+  effectiveOpticalDepth(field, layer, filteredCoverage).mul(slantCoverFactor(layer, slope))

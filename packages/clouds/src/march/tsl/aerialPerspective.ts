@@ -19,7 +19,9 @@ export function withAerialPerspective(
   const color = vec4(0, 0, 0, transmittance).toVar() as Vec4
   const opacity = transmittance.oneMinus().toConst()
   If(opacity.greaterThan(0), () => {
-    const air = aerialPerspectiveTo(view, directionView.mul(distance).toConst())
+    // Shafts are taken from the picture when clouds are in it, with no history.
+    const layers = view.atmosphere.layers.filter(layer => !('upTo' in layer))
+    const air = aerialPerspectiveTo(view, directionView.mul(distance).toConst(), layers)
     const spectral = linearSRGB(view.air.uniforms, radiance)
     const seen = spectral.mul(air.transmittance).add(air.inScatter.mul(opacity))
     color.assign(vec4(seen.mul(gain), transmittance))

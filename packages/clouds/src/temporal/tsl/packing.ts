@@ -11,6 +11,9 @@ export const encodeDistance = (distance: Float): Float => log2(distance.clamp(1,
 const FIRST_OCTAVE = 4
 const OCTAVES = 24
 
+/** Step in which log₂ distances are kept. */
+export const DISTANCE_STEP = OCTAVES / 255
+
 /** log₂ distance, clamped to the range that {@link pack} keeps. */
 export const clampDistance = (distance: Float): Float =>
   distance.clamp(FIRST_OCTAVE, FIRST_OCTAVE + OCTAVES)

@@ -1,0 +1,105 @@
+import { Vector3 } from 'three'
+import { float, vec3, vec4 } from 'three/tsl'
+import {
+  columnAt,
+  lightRayAt,
+  polarRay,
+  type PolarFrame
+} from '../../../packages/atmosphere/src/shafts/tsl/polarMap'
+import { warpedSteps } from '../../../packages/atmosphere/src/shafts/tsl/warpedSteps'
+import type { Float, Vec3 } from '../../../packages/atmosphere/src/tsl-types'
+import { warpedDistance } from '../../../packages/atmosphere/test/twins/shafts/warpedSteps'
+import { random } from '../harness/atmosphere'
+import { expectClose } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { parameters } from '../harness/shaft-stage'
+
+gpuTest('spaces samples as the float64 twin does', async t => {
+  const { bottomRadius } = parameters()
+  const height = 8000
+  const next = random(12)
+  const rays = Array.from({ length: 64 }, () => [
+    60_000 * next() ** 3,
+    2 * next() - 1,
+    10 ** (1 + 4.5 * next()),
+    next()
+  ])
+  const uniforms = { bottomRadius: float(bottomRadius), homogeneousHeight: float(height) } as never
+  const results = await t.evaluate(rays, ray => {
+    const zero = float(0) as Float
+    const steps = warpedSteps(
+      uniforms,
+      { altitude: ray.x, cosView: ray.y, cosLight: zero, cosViewLight: zero },
+      ray.z
+    )
+    return vec4(
+      steps.distance(ray.w),
+      steps.slope(ray.w),
+      steps.partAt(steps.distance(ray.w)),
+      steps.distance(float(1))
+    )
+  })
+  rays.forEach(([altitude, cosView, length, part], i) => {
+    const at = (x: number): number =>
+      warpedDistance(bottomRadius + altitude, cosView, height, length, x)
+    const [distance, slope, back, last] = results.subarray(4 * i, 4 * i + 4)
+    const label = `ray ${rays[i].join(' ')}`
+    expectClose(distance, at(part), { absolute: 2e-5 * length }, label)
+    const step = 1e-5
+    const [from, to] = [Math.max(part - step, 0), Math.min(part + step, 1)]
+    expectClose(slope, (at(to) - at(from)) / (to - from), { relative: 2e-3 }, `${label}, slope`)
+    // Where much of the ray is nearly airless, metres are few parts.
+    const blur = (3e-7 * length) / slope
+    expectClose(back, part, { absolute: 2e-5 + blur }, `${label}, back`)
+    expectClose(last, length, { absolute: 2e-5 * length }, `${label}, last`)
+  })
+})
+
+gpuTest('has a view ray in the row of the rays of light that it crosses', async t => {
+  const columns = 512
+  const [even, greatest] = [30, 30_000]
+  const logScale = 1 / Math.log1p(greatest / even)
+  const light = new Vector3(0.3, 0.5, -0.6).normalize()
+  const across = new Vector3(0, 1, 0).cross(light).normalize()
+  const along = light.clone().cross(across)
+  const vector = ({ x, y, z }: Vector3): Vec3 => vec3(x, y, z)
+  const frame: PolarFrame = {
+    across: vector(across),
+    along: vector(along),
+    evenDistance: float(even),
+    logScale: float(logScale),
+    logOffset: float(0),
+    columns: float(columns)
+  }
+  const next = random(5)
+  const texels = Array.from({ length: 32 }, () => [next(), next(), 1e4 * (2 * next() - 1)])
+  // From a texel's ray of light to a point of it, and back.
+  const results = await t.evaluate(texels, texel => {
+    const { offset, distance } = lightRayAt(frame, texel.xy)
+    const point = offset.add(vector(light).mul(texel.z)).toConst() as Vec3
+    const direction = point.normalize().toConst() as Vec3
+    const polar = polarRay(frame, direction, direction.dot(vector(light)))
+    const column = columnAt(frame, distance)
+    const crossing = polar.sinViewLight.mul(point.length()).div(distance)
+    return vec4(column, polar.row.fract(), polar.angle, crossing)
+  })
+  texels.forEach(([u, v, z], i) => {
+    const [column, row, angle, crossing] = results.subarray(4 * i, 4 * i + 4)
+    const position = Math.max((u * columns - 0.5) / (columns - 1), 0)
+    const distance = Math.max(even * Math.expm1(position / logScale), 1e-3 * even)
+    const turn = (row - v + 1.5) % 1
+    expectClose(column, u, { absolute: 2e-5 }, 'column')
+    // Near the line to the light float32 has few directions.
+    const blur = 3e-7 * (1 + Math.abs(z) / distance)
+    expectClose(turn, 0.5, { absolute: 2e-5 + blur }, 'row')
+    // WGSL asks 4096 units in the last place of atan2, and software gives no more.
+    expectClose(angle, -Math.atan2(z, distance), { absolute: 1e-4 }, 'angle')
+    // Of sine and cosine it asks 2⁻¹¹.
+    expectClose(
+      crossing,
+      1,
+      { absolute: 2 ** -11 + 4 * blur },
+      'distance from the line to the light'
+    )
+  })
+})

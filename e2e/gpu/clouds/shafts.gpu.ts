@@ -1,0 +1,347 @@
+import { cloudPreset, CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
+import type { CloudsNode } from '@welkin/clouds'
+import { PerspectiveCamera, Vector3 } from 'three'
+import { float, vec4 } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
+import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
+import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
+import { loop, type Float, type Vec3 } from '../../../packages/clouds/src/tsl-types'
+import { drawForward, drawToFloat } from '../harness/atmosphere'
+import { coarse, fog, SparseNoise } from '../harness/cloud-view'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+import {
+  expectSame,
+  parameters,
+  stage,
+  stageSize as size,
+  type Stage
+} from '../harness/shaft-stage'
+
+const radians = (degrees: number): number => (degrees * Math.PI) / 180
+
+/** Pieces of a ray whose lost light is summed in float64. */
+const PIECES = 160
+
+/** A view ray of the stage's camera, in the plane of sun and zenith. */
+interface North {
+  /** Above the horizon in the north, where the sun is; beyond 90° it looks south [°]. */
+  view: number
+  sun: number
+}
+
+/** Light scattered once on a ray, all of it and what is lost where a part of the light does not arrive, in float64. */
+function marchedLoss(
+  { view, sun }: North,
+  distance: number,
+  darkAt: (distance: number) => number
+): { whole: number[]; lost: number[] } {
+  const air = parameters()
+  const ray = {
+    radius: air.bottomRadius + 2,
+    cosView: Math.sin(radians(view)),
+    cosLight: Math.sin(radians(sun)),
+    cosViewLight: Math.cos(radians(view - sun))
+  }
+  const end = Math.min(distance, distanceToTop(ray.radius, ray.cosView, air.topRadius))
+  const lost = [0, 0, 0]
+  let before = [0, 0, 0, 0]
+  for (let i = 1; i <= PIECES; i++) {
+    const at = (part: number): number => end * part ** 3
+    const sum = inScatter(air, null, ray, at(i / PIECES))
+    const dark = darkAt(at((i - 0.5) / PIECES))
+    lost.forEach((_, k) => (lost[k] += dark * (sum[k] - before[k])))
+    before = sum
+  }
+  return { whole: before, lost }
+}
+
+/** Has the stage's camera look north or south. */
+function lookAt({ camera }: Stage, view: number): void {
+  camera.fov = 0.2
+  camera.updateProjectionMatrix()
+  camera.lookAt(
+    new Vector3(0, Math.sin(radians(view)), -Math.cos(radians(view))).add(camera.position)
+  )
+}
+
+/** Clouds that are drawn for their shadow maps, by a camera of their own, and not seen. */
+async function unseen(
+  renderer: WebGPURenderer,
+  { camera: { position }, atmosphere }: Stage,
+  layers: CloudLayers,
+  noise: CloudNoise
+): Promise<{ node: CloudsNode; draw: () => Promise<void>; dispose: () => void }> {
+  const light = new CloudLightTable()
+  const camera = new PerspectiveCamera(60, 2, 1, 1e6)
+  camera.position.copy(position)
+  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
+    quality: coarse,
+    noise,
+    light
+  })
+  node.time = 0
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputNode = node
+  return {
+    node,
+    async draw() {
+      camera.updateMatrixWorld()
+      await nextFrame()
+      await drawToFloat(renderer, () => pipeline.render())
+    },
+    dispose() {
+      for (const owned of [node, pipeline, light, noise]) owned.dispose()
+    }
+  }
+}
+
+/** Parts of the light of the middle of the picture that shafts take, at three wavelengths. */
+async function measuredLoss({ draw, shafts }: Stage): Promise<number[]> {
+  const [x, y] = [size.width / 2, size.height / 2]
+  shafts.enabled = true
+  const shadowed = (await draw()).at(x, y)
+  shafts.enabled = false
+  const lit = (await draw()).at(x, y)
+  return [0, 1, 2].map(k => (lit[k] - shadowed[k]) / shafts.source.irradiance.value.getComponent(k))
+}
+
+const deck = { ...fog, baseAltitude: 1500, topAltitude: 1600 }
+
+/** Decks of a given extinction [1/m] that is a function of the distance north of the eye, and the clear part there. */
+const decks: [string, (north: Float) => Float, (north: number) => boolean][] = [
+  ['a closed deck', () => float(0.5), () => false],
+  ['a half plane', north => north.greaterThan(1200).select(0.5, 0), north => north <= 1200],
+  [
+    'a slit in a deck',
+    north => north.sub(2600).abs().greaterThan(400).select(0.5, 0),
+    north => Math.abs(north - 2600) <= 400
+  ]
+]
+
+for (const [name, extinction, isClear] of decks) {
+  gpuTest(
+    `takes the light from air under ${name}`,
+    async t => {
+      const renderer = await t.createRenderer(size)
+      const sun = 40
+      const set = stage(renderer, sun, { quality: 'reference' })
+      const { shafts } = set
+      const { node, draw, dispose } = await unseen(
+        renderer,
+        set,
+        new CloudLayers([deck]),
+        new SparseNoise()
+      )
+      // Above the equator, x is up and z is north.
+      node.field.givenExtinction = offset => extinction(offset.z)
+      shafts.add(node)
+      for (const view of [10, 25, 60, 150]) {
+        lookAt(set, view)
+        await draw()
+        const north = { view, sun }
+        const darkAt = (distance: number): number => {
+          const altitude = 2 + distance * Math.sin(radians(view)) + distance ** 2 / 12.8e6
+          if (altitude > deck.topAltitude) return 0
+          const from = Math.max(altitude, deck.baseAltitude)
+          const at = (height: number): number =>
+            distance * Math.cos(radians(view)) + (height - altitude) / Math.tan(radians(sun))
+          return isClear(at(from)) && isClear(at(deck.topAltitude)) ? 0 : 1
+        }
+        const { whole, lost } = marchedLoss(north, Infinity, darkAt)
+        const got = await measuredLoss(set)
+        for (let k = 0; k < 3; k++) {
+          t.note(
+            `${name}, ${view}°: lost ${(lost[k] / whole[k]).toFixed(4)}, got ${(got[k] / whole[k]).toFixed(4)}`
+          )
+          expectClose(
+            got[k],
+            lost[k],
+            { absolute: 0.012 * whole[k] },
+            `${name}, view ${view}°, #${k}`
+          )
+        }
+      }
+      dispose()
+      set.dispose()
+    },
+    { timeoutSeconds: 120 }
+  )
+}
+
+gpuTest(
+  'takes the light from air under broken clouds as a dense march through them does',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const sun = 25
+    const set = stage(renderer, sun)
+    const { shafts } = set
+    const layers = cloudPreset('fairWeather')
+    layers.at(0).set({ coverage: 0.5 })
+    const { node, draw, dispose } = await unseen(renderer, set, layers, new CloudNoise())
+    shafts.add(node)
+    await draw()
+    const { field, light } = node
+    const steps = 64
+    const places = 48
+    const end = 14_000
+    const views = [10, 15, 22, 35, 150, 168]
+    const distances = Array.from({ length: places }, (_, i) => end * ((i + 0.5) / places) ** 2)
+    const inputs = views.flatMap(view =>
+      distances.map(distance => {
+        const [up, north] = [Math.sin(radians(view)), Math.cos(radians(view))]
+        return [up * distance, 0, north * distance, 0]
+      })
+    )
+    const depths = await evaluateOnGpu(renderer, inputs, input => {
+      const depth = float(0).toVar()
+      const start = input.xyz.toConst() as Vec3
+      const length = 6000 / steps
+      loop('step', steps, index => {
+        const offset = start
+          .add(field.view.lightDirection.mul(float(index).add(0.5).mul(length)))
+          .toConst() as Vec3
+        const sample = {
+          offset,
+          ...field.view.localCoordinates(offset),
+          distance: float(3000).toConst()
+        }
+        depth.addAssign(cloudExtinction(field, sample, false).mul(length))
+      })
+      return depth.mul(light.nodes.depthScale)
+    })
+    const [errors, high]: [number[], number[]] = [[], []]
+    for (const [index, view] of views.entries()) {
+      lookAt(set, view)
+      await draw()
+      const darkAt = (distance: number): number => {
+        // There the ray is above all clouds.
+        if (distance > end) return 0
+        const i = Math.floor(Math.sqrt(distance / end) * places)
+        return 1 - Math.exp(-depths[4 * (index * places + i)])
+      }
+      const { whole, lost } = marchedLoss({ view, sun }, Infinity, darkAt)
+      for (const quality of ['reference', 'high'] as const) {
+        shafts.set({ quality })
+        const got = await measuredLoss(set)
+        const all = quality === 'reference' ? errors : high
+        for (let k = 0; k < 3; k++) all.push((got[k] - lost[k]) / whole[k])
+      }
+      t.note(
+        `${view}°: ${(lost[1] / whole[1]).toFixed(3)} is lost, apart ${errors.at(-2)!.toFixed(3)}, high ${high.at(-2)!.toFixed(3)}`
+      )
+    }
+    const mean = (all: readonly number[]): number =>
+      all.reduce((sum, value) => sum + Math.abs(value), 0) / all.length
+    t.note(`mean ${mean(errors).toFixed(4)}, high ${mean(high).toFixed(4)}`)
+    expectTrue(mean(errors) < 0.05, `lost light is off by ${mean(errors)}`)
+    dispose()
+    set.dispose()
+  },
+  { timeoutSeconds: 240 }
+)
+
+gpuTest(
+  'has shafts in front of clouds, by which a closed deck is darker, and none after they are taken out',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const [sun, view] = [40, 4]
+    const set = stage(renderer, sun, { quality: 'reference' })
+    const { shafts, camera, air, depth, atmosphere } = set
+    const [light, noise] = [new CloudLightTable(), new SparseNoise()]
+    const layers = new CloudLayers([deck])
+    const node = clouds(air, depth, camera, atmosphere, layers, { quality: coarse, noise, light })
+    node.time = 0
+    node.field.givenExtinction = () => float(0.5)
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    pipeline.outputNode = node
+    lookAt(set, view)
+    const draw = async (frames = 4): Promise<Picture> => {
+      camera.updateMatrixWorld()
+      for (let i = 1; i < frames; i++) {
+        await nextFrame()
+        pipeline.render()
+      }
+      await nextFrame()
+      return drawToFloat(renderer, () => pipeline.render())
+    }
+    const mean = ({ data }: Picture): number[] =>
+      [0, 1, 2].map(
+        k => data.reduce((sum, value, i) => sum + (i % 4 === k ? value : 0), 0) / (data.length / 4)
+      )
+    const plain = mean(await draw(12))
+    shafts.add(node)
+    pipeline.needsUpdate = true
+    const pictures: number[][] = []
+    for (const enabled of [true, false, true]) {
+      shafts.enabled = enabled
+      pictures.push(mean(await draw(1)))
+    }
+    const [shadowed, lit, after] = pictures
+    const base = deck.baseAltitude / Math.sin(radians(view))
+    const { whole } = marchedLoss({ view, sun }, base, () => 1)
+    for (let k = 0; k < 3; k++) {
+      // History goes on to converge meanwhile.
+      const lost = (lit[k] - (shadowed[k] + after[k]) / 2) / whole[k]
+      t.note(`${lost.toFixed(3)} of the light before the deck is lost`)
+      // The deck is seen a little inside of its base.
+      expectClose(lost, 1, { absolute: 0.05 }, `lost light, #${k}`)
+    }
+    shafts.remove(node)
+    pipeline.needsUpdate = true
+    const again = mean(await draw(2))
+    for (let k = 0; k < 3; k++) expectClose(again[k], plain[k], { relative: 0.02 }, 'lit again')
+    for (const owned of [node, pipeline, light, noise, set]) owned.dispose()
+  },
+  { timeoutSeconds: 120 }
+)
+
+gpuTest(
+  'is the same to the last bit under a clear sky, and draws clouds in materials as in the post effect',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const plain = stage(renderer, 20, null)
+    const clear = await plain.draw()
+    const set = stage(renderer, 20, { quality: 'reference' })
+    const { shafts, scene, camera, atmosphere } = set
+    const layers = new CloudLayers([{ ...deck, coverage: 0 }])
+    const { node, draw, dispose } = await unseen(renderer, set, layers, new SparseNoise())
+    // Stripes, one of them overhead.
+    node.field.givenExtinction = ({ y }) =>
+      y
+        .mul(Math.PI / 8000)
+        .cos()
+        .greaterThan(0)
+        .select(0.5, 0)
+    shafts.add(node)
+    await draw()
+    expectSame(await set.draw(), clear, 'no clouds')
+    layers.at(0).set({ coverage: 1 })
+    // Three cascades, in four strips each.
+    for (let i = 0; i < 14; i++) await draw()
+    const post = await set.draw()
+    shafts.enabled = false
+    const lit = await set.draw()
+    shafts.enabled = true
+    atmosphere.add(shafts)
+    await nextFrame()
+    const forward = await drawForward(renderer, scene, camera, atmosphere)
+    const apart = (a: Picture, b: Picture): number =>
+      a.data.reduce((sum, value, i) => sum + Math.abs(value - b.data[i]), 0)
+    const [errors, shadows] = [apart(forward, post), apart(post, lit)]
+    const all = lit.data.reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0)
+    t.note(
+      `${(errors / shadows).toFixed(3)} of the lost light apart, of ${(shadows / all).toFixed(3)}`
+    )
+    expectTrue(shadows > 0.01 * all, 'clouds cast shadows')
+    expectTrue(errors < 0.15 * shadows, 'forward')
+    for (const owned of [plain, set]) owned.dispose()
+    dispose()
+  },
+  { timeoutSeconds: 120 }
+)

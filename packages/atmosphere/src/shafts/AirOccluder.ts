@@ -1,0 +1,49 @@
+import type { Camera } from 'three'
+import type { Atmosphere } from '../Atmosphere'
+import type { Float, Vec3 } from '../tsl-types'
+import type { AirShadows } from '../view/AirShadows'
+import type { AtmosphereView } from '../view/AtmosphereView'
+import type { LightSource } from '../view/LightSource'
+import type { ViewUniforms } from '../view/ViewUniforms'
+
+/** A place in the air that a camera looks through, as shader nodes. */
+export interface AirPlace {
+  /** The camera's view in the light whose shadow it is; `view.localCoordinates(offset)` has altitude and zenith. */
+  readonly view: ViewUniforms
+  /** Displacement from the camera, in the mapped space [m]. */
+  readonly offset: Vec3
+  /** Position in world space [world units]. */
+  readonly positionWorld: () => Vec3
+  /** Noise in (0, 1), for what is read in steps. */
+  readonly jitter: Float
+}
+
+/** Light shafts as what casts shadows into them sees them. */
+export interface ShadowedShafts extends AirShadows {
+  readonly atmosphere: Atmosphere
+  /** Camera whose picture has the shafts. */
+  readonly camera: Camera
+  /** Source of the light. */
+  readonly source: LightSource
+}
+
+/** Shadow that something casts into the air, in one light. */
+export interface AirShadow {
+  /** False while there is nothing that takes light; left out, there always may be. */
+  readonly isCast?: boolean
+  /** Sets uniforms for the camera whose air it is. Called before it is drawn. */
+  update?(view: AtmosphereView): void
+  /** Part of the light that arrives at a place, in [0, 1]: 1 where there is no shadow. Called in a loop and in branches. */
+  transmittance(place: AirPlace): Float
+  /** Called when it is taken out. */
+  dispose?(): void
+}
+
+/**
+ * Something that casts shadows into the air by a rule of its own, such as clouds or the hills of a terrain:
+ * see `LightShafts.add`.
+ */
+export interface AirOccluder {
+  /** Called when it is added. @throws If it cannot be added to these shafts. */
+  castInto(shafts: ShadowedShafts): AirShadow
+}
