@@ -91,11 +91,11 @@ export const stills: readonly Still[] = [
   },
   {
     name: '10km-storm',
-    about: 'from an airliner: anvils at eye height',
+    about: 'from an airliner: anvils just below',
     clouds: { preset: 'cumulonimbus' },
-    altitude: 9000,
+    altitude: 12_500,
     sun: { elevation: 20, azimuth: 200 },
-    view: { azimuth: 80, pitch: -2 },
+    view: { azimuth: 80, pitch: -8 },
     land: 'hills'
   },
   {
