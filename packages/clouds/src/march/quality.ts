@@ -55,10 +55,10 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     block: 4
   },
   medium: {
-    steps: 256,
-    stepGrowth: 0.003,
+    steps: 288,
+    stepGrowth: 0.0027,
     shortestStep: 4,
-    depthStep: 0.25,
+    depthStep: 0.2,
     layerSteps: 14,
     lightSteps: 2,
     block: 4

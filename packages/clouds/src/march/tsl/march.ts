@@ -5,7 +5,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
-import { addPair, seenClouds, seenState, separateLayers, type SeenClouds } from './seenPoints'
+import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
 
 /** A ray from the camera, in the mapped space. */
@@ -64,7 +64,7 @@ export function marchClouds(
     })
     steps.addAssign(2)
     If(position.greaterThanEqual(segment.end), () => {
-      separateLayers(seen)
+      endStratum(seen)
       const boundary = nextLayerBoundary(field, cosView, position.mul(1 + 1e-6).add(0.01))
         .min(end)
         .toConst() as Float

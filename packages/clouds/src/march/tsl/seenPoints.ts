@@ -11,8 +11,11 @@ import type { Float, Vec2, Vec4 } from '../../tsl-types'
  */
 export const POINTS = 4
 
-/** Share of a ray's light from which a stratum is left to its layer, and the next layer gets one of its own [–]. */
-const LEAST_SHARE = 0.004
+/**
+ * Share of a ray's light from which a stratum is left to its cloud or its layer, and the next one gets one of its
+ * own [–]. Greater: contours where clouds stand before each other (*Cockpit*); smaller: wisps use all points up.
+ */
+const LEAST_SHARE = 0.02
 
 /**
  * Gap between clouds from which they count as apart: part of the distance, and at least [m]. The light of a
@@ -73,12 +76,12 @@ function enterStratum({ index, run, most }: SeenState, next: Float): void {
   })
 }
 
-/** Ends a stratum at a layer boundary: layers apart may be lit apart, a high one is in the sun when a low one is not. */
-export function separateLayers(state: SeenState): void {
+/** Ends a stratum where another cloud or layer begins: they may be lit apart, a high one in the sun when a low one is not. */
+export function endStratum(state: SeenState): void {
   const { shares, index } = state
   const share = shares.dot(componentAt(index))
   const next = index.add(share.greaterThan(LEAST_SHARE).select(1, 0)).min(POINTS - 1)
-  enterStratum(state, next.toConst())
+  enterStratum(state, next.toConst() as Float)
 }
 
 /**
@@ -101,13 +104,18 @@ export function addPair(state: SeenState, depth: Vec2, places: readonly Float[])
   const weighted = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
   const stratum = transmittance
     .oneMinus()
+    .max(0)
+    .sqrt()
     .mul(POINTS)
     .floor()
     .min(POINTS - 1)
   enterStratum(state, stratum.toConst())
   const gap = places[0].mul(GAP_GROWTH).max(LEAST_GAP)
-  const goesOn = places[0].sub(latest).lessThan(gap).toConst()
-  run.assign(goesOn.select(run, vec2(0)).add(vec2(both, weighted)))
+  If(places[0].sub(latest).greaterThan(gap), () => {
+    endStratum(state)
+    run.assign(vec2(0))
+  })
+  run.addAssign(vec2(both, weighted))
   latest.assign(places[1])
   const own = componentAt(index)
   shares.addAssign(own.mul(both))
