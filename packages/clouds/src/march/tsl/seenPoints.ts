@@ -81,7 +81,7 @@ export function endStratum(state: SeenState): void {
   const { shares, index } = state
   const share = shares.dot(componentAt(index))
   const next = index.add(share.greaterThan(LEAST_SHARE).select(1, 0)).min(POINTS - 1)
-  enterStratum(state, next.toConst() as Float)
+  enterStratum(state, next.toConst())
 }
 
 /**
