@@ -146,9 +146,9 @@ export const Cockpit: Story = {
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    altitude: 6000,
-    heading: 262,
-    pitch: 2,
+    altitude: 2200,
+    heading: 20,
+    pitch: 10,
     hour: 22.4,
     exposure: 0.2
   },
