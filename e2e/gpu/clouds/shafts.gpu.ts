@@ -1,3 +1,4 @@
+import { horizontalIrradiance } from '@welkin/atmosphere'
 import { cloudPreset, CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
@@ -6,7 +7,12 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
-import { loop, type Float, type Vec3 } from '../../../packages/clouds/src/tsl-types'
+import {
+  diffuseRatio,
+  meanDecks,
+  overcastIrradiance
+} from '../../../packages/clouds/src/environment/tsl/overcast'
+import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -345,3 +351,46 @@ gpuTest(
   },
   { timeoutSeconds: 120 }
 )
+
+gpuTest('dims light scattered more than once as it dims that on surfaces', async t => {
+  const renderer = await t.createRenderer(size)
+  const set = stage(renderer, 40, { quality: 'reference' })
+  const { node, draw, dispose } = await unseen(
+    renderer,
+    set,
+    new CloudLayers([{ ...fog, density: 0.02 }]),
+    new SparseNoise()
+  )
+  await draw()
+  const { field, light } = node
+  const { view } = field
+  const heights = [0, 200, 1000, 1800, 3000, 9000, 20_000]
+  const found = await evaluateOnGpu(
+    renderer,
+    heights.map(height => [height, 0, 0, 0]),
+    ({ x }) => {
+      // The camera is 2 m above the ground.
+      const offset = view.up.mul(x).toConst()
+      const place = { offset, ...view.localCoordinates(offset) }
+      const { altitude, cosLight } = place
+      const { uniforms, diffuse } = view.air
+      const clear = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
+      const facing = (plane: Vec4, cosNormal: number): Vec4 => {
+        const lit = { view, ...place, cosNormal: float(cosNormal) }
+        return overcastIrradiance(field, light.nodes, lit, offset, plane)
+      }
+      const [up, down] = [clear.up.toConst() as Vec4, clear.down.toConst() as Vec4]
+      const cloudy = facing(up, 1).add(facing(down, -1))
+      const decks = meanDecks(field, light.nodes, altitude, cosLight)
+      const ratio = diffuseRatio(view, decks, altitude, cosLight)
+      return vec4(ratio.y, cloudy.div(up.add(down)).y, ratio.x, ratio.w)
+    }
+  )
+  heights.forEach((height, i) => {
+    const [ratio, expected, red, infrared] = found.subarray(4 * i, 4 * i + 4)
+    t.note(`\n${height} m: ${[red, ratio, infrared].map(value => value.toFixed(3)).join(', ')}`)
+    expectClose(ratio, expected, { relative: 2e-3 }, `${height} m`)
+  })
+  dispose()
+  set.dispose()
+})

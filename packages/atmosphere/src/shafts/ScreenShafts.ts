@@ -145,8 +145,11 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength)
-      left.assign(left.sub(linearSRGB(view.air.uniforms, lost)).max(0))
+      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength).toConst()
+      // Clouds may also give light: a colour has no negative parts, so these are apart.
+      const [less, more] = [lost.max(0), lost.negate().max(0)]
+      const { uniforms } = view.air
+      left.assign(left.sub(linearSRGB(uniforms, less)).add(linearSRGB(uniforms, more)).max(0))
     })
     return left
   }

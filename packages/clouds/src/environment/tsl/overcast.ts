@@ -1,10 +1,10 @@
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
-import type { SkyLitPlane } from '@welkin/atmosphere'
+import type { SkyLitPlane, ViewUniforms } from '@welkin/atmosphere'
 import { If, float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { forLayers, layerAt } from '../../density/tsl/layer'
+import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
 import { columnDensityAt } from '../../density/tsl/unresolved'
 import { filteredCoverageAt } from '../../density/tsl/weather'
@@ -48,6 +48,12 @@ export function eddington(
   return { diffuse, direct, beam }
 }
 
+/** Clouds above and below a place. */
+export interface Decks {
+  above: PlacedDeck
+  below: PlacedDeck
+}
+
 /**
  * Clouds above and below a place in the mean, from the weather about it.
  *
@@ -62,9 +68,35 @@ export function decksAround(
   altitude: Float,
   up: Vec3,
   cosLight: Float
-): { above: PlacedDeck; below: PlacedDeck } {
-  const mu = cosLight.max(LOWEST_COSINE).toConst() as Float
+): Decks {
   const distance = offset.length().toConst() as Float
+  return decksOf(field, light, altitude, cosLight, layer => {
+    const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
+    const footprint = rise.mul(footprintForm.heights).max(footprintForm.least)
+    const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
+    const sample = { offset, altitude, up, distance: seen }
+    const subpoint = subpointOffset(field, sample).toConst()
+    return filteredCoverageAt(field, layer, subpoint, sample)
+  })
+}
+
+/** Clouds above and below an altitude in the mean over all of a layer, without a look-up. */
+export const meanDecks = (
+  field: CloudField,
+  light: CloudLight,
+  altitude: Float,
+  cosLight: Float
+): Decks => decksOf(field, light, altitude, cosLight, layer => layer.coverage)
+
+/** Clouds above and below an altitude, by the share of the sky that each layer covers. */
+function decksOf(
+  field: CloudField,
+  light: CloudLight,
+  altitude: Float,
+  cosLight: Float,
+  coverageOf: (layer: LayerNodes) => Float
+): Decks {
+  const mu = cosLight.max(LOWEST_COSINE).toConst() as Float
   /** Sums of 1/t − 1 for diffuse and for direct light, and of tops by the first. */
   const above = vec3(0).toVar() as Vec3
   const below = vec3(0).toVar() as Vec3
@@ -72,12 +104,7 @@ export function decksAround(
   forLayers(field, index => {
     const layer = layerAt(field, index)
     If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
-      const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
-      const footprint = rise.mul(footprintForm.heights).max(footprintForm.least)
-      const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
-      const sample = { offset, altitude, up, distance: seen }
-      const subpoint = subpointOffset(field, sample).toConst()
-      const filteredCoverage = filteredCoverageAt(field, layer, subpoint, sample)
+      const filteredCoverage = coverageOf(layer)
       const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
       const depth = layer.density
         .mul(columnDensityAt(layer, filteredCoverage))
@@ -167,18 +194,51 @@ export function overcastIrradiance(
   offset: Vec3,
   clear: Vec4
 ): Vec4 {
-  const { uniforms, transmittance, diffuse } = view.air
-  const { above, below } = decksAround(field, light, offset, altitude, up, cosLight)
+  const decks = decksAround(field, light, offset, altitude, up, cosLight)
+  const { lights } = lightsAbout(view, decks, altitude, cosLight)
+  return cloudyIrradiance({ ...lights, plane: clear }, decks.above, decks.below, cosNormal)
+}
+
+/** Light without clouds at an altitude and on the decks about it, for unit irradiance of the source. */
+function lightsAbout(
+  { air }: ViewUniforms,
+  { above, below }: Decks,
+  altitude: Float,
+  cosLight: Float
+): { lights: Omit<ClearLightNodes, 'plane'>; here: { up: Vec4; down: Vec4 } } {
+  const { uniforms, transmittance, diffuse } = air
   const directAt = (height: Float): Vec4 =>
     transmittanceToLight(uniforms, transmittance, height, cosLight).mul(cosLight.max(0)).toConst()
-  const here = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
+  const { up, down } = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
+  const here = { up: up.toConst() as Vec4, down: down.toConst() as Vec4 }
   const onClouds = horizontalIrradiance(uniforms, diffuse!, below.top, cosLight)
-  const lights: ClearLightNodes = {
+  const lights = {
     direct: { above: directAt(above.top), below: directAt(below.top) },
-    sky: { here: here.up.toConst(), below: onClouds.up.toConst() },
-    ground: here.down.toConst(),
-    plane: clear,
-    albedo: uniforms.groundAlbedo
+    sky: { here: here.up, below: onClouds.up.toConst() as Vec4 },
+    ground: here.down,
+    albedo: uniforms.groundAlbedo as unknown as Vec4
   }
-  return cloudyIrradiance(lights, above, below, cosNormal)
+  return { lights, here }
+}
+
+/** Most times as bright as without clouds that diffuse light is taken to be: at dusk there is next to none. */
+const MOST_DIFFUSE = 10
+
+/**
+ * Diffuse light from above and below among clouds, over that without clouds [–].
+ *
+ * @param view - Of the source's light.
+ * @param decks - About the altitude.
+ */
+export function diffuseRatio(
+  view: ViewUniforms,
+  decks: Decks,
+  altitude: Float,
+  cosLight: Float
+): Vec4 {
+  const { lights, here } = lightsAbout(view, decks, altitude, cosLight)
+  const facing = (plane: Vec4, cosNormal: number): Vec4 =>
+    cloudyIrradiance({ ...lights, plane }, decks.above, decks.below, float(cosNormal))
+  const cloudy = facing(here.up, 1).add(facing(here.down, -1))
+  return cloudy.div(here.up.add(here.down).max(1e-20)).min(MOST_DIFFUSE)
 }
