@@ -7,9 +7,9 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
+import { meanDecks } from '../../../packages/clouds/src/environment/tsl/decks'
 import {
   diffuseRatio,
-  meanDecks,
   overcastIrradiance
 } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
