@@ -3,6 +3,7 @@ import {
   aerialPerspective,
   Atmosphere,
   exposureFor,
+  lightShafts,
   marsParameters,
   milkyWay,
   moon,
@@ -14,6 +15,7 @@ import {
   stars,
   SunDirectionalLight,
   sunFlare,
+  type LightShafts,
   type LightSource
 } from '@welkin/atmosphere'
 import {
@@ -90,6 +92,7 @@ export class StillView {
   readonly #atmosphere: Atmosphere
   readonly #sun: SunDirectionalLight
   readonly #landscape: Landscape | undefined
+  readonly #shafts: LightShafts | undefined
   readonly #clouds: CloudsNode | undefined
   /** Lights besides the sun that exposure is for. */
   readonly #sources: LightSource[] = []
@@ -121,7 +124,9 @@ export class StillView {
 
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
-    const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
+    const shafts = still.shafts && lightShafts(atmosphere, camera, { light: sun })
+    this.#shafts = shafts
+    const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputNode = air
     if (still.clouds !== undefined) {
@@ -131,6 +136,7 @@ export class StillView {
       const node = clouds(air, depth, camera, atmosphere, layers, { quality })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)
+      shafts?.add(node)
       node.field.bake(renderer)
       node.time = TIME
       this.#clouds = node
@@ -162,6 +168,7 @@ export class StillView {
     this.#pipeline.dispose()
     this.#clouds?.dispose()
     this.#landscape?.dispose()
+    this.#shafts?.dispose()
     this.#sun.dispose()
     this.#atmosphere.dispose()
     this.#target.dispose()

@@ -7,6 +7,8 @@ export interface Still {
   about: string
   /** Preset of clouds; default: a clear sky. */
   clouds?: { preset: CloudPresetName; coverage?: number }
+  /** Light shafts, of hills and clouds. */
+  shafts?: true
   planet?: 'mars'
   /** Camera above the ellipsoid [m]. */
   altitude: number
@@ -50,9 +52,75 @@ const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, view]) 
   }))
 )
 
+/** Light shafts: hills and clouds cast into the air. */
+const shafts: Still[] = [
+  {
+    name: 'shafts-deck',
+    about:
+      "a broken deck under a sun of 20°: Jacob's ladder below it, no bands, no halo at edges of clouds",
+    clouds: { preset: 'stratocumulus', coverage: 0.7 },
+    sun: { elevation: 20, azimuth: 30 },
+    view: { azimuth: 45, pitch: 10 },
+    altitude: 2,
+    land: 'hills',
+    shafts: true
+  },
+  {
+    name: 'shafts-cumulus',
+    about: 'the sun low behind cumulus: rays that fan out from gaps, dark behind towers',
+    clouds: { preset: 'congestus' },
+    sun: { elevation: 9, azimuth: 330 },
+    view: { azimuth: 330, pitch: 10 },
+    altitude: 2,
+    land: 'hills',
+    shafts: true
+  },
+  {
+    name: 'shafts-opposite',
+    about: 'rays that run together opposite a sunset',
+    clouds: { preset: 'congestus', coverage: 0.4 },
+    sun: { elevation: 3, azimuth: 250 },
+    view: { azimuth: 70, pitch: 10 },
+    altitude: 2,
+    land: 'hills',
+    shafts: true
+  },
+  {
+    name: 'shafts-overcast',
+    about: 'haze under a closed deck as dark as the hills in it; compare overcast-aside',
+    clouds: { preset: 'overcast' },
+    sun: { elevation: 42, azimuth: 310 },
+    view: { azimuth: 30, pitch: 4 },
+    altitude: 300,
+    land: 'hills',
+    shafts: true
+  },
+  {
+    name: 'shafts-storm',
+    about: "a storm's shadow on its own anvil's haze and on the air below, from 10 km",
+    clouds: { preset: 'cumulonimbus' },
+    sun: { elevation: 12, azimuth: 80 },
+    view: { azimuth: 40, pitch: -6 },
+    altitude: 10_000,
+    land: 'hills',
+    shafts: true
+  },
+  {
+    name: 'shafts-ridge',
+    about:
+      'hills before a sun of 4°, clear air: shadows of ridges in the haze as far as the shadow map reaches',
+    sun: { elevation: 4, azimuth: 30 },
+    view: { azimuth: 35, pitch: 3 },
+    altitude: 150,
+    land: 'hills',
+    shafts: true
+  }
+]
+
 /** All stills, by name. */
 export const stills: readonly Still[] = [
   ...fromTheGround,
+  ...shafts,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',

@@ -1,5 +1,6 @@
 import type { AirOccluder } from '@welkin/atmosphere'
 import { Vector3 } from 'three'
+import { uniform, vec4 } from 'three/tsl'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { quantile } from '../../validate/score'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
@@ -257,6 +258,54 @@ gpuTest("has an occluder of one's own beyond all shadow maps", async t => {
   atmosphere.metersPerUnit = 1
   camera.position.set(0, 2, 0)
   expectSame(await draw(), before, 'taken out')
+  dispose()
+})
+
+gpuTest('takes light scattered more than once where an occluder dims it', async t => {
+  const renderer = await t.createRenderer(size)
+  const { camera, draw, shafts, dispose } = stage(renderer, 25, { quality: 'reference' })
+  // Pixels so small that the light of four is that of each.
+  camera.fov = 10
+  camera.updateProjectionMatrix()
+  camera.lookAt(-1000, 300, 0)
+  const light = { direct: 1, diffuse: 1 }
+  const [direct, diffuse] = [uniform(1), uniform(1)]
+  shafts.add({
+    castInto: () => ({
+      transmittance: () => direct,
+      diffuse: () => vec4(diffuse)
+    })
+  })
+  const drawWith = async (changes: Partial<typeof light>): Promise<Picture> => {
+    direct.value = changes.direct ?? 1
+    diffuse.value = changes.diffuse ?? 1
+    return draw()
+  }
+  const all = await drawWith({})
+  shafts.enabled = false
+  expectSame(await draw(), all, 'light that is all there')
+  shafts.enabled = true
+  const [once, often, none, more] = [
+    await drawWith({ diffuse: 0 }),
+    await drawWith({ direct: 0 }),
+    await drawWith({ direct: 0, diffuse: 0 }),
+    await drawWith({ diffuse: 1.5 })
+  ]
+  const errors: number[] = []
+  for (let y = 0; y < size.height; y += 5) {
+    for (let x = 1; x < size.width; x += 7) {
+      for (let k = 0; k < 3; k++) {
+        const [whole, a, b, left, bright] = [all, once, often, none, more].map(
+          picture => picture.at(x, y)[k]
+        )
+        errors.push(left / whole, (a + b) / whole - 1, (bright - whole) / (whole - a) - 0.5)
+      }
+    }
+  }
+  const worst = quantile(errors.map(Math.abs), 0.98)
+  t.note(`98 % within ${worst.toFixed(5)}`)
+  // That of the sky volume's own texels included.
+  expectTrue(worst < 0.025, `light is off by ${worst}`)
   dispose()
 })
 

@@ -1,3 +1,4 @@
+import { horizontalIrradiance, type AirOccluder } from '@welkin/atmosphere'
 import { cloudPreset, CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
@@ -6,7 +7,12 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
-import { loop, type Float, type Vec3 } from '../../../packages/clouds/src/tsl-types'
+import { meanDecks } from '../../../packages/clouds/src/environment/tsl/decks'
+import {
+  diffuseRatio,
+  overcastIrradiance
+} from '../../../packages/clouds/src/environment/tsl/overcast'
+import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -100,6 +106,21 @@ async function unseen(
   }
 }
 
+/** Clouds that take light scattered once alone, for which there are closed forms. */
+const castsOnce = (node: CloudsNode): AirOccluder => ({
+  castInto(shafts) {
+    const shadow = node.castInto(shafts)
+    return {
+      get isCast() {
+        return shadow.isCast
+      },
+      update: view => shadow.update?.(view),
+      transmittance: place => shadow.transmittance(place),
+      dispose: () => shadow.dispose?.()
+    }
+  }
+})
+
 /** Parts of the light of the middle of the picture that shafts take, at three wavelengths. */
 async function measuredLoss({ draw, shafts }: Stage): Promise<number[]> {
   const [x, y] = [size.width / 2, size.height / 2]
@@ -139,7 +160,8 @@ for (const [name, extinction, isClear] of decks) {
       )
       // Above the equator, x is up and z is north.
       node.field.givenExtinction = offset => extinction(offset.z)
-      shafts.add(node)
+      const occluder = castsOnce(node)
+      shafts.add(occluder)
       for (const view of [10, 25, 60, 150]) {
         lookAt(set, view)
         await draw()
@@ -183,7 +205,8 @@ gpuTest(
     const layers = cloudPreset('fairWeather')
     layers.at(0).set({ coverage: 0.5 })
     const { node, draw, dispose } = await unseen(renderer, set, layers, new CloudNoise())
-    shafts.add(node)
+    const occluder = castsOnce(node)
+    shafts.add(occluder)
     await draw()
     const { field, light } = node
     const steps = 64
@@ -275,7 +298,8 @@ gpuTest(
         k => data.reduce((sum, value, i) => sum + (i % 4 === k ? value : 0), 0) / (data.length / 4)
       )
     const plain = mean(await draw(12))
-    shafts.add(node)
+    const occluder = castsOnce(node)
+    shafts.add(occluder)
     pipeline.needsUpdate = true
     const pictures: number[][] = []
     for (const enabled of [true, false, true]) {
@@ -292,7 +316,7 @@ gpuTest(
       // The deck is seen a little inside of its base.
       expectClose(lost, 1, { absolute: 0.05 }, `lost light, #${k}`)
     }
-    shafts.remove(node)
+    shafts.remove(occluder)
     pipeline.needsUpdate = true
     const again = mean(await draw(2))
     for (let k = 0; k < 3; k++) expectClose(again[k], plain[k], { relative: 0.02 }, 'lit again')
@@ -318,7 +342,8 @@ gpuTest(
         .cos()
         .greaterThan(0)
         .select(0.5, 0)
-    shafts.add(node)
+    const occluder = castsOnce(node)
+    shafts.add(occluder)
     await draw()
     expectSame(await set.draw(), clear, 'no clouds')
     layers.at(0).set({ coverage: 1 })
@@ -345,3 +370,46 @@ gpuTest(
   },
   { timeoutSeconds: 120 }
 )
+
+gpuTest('dims light scattered more than once as it dims that on surfaces', async t => {
+  const renderer = await t.createRenderer(size)
+  const set = stage(renderer, 40, { quality: 'reference' })
+  const { node, draw, dispose } = await unseen(
+    renderer,
+    set,
+    new CloudLayers([{ ...fog, density: 0.02 }]),
+    new SparseNoise()
+  )
+  await draw()
+  const { field, light } = node
+  const { view } = field
+  const heights = [0, 200, 1000, 1800, 3000, 9000, 20_000]
+  const found = await evaluateOnGpu(
+    renderer,
+    heights.map(height => [height, 0, 0, 0]),
+    ({ x }) => {
+      // The camera is 2 m above the ground.
+      const offset = view.up.mul(x).toConst()
+      const place = { offset, ...view.localCoordinates(offset) }
+      const { altitude, cosLight } = place
+      const { uniforms, diffuse } = view.air
+      const clear = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
+      const facing = (plane: Vec4, cosNormal: number): Vec4 => {
+        const lit = { view, ...place, cosNormal: float(cosNormal) }
+        return overcastIrradiance(field, light.nodes, lit, offset, plane)
+      }
+      const [up, down] = [clear.up.toConst() as Vec4, clear.down.toConst() as Vec4]
+      const cloudy = facing(up, 1).add(facing(down, -1))
+      const decks = meanDecks(field, light.nodes, altitude, cosLight)
+      const ratio = diffuseRatio(view, decks, altitude, cosLight)
+      return vec4(ratio.y, cloudy.div(up.add(down)).y, ratio.x, ratio.w)
+    }
+  )
+  heights.forEach((height, i) => {
+    const [ratio, expected, red, infrared] = found.subarray(4 * i, 4 * i + 4)
+    t.note(`\n${height} m: ${[red, ratio, infrared].map(value => value.toFixed(3)).join(', ')}`)
+    expectClose(ratio, expected, { relative: 2e-3 }, `${height} m`)
+  })
+  dispose()
+  set.dispose()
+})

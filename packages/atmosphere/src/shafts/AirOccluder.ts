@@ -1,6 +1,6 @@
 import type { Camera } from 'three'
 import type { Atmosphere } from '../Atmosphere'
-import type { Float, Vec3 } from '../tsl-types'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { AirShadows } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
@@ -35,6 +35,11 @@ export interface AirShadow {
   update?(view: AtmosphereView): void
   /** Part of the light that arrives at a place, in [0, 1]: 1 where there is no shadow. Called in a loop and in branches. */
   transmittance(place: AirPlace): Float
+  /**
+   * Diffuse light at a place, which air scatters again, over that without this occluder, at the four wavelengths [–]:
+   * less under clouds that are thick, more under thin ones and above them. Left out, 1.
+   */
+  diffuse?(place: AirPlace): Vec4
   /** Called when it is taken out. */
   dispose?(): void
 }

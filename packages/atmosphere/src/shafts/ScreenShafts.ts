@@ -21,6 +21,15 @@ const OTHER_DEPTH = 0.6
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
+/** Distance in which about half of the light of a level ray is scattered [m]. */
+const HAZE = 30_000
+
+/** Most by which lost light grows with the distance from one pixel to the next, as a factor. */
+const MOST_MORE = 2
+
+/** Light of the air up to a distance, as a part of all. */
+const lightUpTo = (distance: Float): Float => distance.div(distance.add(HAZE))
+
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
 const PLANET = 1e8
@@ -145,8 +154,11 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength)
-      left.assign(left.sub(linearSRGB(view.air.uniforms, lost)).max(0))
+      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength).toConst()
+      // Clouds may also give light: a colour has no negative parts, so these are apart.
+      const [less, more] = [lost.max(0), lost.negate().max(0)]
+      const { uniforms } = view.air
+      left.assign(left.sub(linearSRGB(uniforms, less)).add(linearSRGB(uniforms, more)).max(0))
     })
     return left
   }
@@ -183,13 +195,15 @@ export class ScreenShafts implements ScreenShadows {
     })()
   }
 
-  /** Distance by which pixels are told apart: where nothing was drawn there is sky, or the planet. */
-  #depthOf(renderer: Renderer, at: Vec2): Float {
+  /** Distance of what is seen: where nothing was drawn there is sky, or the planet [m]. */
+  #distanceOf(renderer: Renderer, at: Vec2): Float {
     const { position, isSky } = this.#rays.at(renderer, at)
-    const { up, viewpoint } = this.#shafts.view
-    const cosView = this.#shafts.view.toMapped(position).normalize().dot(up)
-    const background = cosView.lessThan(viewpoint.cosHorizon).select(PLANET, FAR)
-    return isSky.select(background, position.z.negate().max(1e-6)).toConst()
+    const { view } = this.#shafts
+    const offset = view.toMapped(position).toConst()
+    const distance = offset.length().max(1e-3).toConst()
+    const cosView = offset.div(distance).dot(view.up)
+    const background = cosView.lessThan(view.viewpoint.cosHorizon).select(PLANET, FAR)
+    return isSky.select(background, distance).toConst()
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
@@ -201,7 +215,7 @@ export class ScreenShafts implements ScreenShadows {
   readonly #sample = (): Vec4 =>
     Fn(({ renderer }): Vec4 => {
       const at = uv() as unknown as Vec2
-      const depth = this.#depthOf(renderer, at)
+      const distance = this.#distanceOf(renderer, at)
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -210,14 +224,17 @@ export class ScreenShafts implements ScreenShadows {
           .add(vec2(i & 1, i >> 1))
           .min(this.#halfSize.sub(1))
           .toConst() as Vec2
-        const other = this.#depthOf(renderer, this.#uvOf(pixel))
-        const apart = log2(depth.div(other)).abs()
+        const other = this.#distanceOf(renderer, this.#uvOf(pixel))
+        const apart = log2(distance.div(other)).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(STRANGER, 1)
           .toConst() as Float
-        sum.addAssign(sampleLevel0(this.#lost, pixel.add(0.5).div(this.#halfSize)).mul(weight))
+        // As if light were lost evenly: rows of level ground are not alike, nor is what has none of its depth around.
+        const fewer = lightUpTo(distance).div(lightUpTo(other)).min(MOST_MORE)
+        const lost = sampleLevel0(this.#lost, pixel.add(0.5).div(this.#halfSize))
+        sum.addAssign(lost.mul(weight.mul(fewer)))
         weights.addAssign(weight)
       }
       return sum.div(weights.mul(RADIANCE_SCALE))

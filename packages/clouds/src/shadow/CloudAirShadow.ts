@@ -2,9 +2,11 @@ import type { AirPlace, AirShadow, AtmosphereView, ShadowedShafts } from '@welki
 import { fail } from '@welkin/geo'
 import { If } from 'three/tsl'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
-import { meanDepthTowards } from '../density/tsl/columns'
+import { meanDepthTowards, opticalDepthTowards } from '../density/tsl/columns'
+import { decksAround, meanDecks } from '../environment/tsl/decks'
+import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudLight } from '../light/CloudLightTable'
-import type { Float, Vec3 } from '../tsl-types'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
 import type { CloudShadowMap } from './CloudShadowMap'
 import { sampleShadows } from './tsl/sampleShadows'
@@ -19,7 +21,7 @@ interface ShadowingClouds {
 
 /**
  * Shadow of clouds in the air: the part of the light of sun or moon that arrives. It is read from the shadow
- * maps, which are those of the frame before; beyond them the mean cover of the layers says how much passes.
+ * maps; beyond them the mean cover of the layers says how much passes, or the weather if there is a map of the world.
  */
 export class CloudAirShadow implements AirShadow {
   readonly #clouds: ShadowingClouds
@@ -55,15 +57,35 @@ export class CloudAirShadow implements AirShadow {
 
   transmittance({ view, offset, jitter }: AirPlace): Float {
     const { field, light, shadows } = this.#clouds
-    const place = offset.add(this.#shift).toConst() as Vec3
-    const { shadow, known } = sampleShadows(shadows.nodes, place, jitter)
+    const shifted = offset.add(this.#shift).toConst() as Vec3
+    const { shadow, known } = sampleShadows(shadows.nodes, shifted, jitter)
     const depth = shadow.toVar()
     If(known.mul(this.#isMapped).equal(0), () => {
-      const { altitude, cosLight } = view.localCoordinates(offset)
-      depth.assign(meanDepthTowards(field, altitude, cosLight))
+      const { altitude, cosLight, up } = view.localCoordinates(offset)
+      if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
+      else {
+        const sample = {
+          offset: shifted,
+          altitude,
+          up,
+          distance: shifted.length().toConst() as Float
+        }
+        depth.assign(opticalDepthTowards(field, sample, view.lightDirection))
+      }
     })
     // What is scattered within the forward peak arrives with the sun.
     return depth.mul(light.nodes.depthScale).negate().exp()
+  }
+
+  diffuse({ view, offset }: AirPlace): Vec4 {
+    const { field, light } = this.#clouds
+    const { altitude, cosLight, up } = view.localCoordinates(offset)
+    const shifted = offset.add(this.#shift).toConst() as Vec3
+    const decks =
+      field.worldMap === null
+        ? meanDecks(field, light.nodes, altitude, cosLight)
+        : decksAround(field, light.nodes, shifted, altitude, up, cosLight)
+    return diffuseRatio(view, decks, altitude, cosLight)
   }
 
   dispose(): void {

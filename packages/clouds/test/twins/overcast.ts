@@ -1,4 +1,4 @@
-import { LOWEST_COSINE } from '../../src/environment/tsl/overcast'
+import { LOWEST_COSINE } from '../../src/environment/tsl/decks'
 
 /** Transmittances of a cloud deck, or of several at once: parts of unit flux. */
 export interface CloudDeck {

@@ -18,7 +18,7 @@ export interface Scattered {
 }
 
 /** Legendre coefficient χ₂ of Rayleigh scattering; χ₁ is 0. */
-const RAYLEIGH_MOMENT_2 = 1 / 10
+export const RAYLEIGH_MOMENT_2 = 1 / 10
 
 /** Parts of the light that a march takes into account. */
 export interface LightParts {

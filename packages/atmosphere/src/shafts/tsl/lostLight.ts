@@ -1,17 +1,14 @@
 import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { densities } from '../../air/tsl/medium'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
-import { pointAlong } from '../../scattering/tsl/ray'
 import { rayLimits } from '../../skyVolume/tsl/rayLimits'
-import { EXTINCTION_SCALE, meanExtinction } from '../../skyVolume/tsl/meanExtinction'
-import { viewRay } from '../../skyVolume/tsl/viewRay'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
-import { slicePosition } from '../../skyVolume/tsl/volumeMapping'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import type { AirShadow } from '../AirOccluder'
+import type { AirPlace, AirShadow } from '../AirOccluder'
+import { litRay } from './litRay'
+import { lostDiffuse } from './lostDiffuse'
 import { occluderAngleAt, polarRay, type PolarFrame } from './polarMap'
 import { warpedSteps } from './warpedSteps'
 
@@ -22,7 +19,7 @@ export interface ShadowedAir {
   /** Greatest ρ at which the map may have shadows [m]. */
   readonly maximumRho: Float
   /** Shadows of clouds and the like. */
-  readonly shadows: readonly Pick<AirShadow, 'transmittance'>[]
+  readonly shadows: readonly Pick<AirShadow, 'transmittance' | 'diffuse'>[]
   /** World position of a displacement from the camera in the mapped space [m]. */
   readonly toWorld: (offset: Vec3) => Vec3
 }
@@ -61,7 +58,8 @@ interface Stretch {
 
 /**
  * Single scattering that shadows keep from a view ray, for unit irradiance of the source [1/sr]:
- * ∫ σ_s p(ν) T_light T_view (1 − V) over the ray, where V is the part of the light that occluders let through.
+ * ∫ σ_s p(ν) T_light T_view (1 − V) over the ray, where V is the part of the light that occluders let through. Besides
+ * {@link lostDiffuse}, if there are occluders that dim diffuse light.
  *
  * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the look-ups
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
@@ -76,7 +74,7 @@ export function lostLight(
   { groups, samples }: ShaftSteps,
   jitter: Float
 ): Vec4 {
-  const { air, viewpoint, volume } = view
+  const { air, viewpoint } = view
   const { uniforms } = air
   const limits = rayLimits(viewpoint, cosView)
   const polar = polarRay(frame, direction, cosViewLight)
@@ -90,12 +88,16 @@ export function lostLight(
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
     const steps = warpedSteps(uniforms, ray, length)
-    const elevation = viewRay(viewpoint, cosView, limits.hitsGround)
-    const phases = [rayleighPhase(cosViewLight), miePhase(uniforms, cosViewLight)] as const
-    const rayleigh = uniforms.rayleighScattering.mul(phases[0]).toConst()
-    const mie = uniforms.mieScattering.mul(phases[1]).toConst()
+    const airAt = litRay(view, ray, limits, cosView)
+    const rayleigh = rayleighPhase(cosViewLight).toConst()
+    const mie = miePhase(uniforms, cosViewLight).toConst()
     const perGroup = float(1).div(groups).toConst()
     const perSample = float(1).div(samples).toConst()
+
+    const placeAt = (fromEye: Float): AirPlace => {
+      const offset = direction.mul(fromEye).toConst() as Vec3
+      return { view, offset, jitter, positionWorld: () => toWorld(offset) }
+    }
 
     /** Part of the light that a place does not get. */
     const darkAt = (position: Float, isMapped: Bool | null): Float => {
@@ -109,8 +111,7 @@ export function lostLight(
       else If(isMapped, readMap)
       if (isMappedOnly) return seenFrom?.(fromEye).mul(dark) ?? dark
       If(dark.lessThan(1), () => {
-        const offset = direction.mul(fromEye).toConst() as Vec3
-        const place = { view, offset, jitter, positionWorld: () => toWorld(offset) }
+        const place = placeAt(fromEye)
         const passing = shadows.map(shadow => shadow.transmittance(place))
         dark.assign(passing.reduce((product, part) => product.mul(part)).oneMinus())
       })
@@ -131,20 +132,11 @@ export function lostLight(
         const centre = sum.div(dark).toConst() as Float
         const inAir = steps.distance(centre).toConst() as Float
         const share = dark.mul(width).mul(perSample.mul(perGroup))
-        const place = pointAlong(air, ray, inAir)
-        const slice = slicePosition(viewpoint, limits, inAir)
-        const extinction = meanExtinction(volume, viewpoint, elevation, slice)
-        const through = extinction.mul(inAir.div(EXTINCTION_SCALE)).negate().exp()
-        const density = densities(uniforms, place.altitude).toConst()
-        const scattering = rayleigh.mul(density.x).add(mie.mul(density.y))
-        const light = lightTransmittance(
-          uniforms,
-          air.transmittance,
-          place.altitude.min(uniforms.thickness),
-          place.cosLight
-        )
-        const stretch = steps.slope(centre).mul(share)
-        lost.addAssign(scattering.mul(light).mul(through).mul(stretch))
+        const place = airAt(inAir)
+        const scattering = place.seenRayleigh.mul(rayleigh).add(place.seenMie.mul(mie))
+        const { transmittance } = air
+        const light = lightTransmittance(uniforms, transmittance, place.altitude, place.cosLight)
+        lost.addAssign(scattering.mul(light).mul(steps.slope(centre).mul(share)))
       })
     }
 
@@ -165,6 +157,16 @@ export function lostLight(
         marchGroup({ from, width, isMapped, group: place })
       })
     })
+    const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
+    if (dimming.length === 0) return
+    const missingAt = (inAir: Float): Vec4 => {
+      const fromEye = inAir.add(limits.start).toConst() as Float
+      const parts = dimming.map(shadow => shadow.diffuse!(placeAt(fromEye)))
+      const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
+      return seenFrom === undefined ? missing : missing.mul(seenFrom(fromEye))
+    }
+    const diffuse = { steps, at: airAt, cosViewLight, samples: int(groups), jitter, missingAt }
+    lost.addAssign(lostDiffuse(air, diffuse))
   })
   return lost
 }

@@ -1,0 +1,44 @@
+import { densities } from '../../air/tsl/medium'
+import { pointAlong, type Ray } from '../../scattering/tsl/ray'
+import type { RayLimits } from '../../skyVolume/tsl/rayLimits'
+import { EXTINCTION_SCALE, meanExtinction } from '../../skyVolume/tsl/meanExtinction'
+import { viewRay } from '../../skyVolume/tsl/viewRay'
+import { slicePosition } from '../../skyVolume/tsl/volumeMapping'
+import type { Float, Vec4 } from '../../tsl-types'
+import type { ViewUniforms } from '../../view/ViewUniforms'
+
+/** Air at a distance on a view ray. */
+export interface RayPlace extends ReturnType<typeof pointAlong> {
+  /** Scattering coefficients of molecules and of aerosols, as the camera sees them: times the transmittance [1/m]. */
+  readonly seenRayleigh: Vec4
+  readonly seenMie: Vec4
+}
+
+/**
+ * Reads the air along a view ray from the tables of its view.
+ *
+ * @param ray - From its entry into the air.
+ * @returns Air at a distance from there [m].
+ */
+export function litRay(
+  { air, viewpoint, volume }: ViewUniforms,
+  ray: Ray,
+  limits: RayLimits,
+  cosView: Float
+): (inAir: Float) => RayPlace {
+  const { uniforms } = air
+  const elevation = viewRay(viewpoint, cosView, limits.hitsGround)
+  return inAir => {
+    const place = pointAlong(air, ray, inAir)
+    const slice = slicePosition(viewpoint, limits, inAir)
+    const extinction = meanExtinction(volume, viewpoint, elevation, slice)
+    const through = extinction.mul(inAir.div(EXTINCTION_SCALE)).negate().exp().toConst()
+    const density = densities(uniforms, place.altitude).toConst()
+    return {
+      ...place,
+      altitude: place.altitude.min(uniforms.thickness),
+      seenRayleigh: uniforms.rayleighScattering.mul(density.x).mul(through),
+      seenMie: uniforms.mieScattering.mul(density.y).mul(through)
+    }
+  }
+}

@@ -1,0 +1,134 @@
+import { If, float, vec3 } from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import type { CloudLight } from '../../light/CloudLightTable'
+import type { Float, Vec3 } from '../../tsl-types'
+import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
+import { subpointOffset } from '../../density/tsl/sample'
+import { columnDensityAt } from '../../density/tsl/unresolved'
+import { filteredCoverageAt } from '../../density/tsl/weather'
+
+/** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: test/twins/overcast.ts */
+export interface CloudDeckNodes {
+  /** Part of diffuse light that passes. */
+  diffuse: Float
+  /** Part of direct light that passes, scattered or not. */
+  direct: Float
+  /** Part of direct light that passes without scattering. */
+  beam: Float
+}
+
+/** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
+export type PlacedDeck = CloudDeckNodes & { top: Float }
+
+/** Cosine of the lowest light; one below it counts as this. */
+export const LOWEST_COSINE = 0.05
+
+/**
+ * Footprint on the clouds that light a plane: in heights of the clouds above it, and at least [m]. Smaller:
+ * light under broken clouds changes with every gap (*Shadows*).
+ */
+const footprintForm = { heights: 2, least: 1500 } as const
+
+/** Transmittances of a cloud by Eddington's approximation. Twin: test/twins/overcast.ts */
+export function eddington(
+  thickness: Float,
+  cosLight: Float,
+  oneMinusAsymmetry: Float
+): { diffuse: Float; direct: Float; beam: Float } {
+  const beam = thickness.div(cosLight).negate().exp().toConst() as Float
+  const diffuse = oneMinusAsymmetry.mul(thickness).mul(0.75).add(1).reciprocal().toConst() as Float
+  const direct = cosLight
+    .mul(0.75)
+    .add(0.5)
+    .add(cosLight.mul(-0.75).add(0.5).mul(beam))
+    .mul(diffuse)
+    .toConst() as Float
+  return { diffuse, direct, beam }
+}
+
+/** Clouds above and below a place. */
+export interface Decks {
+  above: PlacedDeck
+  below: PlacedDeck
+}
+
+/**
+ * Clouds above and below a place in the mean, from the weather about it.
+ *
+ * To be called inside of a shader function.
+ *
+ * @param offset - From the field's camera, in the mapped space [m].
+ */
+export function decksAround(
+  field: CloudField,
+  light: CloudLight,
+  offset: Vec3,
+  altitude: Float,
+  up: Vec3,
+  cosLight: Float
+): Decks {
+  const distance = offset.length().toConst() as Float
+  return decksOf(field, light, altitude, cosLight, layer => {
+    const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
+    const footprint = rise.mul(footprintForm.heights).max(footprintForm.least)
+    const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
+    const sample = { offset, altitude, up, distance: seen }
+    const subpoint = subpointOffset(field, sample).toConst()
+    return filteredCoverageAt(field, layer, subpoint, sample)
+  })
+}
+
+/** Clouds above and below an altitude in the mean over all of a layer, without a look-up. */
+export const meanDecks = (
+  field: CloudField,
+  light: CloudLight,
+  altitude: Float,
+  cosLight: Float
+): Decks => decksOf(field, light, altitude, cosLight, layer => layer.coverage)
+
+/** Clouds above and below an altitude, by the share of the sky that each layer covers. */
+function decksOf(
+  field: CloudField,
+  light: CloudLight,
+  altitude: Float,
+  cosLight: Float,
+  coverageOf: (layer: LayerNodes) => Float
+): Decks {
+  const mu = cosLight.max(LOWEST_COSINE).toConst() as Float
+  /** Sums of 1/t − 1 for diffuse and for direct light, and of tops by the first. */
+  const above = vec3(0).toVar() as Vec3
+  const below = vec3(0).toVar() as Vec3
+  const beam = float(1).toVar()
+  forLayers(field, index => {
+    const layer = layerAt(field, index)
+    If(layer.shadow.mul(layer.coverage).greaterThan(0), () => {
+      const filteredCoverage = coverageOf(layer)
+      const top = layer.baseAltitude.add(layer.thickness).toConst() as Float
+      const depth = layer.density
+        .mul(columnDensityAt(layer, filteredCoverage))
+        .mul(light.depthScale)
+        .toConst() as Float
+      const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
+      const passing = (part: Float): Float => filteredCoverage.mul(part.sub(1)).add(1)
+      const add = (sum: Vec3, length: Float, place: Float): Float => {
+        const through = eddington(depth.mul(length), mu, light.oneMinusAsymmetry)
+        const series = passing(through.diffuse).reciprocal().sub(1).toConst() as Float
+        const direct = passing(through.direct).reciprocal().sub(1)
+        sum.addAssign(vec3(series, direct, series.mul(place)))
+        return passing(through.beam)
+      }
+      beam.mulAssign(add(above, over, top))
+      add(below, layer.thickness.sub(over), top.min(altitude))
+    })
+  })
+  const deck = (sum: Vec3, through: Float): PlacedDeck => ({
+    diffuse: sum.x.add(1).reciprocal().toConst(),
+    direct: sum.y.add(1).reciprocal().toConst(),
+    beam: through,
+    top: sum.x
+      .greaterThan(1e-6)
+      .select(sum.z.div(sum.x.max(1e-6)), altitude)
+      .toConst()
+  })
+  return { above: deck(above, beam), below: deck(below, float(1)) }
+}
