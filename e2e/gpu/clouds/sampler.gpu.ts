@@ -7,9 +7,9 @@ import {
   cloudExtinction,
   extinctionNearby,
   sampleLayerPair,
-  samplePair,
   weatherCacheAt
 } from '../../../packages/clouds/src/density/tsl/sampler'
+import { samplePair } from '../../../packages/clouds/src/density/tsl/samplePair'
 import { altitudeIn, cloudScene, offsets } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'

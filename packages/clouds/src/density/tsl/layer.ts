@@ -168,7 +168,8 @@ export function forLayers(field: CloudField, body: (index: Int) => void, range?:
 }
 
 /**
- * The same with code for each layer of its own, whose parameters are read as constants: faster, and longer.
+ * Layers that follow each other, each with code of its own, which reads its parameters as constants: faster than
+ * `forLayers`, and longer.
  */
 export function forEachLayer(
   field: CloudField,

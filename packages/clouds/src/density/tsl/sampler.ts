@@ -1,18 +1,8 @@
-import { If, float, int, mix, vec2, vec4 } from 'three/tsl'
+import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { densityAtHeight } from './heightForm'
-import {
-  forEachLayer,
-  forLayers,
-  heightIn,
-  isWithin,
-  layerAt,
-  type LayerNodes,
-  type LayerRange
-} from './layer'
-import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
+import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
 import { weatherBackground, type PackedBackground } from './weatherBackground'
@@ -26,7 +16,7 @@ import { weatherBackground, type PackedBackground } from './weatherBackground'
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
 
 /** Background of the weather at a sample: from a map, or looked up at the place itself. */
-function backgroundAt(
+export function backgroundAt(
   field: CloudField,
   layer: LayerNodes,
   sample: CloudSample,
@@ -98,97 +88,6 @@ export function weatherCacheAt(
     range
   )
   return { background, layer: densest }
-}
-
-/**
- * Likely distance to cloud in the clear air of a given field [m], of which nothing more is known: steps are
- * `CAUTION` of it, about a cell of simulated ones.
- */
-const CLEAR_OF_GIVEN = 100
-
-/** Two samples of all clouds near each other. */
-export interface SamplePair {
-  /** At the first and at the second place [1/m]. */
-  readonly extinction: Vec2
-  /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
-  readonly likelyDistance: Float
-  /** Greatest extinction that clouds have at their height [1/m]. */
-  readonly greatest: Float
-}
-
-/** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
-export type ClearLayers = Vec4 & { assign: (n: Vec4) => void }
-
-/** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */
-const sampleNearby = (
-  { offset, altitude, up, distance }: CloudSample,
-  direction: Vec3,
-  along: Float
-): CloudSample => ({
-  offset: offset.add(direction.mul(along)).toConst(),
-  altitude: altitude.add(direction.dot(up).mul(along)).toConst(),
-  up,
-  distance
-})
-
-/**
- * Samples clouds at two places near each other on a ray, with detail.
- *
- * @param map - Weather around the camera; left out, it is looked up at the place itself.
- * @param clear - Is kept between samples of a ray.
- * @param middle - The place between both, within the altitudes of the same layers.
- * @param length - Distance between them [m].
- * @param direction - Direction of the ray, in the mapped space.
- * @param range - The layers that are looked at.
- */
-export function samplePair(
-  field: CloudField,
-  map: WeatherMap | undefined,
-  clear: ClearLayers,
-  middle: CloudSample,
-  length: Float,
-  direction: Vec3,
-  range: LayerRange
-): SamplePair {
-  const { givenExtinction } = field
-  const places = [-0.5, 0.5].map(at => sampleNearby(middle, direction, length.mul(at)))
-  if (givenExtinction) {
-    const [first, second] = places.map(({ offset }) => givenExtinction(offset))
-    const extinction = vec2(first, second).toConst() as Vec2
-    const likelyDistance = first.max(second).greaterThan(0).select(0, CLEAR_OF_GIVEN)
-    return { extinction, likelyDistance, greatest: layerAt(field, int(0)).density }
-  }
-  const sum = vec2(0).toVar() as Vec2
-  const nearest = float(NOWHERE).toVar()
-  const greatest = float(0).toVar()
-  const end = middle.distance.add(length.mul(0.5)).toConst()
-  const isAlone = field.layers.length === 1
-  const look = (index: Int): void => {
-    const layer = layerAt(field, index)
-    const height = heightIn(layer, middle.altitude)
-    /** 1 in the layer's component, 0 in the others. */
-    const own = vec4(0, 1, 2, 3).sub(float(index)).abs().min(1).oneMinus().toConst() as Vec4
-    const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
-    const isNear = clearUntil.lessThan(end).toConst()
-    If(isWithin(layer, height).and(isNear.not()), () => {
-      nearest.assign(nearest.min(clearUntil.sub(end)))
-    })
-    If(isWithin(layer, height).and(isNear), () => {
-      greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
-      const background = backgroundAt(field, layer, middle, { map, index })
-      const options = { detail: true, direction }
-      const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
-      const likely = likelyDistance(layer, first.strength.max(second.strength)).toConst() as Float
-      if (!isAlone) {
-        const until = likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0)
-        clear.assign(mix(clear, vec4(until), own))
-      }
-      nearest.assign(nearest.min(likely))
-      sum.addAssign(vec2(first.extinction, second.extinction))
-    })
-  }
-  forEachLayer(field, look, range)
-  return { extinction: sum, likelyDistance: nearest, greatest }
 }
 
 /**

@@ -1,6 +1,6 @@
 import { Break, If, float, int, vec4 } from 'three/tsl'
 import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
-import { samplePair, type ClearLayers } from '../../density/tsl/sampler'
+import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'

@@ -35,7 +35,7 @@ export interface SeenPoints {
   readonly shares: Vec4
 }
 
-/** What a ray has seen so far. */
+/** State of a ray's strata so far. */
 export interface SeenState {
   readonly transmittance: Variable<Float>
   readonly distances: Variable<Vec4>
