@@ -21,6 +21,12 @@ const OTHER_DEPTH = 0.6
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
+/**
+ * Part of a colour that is taken at most where no pixel of its depth was marched nearby: along the horizon, where rows of
+ * the ground are far apart. Greater: a dark row there (still *shafts-deck*).
+ */
+const MOST_OF_STRANGERS = 0.4
+
 /** Distance in which about half of the light of a level ray is scattered [m]. */
 const HAZE = 30_000
 
@@ -154,11 +160,14 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength).toConst()
+      const weights = float(0).toVar()
+      const lost = this.#sample(weights).mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
       const { uniforms } = view.air
-      left.assign(left.sub(linearSRGB(uniforms, less)).add(linearSRGB(uniforms, more)).max(0))
+      const most = left.mul(weights.min(1).mix(MOST_OF_STRANGERS, 1))
+      const taken = linearSRGB(uniforms, less).min(most)
+      left.assign(left.sub(taken).add(linearSRGB(uniforms, more)).max(0))
     })
     return left
   }
@@ -211,14 +220,17 @@ export class ScreenShafts implements ScreenShadows {
     return pixel.mul(2).add(0.5).div(this.#size).toConst()
   }
 
-  /** Light that the pixel has lost: the mean of four, which have samples in all places of their steps. */
-  readonly #sample = (): Vec4 =>
+  /**
+   * Light that the pixel has lost: the mean of four, which have samples in all places of their steps.
+   *
+   * @param weights - Becomes the sum of their weights.
+   */
+  readonly #sample = (weights: Float & { assign: (n: number) => void } = float(0).toVar()): Vec4 =>
     Fn(({ renderer }): Vec4 => {
       const at = uv() as unknown as Vec2
       const distance = this.#distanceOf(renderer, at)
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
-      const weights = float(0).toVar()
       for (const i of [0, 1, 2, 3]) {
         const pixel = first
           .add(vec2(i & 1, i >> 1))
