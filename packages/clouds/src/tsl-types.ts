@@ -20,6 +20,9 @@ export type Vec4 = Node<'vec4'>
 export type Mat3 = Node<'mat3'>
 export type Mat4 = Node<'mat4'>
 
+/** A variable of a shader. */
+export type Variable<T> = T & { assign: (n: T | number | boolean) => void }
+
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (
   name: string,

@@ -25,8 +25,8 @@ export function tableTarget(
   return target
 }
 
-/** A shader with two outputs: `color` assigns the properties that `output` is a struct of. */
-export interface TwoOutputs {
+/** A shader with several outputs: `color` assigns the properties that `output` is a struct of. */
+export interface Outputs {
   color: Vec4
   output: Node
 }
@@ -40,7 +40,7 @@ export class FragmentPass {
    * @param name - Name of the pass in a graphics debugger.
    * @param output - What every texel becomes.
    */
-  constructor(name: string, output: Vec4 | TwoOutputs) {
+  constructor(name: string, output: Vec4 | Outputs) {
     this.material = Object.assign(new NodeMaterial(), {
       name,
       blending: NoBlending,

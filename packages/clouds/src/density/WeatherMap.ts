@@ -24,6 +24,9 @@ const RIM = REACH / (REACH + EVEN)
 /** Texels at each edge that bilinear look-ups must not leave. */
 const MARGIN = 0.5
 
+/** Texture coordinates of a layer's square per place, from its middle. */
+const PER_PLACE = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
+
 /**
  * Weather's background of all layers around a camera's subpoint, drawn anew for each frame: rays that look it up
  * there take one texture read in place of two that wait for each other.
@@ -58,10 +61,7 @@ export class WeatherMap {
       const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
       const index = field.layers.length === 1 ? int(0) : at.y.floor().toInt()
       const layer = layerAt(field, index.toConst())
-      const place = vec2(at.x, at.y.fract())
-        .sub(0.5)
-        .mul((2 * RIM * SIZE) / (SIZE - 2 * MARGIN))
-        .toConst() as Vec2
+      const place = vec2(at.x, at.y.fract()).sub(0.5).div(PER_PLACE).toConst() as Vec2
       const far = place.length().min(0.98).toConst() as Float
       const flat = place.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
       const square = flat.dot(flat).toConst() as Float
@@ -78,8 +78,9 @@ export class WeatherMap {
   /** Draws the map; `CloudField.update` goes first. */
   render(renderer: Renderer, up: Vector3): void {
     const [x, y] = this.#axes
-    x.value.set(Math.abs(up.z) < 0.9 ? 0 : 1, 0, Math.abs(up.z) < 0.9 ? 1 : 0).cross(up)
-    x.value.normalize()
+    const isPolar = Math.abs(up.z) >= 0.9
+    x.value.set(isPolar ? 1 : 0, 0, isPolar ? 0 : 1)
+    x.value.cross(up).normalize()
     y.value.copy(up).cross(x.value)
     this.#pass.render(renderer, this.#target)
   }
@@ -105,10 +106,7 @@ export class WeatherMap {
     const distance = flat.length().toConst() as Float
     const found = vec4(0).toVar() as Vec4
     If(distance.lessThan(REACH), () => {
-      const place = flat
-        .div(distance.add(EVEN))
-        .mul((SIZE - 2 * MARGIN) / (2 * RIM * SIZE))
-        .add(0.5)
+      const place = flat.div(distance.add(EVEN)).mul(PER_PLACE).add(0.5)
       const at =
         layers.length === 1 ? place : vec2(place.x, place.y.add(float(index)).div(layers.length))
       found.assign(this.#map.sample(at).level(0))

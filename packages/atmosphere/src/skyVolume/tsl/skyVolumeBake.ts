@@ -1,6 +1,6 @@
 import { Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import type { TwoOutputs } from '../../tables/FragmentPass'
+import type { Outputs } from '../../tables/FragmentPass'
 import type { Texels } from '../../tables/TableAtlas'
 import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../../tsl-types'
@@ -24,7 +24,7 @@ interface Parts {
   aerosol: Vec4
 }
 
-function twoOutputs(body: () => Parts): TwoOutputs {
+function twoOutputs(body: () => Parts): Outputs {
   const first = property('vec4') as unknown as Vec4
   const second = property('vec4') as unknown as Vec4
   const assign = Fn(() => {
@@ -106,7 +106,7 @@ function atlasPosition(texel: Vec2) {
  *
  * @param atlas - Has the table of {@link bakeDepth} for the same viewpoint.
  */
-export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): TwoOutputs {
+export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Outputs {
   return twoOutputs(() => {
     const { column, row, slice } = atlasPosition(uv())
     const { cosView, hitsGround, position } = elevationCosine(viewpoint, row, ELEVATIONS)

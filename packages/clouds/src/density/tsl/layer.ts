@@ -171,14 +171,17 @@ export function forLayers(field: CloudField, body: (index: Int) => void, range?:
  * Layers that follow each other, each with code of its own, which reads its parameters as constants: faster than
  * `forLayers`, and longer.
  */
-export function forEachLayer(
+export function forLayersUnrolled(
   field: CloudField,
   body: (index: Int) => void,
   { first, last }: LayerRange
 ): void {
   const { length } = field.layers
+  if (length === 1) {
+    body(int(0))
+    return
+  }
   for (let i = 0; i < length; i++) {
-    if (length === 1) body(int(0))
-    else If(first.lessThanEqual(int(i)).and(last.greaterThan(int(i))), () => body(int(i)))
+    If(first.lessThanEqual(int(i)).and(last.greaterThan(int(i))), () => body(int(i)))
   }
 }

@@ -1,9 +1,10 @@
 import { If, float, int, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
-import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
-import { forEachLayer, heightIn, isWithin, layerAt, type LayerRange } from './layer'
+import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
 import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
 import type { CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
@@ -26,7 +27,7 @@ export interface SamplePair {
 }
 
 /** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
-export type ClearLayers = Vec4 & { assign: (n: Vec4) => void }
+export type ClearLayers = Variable<Vec4>
 
 /** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */
 const sampleNearby = (
@@ -75,8 +76,7 @@ export function samplePair(
   const look = (index: Int): void => {
     const layer = layerAt(field, index)
     const height = heightIn(layer, middle.altitude)
-    /** 1 in the layer's component, 0 in the others. */
-    const own = vec4(0, 1, 2, 3).sub(float(index)).abs().min(1).oneMinus().toConst() as Vec4
+    const own = componentAt(float(index))
     const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
     const isNear = clearUntil.lessThan(end).toConst()
     If(isWithin(layer, height).and(isNear.not()), () => {
@@ -96,6 +96,6 @@ export function samplePair(
       sum.addAssign(vec2(first.extinction, second.extinction))
     })
   }
-  forEachLayer(field, look, range)
+  forLayersUnrolled(field, look, range)
   return { extinction: sum, likelyDistance: nearest, greatest }
 }

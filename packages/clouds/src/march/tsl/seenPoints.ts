@@ -1,6 +1,7 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
-import type { Float, Vec2, Vec4 } from '../../tsl-types'
+import { componentAt } from '../../density/tsl/componentAt'
+import type { Float, Variable, Vec2, Vec4 } from '../../tsl-types'
 
 // What a ray sees of the clouds, as a few points that stand for all of it: light is computed there, in a pass
 // of its own (shadePoints.ts), so that the march stays small and its rays stay together.
@@ -23,9 +24,6 @@ const LEAST_SHARE = 0.02
  */
 const GAP_GROWTH = 0.02
 const LEAST_GAP = 60
-
-/** A variable of a shader. */
-type Variable<T> = T & { assign: (n: T | number) => void; addAssign: (n: T | number) => void }
 
 /** Points that stand for all that a ray sees of the clouds, from the camera outwards. */
 export interface SeenPoints {
@@ -62,10 +60,6 @@ export const seenState = (): SeenState => ({
   latest: float(0).toVar(),
   weightedDistance: float(0).toVar()
 })
-
-/** 1 in the component of an index, 0 in the others. */
-export const componentAt = (index: Float): Vec4 =>
-  vec4(0, 1, 2, 3).sub(index).abs().min(1).oneMinus().toConst()
 
 /** Goes on to a stratum, if the ray is not in it yet. */
 function enterStratum({ index, run, most }: SeenState, next: Float): void {

@@ -1,4 +1,5 @@
 import { If, float, vec3, vec4 } from 'three/tsl'
+import { componentAt } from '../../density/tsl/componentAt'
 import { weatherCacheAt } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
 import { shade, sourceAt } from '../../light/tsl/lighting'
@@ -6,7 +7,7 @@ import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { loop, type Float, type Vec3, type Vec4 } from '../../tsl-types'
 import { layersAt } from './layerBoundaries'
 import { marchClouds, type CloudRay, type MarchedClouds } from './march'
-import { componentAt, POINTS, type SeenPoints } from './seenPoints'
+import { POINTS, type SeenPoints } from './seenPoints'
 
 /** Clouds on a ray, with their light. */
 export interface LitClouds extends MarchedClouds {

@@ -1,7 +1,7 @@
 import { If, bool, float } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { QualityUniforms } from '../quality'
-import type { Bool, Float, Vec2 } from '../../tsl-types'
+import type { Bool, Float, Variable, Vec2 } from '../../tsl-types'
 import { CAUTION } from '../../density/tsl/likelyDistance'
 import { FAR_AWAY } from './layerBoundaries'
 
@@ -44,9 +44,6 @@ export interface StepState {
   /** Noise in [0, 1), the part to start rows with. */
   readonly jitter: Float
 }
-
-/** A variable of a shader. */
-type Variable<T> = T & { assign: (n: T | number | boolean) => void }
 
 /** Two steps of the same length. */
 export interface StepPair {
@@ -141,7 +138,7 @@ export function advance(
   { extinction, likelyDistance, greatest }: FoundClouds,
   accept: () => void
 ): Float {
-  const forward = length.mul(2).toVar() as Float & { assign: (n: Float | number) => void }
+  const forward = length.mul(2).toVar() as Variable<Float>
   const isCloudy = extinction.x.max(extinction.y).greaterThan(0).toConst()
   If(isCloudy.and(isFine.not()).and(length.greaterThan(fine.mul(LOOK_BACK))), () => {
     // Back to the last sample that was clear.
