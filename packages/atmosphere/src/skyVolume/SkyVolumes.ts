@@ -41,6 +41,7 @@ export class ViewpointUniforms implements ViewpointScalars<UniformNode<'float', 
   readonly sinHorizon = number()
   readonly belowScale = number()
   readonly aboveScale = number()
+  readonly groundLength = number()
   readonly groundStretch = number()
   readonly groundGrowth = number()
   readonly skyStretch = number()
@@ -122,7 +123,7 @@ export class SkyVolumes {
     const [molecular, aerosol] = this.segments.textures
     this.#sumPass = new FragmentPass(
       'Welkin.SkyVolume.sum',
-      sumSegments(texture(molecular), texture(aerosol))
+      sumSegments(this.#viewpoint, texture(molecular), texture(aerosol))
     )
     this.reserve(VOLUME_SLOTS)
   }

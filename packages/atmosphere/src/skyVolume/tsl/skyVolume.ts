@@ -9,7 +9,13 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 import type { RayLimits } from './rayLimits'
 import { EXTINCTION_SCALE, meanExtinction } from './meanExtinction'
 import { viewRay, type ViewRay } from './viewRay'
-import { azimuthColumn, elevationTexel, slicePosition } from './volumeMapping'
+import {
+  azimuthColumn,
+  elevationTexel,
+  lengthPart,
+  sliceDistance,
+  slicePosition
+} from './volumeMapping'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS] = VOLUME_TILES
@@ -47,6 +53,12 @@ export interface VolumeSegment extends ViewRay {
   position: Float
   /** Optical depth up to it. */
   depth: Vec4
+  /** Its distance in first slices, at most 1: up to there the light grows from nothing. */
+  grown: Float
+  /** Distance of the second slice in first slices. */
+  second: Float
+  /** {@link lengthPart} of the ray. */
+  part: Float
 }
 
 /**
@@ -66,7 +78,17 @@ export function volumeSegment(
   const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
   const position = slicePosition(viewpoint, limits, inAir).toConst() as Float
   const mean = meanExtinction(atlas, viewpoint, ray, position)
-  return { ...ray, position, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
+  const [first, second] = [1, 2].map(slice =>
+    sliceDistance(viewpoint, limits, float(slice / DISTANCES)).max(1e-6)
+  )
+  return {
+    ...ray,
+    position,
+    depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst(),
+    grown: inAir.div(first).min(1).toConst() as Float,
+    second: second.div(first).toConst() as Float,
+    part: lengthPart(viewpoint, limits)
+  }
 }
 
 /** Reads the light of the air between the viewpoint and a point from the volume, for unit irradiance [1/sr]. */
@@ -78,21 +100,23 @@ export function radianceBetween(
   cosViewLight: Float
 ): Vec4 {
   const fetch = tileReader(uniforms, viewpoint, segment, cosViewLight)
-  // Slice k ends at (k + 1)/N: before the first everything grows from nothing.
-  const slices = segment.position.mul(DISTANCES).toConst()
-  const grown = slices
-    .min(1)
-    .mul(1 / RADIANCE_SCALE)
-    .toConst()
-  const slice = slices.sub(1).max(0).toConst()
+  // Slice k ends at (k + 1)/N.
+  const slice = segment.position.mul(DISTANCES).sub(1).max(0).toConst()
   const near = slice
     .floor()
     .min(DISTANCES - 2)
     .toConst() as Float
-  const weight = slice.sub(near).mul(grown).toConst()
+  const { grown, second, part } = segment
+  // Before the first slice a parabola from nothing through the first two, else a line from slice to slice.
+  const bend = grown.mul(grown.oneMinus()).div(second.sub(1)).toConst()
+  const weight = slice.sub(near).sub(bend.div(second)).toConst()
   const phase = miePhase(uniforms, cosViewLight).toConst()
   const [from, to] = [near, near.add(1)].map(tile => readTile(atlas, fetch(tile), phase))
-  return from.mul(grown.sub(weight)).add(to.mul(weight))
+  const weightFrom = grown.add(bend).sub(slice.sub(near))
+  return from
+    .mul(weightFrom)
+    .add(to.mul(weight))
+    .mul(part.mul(1 / RADIANCE_SCALE))
 }
 
 /** Adds both parts, times the table's scale. */
@@ -163,6 +187,7 @@ export function sampleAir(
   // The slice before the ground's ends where the air does.
   const at = tileReader(uniforms, viewpoint, ray, cosViewLight)(float(SKY_TILE - 1))
   const mean = meanExtinction(atlas, viewpoint, ray, float(1))
-  const light = readTile(atlas, at, miePhase(uniforms, cosViewLight))
+  const part = hitsGround.select(length.max(1e-3).div(viewpoint.groundLength), 1)
+  const light = readTile(atlas, at, miePhase(uniforms, cosViewLight)).mul(part)
   return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }

@@ -10,7 +10,7 @@ import { pointAlong, type Air, type Ray } from '../../scattering/tsl/ray'
 import { scatterSegment, segmentDepth } from '../../scattering/tsl/segment'
 import { EXTINCTION_SCALE, meanExtinction } from './meanExtinction'
 import { SKY_TILE } from './skyVolume'
-import { columnCosine, elevationCosine, sliceDistance } from './volumeMapping'
+import { columnCosine, elevationCosine, lengthPart, sliceDistance } from './volumeMapping'
 import { rayLimits, type RayLimits } from './rayLimits'
 import { rowAndColumn } from '../../tables/tsl/texels'
 
@@ -134,12 +134,16 @@ export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Out
 }
 
 /**
- * Shader that sums the segments up to each slice.
+ * Shader that sums the segments up to each slice: light over {@link lengthPart}, but the last tile's light as it is.
  *
  * @param molecular - First output of {@link bakeSegments}: its sums are the left half.
  * @param aerosol - Second output: the right half.
  */
-export function sumSegments(molecular: TextureNode, aerosol: TextureNode): Vec4 {
+export function sumSegments(
+  viewpoint: Viewpoint,
+  molecular: TextureNode,
+  aerosol: TextureNode
+): Vec4 {
   return Fn(() => {
     const across = uv().x.mul(2).toConst()
     const { column, row, slice } = atlasPosition(vec2(across.fract(), uv().y))
@@ -155,6 +159,8 @@ export function sumSegments(molecular: TextureNode, aerosol: TextureNode): Vec4 
         sum.addAssign(sampleLevel0(aerosol, at))
       })
     })
-    return sum
+    const { cosView, hitsGround } = elevationCosine(viewpoint, row, ELEVATIONS)
+    const part = lengthPart(viewpoint, rayLimits(viewpoint, cosView, hitsGround))
+    return sum.div(slice.lessThan(SKY_TILE).select(part, 1))
   })()
 }

@@ -170,3 +170,13 @@ export function slicePosition(viewpoint: Viewpoint, limits: RayLimits, distance:
   const part = distance.div(limits.length.max(1e-3)).clamp()
   return part.mul(growth).add(1).log().mul(stretch).clamp()
 }
+
+/**
+ * Length of a ray as a part of that by which the volume keeps its light: 1 for rays that miss the ground.
+ *
+ * Just below the horizon lengths change manyfold from one elevation of the volume to the next, where light
+ * per length hardly does: that is what it keeps, and interpolates.
+ */
+export function lengthPart({ groundLength }: Viewpoint, { hitsGround, length }: RayLimits): Float {
+  return hitsGround.select(length.max(1e-3).div(groundLength), 1).toConst() as Float
+}
