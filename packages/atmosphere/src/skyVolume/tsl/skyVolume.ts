@@ -85,8 +85,8 @@ export function volumeSegment(
     ...ray,
     position,
     depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst(),
-    grown: inAir.div(first).min(1).toConst() as Float,
-    second: second.div(first).toConst() as Float,
+    grown: inAir.div(first).min(1).toConst(),
+    second: second.div(first).toConst(),
     part: lengthPart(viewpoint, limits)
   }
 }

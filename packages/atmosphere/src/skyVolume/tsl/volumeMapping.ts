@@ -87,7 +87,7 @@ function lightAtLowestPoint(
   const inverse = hitsGround.select(bottomRadius, nearest.max(1)).reciprocal().toConst()
   return {
     mean: along.mul(inverse).mul(viewpoint.cosLight).toConst() as Float,
-    swing: across.mul(inverse).mul(viewpoint.sinLight).abs().max(1e-4).toConst() as Float
+    swing: across.mul(inverse).mul(viewpoint.sinLight).abs().max(1e-4).toConst()
   }
 }
 
@@ -133,7 +133,7 @@ export function columnCosine(
   column: Float,
   hitsGround: Bool
 ): Float {
-  const sinView = sine(cosView).toConst() as Float
+  const sinView = sine(cosView).toConst()
   const position = column
     .floor()
     .div(AZIMUTHS - 1)
@@ -178,5 +178,5 @@ export function slicePosition(viewpoint: Viewpoint, limits: RayLimits, distance:
  * per length hardly does: that is what it keeps, and interpolates.
  */
 export function lengthPart({ groundLength }: Viewpoint, { hitsGround, length }: RayLimits): Float {
-  return hitsGround.select(length.max(1e-3).div(groundLength), 1).toConst() as Float
+  return hitsGround.select(length.max(1e-3).div(groundLength), 1).toConst()
 }
