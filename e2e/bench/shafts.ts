@@ -7,6 +7,7 @@ import {
   SunDirectionalLight,
   type LightShaftsQuality
 } from '@welkin/atmosphere'
+import { CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
 import {
   BoxGeometry,
   HalfFloatType,
@@ -25,6 +26,7 @@ import type { Path } from './scene'
 import { median } from './statistics'
 
 const WARM_UP = 10
+const CLOUDS_WARM_UP = 60
 
 /** Towers along an edge of a city, and their distance [m]. */
 const TOWERS = 14
@@ -34,18 +36,27 @@ const SPACING = 90
 export interface ShaftCost {
   path: Path
   cascades: number
+  /** Cumulus over the city, which cast into the air, too. */
+  withClouds: boolean
   quality: LightShaftsQuality
   withoutMs: number
   shaftsMs: number
 }
 
+/** What of a city is drawn. */
+type CityOptions = Pick<ShaftCost, 'path' | 'cascades' | 'withClouds'> & {
+  /** Of light shafts; null for none. */
+  quality: LightShaftsQuality | null
+}
+
+/** Noise and table of light that all clouds here share. */
+const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
+
 /** A city under a low sun in a `cascades` of shadow maps, drawn with or without shafts. */
 function city(
   renderer: WebGPURenderer,
   size: readonly [number, number],
-  path: Path,
-  cascades: number,
-  quality: LightShaftsQuality | null
+  { path, cascades, withClouds, quality }: CityOptions
 ): { draw: () => void; dispose: () => void } {
   renderer.shadowMap.enabled = true
   const atmosphere = new Atmosphere().setSunAngles(12, 20)
@@ -86,7 +97,13 @@ function city(
     scene.fogNode = aerialPerspectiveFog(atmosphere)
   } else {
     const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
-    pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+    const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+    const layers = cloudPreset('fairWeather')
+    const cloudsNode = withClouds
+      ? clouds(air, depth, camera, atmosphere, layers, { quality: 'medium', ...shared })
+      : undefined
+    if (cloudsNode) shafts?.add(cloudsNode)
+    pipeline.outputNode = cloudsNode ?? air
   }
   const target = new RenderTarget(size[0], size[1], { type: HalfFloatType })
   return {
@@ -108,41 +125,53 @@ async function timeCity(
   device: HeadlessDevice,
   size: readonly [number, number],
   frames: number,
-  ...what: [Path, number, LightShaftsQuality | null]
+  options: CityOptions
 ): Promise<number> {
   const renderer = await device.renderer(...size)
-  const { draw, dispose } = city(renderer, size, ...what)
+  const { draw, dispose } = city(renderer, size, options)
   const times: number[] = []
-  for (let frame = 0; frame < WARM_UP + frames; frame++) {
+  const warmUp = options.withClouds ? CLOUDS_WARM_UP : WARM_UP
+  for (let frame = 0; frame < warmUp + frames; frame++) {
     draw()
     const elapsed = await gpuMilliseconds(renderer)
-    if (frame >= WARM_UP) times.push(elapsed)
+    if (frame >= warmUp) times.push(elapsed)
   }
   dispose()
   release(renderer)
   return median(times)
 }
 
-/** Times light shafts of one shadow map and of four cascades. */
+const cases = [
+  { path: 'post', cascades: 1, withClouds: false },
+  { path: 'post', cascades: 4, withClouds: false },
+  { path: 'post', cascades: 4, withClouds: true },
+  { path: 'forward', cascades: 1, withClouds: false },
+  { path: 'forward', cascades: 4, withClouds: false }
+] as const
+
+/** Times light shafts of one shadow map and of four cascades, and under clouds. */
 export async function timeShafts(
   device: HeadlessDevice,
   size: readonly [number, number],
   frames: number
 ): Promise<ShaftCost[]> {
   const costs: ShaftCost[] = []
-  for (const path of ['post', 'forward'] as const) {
-    for (const cascades of [1, 4]) {
-      const withoutMs = await timeCity(device, size, frames, path, cascades, null)
-      for (const quality of ['low', 'medium', 'high'] as const) {
-        const ms = await timeCity(device, size, frames, path, cascades, quality)
-        costs.push({ path, cascades, quality, withoutMs, shaftsMs: ms - withoutMs })
-      }
+  for (const what of cases) {
+    const withoutMs = await timeCity(device, size, frames, { ...what, quality: null })
+    for (const quality of ['low', 'medium', 'high'] as const) {
+      const ms = await timeCity(device, size, frames, { ...what, quality })
+      costs.push({ ...what, quality, withoutMs, shaftsMs: ms - withoutMs })
     }
   }
   return costs
 }
 
 /** A line of a report. */
-export const shaftLine = ({ path, cascades, quality, withoutMs, shaftsMs }: ShaftCost): string =>
-  `${path.padEnd(8)} light shafts, ${cascades === 1 ? 'one map' : `${cascades} cascades`}, ${quality.padEnd(7)}` +
-  ` ${shaftsMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms)`
+export const shaftLine = (cost: ShaftCost): string => {
+  const { path, cascades, withClouds, quality, withoutMs, shaftsMs } = cost
+  const casters = `${cascades === 1 ? 'one map' : `${cascades} cascades`}${withClouds ? ', clouds' : ''}`
+  return (
+    `${path.padEnd(8)} light shafts, ${casters}, ${quality.padEnd(7)}` +
+    ` ${shaftsMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms)`
+  )
+}

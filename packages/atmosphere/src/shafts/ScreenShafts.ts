@@ -1,11 +1,12 @@
-import { NearestFilter, Vector2 } from 'three'
+import { NearestFilter, RGFormat, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
-import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { rayLimits } from '../skyVolume/tsl/rayLimits'
+import { FragmentPass, tableTarget, twoOutputs, type Outputs } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { sampleLevel0, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -20,12 +21,6 @@ const OTHER_DEPTH = 0.6
 
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
-
-/**
- * Part of a colour that is taken at most where no pixel of its depth was marched nearby: along the horizon, where rows of
- * the ground are far apart. Greater: a dark row there (still *shafts-deck*).
- */
-const MOST_OF_STRANGERS = 0.4
 
 /** Distance in which about half of the light of a level ray is scattered [m]. */
 const HAZE = 30_000
@@ -42,6 +37,14 @@ const PLANET = 1e8
 
 /** Part of the light from behind a veil that is not worth samples. */
 const OPAQUE = 0.01
+
+/** What is seen in a pixel: see `ScreenShafts`. */
+interface Seen {
+  offset: Vec3
+  distance: Float
+  isSky: Bool
+  light: Float
+}
 
 const _size = new Vector2()
 
@@ -96,6 +99,8 @@ export class ScreenShafts implements ScreenShadows {
   readonly #size = vector2()
   readonly #halfSize = vector2()
   readonly #lost: TextureNode
+  /** Of its pixels: binary logarithm of the distance [m], and the light of the air up to there as a part of all. */
+  readonly #distances: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
@@ -108,8 +113,11 @@ export class ScreenShafts implements ScreenShadows {
     this.veil = veil
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
-    this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
-    this.#lost = texture(this.target.texture)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1, 2, NearestFilter)
+    const [lost, distances] = this.target.textures
+    distances.format = RGFormat
+    this.#lost = texture(lost)
+    this.#distances = texture(distances)
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -160,14 +168,11 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const weights = float(0).toVar()
-      const lost = this.#sample(weights).mul(view.source.irradiance).mul(this.#strength).toConst()
+      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
       const { uniforms } = view.air
-      const most = left.mul(weights.min(1).mix(MOST_OF_STRANGERS, 1))
-      const taken = linearSRGB(uniforms, less).min(most)
-      left.assign(left.sub(taken).add(linearSRGB(uniforms, more)).max(0))
+      left.assign(left.sub(linearSRGB(uniforms, less)).add(linearSRGB(uniforms, more)).max(0))
     })
     return left
   }
@@ -185,34 +190,39 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
-  #march(): Vec4 {
+  #march(): Outputs {
     const shafts = this.#shafts
-    return Fn(({ renderer }): Vec4 => {
+    return twoOutputs(renderer => {
       const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
       const at = this.#uvOf(pixel)
-      const { position, isSky } = this.#rays.at(renderer, at)
       const { view } = shafts
-      const offset = view.toMapped(position).toConst()
+      const { offset, distance: drawn, isSky, light } = this.#seenAlong(renderer, at)
       const jitter = staggered(pixel)
       const { seenFrom, most } = this.#seen(at)
-      const distance = isSky.select(FAR, offset.length()).min(most).toConst()
+      const distance = isSky.select(FAR, drawn).min(most).toConst()
       const towards = offset.normalize().toConst()
       const cosView = towards.dot(view.up).clamp(-1, 1).toConst() as Float
       const cosViewLight = towards.dot(view.lightDirection).toConst() as Float
       const ray = { direction: towards, cosView, cosViewLight, distance, seenFrom }
-      return lostLight(view, shafts.shadowedAir, ray, shafts.steps, jitter).mul(RADIANCE_SCALE)
-    })()
+      const lost = lostLight(view, shafts.shadowedAir, ray, shafts.steps, jitter)
+      return [lost.mul(RADIANCE_SCALE), vec4(log2(drawn), light, 0, 0)]
+    })
   }
 
-  /** Distance of what is seen: where nothing was drawn there is sky, or the planet [m]. */
-  #distanceOf(renderer: Renderer, at: Vec2): Float {
+  /**
+   * Displacement of what is seen and its distance: where nothing was drawn that of sky, or of the planet [m]; and
+   * the light of the air up to there. It ends at the planet's surface, behind which ground may lie.
+   */
+  #seenAlong(renderer: Renderer, at: Vec2): Seen {
     const { position, isSky } = this.#rays.at(renderer, at)
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst()
     const distance = offset.length().max(1e-3).toConst()
-    const cosView = offset.div(distance).dot(view.up)
-    const background = cosView.lessThan(view.viewpoint.cosHorizon).select(PLANET, FAR)
-    return isSky.select(background, distance).toConst()
+    const cosView = offset.div(distance).dot(view.up).toConst()
+    const limits = rayLimits(view.viewpoint, cosView)
+    const seen = isSky.select(limits.hitsGround.select(PLANET, FAR), distance).toConst()
+    const light = lightUpTo(seen.min(limits.start.add(limits.length))).toConst() as Float
+    return { offset, distance: seen, isSky, light }
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
@@ -220,32 +230,31 @@ export class ScreenShafts implements ScreenShadows {
     return pixel.mul(2).add(0.5).div(this.#size).toConst()
   }
 
-  /**
-   * Light that the pixel has lost: the mean of four, which have samples in all places of their steps.
-   *
-   * @param weights - Becomes the sum of their weights.
-   */
-  readonly #sample = (weights: Float & { assign: (n: number) => void } = float(0).toVar()): Vec4 =>
+  /** Light that the pixel has lost: the mean of four, which have samples in all places of their steps. */
+  readonly #sample = (): Vec4 =>
     Fn(({ renderer }): Vec4 => {
       const at = uv() as unknown as Vec2
-      const distance = this.#distanceOf(renderer, at)
+      const { distance, light } = this.#seenAlong(renderer, at)
+      const distanceLog = log2(distance).toConst()
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
+      const weights = float(0).toVar()
       for (const i of [0, 1, 2, 3]) {
         const pixel = first
           .add(vec2(i & 1, i >> 1))
           .min(this.#halfSize.sub(1))
           .toConst() as Vec2
-        const other = this.#distanceOf(renderer, this.#uvOf(pixel))
-        const apart = log2(distance.div(other)).abs()
+        const place = pixel.add(0.5).div(this.#halfSize).toConst() as Vec2
+        const other = sampleLevel0(this.#distances, place).toConst()
+        const apart = distanceLog.sub(other.x).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(STRANGER, 1)
           .toConst() as Float
         // As if light were lost evenly: rows of level ground are not alike, nor is what has none of its depth around.
-        const fewer = lightUpTo(distance).div(lightUpTo(other)).min(MOST_MORE)
-        const lost = sampleLevel0(this.#lost, pixel.add(0.5).div(this.#halfSize))
+        const fewer = light.div(other.y.max(1e-7)).min(MOST_MORE)
+        const lost = sampleLevel0(this.#lost, place)
         sum.addAssign(lost.mul(weight.mul(fewer)))
         weights.addAssign(weight)
       }

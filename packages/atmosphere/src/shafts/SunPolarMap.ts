@@ -57,7 +57,7 @@ export class SunPolarMap {
   /**
    * Draws it for a camera.
    *
-   * @param rows - Number of directions around the light; there are half as many columns.
+   * @param rows - Number of directions around the light; there are a quarter as many columns.
    */
   update(
     renderer: Renderer,
@@ -68,8 +68,8 @@ export class SunPolarMap {
   ): void {
     this.maximumRho.value = 0
     // Without maps, too: what has drawn with the texture in this frame must find it at its end.
-    this.target.setSize(rows / 2, rows)
-    this.frame.columns.value = rows / 2
+    this.target.setSize(rows / 4, rows)
+    this.frame.columns.value = rows / 4
     if (maps.length === 0) return
     this.#setSources(renderer, maps)
     this.#setFrame(view, space, maps)

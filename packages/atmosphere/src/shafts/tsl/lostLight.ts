@@ -45,6 +45,9 @@ export interface ShaftSteps {
   readonly samples: Float
 }
 
+/** Places at which diffuse light is evaluated, over groups: it changes slowly, and four pixels share theirs. */
+const DIFFUSE_PART = 0.5
+
 /** Stretch of a ray that is marched in some groups of samples, whatever its length. */
 interface Stretch {
   /** Light of the ray before it, and in it, as parts of all. */
@@ -165,7 +168,8 @@ export function lostLight(
       const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
       return seenFrom === undefined ? missing : missing.mul(seenFrom(fromEye))
     }
-    const diffuse = { steps, at: airAt, cosViewLight, samples: int(groups), jitter, missingAt }
+    const places = int(groups.mul(DIFFUSE_PART).max(1))
+    const diffuse = { steps, at: airAt, cosViewLight, samples: places, jitter, missingAt }
     lost.addAssign(lostDiffuse(air, diffuse))
   })
   return lost

@@ -102,9 +102,10 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
 const PROBES = 5
 
 /**
- * A texel of the sun-polar shadow map: its ray of light through all shadow maps, of which the occluder nearest
- * to the light counts.
+ * A texel of the sun-polar shadow map: its ray of light through the shadow maps, up to the first that has an
+ * occluder on it.
  *
+ * @param maps - From the finest on, as cascades are.
  * @returns Angle of the occluder from the source of light less π/2; π/2 where there is none [rad].
  */
 export function occluderAngle(
@@ -120,10 +121,15 @@ export function occluderAngle(
       If(nearest.equal(NOTHING), () => {
         const side = (positive: number): Float =>
           probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
-        // A row is half as high as a column is wide.
-        const shift = vec2(side(1), side(3).mul(0.5)).mul(WIDENING).div(frame.columns)
+        // A row is a quarter as high as a column is wide.
+        const shift = vec2(side(1), side(3).mul(0.25)).mul(WIDENING).div(frame.columns)
         const { offset } = lightRayAt(frame, texel.add(shift).toConst())
-        for (const map of maps) nearest.assign(nearest.max(occluderAlong(map, offset, storage)))
+        // The first map is the finest: what a ray of light meets in it counts.
+        for (const map of maps) {
+          If(nearest.equal(NOTHING), () => {
+            nearest.assign(occluderAlong(map, offset, storage))
+          })
+        }
       })
     })
     return vec4(atan(nearest.negate(), distance))

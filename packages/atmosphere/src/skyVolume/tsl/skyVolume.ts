@@ -12,8 +12,8 @@ import { viewRay, type ViewRay } from './viewRay'
 import {
   azimuthColumn,
   elevationTexel,
+  firstSlices,
   lengthPart,
-  sliceDistance,
   slicePosition
 } from './volumeMapping'
 
@@ -78,15 +78,13 @@ export function volumeSegment(
   const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
   const position = slicePosition(viewpoint, limits, inAir).toConst() as Float
   const mean = meanExtinction(atlas, viewpoint, ray, position)
-  const [first, second] = [1, 2].map(slice =>
-    sliceDistance(viewpoint, limits, float(slice / DISTANCES)).max(1e-6)
-  )
+  const { first, second } = firstSlices(viewpoint, limits, DISTANCES)
   return {
     ...ray,
     position,
     depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst(),
     grown: inAir.div(first).min(1).toConst(),
-    second: second.div(first).toConst(),
+    second,
     part: lengthPart(viewpoint, limits)
   }
 }

@@ -1,6 +1,6 @@
-import { Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, int, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import type { Outputs } from '../../tables/FragmentPass'
+import { twoOutputs, type Outputs } from '../../tables/FragmentPass'
 import type { Texels } from '../../tables/TableAtlas'
 import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../../tsl-types'
@@ -17,24 +17,6 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
-
-/** Values for the two attachments of a target. */
-interface Parts {
-  molecular: Vec4
-  aerosol: Vec4
-}
-
-function twoOutputs(body: () => Parts): Outputs {
-  const first = property('vec4') as unknown as Vec4
-  const second = property('vec4') as unknown as Vec4
-  const assign = Fn(() => {
-    const { molecular, aerosol } = body()
-    first.assign(molecular)
-    second.assign(aerosol)
-    return vec4(0)
-  })
-  return { color: assign(), output: outputStruct(first, second) }
-}
 
 /** Ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
@@ -129,7 +111,7 @@ export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Out
       const foot = pointAlong(air, ray, limits.length)
       molecular.assign(groundRadiance(air, foot.cosLight).mul(through).mul(RADIANCE_SCALE))
     })
-    return { molecular: molecular, aerosol: aerosol }
+    return [molecular, aerosol]
   })
 }
 

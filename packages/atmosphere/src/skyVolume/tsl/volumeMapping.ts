@@ -164,6 +164,20 @@ export function sliceDistance(viewpoint: Viewpoint, limits: RayLimits, position:
   return position.div(stretch).exp().sub(1).div(growth).mul(limits.length)
 }
 
+/** Distance of the first of `count` slices of a ray [m], and that of the second over it. */
+export function firstSlices(
+  viewpoint: Viewpoint,
+  { hitsGround, length }: RayLimits,
+  count: number
+): { first: Float; second: Float } {
+  const { stretch, growth } = spacing(viewpoint, hitsGround)
+  const step = stretch.mul(count).reciprocal().exp().toConst() as Float
+  return {
+    first: step.sub(1).div(growth).mul(length).max(1e-6).toConst(),
+    second: step.add(1).toConst()
+  }
+}
+
 /** Position among the slices of a distance, the inverse of {@link sliceDistance}. */
 export function slicePosition(viewpoint: Viewpoint, limits: RayLimits, distance: Float): Float {
   const { stretch, growth } = spacing(viewpoint, limits.hitsGround)
