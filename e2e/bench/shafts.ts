@@ -7,7 +7,7 @@ import {
   SunDirectionalLight,
   type LightShaftsQuality
 } from '@welkin/atmosphere'
-import { CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
+import { cloudAirShadow, CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
 import {
   BoxGeometry,
   HalfFloatType,
@@ -102,7 +102,7 @@ function city(
     const cloudsNode = withClouds
       ? clouds(air, depth, camera, atmosphere, layers, { quality: 'medium', ...shared })
       : undefined
-    if (cloudsNode) shafts?.add(cloudsNode)
+    if (cloudsNode) shafts?.add(cloudAirShadow(cloudsNode))
     pipeline.outputNode = cloudsNode ?? air
   }
   const target = new RenderTarget(size[0], size[1], { type: HalfFloatType })

@@ -113,7 +113,7 @@ function everything(atmosphere: Atmosphere): Scene {
   return scene
 }
 
-const refusal = /Atmosphere: renderer must be the first: it serves one at a time/
+const refusal = /Atmosphere: renderer must be the first, until/
 
 gpuTest('refuses a second renderer until the first is disposed of', async t => {
   const camera = makeCamera()

@@ -2,6 +2,7 @@ import { EventDispatcher, MathUtils, Matrix4, Vector3 } from 'three'
 import {
   checkBoolean,
   checkChoice,
+  checkDate,
   checkDirection,
   checkFinite,
   checkPlace,
@@ -85,7 +86,7 @@ export class ScenePlanet extends EventDispatcher<{ dispose: object }> {
   set frame(value: AtmosphereFrame) {
     checkChoice('Atmosphere', 'frame', value, ['local', 'ecef'])
     if (value === 'ecef' && this.flat) {
-      fail('Atmosphere', "frame must be 'local' where the world is flat", value)
+      fail('Atmosphere', "frame must be 'local' in a flat world", value)
     }
     this.#frame = value
     this.#updateFrame()
@@ -119,11 +120,11 @@ export class ScenePlanet extends EventDispatcher<{ dispose: object }> {
   }
 
   set date(value: Date | null) {
-    if (value !== null && !(value instanceof Date && Number.isFinite(value.getTime()))) {
-      fail('Atmosphere', 'date must be a valid Date or null', value)
-    }
     if (value === null) this.#sunWorld.copy(this.sunDirection)
-    else sunDirectionECEF(value, this.#sunECEF)
+    else {
+      checkDate('Atmosphere', value)
+      sunDirectionECEF(value, this.#sunECEF)
+    }
     this.#date = value && new Date(value)
   }
 

@@ -41,7 +41,6 @@ export class ViewpointUniforms implements ViewpointScalars<UniformNode<'float', 
   readonly sinHorizon = number()
   readonly belowScale = number()
   readonly aboveScale = number()
-  readonly groundLength = number()
   readonly groundStretch = number()
   readonly groundGrowth = number()
   readonly skyStretch = number()

@@ -16,6 +16,13 @@ export const DIFFUSE_LAYOUT = [2, 4] as const
 /** Sky volume: azimuth × elevation × distance. */
 export const VOLUME_SIZE = [32, 96, 23] as const
 
+/**
+ * Length of a ray for which the volume keeps its light, in the mean up to each distance [m]. Just below the horizon
+ * lengths change manyfold from one elevation to the next, where light per length hardly does. Greater: thick haze
+ * overflows half floats. Smaller: they round deep twilight off.
+ */
+export const LIGHT_LENGTH = 16_000
+
 /** Places that volumes are kept for at a time, for each source of light: a camera and its mirror image, say. */
 export const VOLUME_SLOTS = 2
 

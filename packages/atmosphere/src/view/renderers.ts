@@ -19,11 +19,7 @@ export function checkOwner(where: string, owner: Renderer | null, renderer: Rend
   checkRenderer(where, renderer)
   // Disposed renderers have no textures, and those in use have at least these.
   if (owner === null || owner.info.memory.textures === 0) return
-  fail(
-    where,
-    'renderer must be the first: it serves one at a time, until either is disposed of',
-    renderer
-  )
+  fail(where, 'renderer must be the first, until either is disposed of', renderer)
 }
 
 type OnBeforeRender = (this: Scene, renderer: unknown, ...rest: unknown[]) => void

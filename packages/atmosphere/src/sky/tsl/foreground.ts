@@ -1,4 +1,4 @@
-import { If, float, min, vec3 } from 'three/tsl'
+import { If, min, vec3 } from 'three/tsl'
 import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { Backdrop } from '../Backdrop'
 
@@ -34,7 +34,7 @@ export function foregroundOf(color: Vec4, isEmpty: Bool, backdrop: Backdrop): Fo
   const light = color.rgb.sub(clear.rgb.mul(coverage.oneMinus())).max(0).toVar()
   // A background picture, or a target that somebody else cleared.
   If(backdrop.isKnown.equal(0).and(isEmpty).and(color.a.greaterThanEqual(1)), () => {
-    coverage.assign(float(0))
+    coverage.assign(0)
     light.assign(vec3(0))
   })
   return { light, coverage }

@@ -1,7 +1,7 @@
 import { float, vec2 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Texels } from '../../tables/TableAtlas'
-import { RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
+import { LIGHT_LENGTH, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
 import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import type { Viewpoint } from '../../view/tsl/viewpoint'
 import { miePhase } from '../../air/tsl/phase'
@@ -9,13 +9,7 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 import type { RayLimits } from './rayLimits'
 import { EXTINCTION_SCALE, meanExtinction } from './meanExtinction'
 import { viewRay, type ViewRay } from './viewRay'
-import {
-  azimuthColumn,
-  elevationTexel,
-  firstSlices,
-  lengthPart,
-  slicePosition
-} from './volumeMapping'
+import { azimuthColumn, elevationTexel, slicePosition } from './volumeMapping'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS] = VOLUME_TILES
@@ -53,12 +47,8 @@ export interface VolumeSegment extends ViewRay {
   position: Float
   /** Optical depth up to it. */
   depth: Vec4
-  /** Its distance in first slices, at most 1: up to there the light grows from nothing. */
-  grown: Float
-  /** Distance of the second slice in first slices. */
-  second: Float
-  /** {@link lengthPart} of the ray. */
-  part: Float
+  /** Distance in the air up to it [m]. */
+  inAir: Float
 }
 
 /**
@@ -78,15 +68,7 @@ export function volumeSegment(
   const inAir = distance.sub(limits.start).clamp(0, length).toConst() as Float
   const position = slicePosition(viewpoint, limits, inAir).toConst() as Float
   const mean = meanExtinction(atlas, viewpoint, ray, position)
-  const { first, second } = firstSlices(viewpoint, limits, DISTANCES)
-  return {
-    ...ray,
-    position,
-    depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst(),
-    grown: inAir.div(first).min(1).toConst(),
-    second,
-    part: lengthPart(viewpoint, limits)
-  }
+  return { ...ray, position, inAir, depth: mean.mul(inAir.div(EXTINCTION_SCALE)).toConst() }
 }
 
 /** Reads the light of the air between the viewpoint and a point from the volume, for unit irradiance [1/sr]. */
@@ -98,23 +80,16 @@ export function radianceBetween(
   cosViewLight: Float
 ): Vec4 {
   const fetch = tileReader(uniforms, viewpoint, segment, cosViewLight)
-  // Slice k ends at (k + 1)/N.
-  const slice = segment.position.mul(DISTANCES).sub(1).max(0).toConst()
+  // Slice k ends at (k + 1)/N: before the first the line through the first two goes on.
+  const slice = segment.position.mul(DISTANCES).sub(1).toConst()
   const near = slice
     .floor()
-    .min(DISTANCES - 2)
+    .clamp(0, DISTANCES - 2)
     .toConst() as Float
-  const { grown, second, part } = segment
-  // Before the first slice a parabola from nothing through the first two, else a line from slice to slice.
-  const bend = grown.mul(grown.oneMinus()).div(second.sub(1)).toConst()
-  const weight = slice.sub(near).sub(bend.div(second)).toConst()
   const phase = miePhase(uniforms, cosViewLight).toConst()
   const [from, to] = [near, near.add(1)].map(tile => readTile(atlas, fetch(tile), phase))
-  const weightFrom = grown.add(bend).sub(slice.sub(near))
-  return from
-    .mul(weightFrom)
-    .add(to.mul(weight))
-    .mul(part.mul(1 / RADIANCE_SCALE))
+  const light = from.add(to.sub(from).mul(slice.sub(near))).max(0)
+  return light.mul(segment.inAir.mul(1 / (LIGHT_LENGTH * RADIANCE_SCALE)))
 }
 
 /** Adds both parts, times the table's scale. */
@@ -185,7 +160,7 @@ export function sampleAir(
   // The slice before the ground's ends where the air does.
   const at = tileReader(uniforms, viewpoint, ray, cosViewLight)(float(SKY_TILE - 1))
   const mean = meanExtinction(atlas, viewpoint, ray, float(1))
-  const part = hitsGround.select(length.max(1e-3).div(viewpoint.groundLength), 1)
-  const light = readTile(atlas, at, miePhase(uniforms, cosViewLight)).mul(part)
-  return { radiance: light.mul(1 / RADIANCE_SCALE), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
+  const light = readTile(atlas, at, miePhase(uniforms, cosViewLight))
+  const part = length.mul(1 / (LIGHT_LENGTH * RADIANCE_SCALE))
+  return { radiance: light.mul(part), depth: mean.mul(length.div(EXTINCTION_SCALE)) }
 }

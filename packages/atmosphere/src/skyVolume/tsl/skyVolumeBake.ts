@@ -2,7 +2,13 @@ import { Fn, If, float, int, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { twoOutputs, type Outputs } from '../../tables/FragmentPass'
 import type { Texels } from '../../tables/TableAtlas'
-import { DEPTH_SIZE, RADIANCE_SCALE, VOLUME_SIZE, VOLUME_TILES } from '../../tables/tableSizes'
+import {
+  DEPTH_SIZE,
+  LIGHT_LENGTH,
+  RADIANCE_SCALE,
+  VOLUME_SIZE,
+  VOLUME_TILES
+} from '../../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { Viewpoint } from '../../view/tsl/viewpoint'
 import { groundRadiance } from '../../scattering/tsl/scattering'
@@ -10,13 +16,16 @@ import { pointAlong, type Air, type Ray } from '../../scattering/tsl/ray'
 import { scatterSegment, segmentDepth } from '../../scattering/tsl/segment'
 import { EXTINCTION_SCALE, meanExtinction } from './meanExtinction'
 import { SKY_TILE } from './skyVolume'
-import { columnCosine, elevationCosine, lengthPart, sliceDistance } from './volumeMapping'
+import { columnCosine, elevationCosine, sliceDistance } from './volumeMapping'
 import { rayLimits, type RayLimits } from './rayLimits'
 import { rowAndColumn } from '../../tables/tsl/texels'
 
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
+
+/** Light that half floats hold. */
+const MOST_HALF = 65_000
 
 /** Ray from where it enters the air. */
 export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
@@ -116,7 +125,7 @@ export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Out
 }
 
 /**
- * Shader that sums the segments up to each slice: light over {@link lengthPart}, but the last tile's light as it is.
+ * Shader that sums the segments up to each slice: light per {@link LIGHT_LENGTH}, but the last tile's light as it is.
  *
  * @param molecular - First output of {@link bakeSegments}: its sums are the left half.
  * @param aerosol - Second output: the right half.
@@ -133,16 +142,16 @@ export function sumSegments(
     const size = vec2(1 / (AZIMUTHS * TILE_COLUMNS), 1 / (ELEVATIONS * TILE_ROWS))
     loop('before', int(slice).add(1), index => {
       const tile = rowAndColumn(float(index).toConst(), TILE_COLUMNS)
-      const corner = vec2(tile.column.mul(AZIMUTHS), tile.row.mul(ELEVATIONS))
-      const at = vec2(column, row).add(corner).add(0.5).mul(size).toConst() as Vec2
-      If(across.lessThan(1), () => {
-        sum.addAssign(sampleLevel0(molecular, at))
-      }).Else(() => {
-        sum.addAssign(sampleLevel0(aerosol, at))
-      })
+      const x = tile.column.mul(AZIMUTHS).add(column)
+      const y = tile.row.mul(ELEVATIONS).add(row)
+      const at = vec2(x, y).add(0.5).mul(size).toConst() as Vec2
+      const [left, right] = [molecular, aerosol].map(half => sampleLevel0(half, at))
+      sum.addAssign(across.lessThan(1).select(left, right))
     })
     const { cosView, hitsGround } = elevationCosine(viewpoint, row, ELEVATIONS)
-    const part = lengthPart(viewpoint, rayLimits(viewpoint, cosView, hitsGround))
-    return sum.div(slice.lessThan(SKY_TILE).select(part, 1))
+    const limits = rayLimits(viewpoint, cosView, hitsGround)
+    const distance = sliceDistance(viewpoint, limits, slice.add(1).div(DISTANCES))
+    const part = float(LIGHT_LENGTH).div(distance.max(1e-3))
+    return sum.mul(slice.lessThan(SKY_TILE).select(part, 1)).min(MOST_HALF)
   })()
 }

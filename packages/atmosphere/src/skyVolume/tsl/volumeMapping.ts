@@ -87,7 +87,7 @@ function lightAtLowestPoint(
   const inverse = hitsGround.select(bottomRadius, nearest.max(1)).reciprocal().toConst()
   return {
     mean: along.mul(inverse).mul(viewpoint.cosLight).toConst() as Float,
-    swing: across.mul(inverse).mul(viewpoint.sinLight).abs().max(1e-4).toConst()
+    swing: across.mul(inverse).mul(viewpoint.sinLight).abs().max(1e-4).toConst() as Float
   }
 }
 
@@ -133,7 +133,7 @@ export function columnCosine(
   column: Float,
   hitsGround: Bool
 ): Float {
-  const sinView = sine(cosView).toConst()
+  const sinView = sine(cosView).toConst() as Float
   const position = column
     .floor()
     .div(AZIMUTHS - 1)
@@ -164,33 +164,9 @@ export function sliceDistance(viewpoint: Viewpoint, limits: RayLimits, position:
   return position.div(stretch).exp().sub(1).div(growth).mul(limits.length)
 }
 
-/** Distance of the first of `count` slices of a ray [m], and that of the second over it. */
-export function firstSlices(
-  viewpoint: Viewpoint,
-  { hitsGround, length }: RayLimits,
-  count: number
-): { first: Float; second: Float } {
-  const { stretch, growth } = spacing(viewpoint, hitsGround)
-  const step = stretch.mul(count).reciprocal().exp().toConst() as Float
-  return {
-    first: step.sub(1).div(growth).mul(length).max(1e-6).toConst(),
-    second: step.add(1).toConst()
-  }
-}
-
 /** Position among the slices of a distance, the inverse of {@link sliceDistance}. */
 export function slicePosition(viewpoint: Viewpoint, limits: RayLimits, distance: Float): Float {
   const { stretch, growth } = spacing(viewpoint, limits.hitsGround)
   const part = distance.div(limits.length.max(1e-3)).clamp()
   return part.mul(growth).add(1).log().mul(stretch).clamp()
-}
-
-/**
- * Length of a ray as a part of that by which the volume keeps its light: 1 for rays that miss the ground.
- *
- * Just below the horizon lengths change manyfold from one elevation of the volume to the next, where light
- * per length hardly does: that is what it keeps, and interpolates.
- */
-export function lengthPart({ groundLength }: Viewpoint, { hitsGround, length }: RayLimits): Float {
-  return hitsGround.select(length.max(1e-3).div(groundLength), 1).toConst()
 }

@@ -5,12 +5,6 @@ import { homogeneousHeight } from '../../air/cpu/medium'
 /** Growth of the slices along a ray over that of the scale height of molecules: larger puts more slices low. */
 const STEP_GROWTH = 0.4
 
-/**
- * Greatest length of rays to the ground whose light is kept as it is [m]. The volume keeps more than the light of
- * shorter ones: a greater length overflows half floats where thick air is seen from above.
- */
-const MOST_GROUND_LENGTH = 16_000
-
 /** Viewpoints lower than this are lifted to it: on the ground itself the horizon has no distance [m]. */
 export const LOWEST_VIEWPOINT = 1
 
@@ -45,11 +39,10 @@ export function viewpointScalars(
   const scale = homogeneousHeight(parameters)
   const groundExponent = exponent(-start, scale)
   const skyExponent = exponent(thickness - start, scale)
-  const toHorizon = height * (bottomRadius + radius)
   return {
     altitude: h,
     radius,
-    toHorizon,
+    toHorizon: height * (bottomRadius + radius),
     toTop: (thickness - height) * (topRadius + radius),
     cosLight,
     sinLight: Math.sqrt(Math.max(1 - cosLight ** 2, 0)),
@@ -57,7 +50,6 @@ export function viewpointScalars(
     sinHorizon,
     belowScale: 1 / Math.tan((Math.PI / 2 - dip) / 2),
     aboveScale: 1 / Math.tan(above / 2),
-    groundLength: Math.min(Math.sqrt(toHorizon), MOST_GROUND_LENGTH),
     groundStretch: 1 / groundExponent,
     groundGrowth: Math.expm1(groundExponent),
     skyStretch: 1 / skyExponent,

@@ -24,8 +24,6 @@ export interface ViewpointScalars<T> {
   belowScale: T
   /** Scale above the horizon: to the zenith, or from outside the air to its top limb. */
   aboveScale: T
-  /** Length of rays to the ground, whose light the volume keeps as it is: that to the horizon, or less [m]. */
-  groundLength: T
   /** 1/κ of the distances along rays to the ground: t(x) = t_max (e^{κx} − 1)/(e^κ − 1). */
   groundStretch: T
   /** e^κ − 1 of the same. */
