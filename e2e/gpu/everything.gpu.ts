@@ -21,7 +21,15 @@ import {
   sunFlare
 } from '@welkin/atmosphere'
 import type { LightShafts } from '@welkin/atmosphere'
-import { cloudEnvironment, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import {
+  cloudAirShadow,
+  cloudEnvironment,
+  cloudPreset,
+  clouds,
+  cloudShadow,
+  cloudSkyLight,
+  cloudWorldMap
+} from '@welkin/clouds'
 import {
   BoxGeometry,
   DataTexture,
@@ -120,10 +128,10 @@ class World {
     layers.at(3).set({ baseAltitude: 6000, topAltitude: 6500, coverage: 0.3 })
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
       quality: coarse,
-      worldMap: isMapped ? this.cloudMap : null
+      worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null
     })
     this.#clouds.time = 0
-    shafts.add(this.#clouds)
+    shafts.add(cloudAirShadow(this.#clouds))
     this.#cloudEnvironment = cloudEnvironment(this.#clouds, { size: 16, quality: coarse })
     this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 256 })
     this.scene.environmentNode = this.#environment

@@ -19,6 +19,7 @@ import {
   type LightShafts
 } from '@welkin/atmosphere'
 import {
+  cloudAirShadow,
   cloudPreset,
   clouds,
   cloudShadow,
@@ -132,7 +133,7 @@ export class StillView {
       const node = clouds(air, depth, camera, atmosphere, layers, { quality })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)
-      shafts?.add(node)
+      shafts?.add(cloudAirShadow(node))
       node.field.bake(renderer)
       node.time = TIME
       this.#clouds = node

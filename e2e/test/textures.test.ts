@@ -15,7 +15,7 @@ import {
   sunFlare
 } from '@welkin/atmosphere'
 import type { SkyLayer } from '@welkin/atmosphere'
-import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight, cloudWorldMap } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import {
   DataTexture,
@@ -74,7 +74,8 @@ class World {
     this.scene.add(ground, this.sun, this.sky)
   }
 
-  clouds(worldMap: DataTexture | null = null): CloudsNode {
+  clouds(cover: DataTexture | null = null): CloudsNode {
+    const worldMap = cover && cloudWorldMap(cover)
     const { air, depth, camera, atmosphere } = this
     return clouds(air, depth, camera, atmosphere, cloudPreset('mixed'), { worldMap })
   }

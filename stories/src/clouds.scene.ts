@@ -1,4 +1,12 @@
-import { cloudPreset, cloudQualities, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import {
+  cloudPreset,
+  cloudQualities,
+  clouds,
+  cloudsDebug,
+  cloudShadow,
+  cloudSkyLight,
+  cloudWorldMap
+} from '@welkin/clouds'
 import type { CloudPresetName, CloudQuality, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
 import { cloudCover } from './clouds/cloudCover'
@@ -54,7 +62,8 @@ export async function createClouds(
   canvas: HTMLCanvasElement,
   args: CloudsArgs
 ): Promise<SceneHandle<CloudsArgs>> {
-  const worldMap = args.world ? await cloudCover() : null
+  const cover = args.world ? await cloudCover() : null
+  const worldMap = cover && cloudWorldMap(cover)
   const { preset } = args
   const quality = qualityOf(args)
   const post: CloudsArgs = { ...args, path: 'post' }
@@ -106,6 +115,15 @@ export async function createClouds(
       }
     }
 
+    const debug = cloudsDebug(node, null)
+    const show = (current: CloudsArgs): void => {
+      debug.view = current.debug === 'off' ? null : current.debug
+      const output = debug.view === null ? node : debug
+      if (pipeline.outputNode === output) return
+      pipeline.outputNode = output
+      pipeline.needsUpdate = true
+    }
+
     let lapse = args.timeLapse
     let before = performance.now()
     node.time = 0
@@ -117,7 +135,7 @@ export async function createClouds(
         applyLayer(current)
         applyStage(current)
         node.quality = qualityOf(current)
-        node.debugView = current.debug === 'off' ? null : current.debug
+        show(current)
         lapse = current.frame ? 0 : current.timeLapse
       },
       beforeDraw() {
@@ -130,7 +148,7 @@ export async function createClouds(
       dispose() {
         props?.dispose()
         node.dispose()
-        worldMap?.dispose()
+        cover?.dispose()
       }
     }
   })

@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { CloudField, CloudLayers, cloudPreset } from '@welkin/clouds'
+import { CloudField, CloudLayers, cloudPreset, cloudWorldMap } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
 import { float, Loop, vec3 } from 'three/tsl'
 import type { Node, NodeFrame } from 'three/webgpu'
@@ -225,7 +225,9 @@ gpuTest('has no seam in a world map', async t => {
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef'
   const layers = new CloudLayers([{ coverage: 0.5, baseAltitude: 0, topAltitude: 1500 }])
-  const field = new CloudField(atmosphere, layers, undefined, { worldMap: map })
+  const field = new CloudField(atmosphere, layers, undefined, {
+    worldMap: cloudWorldMap(map)
+  })
   field.bake(renderer)
   const camera = new PerspectiveCamera()
   const seams: [string, (s: number) => [number, number]][] = [

@@ -28,9 +28,8 @@ gpuTest('bakes the noise that float64 computes, levels of detail and all', async
     expectTrue(!field.noise.isReady && frames < 40, `not drawn after ${frames} frames`)
     frames++
   } while (!field.bake(renderer, 10))
-  t.note(`${frames} frames of 10 slices, ${field.noise.bytes} bytes`)
+  t.note(`${frames} frames of 10 slices`)
   expectTrue(frames > 20, `drawn in ${frames} frames`)
-  expectTrue(field.noise.bytes <= 20e6, `${field.noise.bytes} bytes of noise`)
   const draw = random(1)
   for (const name of names) {
     const source = texture3D(field.noise[name].target.texture)

@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { CloudLayers, CloudLightTable, CloudNoise, cloudPreset } from '@welkin/clouds'
+import { CloudLayers, CloudLightTable, CloudNoise, cloudPreset, cloudsDebug } from '@welkin/clouds'
 import type { CloudLayerParameters, CloudPresetName, CloudsDebug } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import { Vector3 } from 'three'
@@ -70,6 +70,8 @@ gpuTest(
     const layers = new CloudLayers([fog, fog, fog, fog])
     const { renderer, atmosphere, view, dispose } = await cloudsOfGlobe(t, layers)
     const { camera, node } = view
+    const debug = cloudsDebug(node, null)
+    view.show(debug)
     const seed = 20_261_121
     const next = random(seed)
     const rounds = ROUNDS[t.backend]
@@ -91,9 +93,9 @@ gpuTest(
       for (const layer of layers) layer.set(randomLayer(next))
       const label = `seed ${seed}, round ${round}, ${altitude.toFixed(0)} m`
       node.time = 1000 * next()
-      node.debugView = debugViews[(round + Math.floor(round / 5)) % debugViews.length]
-      expectLight(await view.draw(), `${label}, ${node.debugView}`)
-      node.debugView = 'density'
+      debug.view = debugViews[(round + Math.floor(round / 5)) % debugViews.length]
+      expectLight(await view.draw(), `${label}, ${debug.view}`)
+      debug.view = 'density'
       const { data } = await view.draw()
       expectTrue(
         data.every(value => value >= 0 && value <= 1),

@@ -1,5 +1,12 @@
 import { horizontalIrradiance, type AirOccluder } from '@welkin/atmosphere'
-import { cloudPreset, CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
+import {
+  cloudAirShadow,
+  cloudPreset,
+  CloudLayers,
+  CloudLightTable,
+  CloudNoise,
+  clouds
+} from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
@@ -109,7 +116,7 @@ async function unseen(
 /** Clouds that take light scattered once alone, for which there are closed forms. */
 const castsOnce = (node: CloudsNode): AirOccluder => ({
   castInto(shafts) {
-    const shadow = node.castInto(shafts)
+    const shadow = cloudAirShadow(node).castInto(shafts)
     return {
       get isCast() {
         return shadow.isCast

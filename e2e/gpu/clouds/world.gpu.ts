@@ -16,7 +16,8 @@ import {
   cloudSkyLight,
   type CloudLayers,
   type CloudQuality,
-  type CloudsNode
+  type CloudsNode,
+  cloudWorldMap
 } from '@welkin/clouds'
 import {
   DataTexture,
@@ -159,7 +160,10 @@ async function shadesTheGlobe(
   camera.updateMatrixWorld()
   const layers = cloudPreset('overcast')
   layers.at(0).set({ coverage: 0.5 })
-  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, { ...shared, worldMap })
+  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
+    ...shared,
+    worldMap: cloudWorldMap(worldMap)
+  })
   const sun = new SunDirectionalLight(atmosphere)
   const globe = new Mesh(new SphereGeometry(6.378e6, 64, 32), new MeshLambertMaterial())
   globe.receiveShadow = true

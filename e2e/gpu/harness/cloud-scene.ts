@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { CloudField, type CloudLayers } from '@welkin/clouds'
+import { CloudField, cloudWorldMap, type CloudLayers } from '@welkin/clouds'
 import {
   DataTexture,
   LinearFilter,
@@ -44,7 +44,9 @@ export async function cloudScene(
   const atmosphere = new Atmosphere().place(place)
   const camera = new PerspectiveCamera()
   camera.updateMatrixWorld()
-  const field = new CloudField(atmosphere, layers, undefined, { worldMap: map })
+  const field = new CloudField(atmosphere, layers, undefined, {
+    worldMap: map && cloudWorldMap(map)
+  })
   const viewpoint = new Vector3()
   const update = (seconds = 0): void => {
     const view = atmosphere.update(renderer, camera)
@@ -74,7 +76,7 @@ export async function cloudScene(
       pixelAngle: field.pixelAngle.value,
       depthScale: field.depthScale.value,
       axialRatio: field.axialRatio,
-      ...(map === null ? {} : { worldMap: coverOf(map), worldMapWidth: field.worldMapWidth })
+      ...(map === null ? {} : { worldMap: coverOf(map), worldMapWidth: map.image.width })
     }),
     dispose() {
       field.dispose()

@@ -3,7 +3,7 @@ import { CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds
 import type { CloudLayerParameters, CloudQuality, CloudsNode } from '@welkin/clouds'
 import { PerspectiveCamera, Scene } from 'three'
 import { pass } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { drawToFloat } from './atmosphere'
 import type { GpuContext } from './context'
 import { nextFrame } from './graphics'
@@ -84,6 +84,12 @@ export class CloudView {
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false
     this.#pipeline.outputNode = this.node
+  }
+
+  /** Shows another node than the clouds' own, one that draws them. */
+  show(output: Node): void {
+    this.#pipeline.outputNode = output
+    this.#pipeline.needsUpdate = true
   }
 
   render(): void {

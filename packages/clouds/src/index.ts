@@ -2,13 +2,15 @@ export { CloudLayer, type CloudLayerParameters, type CloudWind } from './layers/
 export { CloudLayers } from './layers/CloudLayers'
 export { cloudLayersFromMETAR, type METAROptions } from './layers/metar'
 export { CloudField, type CloudFieldOptions } from './density/CloudField'
+export { CloudWorldMap, cloudWorldMap } from './density/CloudWorldMap'
 export { CloudNoise } from './noise/CloudNoise'
 export { cloudPreset, cloudPresetNames, type CloudPresetName } from './layers/presets'
 export { CloudLightTable } from './light/CloudLightTable'
 export type { CloudPhaseParameters } from './light/cpu/cloudPhase'
 export { CloudsNode, clouds, type CloudsOptions } from './march/CloudsNode'
-export type { CloudsDebug } from './march/debugView'
+export { CloudsDebugNode, cloudsDebug, type CloudsDebug } from './march/CloudsDebugNode'
 export { cloudQualities, type CloudQuality, type CloudQualityName } from './march/quality'
+export { CloudAirShadow, cloudAirShadow } from './shadow/CloudAirShadow'
 export { CloudShadowNode, cloudShadow } from './shadow/CloudShadowNode'
 export {
   CloudEnvironment,

@@ -6,13 +6,16 @@ import {
   CloudLayer,
   CloudLayers,
   CloudLightTable,
+  cloudAirShadow,
   cloudEnvironment,
   cloudLayersFromMETAR,
   cloudPreset,
   clouds,
+  cloudsDebug,
   CloudField,
   cloudShadow,
-  cloudSkyLight
+  cloudSkyLight,
+  cloudWorldMap
 } from '@welkin/clouds'
 
 const atmosphere = new Atmosphere()
@@ -88,12 +91,13 @@ const cases: [message: string, call: () => unknown][] = [
     () => clouds(wrong(new Scene()), float(1), camera, atmosphere, layers)
   ],
   [
-    'CloudsNode: worldMap must be a Texture or null, got a Mesh',
-    () => make({ worldMap: new Mesh() })
-  ],
-  [
-    'CloudsNode: worldMap.wrapS must be RepeatWrapping, got 1001',
+    'CloudsNode: worldMap must be a CloudWorldMap, by cloudWorldMap(), or null, got a Texture',
     () => make({ worldMap: new Texture() })
+  ],
+  ['CloudWorldMap: texture must be a Texture, got a Mesh', () => cloudWorldMap(wrong(new Mesh()))],
+  [
+    'CloudWorldMap: texture.wrapS must be RepeatWrapping, got 1001',
+    () => cloudWorldMap(new Texture())
   ],
   ['CloudsNode: noise must be a CloudNoise, got {}', () => make({ noise: {} })],
   ["CloudsNode: light must be a CloudLightTable, got 'sun'", () => make({ light: 'sun' })],
@@ -121,6 +125,14 @@ const cases: [message: string, call: () => unknown][] = [
   [
     'CloudShadowNode: clouds must be a CloudsNode, got an Atmosphere',
     () => cloudShadow(wrong(atmosphere))
+  ],
+  [
+    'CloudAirShadow: clouds must be a CloudsNode, got an Atmosphere',
+    () => cloudAirShadow(wrong(atmosphere))
+  ],
+  [
+    'CloudsDebugNode: clouds must be a CloudsNode, got an Atmosphere',
+    () => cloudsDebug(wrong(atmosphere), 'steps')
   ],
   [
     'CloudSkyLight: probe must be a SkyLightProbe, got a CloudsNode',

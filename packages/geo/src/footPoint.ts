@@ -19,7 +19,8 @@ const axes: readonly Axis[] = ['z', 'y', 'x']
  * @param position - Relative to the centre, finite; any frame whose axes are the ellipsoid's [m].
  * @param radii - Along the three axes, positive [m].
  * @param target - Receives the normal; may be `position`.
- * @see Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013).
+ * @see Eberly, 2013, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", "Distance from a
+ *   Point to an Ellipsoid".
  */
 export function footPointNormal(position: Vector3, radii: Vector3, target: Vector3): Vector3 {
   const smallest = Math.min(radii.x, radii.y, radii.z)

@@ -24,7 +24,8 @@ export interface GeodesicPath {
  * @param ellipsoid - A spheroid: radii x and y are equal.
  * @returns [m], exact to nanometres.
  * @throws Error if a value is not finite, a latitude is out of range, or the ellipsoid is triaxial.
- * @see Karney, "Algorithms for geodesics" (2013), J. Geodesy 87, 43, through geographiclib-geodesic.
+ * @see Karney 2013, "Algorithms for geodesics", J. Geodesy 87, 43, §4 (inverse problem), through
+ *   geographiclib-geodesic.
  */
 export function geodesicDistance(
   from: GeodeticLike,

@@ -38,8 +38,8 @@ export function moonDirectionECEF(date: Date, target: Vector3 = new Vector3()): 
  *
  * @param date - Instant, UTC.
  * @throws Error if the date is invalid.
- * @see Archinal et al., Report of the IAU Working Group on Cartographic Coordinates and Rotational
- *   Elements (2015), through astronomy-engine.
+ * @see Archinal et al. 2018, Report of the IAU Working Group on Cartographic Coordinates and Rotational
+ *   Elements: 2015, table 2, through astronomy-engine.
  */
 export function moonOrientation(date: Date, target: Quaternion = new Quaternion()): Quaternion {
   checkDate('moonOrientation', date)

@@ -12,7 +12,7 @@ const astronomicalUnit = 149597870700
  * astronomy-engine has the long series, but its tables of every planet come with it (17 kB gzipped), and
  * even its sidereal time and nutation alone make 2 kB. What an atmosphere needs of the sun is here.
  *
- * @see Bretagnon & Francou 1988; Meeus, Astronomical Algorithms, 2nd ed., appendix III.
+ * @see Meeus, Astronomical Algorithms, 2nd ed., appendix III, after Bretagnon & Francou 1988.
  */
 const longitudeTerms: readonly (readonly Term[])[] = [
   [
@@ -90,7 +90,8 @@ const radians = (degrees: number): number => (degrees * Math.PI) / 180
 /**
  * ΔT = TT − UT in the long run [s]. Within 50 s from 1800 to 2100, in which the sun moves 2″.
  *
- * @see Morrison & Stephenson 2004, J. Hist. Astron. 35, 327.
+ * @see Espenak & Meeus 2006, "Five millennium canon of solar eclipses", "Polynomial expressions for ΔT", after
+ *   Morrison & Stephenson 2004, J. Hist. Astron. 35, 327.
  */
 const terrestrialLag = (centuries: number): number => -20 + 32 * (centuries + 1.8) ** 2
 

@@ -7,7 +7,7 @@ import {
   RepeatWrapping
 } from 'three'
 
-/** Cloud cover of the whole Earth, for `worldMap`: one channel, the share of the sky that is covered. */
+/** Cloud cover of the whole Earth, for `cloudWorldMap`: one channel, the share of the sky that is covered. */
 export async function cloudCover(): Promise<DataTexture> {
   const url = new URL('world-data/clouds/clouds.png', document.baseURI).href
   const picture = await new ImageLoader().loadAsync(url)

@@ -71,7 +71,7 @@ const _axes = new Matrix4()
  * taken from air in shadow; light scattered more often, which comes from all sides, stays. A scene without
  * shadows is the same, bit for bit, as without shafts, and one whose light casts none costs nothing.
  *
- * Clouds and the like are added: `shafts.add(cloudsNode)`. They need no shadow map of the light.
+ * Clouds and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`. They need no shadow map of the light.
  *
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
@@ -156,7 +156,11 @@ export class LightShafts implements ShadowedShafts {
   add(...occluders: AirOccluder[]): this {
     occluders.forEach((occluder, i) => {
       if (typeof occluder?.castInto !== 'function')
-        fail('LightShafts.add', 'occluder must be an AirOccluder, such as clouds', occluder)
+        fail(
+          'LightShafts.add',
+          'occluder must be an AirOccluder, such as cloudAirShadow()',
+          occluder
+        )
       if (this.#shadows.has(occluder) || occluders.indexOf(occluder) < i)
         fail('LightShafts.add', 'occluder must not have been added already', occluder)
     })

@@ -60,7 +60,7 @@ describe('bad input to light shafts', () => {
       () => lightShafts(atmosphere, camera, { light: wrong(new PointLight()) })
     ],
     [
-      'LightShafts.add: occluder must be an AirOccluder, such as clouds, got a PerspectiveCamera',
+      'LightShafts.add: occluder must be an AirOccluder, such as cloudAirShadow(), got a PerspectiveCamera',
       () => lightShafts(atmosphere, camera, { light }).add(wrong(camera))
     ],
     [

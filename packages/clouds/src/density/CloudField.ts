@@ -1,14 +1,14 @@
-import { Matrix4, Quaternion, RepeatWrapping, Vector3, Vector4 } from 'three'
-import type { Texture } from 'three'
-import { checkAtmosphere, nameTexture, viewNodes } from '@welkin/atmosphere'
+import { Matrix4, Quaternion, Vector3, Vector4 } from 'three'
+import { checkAtmosphere, viewNodes } from '@welkin/atmosphere'
 import { checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
-import { texture, texture3D } from 'three/tsl'
+import { texture3D } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { CloudLayers } from '../layers/CloudLayers'
 import { CloudNoise } from '../noise/CloudNoise'
 import { NightLight } from '../light/NightLight'
 import type { NoiseName } from '../noise/noiseSizes'
+import type { CloudWorldMap } from './CloudWorldMap'
 import { latticeRotations, layerRotation } from './lattice'
 import {
   LAYER_STRIDE,
@@ -20,7 +20,7 @@ import {
 import { meanColumn, type MeanColumn } from '../layers/meanColumn'
 import type { CloudLayerParameters } from '../layers/CloudLayer'
 import { billowForm } from './formConstants'
-import { vec4Array, type Float, type LevelTexture, type Vec2, type Vec3 } from '../tsl-types'
+import { vec4Array, type Float, type LevelTexture, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
 
@@ -42,12 +42,8 @@ const _rotation = new Quaternion()
 
 /** Options of {@link CloudField}. */
 export interface CloudFieldOptions {
-  /**
-   * Cloud cover of the whole planet: equirectangular, north up, longitude −180° at the left edge; its
-   * red channel is the share of the sky that is covered. It repeats in S. Shared, not owned. It should
-   * have mipmaps.
-   */
-  worldMap?: Texture | null
+  /** Cloud cover of the whole planet: `cloudWorldMap(texture)`. */
+  worldMap?: CloudWorldMap | null
   /** Noise to share between fields; left out, the field makes and owns its own. */
   noise?: CloudNoise
 }
@@ -126,11 +122,8 @@ export class CloudField {
   )
   readonly array = vec4Array(this.values)
   readonly textures: Readonly<Record<NoiseName, LevelTexture<Vec3>>>
-  readonly worldMap: LevelTexture<Vec2> | null
-  /** Texture of the same; shared, not owned. */
-  readonly worldMapTexture: Texture | null
-  /** Width of the world map [texels]. */
-  readonly worldMapWidth: number
+  /** Cloud cover of the whole planet; shared, not owned. */
+  readonly worldMap: CloudWorldMap | null
   /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
   readonly axialRatio: number
   readonly #ownsNoise: boolean
@@ -172,11 +165,9 @@ export class CloudField {
     checkAtmosphere(where, atmosphere)
     if (!(layers instanceof CloudLayers)) fail(where, 'layers must be CloudLayers', layers)
     const { worldMap = null, noise } = checkOptions(where, options, 'worldMap', 'noise')
-    if (worldMap !== null) {
-      if (!worldMap?.isTexture) fail(where, 'worldMap must be a Texture or null', worldMap)
-      if (worldMap.wrapS !== RepeatWrapping) {
-        fail(where, 'worldMap.wrapS must be RepeatWrapping', worldMap.wrapS)
-      }
+    // By what it does: its class is for those who import it.
+    if (worldMap !== null && !worldMap?.coverageAt) {
+      fail(where, 'worldMap must be a CloudWorldMap, by cloudWorldMap(), or null', worldMap)
     }
     if (noise !== undefined && !(noise instanceof CloudNoise)) {
       fail(where, 'noise must be a CloudNoise', noise)
@@ -189,10 +180,7 @@ export class CloudField {
     const node = (name: NoiseName): LevelTexture<Vec3> =>
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
     this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
-    this.worldMapTexture = worldMap
-    if (worldMap !== null) nameTexture(worldMap, 'worldMap of clouds')
-    this.worldMap = worldMap === null ? null : (texture(worldMap) as unknown as LevelTexture<Vec2>)
-    this.worldMapWidth = (worldMap?.image as { width?: number } | null)?.width ?? 2048
+    this.worldMap = worldMap
     const { x, z } = atmosphere.ellipsoid.radii
     this.axialRatio = x / z
   }

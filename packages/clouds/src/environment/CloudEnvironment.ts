@@ -208,7 +208,7 @@ export class CloudEnvironment implements SkyOverlay {
   /** Makes field and shader for the environment's camera. */
   #build({ camera }: AtmosphereView): CloudField {
     const { atmosphere, field: source, light, shadows } = this.clouds
-    const { layers, noise, worldMapTexture: worldMap } = source
+    const { layers, noise, worldMap } = source
     const view = viewNodes(atmosphere, camera)
     const field = new CloudField(atmosphere, layers, view, { noise, worldMap })
     const draw = Fn(() => {

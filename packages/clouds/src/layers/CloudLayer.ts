@@ -1,6 +1,7 @@
 import { checkSpectrum, withDefaults } from '@welkin/atmosphere'
 import { checkBoolean, checkFinite, checkOptions, fail } from '@welkin/geo'
 import { checkRanges } from '../check'
+import { parameterProperties } from '../parameterProperties'
 
 /** Horizontal velocity of the air at a layer [m/s], towards east and north. */
 export interface CloudWind {
@@ -148,16 +149,7 @@ export class CloudLayer {
   #parameters: CloudLayerParameters
 
   static {
-    for (const name of Object.keys(defaults) as (keyof CloudLayerParameters)[]) {
-      Object.defineProperty(CloudLayer.prototype, name, {
-        get(this: CloudLayer) {
-          return this.#parameters[name]
-        },
-        set(this: CloudLayer, value: unknown) {
-          this.set({ [name]: value })
-        }
-      })
-    }
+    parameterProperties(CloudLayer.prototype, defaults, 'parameters')
   }
 
   /**

@@ -3,6 +3,7 @@ import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { withDefaults } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
+import { parameterProperties } from '../parameterProperties'
 import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { slabTableForm } from './cpu/slabTableForm'
 import { fillCloudLight } from './cpu/cloudLightTable'
@@ -65,16 +66,7 @@ export class CloudLightTable {
   #steps: Generator<void, void, void> | null = null
 
   static {
-    for (const name of Object.keys(defaults) as (keyof CloudPhaseParameters)[]) {
-      Object.defineProperty(CloudLightTable.prototype, name, {
-        get(this: CloudLightTable) {
-          return this.#phase[name]
-        },
-        set(this: CloudLightTable, value: number) {
-          this.set({ [name]: value })
-        }
-      })
-    }
+    parameterProperties(CloudLightTable.prototype, defaults, 'phase')
   }
 
   /**

@@ -12,8 +12,6 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
-import { number } from '../uniforms'
-import { debugPass } from './debugView'
 import { marchClouds } from './tsl/march'
 import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
@@ -139,12 +137,6 @@ export class CloudRenderer {
     light: textureNode(this.#accumulatedTargets[0].textures[0]),
     distances: textureNode(this.#accumulatedTargets[0].textures[1])
   }
-  /** Accumulated light, or a debug view. */
-  readonly shown = textureNode(this.#accumulatedTargets[0].textures[0])
-  /** Number of the debug view that is shown; 0 for the clouds. */
-  readonly debug = number()
-  #debugTarget: RenderTarget | null = null
-  #debugPass: FragmentPass | null = null
   /** Index of the accumulated target that was drawn last. */
   #current = 0
 
@@ -203,17 +195,8 @@ export class CloudRenderer {
     const target = this.#accumulatedTargets[this.#current]
     this.#upscale[this.#current].render(renderer, target)
     const [light, distances] = target.textures
-    this.accumulated.light.value = this.shown.value = light
+    this.accumulated.light.value = light
     this.accumulated.distances.value = distances
-    if (this.debug.value > 0) this.#drawDebugView(renderer, target)
-  }
-
-  #drawDebugView(renderer: Renderer, { width, height }: RenderTarget): void {
-    this.#debugTarget ??= tableTarget('Welkin.CloudsDebug', 1, 1)
-    this.#debugPass ??= debugPass(this.debug, this.accumulated, this.marched)
-    this.#debugTarget.setSize(width, height)
-    this.#debugPass.render(renderer, this.#debugTarget)
-    this.shown.value = this.#debugTarget.texture
   }
 
   /** Frees the render targets. */
@@ -223,7 +206,5 @@ export class CloudRenderer {
     for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
-    this.#debugTarget?.dispose()
-    this.#debugPass?.dispose()
   }
 }

@@ -1,24 +1,17 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
-import type {
-  AirOccluder,
-  AirShadow,
-  Atmosphere,
-  ScreenShadows,
-  ShadowedShafts
-} from '@welkin/atmosphere'
-import { checkChoice, checkNonNegative, checkOptions, fail } from '@welkin/geo'
+import type { Atmosphere, ScreenShadows } from '@welkin/atmosphere'
+import { checkNonNegative, checkOptions, fail } from '@welkin/geo'
 import { Vector2 } from 'three'
-import type { Camera, DepthTexture, PerspectiveCamera, Texture } from 'three'
-import { Fn, If, uniform, uv, vec4 } from 'three/tsl'
-import type { Node, NodeBuilder, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
+import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
+import { Fn, uniform, uv, vec4 } from 'three/tsl'
+import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { CloudField } from '../density/CloudField'
+import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
 import type { CloudNoise } from '../noise/CloudNoise'
 import { CloudRenderer } from './CloudRenderer'
-import { CloudAirShadow } from '../shadow/CloudAirShadow'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
-import { debugViews, type CloudsDebug } from './debugView'
 import { FrameUniforms } from './FrameUniforms'
 import {
   QualityUniforms,
@@ -26,7 +19,6 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import { cloudVeil } from './cloudVeil'
 import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
@@ -38,8 +30,8 @@ const NOISE_SLICES = 12
 export interface CloudsOptions {
   /** Fineness of the march; by default `'high'`. */
   quality?: CloudQualityName | CloudQuality
-  /** Cloud cover of the whole planet: see `CloudFieldOptions`. */
-  worldMap?: Texture | null
+  /** Cloud cover of the whole planet: `cloudWorldMap(texture)`. */
+  worldMap?: CloudWorldMap | null
   /**
    * Noise to share between nodes, drawn at once if it is not yet. Left out, the node makes and owns its
    * own, and draws it over its first frames: the sky is clear until then, and clouds grow in the next.
@@ -67,7 +59,7 @@ export interface CloudsOptions {
  * Layers may be changed at any time. What is transparent and writes no depth is taken to be where the
  * things behind it are. Knows standard, reversed and logarithmic depth.
  */
-export class CloudsNode extends AtmosphereNode implements AirOccluder {
+export class CloudsNode extends AtmosphereNode {
   static get type(): string {
     return 'CloudsNode'
   }
@@ -92,11 +84,11 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
   readonly #uniforms = new QualityUniforms()
   readonly #frame = new FrameUniforms()
   #drawnBy: Renderer | null = null
-  #renderer: CloudRenderer | undefined
+  /** Render targets and passes of the camera's clouds. */
+  readonly passes: CloudRenderer
   readonly #exposure = uniform(1)
-  #debugView: CloudsDebug | null = null
-  /** Light shafts of the picture with the clouds. */
-  readonly #screens = new Set<ScreenShadows>()
+  /** Shadows in the air of the picture with the clouds, drawn by this node: those of `cloudAirShadow`. */
+  readonly screens = new Set<ScreenShadows>()
   #quality: CloudQuality
 
   /** @throws If an argument is missing or of the wrong kind. */
@@ -128,6 +120,22 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     this.#ownsLight = light === undefined
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
+    this.passes = new CloudRenderer({
+      field: this.field,
+      light: this.light.nodes,
+      shadows: this.shadows.nodes,
+      quality: this.#uniforms,
+      viewRays: {
+        field: this.field,
+        frame: this.#frame,
+        depthAt: at => {
+          const node = this.depthNode as unknown as LevelTexture<Vec2> & Vec4
+          const read =
+            typeof node.sample === 'function' ? (node.sample(at) as unknown as Vec4) : node
+          return read.r
+        }
+      }
+    })
   }
 
   /** Time, by which clouds drift [s]; null, the default, for the renderer's clock. */
@@ -149,8 +157,8 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
   }
 
   /** Cloud cover of the whole planet; shared, not owned. */
-  get worldMap(): Texture | null {
-    return this.field.worldMapTexture
+  get worldMap(): CloudWorldMap | null {
+    return this.field.worldMap
   }
 
   /**
@@ -194,17 +202,6 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     this.field.night.illuminance = illuminance
   }
 
-  /** Debug view shown instead of clouds; null, the default, for clouds. */
-  get debugView(): CloudsDebug | null {
-    return this.#debugView
-  }
-
-  /** @throws If there is no such view. */
-  set debugView(view: CloudsDebug | null) {
-    checkChoice('CloudsNode', 'debugView', view, debugViews)
-    this.#debugView = view
-  }
-
   override updateBefore(frame: NodeFrame): undefined {
     super.updateBefore(frame)
     const { camera, field, light } = this
@@ -225,83 +222,32 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     field.depthScale.value = light.nodes.depthScale.value
     field.update(view, this.#time ?? frame.time)
     this.shadows.update(renderer, view)
-    this.#renderer ??= this.#createRenderer(renderer)
-    this.#renderer.setSize(width, height, this.#quality.block)
+    this.passes.setSize(width, height, this.#quality.block)
     const { version } = light.texture
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
-    this.#renderer.debug.value = debugViews.indexOf(this.#debugView)
-    this.#renderer.render(renderer, view.up)
-    this.#exposure.value = this.#debugView === null ? 1 / this.#frame.gain.value : 1
-    for (const screen of this.#screens) screen.prepare?.(renderer, view, frame)
+    this.passes.render(renderer, view.up)
+    this.#exposure.value = 1 / this.#frame.gain.value
+    for (const screen of this.screens) screen.prepare?.(renderer, view, frame)
   }
 
   override update(frame: NodeFrame): undefined {
     super.update(frame)
     const view = this.view.update(frame)
     if (view === undefined) return
-    for (const screen of this.#screens) screen.update?.(view)
+    for (const screen of this.screens) screen.update?.(view)
   }
 
   override customCacheKey(): number {
-    return 8 * super.customCacheKey() + this.#screens.size
+    return 8 * super.customCacheKey() + this.screens.size
   }
 
-  /**
-   * Casts the shadow of the clouds into the air: `shafts.add(cloudsNode)` calls it. Shafts of the same
-   * camera are drawn with the clouds then, before and behind them.
-   */
-  castInto(shafts: ShadowedShafts): AirShadow {
-    const shadow = new CloudAirShadow(this, shafts)
-    if (shafts.camera !== this.camera) return shadow
-    const veil = cloudVeil(this, () => this.#renderer!)
-    const screen = shafts.upTo(this.depthNode, veil)
-    this.#screens.add(screen)
-    this.needsUpdate = true
-    shadow.onDispose = () => {
-      veil.isRemoved = true
-      this.#screens.delete(screen)
-      screen.dispose?.()
-      this.needsUpdate = true
-    }
-    return shadow
-  }
-
-  #createRenderer(renderer: Renderer): CloudRenderer {
-    const { logarithmicDepthBuffer: isLogarithmic } = renderer as Renderer & {
-      logarithmicDepthBuffer: boolean
-    }
-    return new CloudRenderer({
-      field: this.field,
-      light: this.light.nodes,
-      shadows: this.shadows.nodes,
-      quality: this.#uniforms,
-      viewRays: {
-        field: this.field,
-        frame: this.#frame,
-        isLogarithmic,
-        depthAt: at => {
-          const depth = this.depthNode as unknown as LevelTexture<Vec2> & Vec4
-          return (
-            typeof depth.sample === 'function' ? (depth.sample(at) as unknown as Vec4) : depth
-          ).r
-        }
-      }
-    })
-  }
-
-  override setup(builder: NodeBuilder): Node {
-    this.#renderer ??= this.#createRenderer(builder.renderer)
-    const textures = this.#renderer
+  override setup(): Node {
     return Fn(() => {
       const color = vec4(this.colorNode as Vec4).toConst()
-      const clouds = textures.shown.sample(uv()).level(0).toConst()
+      const clouds = this.passes.accumulated.light.sample(uv()).level(0).toConst()
       const light = clouds.rgb.mul(this.#exposure)
       const result = color.rgb.mul(clouds.a).add(light).toVar()
-      if (this.#screens.size > 0) {
-        If(textures.debug.equal(0), () => {
-          for (const screen of this.#screens) result.assign(screen.dim(result))
-        })
-      }
+      for (const screen of this.screens) result.assign(screen.dim(result))
       return vec4(result, color.a.mul(clouds.a).add(clouds.a.oneMinus()))
     })()
   }
@@ -311,7 +257,7 @@ export class CloudsNode extends AtmosphereNode implements AirOccluder {
     this.isDisposed = true
     // three compiles all materials again: those that had the clouds' shadows read freed textures.
     if (this.#drawnBy !== null) this.#drawnBy.contextNode.needsUpdate = true
-    this.#renderer?.dispose()
+    this.passes.dispose()
     this.shadows.dispose()
     this.field.dispose()
     if (this.#ownsLight) this.light.dispose()

@@ -1,6 +1,6 @@
 import { renderGroup, uniform } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { checkOptions, fail } from '@welkin/geo'
+import { checkChoice, checkOptions } from '@welkin/geo'
 import { checkRanges, named } from '../check'
 import { number } from '../uniforms'
 
@@ -89,9 +89,8 @@ const ranges = {
   shortestStep: [0.1, 1000],
   depthStep: [0.01, 10],
   layerSteps: [1, 256],
-  lightSteps: [1, 16],
-  block: [1, 4]
-} as const satisfies Record<keyof CloudQuality, readonly [number, number]>
+  lightSteps: [1, 16]
+} as const satisfies Record<Exclude<keyof CloudQuality, 'block'>, readonly [number, number]>
 
 /**
  * The quality of a name, or the given one.
@@ -105,11 +104,10 @@ export function resolveQuality(
   if (typeof quality === 'string') {
     return named(where, 'quality', cloudQualities, quality)
   }
-  checkOptions(`${where}.quality`, quality, ...(Object.keys(ranges) as (keyof CloudQuality)[]))
-  checkRanges(`${where}.quality`, quality, ranges)
-  if (!Number.isInteger(quality.block)) {
-    fail(`${where}.quality`, 'block must be 1, 2, 3 or 4', quality.block)
-  }
+  const name = `${where}.quality`
+  checkOptions(name, quality, ...(Object.keys(cloudQualities.high) as (keyof CloudQuality)[]))
+  checkRanges(name, quality, ranges)
+  checkChoice(name, 'block', quality.block, [1, 2, 3, 4])
   return Object.freeze({ ...quality })
 }
 

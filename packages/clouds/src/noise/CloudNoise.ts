@@ -156,14 +156,6 @@ export class CloudNoise {
     return this.#isReady
   }
 
-  /** Bytes of GPU memory that the finished textures take. */
-  get bytes(): number {
-    const { shape, detail, weather } = NOISE_SIZE
-    // A level has an eighth of the texels of the one before, down to one.
-    const texels = (size: number): number => (8 * size ** 3 - 1) / 7
-    return 4 * (texels(shape) + texels(weather)) + texels(detail)
-  }
-
   /**
    * Draws what is missing.
    *

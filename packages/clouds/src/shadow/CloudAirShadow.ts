@@ -1,44 +1,47 @@
-import type { AirPlace, AirShadow, AtmosphereView, ShadowedShafts } from '@welkin/atmosphere'
+import type {
+  AirOccluder,
+  AirPlace,
+  AirShadow,
+  AtmosphereView,
+  ScreenShadows,
+  ShadowedShafts
+} from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { If } from 'three/tsl'
-import { viewpointMapped, type CloudField } from '../density/CloudField'
+import { checkClouds } from '../check'
+import { viewpointMapped } from '../density/CloudField'
 import { meanDepthTowards, opticalDepthTowards } from '../density/tsl/columns'
 import { decksAround, meanDecks } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
-import type { CloudLight } from '../light/CloudLightTable'
+import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
-import type { CloudShadowMap } from './CloudShadowMap'
+import { CloudVeil } from './CloudVeil'
 import { sampleShadows } from './tsl/sampleShadows'
 
-/** Clouds as their shadow needs them: a `CloudsNode`. */
-interface ShadowingClouds {
-  readonly field: CloudField
-  readonly light: { readonly nodes: CloudLight }
-  readonly shadows: CloudShadowMap
-  readonly isDisposed: boolean
-}
-
-/**
- * Shadow of clouds in the air: the part of the light of sun or moon that arrives. It is read from the shadow
- * maps; beyond them the mean cover of the layers says how much passes, or the weather if there is a map of the world.
- */
-export class CloudAirShadow implements AirShadow {
-  readonly #clouds: ShadowingClouds
+/** Shadow of clouds in the air, in one light: the part of it that arrives. */
+class CastShadow implements AirShadow {
+  readonly #clouds: CloudsNode
   readonly #shafts: ShadowedShafts
-  /** Called when it is taken out. */
-  onDispose: (() => void) | null = null
+  readonly #veil: CloudVeil
+  /** The shafts as the clouds' node draws them, where both have the same camera. */
+  readonly #screen: ScreenShadows | undefined
   /** Displacement from the clouds' camera, as their maps know it, to that of the shafts [m]. */
   readonly #shift = vector3()
   /** 1 while the maps are of the shafts' light. */
   readonly #isMapped = number(1)
 
   /** @throws If the clouds are of another atmosphere. */
-  constructor(clouds: ShadowingClouds, shafts: ShadowedShafts) {
-    if (shafts.atmosphere !== clouds.field.atmosphere)
-      fail('CloudsNode', 'atmosphere must be that of the light shafts', clouds.field.atmosphere)
+  constructor(clouds: CloudsNode, shafts: ShadowedShafts) {
+    if (shafts.atmosphere !== clouds.atmosphere)
+      fail('CloudAirShadow', 'atmosphere must be that of the light shafts', clouds.atmosphere)
     this.#clouds = clouds
     this.#shafts = shafts
+    this.#veil = new CloudVeil(clouds)
+    if (shafts.camera !== clouds.camera) return
+    this.#screen = shafts.upTo(clouds.depthNode, this.#veil)
+    clouds.screens.add(this.#screen)
+    clouds.needsUpdate = true
   }
 
   get isCast(): boolean {
@@ -89,6 +92,40 @@ export class CloudAirShadow implements AirShadow {
   }
 
   dispose(): void {
-    this.onDispose?.()
+    this.#veil.isRemoved = true
+    if (this.#screen === undefined) return
+    this.#clouds.screens.delete(this.#screen)
+    this.#screen.dispose?.()
+    this.#clouds.needsUpdate = true
   }
 }
+
+/**
+ * Shadows of clouds in the air, for light shafts.
+ *
+ * ```ts
+ * shafts.add(cloudAirShadow(cloudsNode)) // before the first render, or set pipeline.needsUpdate
+ * ```
+ *
+ * They are read from the clouds' shadow maps; beyond them the mean cover of the layers says how much passes, or the
+ * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
+ * behind the clouds.
+ */
+export class CloudAirShadow implements AirOccluder {
+  /** Shared, not owned. */
+  readonly clouds: CloudsNode
+
+  /** @throws If the clouds are missing. */
+  constructor(clouds: CloudsNode) {
+    checkClouds('CloudAirShadow', clouds)
+    this.clouds = clouds
+  }
+
+  /** Called by `LightShafts.add`. @throws If the shafts are of another atmosphere. */
+  castInto(shafts: ShadowedShafts): AirShadow {
+    return new CastShadow(this.clouds, shafts)
+  }
+}
+
+/** Shadows of clouds in the air: see {@link CloudAirShadow}. */
+export const cloudAirShadow = (clouds: CloudsNode): CloudAirShadow => new CloudAirShadow(clouds)

@@ -162,9 +162,9 @@ export class CloudShadowMap {
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
-    const { layers, noise, fadeIn, worldMapTexture } = this.field
+    const { layers, noise, fadeIn, worldMap } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
-    this.#inputs = [noise.isReady, radius, fadeIn, worldMapTexture?.version, ...parameters]
+    this.#inputs = [noise.isReady, radius, fadeIn, worldMap?.texture.version, ...parameters]
     _below.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_below.dot(this.#anchor) > ANCHOR_COSINE * _below.length() * this.#anchor.length())) {
       this.#anchor.copy(_below)

@@ -2,7 +2,14 @@ import { Atmosphere } from '@welkin/atmosphere'
 import { OrthographicCamera, PerspectiveCamera, Scene } from 'three'
 import { float, pass, vec4 } from 'three/tsl'
 import { describe, expect, test } from 'vitest'
-import { cloudEnvironment, cloudQualities, CloudLayers, cloudShadow, clouds } from '../../src'
+import {
+  cloudEnvironment,
+  cloudQualities,
+  CloudLayers,
+  clouds,
+  cloudsDebug,
+  cloudShadow
+} from '../../src'
 
 const atmosphere = new Atmosphere()
 const [color, depth, camera] = [vec4(0), float(0), new PerspectiveCamera()]
@@ -62,13 +69,14 @@ describe('CloudsNode', () => {
 
   test('shows a debug view of those it has', () => {
     const node = make()
-    expect(node.debugView).toBe(null)
-    node.debugView = 'history'
-    expect(node.debugView).toBe('history')
-    expect(() => (node.debugView = 'opacity' as never)).toThrow(
-      "CloudsNode: debugView must be null, 'density', 'steps', 'depth' or 'history', got 'opacity'"
+    const debug = cloudsDebug(node, null)
+    expect(debug.view).toBe(null)
+    debug.view = 'history'
+    expect(debug.view).toBe('history')
+    expect(() => (debug.view = 'opacity' as never)).toThrow(
+      "CloudsDebugNode: view must be 'density', 'steps', 'depth', 'history' or null, got 'opacity'"
     )
-    expect(node.debugView).toBe('history')
+    expect(debug.view).toBe('history')
     node.dispose()
   })
 })

@@ -21,7 +21,6 @@ import {
   shapeChannels,
   weatherChannels
 } from '../../src/noise/noiseRecipes'
-import { CloudNoise } from '../../src/noise/CloudNoise'
 import { NOISE_SIZE, type NoiseName } from '../../src/noise/noiseSizes'
 
 const unit = fc.double({ min: 0, max: 1, noNaN: true })
@@ -234,24 +233,6 @@ describe('encoded noise', () => {
     }
     expect(Math.abs(sum)).toBeLessThan(0.02)
     expect(Math.abs(Math.sqrt(square - sum ** 2) - 1)).toBeLessThan(0.02)
-  })
-})
-
-describe('CloudNoise', () => {
-  it('counts its bytes', () => {
-    const noise = new CloudNoise()
-    let bytes = 0
-    for (const [name, channels] of [
-      ['shape', 4],
-      ['detail', 1],
-      ['weather', 4]
-    ] as const) {
-      expect(noise[name].target.width).toBe(NOISE_SIZE[name])
-      for (let edge: number = NOISE_SIZE[name]; edge >= 1; edge /= 2) bytes += channels * edge ** 3
-    }
-    expect(noise.bytes).toBe(bytes)
-    expect(noise.bytes).toBeLessThan(12e6)
-    noise.dispose()
   })
 })
 

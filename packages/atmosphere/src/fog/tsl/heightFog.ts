@@ -19,7 +19,7 @@ const MIN_EXPONENT = -30
  * @param scale - Distance to the planet's centre, in falloff heights.
  * @param cosView - |μ|, against the zenith.
  * @see Fitzmaurice 1964, "Simplification of the Chapman function for atmospheric attenuation", Applied
- *   Optics 3, 640
+ *   Optics 3, p. 640
  */
 export function airMass(scale: Float, cosView: Float): Float {
   const half = scale.mul(0.5).sqrt().toConst()
@@ -107,8 +107,8 @@ export function fogDepth(
  * @param above - Vertical optical depth above the point.
  * @param total - Vertical optical depth of the layer.
  * @param cosLight - Cosine of the light's zenith angle that gives the slant depth, > 0.
- * @see Shettle & Weinman 1970, "The transfer of solar irradiance through inhomogeneous turbid
- *   atmospheres evaluated by Eddington's approximation", J. Atmos. Sci. 27, 1048. Twin: test/twins/fog/heightFog.ts
+ * @see Liou 2002, An Introduction to Atmospheric Radiation, 2nd ed., §6.5 (Eddington's approximation), after
+ *   Shettle & Weinman 1970, J. Atmos. Sci. 27, 1048. Twin: test/twins/fog/heightFog.ts
  */
 export function multipleScattering(above: Float, total: Float, cosLight: Float): Float {
   const top = cosLight.mul(3).add(2).toConst()

@@ -15,7 +15,8 @@ export interface GroundAngles {
  *
  * @param roughness - σ, standard deviation of the facets' slope angles [rad].
  * @see Oren & Nayar 1994, "Generalization of Lambert's reflectance model", "Qualitative model"; in the form of
- *   Fujii, "A tiny improvement of Oren–Nayar reflectance model", which keeps it free of tangents.
+ *   Fujii, "A tiny improvement of Oren–Nayar reflectance model", "Proposed formula", which keeps it free of
+ *   tangents.
  */
 export function orenNayar(angles: GroundAngles, roughness: Float): Float {
   const variance = roughness.mul(roughness).toConst()
@@ -33,7 +34,8 @@ const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
 /**
  * Fresnel reflectance of water.
  *
- * @see Schlick 1994, "An inexpensive BRDF model for physically-based rendering", Fresnel approximation
+ * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994, "An inexpensive BRDF
+ *   model for physically-based rendering"
  */
 export function waterFresnel(cosine: Float): Float {
   const rest = cosine.oneMinus().clamp().toConst()

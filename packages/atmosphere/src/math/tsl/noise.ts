@@ -25,7 +25,7 @@ function stir(v: Words): void {
  * Three random numbers for a cell of a lattice, in [0, 1).
  *
  * @param cell - Whole numbers above −2¹⁴.
- * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", JCGT 9 (3), on PCG3D
+ * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", JCGT 9 (3), supplement: pcg3d
  */
 export function cellRandom(cell: Vec3): Vec3 {
   const words = uvec3(cell.add(2 ** 14 + 0.5) as never) as unknown as Words

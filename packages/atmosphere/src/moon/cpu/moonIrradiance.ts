@@ -22,7 +22,7 @@ const FULL_MOON_IRRADIANCE = 10 ** (-0.4 * (26.74 - 12.73))
  */
 export const MOON_COLOR: Spectrum = [0.773, 0.931, 1.01, 1.119]
 
-/** Colour of light from the Earth, blue sky and white clouds. @see Goode et al. 2001, GRL 28, 1671 */
+/** Colour of light from the Earth, blue sky and white clouds. @see Goode et al. 2001, GRL 28, pp. 1671–1674 */
 const EARTH_COLOR: Spectrum = [1.3, 1.07, 0.97, 0.9]
 
 /** Geometric albedo of the Earth. @see Allen 1976, §66 */

@@ -40,8 +40,8 @@ const normalCDF = (x: Float): Float => x.mul(-1.702).clamp(-40, 40).exp().add(1)
  * @param cosView - μ.
  * @param bottomRadius - Planet's centre to the ground [m].
  * @param distance - Length of the ray [m]; null for one without end.
- * @see van Rhijn 1921, "On the brightness of the sky at night and the total amount of starlight", Publ.
- *   Kapteyn Lab. 31, for rays that cross the layer steeply. Twin: test/twins/night/airglow.ts
+ * @see Leinert et al. 1998, "The 1997 reference of diffuse night sky brightness", §6, after van Rhijn 1921, for rays
+ *   that cross the layer steeply. Twin: test/twins/night/airglow.ts
  */
 export function vanRhijnFactors(
   layer: AirglowLayerNodes,

@@ -45,7 +45,11 @@ const DARK_CLOUDS = [
   ['Northern Coalsack', 92, 2, 5, 2, 1]
 ] as const
 
-/** Optical depth of dust at 440, 520, 560, 630 nm over that at 550. @see Cardelli, Clayton & Mathis 1989, ApJ 345, 245 */
+/**
+ * Optical depth of dust at 440, 520, 560, 630 nm over that at 550.
+ *
+ * @see Cardelli, Clayton & Mathis 1989, ApJ 345, 245, eqs. 1 and 3
+ */
 const REDDENING = vec4(1.3, 1.08, 0.98, 0.85)
 
 /**

@@ -164,8 +164,8 @@ export function lengthsToSpace(
  * @param altitude - h, in the air [m].
  * @param cosView - μ, not below the horizon.
  * @param profile - {@link profileAt} that altitude.
- * @see Chapman 1931, Proc. Phys. Soc. 43, 483 (grazing incidence); Schüler, "An approximation to the
- *   Chapman grazing-incidence function for atmospheric scattering", GPU Pro 3. Twin: `opticalDepth`
+ * @see Chapman 1931, Proc. Phys. Soc. 43, 483, part II (grazing incidence); Schüler, "An approximation to the
+ *   Chapman grazing-incidence function for atmospheric scattering", GPU Pro 3, pp. 105–118. Twin: `opticalDepth`
  *   of cpu/transmittance.ts, by quadrature
  */
 export function columnsToSpace(

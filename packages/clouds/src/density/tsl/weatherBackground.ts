@@ -2,7 +2,6 @@ import { int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { noisePeriods, weatherShifts, scaleWeights, waveForm } from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { coverageAt } from './coverage'
 import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
 import { weatherLevel } from './resolution'
@@ -18,7 +17,7 @@ export type PackedBackground = Vec4
 export interface WeatherBackground {
   /** Part of the weather's sum, in standard deviations of the whole. */
   readonly sum: Float
-  /** Share of the sky that the layer covers there: `coverageAt`. */
+  /** Share of the sky that the layer covers there, as far as it is known without noise. */
   readonly coverage: Float
   /** Displacement of noise along x and y of its lattices [m]: or else it would repeat. */
   readonly shift: Vec2
@@ -87,6 +86,8 @@ export function weatherBackground(
     .mul(weatherShifts.fields)
     .add(regions.xy.mul(weatherShifts.regions))
     .mul(period)
-  const coverage = coverageAt(field, layer, sample, footprint, fields.zxy)
+  const coverage =
+    field.worldMap?.coverageAt(field, layer.coverage, sample.up, footprint, fields.zxy) ??
+    layer.coverage
   return vec4(sum, coverage, shift).toConst()
 }

@@ -188,9 +188,10 @@ export interface Slab {
  * symmetric eigenproblem that does not depend on the slab's thickness nor on the light; a slab is then
  * a small linear system.
  *
- * @see Stamnes & Swanson 1981, "A new look at the discrete ordinate method for radiative transfer
- *   calculations in anisotropically scattering atmospheres"; Nakajima & Tanaka 1986, "Matrix formulations for
- *   the transfer of solar radiation in a plane-parallel scattering atmosphere" (symmetric reduction)
+ * @see Liou 2002, An Introduction to Atmospheric Radiation, 2nd ed., §6.2 (discrete ordinates), after Stamnes & Swanson
+ *   1981, "A new look at the discrete ordinate method for radiative transfer calculations in anisotropically
+ *   scattering atmospheres"; the symmetric reduction is that of Nakajima & Tanaka 1986, "Matrix formulations for the
+ *   transfer of solar radiation in a plane-parallel scattering atmosphere"
  */
 export class SlabSolver {
   readonly #modes: AzimuthMode[]

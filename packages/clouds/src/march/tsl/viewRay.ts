@@ -1,4 +1,5 @@
 import {
+  Fn,
   If,
   float,
   getViewPosition,
@@ -6,9 +7,10 @@ import {
   logarithmicDepthToViewZ,
   vec3
 } from 'three/tsl'
+import type { NodeBuilder, Renderer } from 'three/webgpu'
 import type { CloudField } from '../../density/CloudField'
 import type { FrameUniforms } from '../FrameUniforms'
-import type { Bool, Float, Mat3, Mat4, Vec2, Vec3 } from '../../tsl-types'
+import type { Bool, Float, Mat3, Vec2, Vec3 } from '../../tsl-types'
 import { FAR_AWAY, groundDistance } from './layerBoundaries'
 
 /** View ray through a pixel. */
@@ -29,7 +31,6 @@ export interface ViewRayNodes {
   readonly frame: FrameUniforms
   /** Depth as the renderer writes it. */
   readonly depthAt: (uv: Vec2) => Float
-  readonly isLogarithmic: boolean
 }
 
 /** View ray through a point of the image; to be called inside of a shader function. */
@@ -42,6 +43,19 @@ export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
   return { ndc, length, direction, directionView: rayView.div(length).toConst() }
 }
 
+/** z in view space where the scene was drawn, by its depth [world units]. */
+const viewZAt = (frame: FrameUniforms, uv: Vec2, depth: Float): Float =>
+  Fn((builder: NodeBuilder) => {
+    const { logarithmicDepthBuffer: isLogarithmic } = builder.renderer as Renderer & {
+      logarithmicDepthBuffer: boolean
+    }
+    return float(
+      isLogarithmic
+        ? logarithmicDepthToViewZ(depth, frame.near, frame.far)
+        : getViewPosition(uv, depth, frame.projectionInverse).z
+    )
+  })()
+
 /**
  * Distance along a view ray to what was drawn, or to the ground; `FAR_AWAY` where there is neither [m]. To
  * be called inside of a shader function.
@@ -49,7 +63,7 @@ export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
  * @param missesGround - True where the ground is known not to be in sight.
  */
 export function viewRayEnd(
-  { field, frame, depthAt, isLogarithmic }: ViewRayNodes,
+  { field, frame, depthAt }: ViewRayNodes,
   uv: Vec2,
   { direction, directionView }: ViewRay,
   missesGround?: Bool
@@ -63,11 +77,7 @@ export function viewRayEnd(
   if (missesGround === undefined) findGround()
   else If(missesGround.not(), findGround)
   If(isBackgroundDepth(depth).not(), () => {
-    const inverse = frame.projectionInverse as unknown as Mat4
-    const viewZ = isLogarithmic
-      ? logarithmicDepthToViewZ(depth, frame.near, frame.far)
-      : getViewPosition(uv, depth, inverse).z
-    end.assign(end.min(float(viewZ).div(directionView.z)))
+    end.assign(end.min(viewZAt(frame, uv, depth).div(directionView.z)))
   })
   return end
 }

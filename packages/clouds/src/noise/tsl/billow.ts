@@ -9,7 +9,7 @@ import { cellOf, digitsOf, hashCell, wrapped, type UVec3 } from './cellHash'
  * The eight nearest cells are visited first, then others, unless they lie beyond the nearest point so
  * far: 9.3 of 27 on average.
  *
- * @see Worley 1996, "A cellular texture basis function", on F₁. Twin: test/twins/noise.ts
+ * @see Worley 1996, "A cellular texture basis function", SIGGRAPH, pp. 291–294, on F₁. Twin: test/twins/noise.ts
  */
 export const billow = /*#__PURE__*/ Fn(
   ([p, cells, seed]: [Vec3, Vec3, Float]) => {

@@ -10,7 +10,7 @@ export type UVec3 = Node<'uvec3'>
 /**
  * 96 bits for a cell of a lattice.
  *
- * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", on PCG3D. Twin: test/twins/noise.ts
+ * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", JCGT 9 (3), supplement: pcg3d. Twin: test/twins/noise.ts
  */
 export const hashBits = /*#__PURE__*/ Fn(
   ([cell]: [UVec3]) => {

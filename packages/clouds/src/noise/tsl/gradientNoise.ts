@@ -30,7 +30,7 @@ const fadeOf = (part: Vec3): Vec3 =>
  * @param p - Any place, in [−1, 2] for full precision.
  * @param cells - Cells in a period along each axis, whole.
  * @param seed - Whole, below 2¹⁶.
- * @see Perlin 2002, "Improving noise", on the fade curve. Twin: test/twins/noise.ts
+ * @see Perlin 2002, "Improving noise", SIGGRAPH, pp. 681–682, on the fade curve. Twin: test/twins/noise.ts
  */
 export const perlin = /*#__PURE__*/ Fn(
   ([p, cells, seed]: [Vec3, Vec3, Float]) => {

@@ -71,8 +71,7 @@ function accumulate(
  *
  * @param cells - From `gatherCells`.
  * @param history - The target of the last frame.
- * @see Karis 2014, "High-quality temporal supersampling" (SIGGRAPH courses); Yang et al. 2020, "A survey of
- *   temporal antialiasing techniques", §5 (temporal upsampling)
+ * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §5 (temporal upsampling)
  */
 export function upscale(
   viewRays: ViewRayNodes,

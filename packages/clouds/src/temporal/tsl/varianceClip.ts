@@ -16,9 +16,8 @@ export interface Neighbourhood {
  *
  * @param deviations - Half width of the box in standard deviations, γ of the paper.
  * @param slack - Extra tolerance in units of brightness and of transmittance.
- * @see Salvi 2016, "An excursion in temporal supersampling" (GDC), variance clipping; clipping towards the
- *   mean is that of Karis 2014, "High-quality temporal supersampling" (SIGGRAPH courses); both in Yang et
- *   al. 2020, "A survey of temporal antialiasing techniques", §4.2
+ * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §4.2, after Salvi 2016 (variance clipping) and
+ *   Karis 2014 (clipping towards the mean)
  */
 export function varianceClip(
   light: Vec4,
