@@ -75,8 +75,6 @@ function checkRising(
  *
  * `luminanceScale` is that of all cameras, so an atmosphere has one of these. Lamps and emissive materials of your own
  * must follow it, or they are metered wrong, too.
- *
- * @see Krawczyk, Myszkowski & Seidel 2005, "Perceptual effects in real-time tone mapping" (dark scenes, adaptation)
  */
 export class AutoExposureNode extends Node<'vec4'> {
   static get type(): string {

@@ -12,7 +12,7 @@ const DAYLIGHT_LUMINANCE = 5000
  */
 const HIGHLIGHT = 8
 
-/** How luminance becomes a picture. */
+/** Settings of an automatic exposure that need no picture. */
 export interface ExposureSettings {
   /** Brightness over what is metered [EV]. */
   compensation: number
