@@ -2,7 +2,7 @@ import {
   airglow,
   aerialPerspective,
   Atmosphere,
-  exposureFor,
+  autoExposure,
   lightShafts,
   marsParameters,
   milkyWay,
@@ -15,8 +15,8 @@ import {
   stars,
   SunDirectionalLight,
   sunFlare,
-  type LightShafts,
-  type LightSource
+  type AutoExposureNode,
+  type LightShafts
 } from '@welkin/atmosphere'
 import {
   cloudAirShadow,
@@ -31,8 +31,8 @@ import {
 import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass, shadow } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import { Landscape, meadow, redDust } from './landscape'
+import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
+import { Landscape, meadow, redDust, snow } from './landscape'
 import type { Still } from './scenes'
 
 /** Vertical field of view [°]. */
@@ -41,8 +41,6 @@ const FIELD_OF_VIEW = 55
 const LIGHT_DISTANCE = 20_000
 /** Half width of the hills' shadow map [m]. */
 const SHADOW_EXTENT = 6000
-/** Exposure with clouds over that for the ground, so that sunlit tops keep their shading. */
-const CLOUD_EXPOSURE = 0.55
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
@@ -89,14 +87,12 @@ export class StillView {
   readonly #renderer: WebGPURenderer
   readonly #target: RenderTarget
   readonly #pipeline: RenderPipeline
-  readonly #camera: PerspectiveCamera
   readonly #atmosphere: Atmosphere
   readonly #sun: SunDirectionalLight
   readonly #landscape: Landscape | undefined
   readonly #shafts: LightShafts | undefined
   readonly #clouds: CloudsNode | undefined
-  /** Lights besides the sun that exposure is for. */
-  readonly #sources: LightSource[] = []
+  readonly #exposure: AutoExposureNode
 
   constructor(
     renderer: WebGPURenderer,
@@ -107,7 +103,7 @@ export class StillView {
     this.#renderer = renderer
     this.#target = new RenderTarget(width, height)
     const atmosphere = (this.#atmosphere = atmosphereOf(still))
-    const camera = (this.#camera = cameraOf(still, width / height))
+    const camera = cameraOf(still, width / height)
     const scene = new Scene()
     const sun = (this.#sun = sunOf(atmosphere))
     const sky = new SkyLightProbe(atmosphere)
@@ -116,10 +112,11 @@ export class StillView {
     if (still.planet === undefined) atmosphere.add(planetGround())
     if (still.sun instanceof Date) this.#addNight(scene)
     else atmosphere.add(sunFlare())
-    if (still.land === 'hills') {
+    if (still.land !== 'planet') {
       const isMars = still.planet === 'mars'
+      const soil = isMars ? redDust : still.land === 'snow' ? snow : meadow
       const radius = atmosphere.parameters.bottomRadius
-      this.#landscape = new Landscape(radius, isMars ? redDust : meadow, !isMars)
+      this.#landscape = new Landscape(radius, soil, !isMars)
       scene.add(this.#landscape)
     }
 
@@ -128,8 +125,7 @@ export class StillView {
     const shafts = still.shafts && lightShafts(atmosphere, camera, { light: sun })
     this.#shafts = shafts
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
-    this.#pipeline = new RenderPipeline(renderer)
-    this.#pipeline.outputNode = air
+    let picture: Node = air
     if (still.clouds !== undefined) {
       const { preset, coverage } = still.clouds
       const layers = cloudPreset(preset)
@@ -141,18 +137,24 @@ export class StillView {
       node.field.bake(renderer)
       node.time = TIME
       this.#clouds = node
-      this.#pipeline.outputNode = node
+      picture = node
     }
+    this.#exposure = autoExposure(picture, atmosphere)
+    this.#pipeline = new RenderPipeline(renderer)
+    this.#pipeline.outputNode = this.#exposure
   }
 
-  /** Factor on daylight's brightness. Sunlit clouds are brighter than the ground that it is metered for. */
-  get exposure(): number {
-    const metered = exposureFor(this.#atmosphere, this.#camera, { sources: this.#sources })
-    return this.#clouds === undefined ? metered : metered * CLOUD_EXPOSURE
+  /** Luminance that it is exposed for [cd/m²]. */
+  get luminance(): number {
+    return this.#exposure.luminance ?? NaN
+  }
+
+  /** Exposes the next picture as the last one asks for. */
+  async expose(): Promise<void> {
+    await this.#exposure.settle()
   }
 
   draw(): void {
-    this.#atmosphere.luminanceScale = 1e-4 * this.exposure
     this.#renderer.setRenderTarget(this.#target)
     this.#pipeline.render()
     this.#renderer.setRenderTarget(null)
@@ -167,6 +169,7 @@ export class StillView {
 
   dispose(): void {
     this.#pipeline.dispose()
+    this.#exposure.dispose()
     this.#clouds?.dispose()
     this.#landscape?.dispose()
     this.#shafts?.dispose()
@@ -182,6 +185,5 @@ export class StillView {
     const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
     const moonSky = new SkyLightProbe(atmosphere, luna.source)
     scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
-    this.#sources.push(luna.source)
   }
 }

@@ -27,6 +27,7 @@ export interface Soil {
 }
 
 export const meadow: Soil = { low: [0.1, 0.13, 0.045], high: [0.22, 0.18, 0.14], variation: 0.3 }
+export const snow: Soil = { low: [0.85, 0.86, 0.87], high: [0.8, 0.81, 0.83], variation: 0.04 }
 export const redDust: Soil = { low: [0.3, 0.13, 0.06], high: [0.22, 0.11, 0.06], variation: 0.2 }
 
 /** Pseudo-random number of a lattice point, in [0, 1). */

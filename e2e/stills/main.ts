@@ -6,6 +6,7 @@ import { PNG } from 'pngjs'
 import { AgXToneMapping } from 'three'
 import { cloudReference } from '../bench/clouds'
 import { median } from '../bench/statistics'
+import { tonesOf, type Tones } from '../harness/tones'
 import { gpuMilliseconds, HeadlessDevice, nextFrame } from '../headless/device'
 import { selectStills, stills, type Still } from './scenes'
 import { StillView } from './StillView'
@@ -23,6 +24,8 @@ const { values, positionals } = parseArgs({
 })
 const HELP = '[--size 1920x1080] [--scenes NAME…] [--out DIR] [--quality high] [--frames 120]'
 
+/** Frames at the start that exposure adapts to. */
+const EXPOSED = 10
 /** Frames at the end whose GPU time is told. */
 const TIMED = 20
 
@@ -49,7 +52,10 @@ interface Taken {
   file: string
   /** Median of the last frames [ms]. */
   gpuMs: number
-  exposure: number
+  /** Luminance that it is exposed for [cd/m²]. */
+  luminance: number
+  /** Mean, and part that is clipped, of what a viewer sees. */
+  tones: Tones
 }
 
 /** @throws If nothing was drawn: the picture is of one colour. */
@@ -74,11 +80,14 @@ async function take(renderer: Parameters<typeof gpuMilliseconds>[0], still: Stil
       nextFrame()
       view.draw()
       times.push(await gpuMilliseconds(renderer))
+      if (frame < EXPOSED) await view.expose()
     }
     const file = `${still.name}.png`
-    writeFileSync(join(values.out, file), encode(still.name, await view.picture()))
-    const { exposure } = view
-    return { name: still.name, file, gpuMs: median(times.slice(-TIMED)), exposure }
+    const pixels = await view.picture()
+    writeFileSync(join(values.out, file), encode(still.name, pixels))
+    const { luminance } = view
+    const gpuMs = median(times.slice(-TIMED))
+    return { name: still.name, file, gpuMs, luminance, tones: tonesOf(pixels, 255) }
   } finally {
     view.dispose()
   }
@@ -96,8 +105,10 @@ async function takeAll(): Promise<void> {
     try {
       const result = await take(renderer, still)
       taken.push(result)
+      const { gpuMs, luminance, tones } = result
       console.log(
-        `${still.name.padEnd(22)} ${result.gpuMs.toFixed(2)} ms a frame   exposure ${result.exposure.toPrecision(3)}`
+        `${still.name.padEnd(22)} ${gpuMs.toFixed(2)} ms a frame   ${luminance.toPrecision(3)} cd/m²   ` +
+          `mean ${tones.mean.toFixed(2)}   clipped ${(100 * tones.clipped).toFixed(1)} %`
       )
     } catch (error) {
       // The others are worth having all the same.

@@ -16,8 +16,8 @@ export interface Still {
   sun: { elevation: number; azimuth: number } | Date
   /** Azimuth, clockwise from north, and pitch of the camera [°]. */
   view: { azimuth: number; pitch: number }
-  /** Hills and trees about the camera, or the bare planet. */
-  land: 'hills' | 'planet'
+  /** Hills and trees about the camera, the same under snow, or the bare planet. */
+  land: 'hills' | 'snow' | 'planet'
 }
 
 /** The presets from the ground: where to look. */
@@ -185,6 +185,22 @@ export const stills: readonly Still[] = [
     land: 'planet'
   },
   {
+    name: 'terminator',
+    about: 'from day into night, 400 km up: the lit side keeps its shading, space is black',
+    altitude: 400_000,
+    sun: { elevation: -4, azimuth: 60 },
+    view: { azimuth: 60, pitch: -22 },
+    land: 'planet'
+  },
+  {
+    name: 'clear-snow',
+    about: 'snow at noon: pale, not burnt out',
+    altitude: 2,
+    sun: { elevation: 60, azimuth: 100 },
+    view: { azimuth: 0, pitch: 0 },
+    land: 'snow'
+  },
+  {
     name: 'clear-noon',
     about: 'blue of the zenith, pale horizon, haze before the hills',
     altitude: 2,
@@ -214,6 +230,14 @@ export const stills: readonly Still[] = [
     clouds: { preset: 'fairWeather', coverage: 0.2 },
     altitude: 300,
     sun: new Date('2026-06-28T14:00:00Z'),
+    view: { azimuth: 150, pitch: 18 },
+    land: 'hills'
+  },
+  {
+    name: 'night-stars',
+    about: 'new moon: darker than by the moon, the Milky Way over black hills',
+    altitude: 300,
+    sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 150, pitch: 18 },
     land: 'hills'
   },

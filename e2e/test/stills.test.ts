@@ -12,7 +12,7 @@ it('has every still once', () => {
 it('takes names, and prefixes where no still has the name', () => {
   expect(names(['among'])).toEqual(['among'])
   expect(names(['mars'])).toEqual(['mars-noon', 'mars-sunset'])
-  expect(names(['night', '400km'])).toEqual(['400km', 'night-moon'])
+  expect(names(['night', '400km'])).toEqual(['400km', 'night-moon', 'night-stars'])
 })
 
 it('tells all names when one is wrong', () => {

@@ -1,11 +1,12 @@
 import {
   aerialPerspective,
   aerialPerspectiveFog,
+  autoExposure,
   skyBackground,
   SkyLightProbe,
   SunDirectionalLight
 } from '@welkin/atmosphere'
-import type { Atmosphere } from '@welkin/atmosphere'
+import type { Atmosphere, AutoExposureNode } from '@welkin/atmosphere'
 import type { Camera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
@@ -42,6 +43,7 @@ export class Air {
   readonly sky: SkyLightProbe
   /** Undefined on the forward path. */
   readonly post: AirPost | undefined
+  #pipeline: RenderPipeline | undefined
 
   constructor(
     private readonly renderer: WebGPURenderer,
@@ -65,22 +67,29 @@ export class Air {
       pipeline.outputNode = color
       // #endregion
       this.post = { color, depth, pipeline }
+      this.#pipeline = pipeline
     }
   }
 
+  /** Has the picture set the exposure, on either path. */
+  expose(): AutoExposureNode {
+    const pipeline = (this.#pipeline ??= new RenderPipeline(this.renderer))
+    const color = this.post?.color ?? pass(this.scene, this.camera)
+    const exposure = autoExposure(color, this.atmosphere)
+    pipeline.outputNode = exposure
+    return exposure
+  }
+
   render(): void {
-    if (this.post === undefined) {
-      this.renderer.render(this.scene, this.camera)
-    } else {
-      this.post.pipeline.render()
-    }
+    if (this.#pipeline === undefined) this.renderer.render(this.scene, this.camera)
+    else this.#pipeline.render()
   }
 
   dispose(): void {
     this.scene.remove(this.sun, this.sun.target, this.sky)
     this.sun.dispose()
     this.sky.dispose()
-    this.post?.pipeline.dispose()
+    this.#pipeline?.dispose()
     this.atmosphere.dispose()
   }
 }

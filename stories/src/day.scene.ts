@@ -71,13 +71,15 @@ export async function createDay(
   const night = new NightLightProbe(atmosphere)
   moonlight.castShadow = true
   scene.add(moonlight, moonlight.target, moonlitSky, night)
-
-  const cycle = new DayCycle(atmosphere, {
-    rate: 1440, // a day in a minute
-    exposureOptions: { sources: [luna.source] }
-  })
   // #endregion
   const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  const exposure = air.expose()
+  // #region cycle
+  const cycle = new DayCycle(atmosphere, {
+    rate: 1440, // a day in a minute
+    autoExposure: exposure // autoExposure(pass(scene, camera), atmosphere), the pipeline's output
+  })
+  // #endregion
   air.sun.castShadow = true
   air.sun.distance = 50
   for (const { shadow } of [air.sun, moonlight]) {
@@ -116,7 +118,7 @@ export async function createDay(
     // Hidden pages get no frames: time goes on from where it was.
     const deltaSeconds = Math.min(delta, 0.1)
     // #region each frame
-    cycle.update(deltaSeconds, camera) // moves sun, moon and stars, and exposure with them
+    cycle.update(deltaSeconds) // moves sun, moon and stars, and exposure with them
     // #endregion
     air.render()
   }
@@ -136,12 +138,12 @@ export async function createDay(
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = (async () => {
-        // One exposure, from the same tables, in every single frame.
-        if (current.frame) {
-          await atmosphere.bake(renderer)
-          cycle.adaptation = 0
+        // From daylight's scale half floats take three pictures to a night's.
+        for (let i = 0; current.frame && i < WARM_UP_FRAMES + 3; i++) {
+          await new Promise(resolve => requestAnimationFrame(resolve))
+          draw()
+          await exposure.settle()
         }
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
       })()
     },
     update(changes) {
@@ -150,6 +152,7 @@ export async function createDay(
     dispose() {
       if (controls.domElement !== null) controls.dispose()
       for (const light of [moonlight, moonlitSky, night]) light.dispose()
+      exposure.dispose()
       air.dispose()
       for (const { geometry } of meshes) geometry.dispose()
       material.dispose()

@@ -9,6 +9,8 @@ const code = `${storyCode('quickStart.ts', 'quick start')}
 
 ${storyCode('day.scene.ts', 'day')}
 
+${storyCode('day.scene.ts', 'cycle')}
+
 ${storyCode('day.scene.ts', 'each frame')}`
 
 const meta: Meta<DayArgs> = {

@@ -1,5 +1,5 @@
 import { Matrix4, Mesh, PerspectiveCamera, Scene, Texture, Vector3 } from 'three'
-import { vec4 } from 'three/tsl'
+import { texture, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
   aerialPerspective,
@@ -9,6 +9,8 @@ import {
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
+  autoExposure,
+  type AutoExposureOptions,
   DayCycle,
   distanceFog,
   exposureFor,
@@ -39,6 +41,8 @@ import {
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
 const luna = moon().attach(atmosphere)
+const picture = texture(new Texture())
+const metered = autoExposure(picture, atmosphere)
 const cycle = new DayCycle(atmosphere, { date: new Date('2026-06-21T12:00:00Z') })
 const fog = distanceFog()
 const ground = planetGround()
@@ -95,6 +99,46 @@ const cases: [message: string, call: () => unknown][] = [
   ['illuminance must be finite and ≥ 0, got NaN', () => exposureOfIlluminance(NaN)],
   ['illuminance must be finite and ≥ 0, got -1', () => exposureOfIlluminance(-1)],
   ['illuminance must be finite and ≥ 0, got Infinity', () => exposureOfIlluminance(Infinity)],
+
+  [
+    'DayCycle: autoExposure must be an autoExposure() of its atmosphere, got 1',
+    () => new DayCycle(atmosphere, { autoExposure: wrong(1) })
+  ],
+  [
+    'DayCycle: autoExposure must be an autoExposure() of its atmosphere',
+    () => new DayCycle(new Atmosphere(), { autoExposure: metered })
+  ],
+  [
+    'AutoExposureNode: colorNode must be a node, got undefined',
+    () => autoExposure(wrong(undefined), atmosphere)
+  ],
+  [
+    'AutoExposureNode: atmosphere must be an Atmosphere',
+    () => autoExposure(picture, wrong(undefined))
+  ],
+  ...(
+    [
+      [{ compensation: NaN }, 'compensation must be a finite number, got NaN'],
+      [{ limits: [0, 1] }, 'limits[0] must be in [1e-9, 1000000000000], got 0'],
+      [{ limits: wrong(1) }, 'limits must be an array of 2 numbers, got 1'],
+      [{ percentiles: [0.6, 0.4] }, 'percentiles must rise, got [0.6, 0.4]'],
+      [{ percentiles: [0, 1.1] }, 'percentiles[1] must be in [0, 1], got 1.1'],
+      [{ centerWeight: -1 }, 'centerWeight must be in [0, 1], got -1'],
+      [{ lightSeconds: -1 }, 'lightSeconds must be finite and ≥ 0, got -1'],
+      [{ darkSeconds: Infinity }, 'darkSeconds must be finite and ≥ 0, got Infinity'],
+      [{ darkNights: wrong(1) }, 'darkNights must be true or false, got 1']
+    ] satisfies [AutoExposureOptions, string][]
+  ).map(
+    ([options, message]) =>
+      [`AutoExposureNode: ${message}`, () => autoExposure(picture, atmosphere, options)] as [
+        string,
+        () => unknown
+      ]
+  ),
+  [
+    'AutoExposureNode.adapt: deltaSeconds must be finite and ≥ 0, got NaN',
+    () => metered.adapt(NaN)
+  ],
 
   // Textures and rotations.
   [

@@ -1,4 +1,5 @@
 import { PerspectiveCamera, Texture } from 'three'
+import { texture } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
   airglow,
@@ -6,6 +7,7 @@ import {
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
+  autoExposure,
   DayCycle,
   distanceFog,
   exposureFor,
@@ -27,6 +29,7 @@ import {
 
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
+const picture = texture(new Texture())
 const luna = moon().attach(atmosphere)
 const parameters = new AtmosphereParameters()
 
@@ -69,6 +72,7 @@ const cases: [message: string, call: () => unknown][] = [
       ['DayCycle', 'rat', 'rate', o => new DayCycle(atmosphere, o)],
       ['DayCycle', 'flor', 'floor', o => new DayCycle(atmosphere, { exposureOptions: o })],
       ['exposureFor', 'source', 'sources', o => exposureFor(atmosphere, camera, o)],
+      ['AutoExposureNode', 'limit', 'limits', o => autoExposure(picture, atmosphere, o)],
       ['solveDiffuseLight', 'order', 'orders', o => solveDiffuseLight(parameters, o)],
       ['HeightFog', 'densty', 'density', o => heightFog(o)],
       ['HeightFog', 'densty', 'density', o => heightFog().set(o)],
@@ -103,6 +107,7 @@ const cases: [message: string, call: () => unknown][] = [
   [`AtmosphereParameters: ${noOptions}`, () => new AtmosphereParameters(wrong(null))],
   [`DayCycle: ${noOptions}`, () => new DayCycle(atmosphere, wrong(null))],
   [`exposureFor: ${noOptions}`, () => exposureFor(atmosphere, camera, wrong(null))],
+  [`AutoExposureNode: ${noOptions}`, () => autoExposure(picture, atmosphere, wrong(null))],
   [`HeightFog: ${noOptions}`, () => heightFog(wrong(null))],
   [`HeightFog: ${noOptions}`, () => heightFog().set(wrong(null))],
   [`DistanceFog: ${noOptions}`, () => distanceFog(wrong(null))],

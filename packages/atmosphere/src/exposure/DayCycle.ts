@@ -3,6 +3,7 @@ import { Matrix4, Vector3 } from 'three'
 import { checkDate, checkNonNegative, checkOptions, fail, Geodetic } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkRange } from '../check'
+import type { AutoExposureNode } from './AutoExposureNode'
 import { ExposureAdaptation } from './ExposureAdaptation'
 import { checkExposure, type ExposureOptions } from './exposureFor'
 import {
@@ -31,6 +32,8 @@ export interface DayCycleOptions {
   adaptation?: number
   /** Options of `exposureFor`. */
   exposureOptions?: ExposureOptions
+  /** Exposure by what the camera sees, in place of `exposureFor`; by default null. Shared, not owned. */
+  autoExposure?: AutoExposureNode | null
 }
 
 const _origin = new Vector3()
@@ -54,7 +57,7 @@ const _scale = new Vector3()
  * clock; the rest is settings and the atmosphere's place.
  *
  * Exposure multiplies the `luminanceScale` that the atmosphere has when the cycle is made, unless another
- * cycle wrote that: from that it takes over.
+ * cycle wrote that: from that it takes over. With `autoExposure` the picture sets it, and that has options of its own.
  */
 export class DayCycle {
   /** Shared, not owned. */
@@ -65,6 +68,8 @@ export class DayCycle {
   holdDay: boolean
   /** Options of `exposureFor`. */
   readonly exposureOptions: ExposureOptions
+  /** Exposure by what the camera sees, in place of `exposureFor`, or null. Shared, not owned. */
+  readonly autoExposure: AutoExposureNode | null
   #time: number
   #rate = 1440
   #daylight = 0.5
@@ -76,7 +81,15 @@ export class DayCycle {
   /** @throws If an argument is of the wrong kind or out of range. */
   constructor(atmosphere: Atmosphere, options: DayCycleOptions = {}) {
     checkAtmosphere('DayCycle', atmosphere)
-    const { date, rate, daylight, adaptation, holdDay, exposureOptions } = checkOptions(
+    const {
+      date,
+      rate,
+      daylight,
+      adaptation,
+      holdDay,
+      exposureOptions,
+      autoExposure = null
+    } = checkOptions(
       'DayCycle',
       options,
       'date',
@@ -84,9 +97,14 @@ export class DayCycle {
       'daylight',
       'holdDay',
       'adaptation',
-      'exposureOptions'
+      'exposureOptions',
+      'autoExposure'
     )
+    if (autoExposure !== null && autoExposure?.atmosphere !== atmosphere) {
+      fail('DayCycle', 'autoExposure must be an autoExposure() of its atmosphere', autoExposure)
+    }
     this.atmosphere = atmosphere
+    this.autoExposure = autoExposure
     this.exposureOptions = checkExposure('DayCycle', exposureOptions)
     this.holdDay = holdDay ?? false
     if (rate !== undefined) this.rate = rate
@@ -214,9 +232,10 @@ export class DayCycle {
     this.#moveTo(this.#time + (value / 24 - this.#dayFraction()) * DAY)
   }
 
-  /** Exposure last set by {@link update}: 1 in full daylight. */
+  /** Exposure last set by {@link update}: 1 in full daylight, with `autoExposure` 0.3 or so. */
   get exposure(): number {
-    return this.#exposureAdaptation.exposure
+    const { daylightScale, exposure } = this.#exposureAdaptation
+    return this.autoExposure ? this.atmosphere.luminanceScale / daylightScale : exposure
   }
 
   /** Geodetic position of the world's origin; longitude 0 where that is the planet's centre. */
@@ -239,7 +258,8 @@ export class DayCycle {
    * Advances the clock.
    *
    * @param deltaSeconds - Time since the last call [s].
-   * @param camera - Camera that `atmosphere.luminanceScale` adapts to; without one it stays.
+   * @param camera - Camera that `atmosphere.luminanceScale` adapts to; without one it stays, unless there is an
+   *   `autoExposure`, which needs none.
    * @throws If the time is not finite.
    */
   update(deltaSeconds: number, camera?: Camera): void {
@@ -247,7 +267,9 @@ export class DayCycle {
       fail('DayCycle.update', 'deltaSeconds must be finite', deltaSeconds)
     }
     if (!this.paused) this.#moveTo(this.#time + this.#solarTimeOf(deltaSeconds * this.#rate * 1000))
-    if (camera !== undefined) {
+    if (this.autoExposure) {
+      this.autoExposure.adapt(Math.abs(deltaSeconds))
+    } else if (camera !== undefined) {
       this.#exposureAdaptation.update(camera, this.exposureOptions, deltaSeconds, this.#adaptation)
     }
   }

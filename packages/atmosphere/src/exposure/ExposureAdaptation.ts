@@ -1,5 +1,6 @@
 import type { Camera } from 'three'
 import type { Atmosphere } from '../Atmosphere'
+import { adaptedScale } from './cpu/exposedScale'
 import { exposureFor, type ExposureOptions } from './exposureFor'
 
 /** Last `luminanceScale` written to an atmosphere, and its value for exposure 1. */
@@ -13,14 +14,14 @@ const scales = new WeakMap<Atmosphere, { written: number; daylight: number }>()
 export class ExposureAdaptation {
   readonly #atmosphere: Atmosphere
   /** `luminanceScale` for exposure 1 [1/(cd/m²)]. */
-  readonly #daylightScale: number
+  readonly daylightScale: number
   #exposure: number | null = null
 
   constructor(atmosphere: Atmosphere) {
     this.#atmosphere = atmosphere
     const { luminanceScale } = atmosphere
     const previous = scales.get(atmosphere)
-    this.#daylightScale = previous?.written === luminanceScale ? previous.daylight : luminanceScale
+    this.daylightScale = previous?.written === luminanceScale ? previous.daylight : luminanceScale
   }
 
   /** Exposure now: 1 in full daylight. */
@@ -37,11 +38,9 @@ export class ExposureAdaptation {
   update(camera: Camera, options: ExposureOptions, seconds: number, timeConstant: number): void {
     const target = exposureFor(this.#atmosphere, camera, options)
     const last = this.#exposure ?? target
-    // Exponential in stops, as eyes and cameras count.
-    const rest = timeConstant > 0 ? Math.exp(-Math.abs(seconds) / timeConstant) : 0
-    this.#exposure = target * (last / target) ** rest
-    const written = this.#daylightScale * this.#exposure
+    this.#exposure = adaptedScale(last, target, Math.abs(seconds), timeConstant)
+    const written = this.daylightScale * this.#exposure
     this.#atmosphere.luminanceScale = written
-    scales.set(this.#atmosphere, { written, daylight: this.#daylightScale })
+    scales.set(this.#atmosphere, { written, daylight: this.daylightScale })
   }
 }

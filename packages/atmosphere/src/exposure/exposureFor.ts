@@ -9,6 +9,7 @@ import { lightTransmittance } from '../transmittance/cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../night/cpu/twilight'
 import { checkSources, type LightSource } from '../view/LightSource'
 import { luminanceOf } from '../parameters/photometry'
+import { keyValue } from './cpu/keyValue'
 import { checkAtmosphere } from '../view/ViewNodes'
 
 /** Options of {@link exposureFor}. */
@@ -25,31 +26,10 @@ const SCENE_REFLECTANCE = 0.2
 /** Illuminance of exposure 1: full daylight [lx]. */
 const DAYLIGHT_ILLUMINANCE = 1e5
 
-/** Luminance below which only rods see [cd/m²]. */
-const SCOTOPIC_LUMINANCE = 0.01
-
-/**
- * Power of luminance by which pictures darken below {@link SCOTOPIC_LUMINANCE}, found by looking: 0 makes a
- * moonless night as bright as a moonlit one, larger ones leave it black. Story: Day, Night.
- */
-const SCOTOPIC_POWER = 0.3
-
 /** Illuminance by the bare sun above the Earth's air [lx]. */
 const SUN_ILLUMINANCE = 132_000
 
 const _direction = new Vector3()
-
-/**
- * Key value of a scene: brightness of its picture for the luminance that the eye has adapted to.
- *
- * @see Krawczyk, Myszkowski & Seidel 2005, "Lightness perception in tone reproduction", eq. 11: the key
- *   falls from 0.7 in daylight to 0.03 where only rods see. Below 0.01 cd/m² the power of 0.3 is ours:
- *   a moonless night stays darker than one with a moon.
- */
-function keyValue(luminance: number): number {
-  const key = 1.03 - 2 / (2 + Math.log10(luminance + 1))
-  return key * (luminance / (luminance + SCOTOPIC_LUMINANCE)) ** SCOTOPIC_POWER
-}
 
 /**
  * Exposure for an illuminance, falling steadily with it: 1 in full daylight (100 klx), 17,000 by the light

@@ -1,0 +1,206 @@
+import { Atmosphere, autoExposure } from '@welkin/atmosphere'
+import {
+  ACESFilmicToneMapping,
+  AgXToneMapping,
+  DataTexture,
+  FloatType,
+  NearestFilter,
+  type Texture
+} from 'three'
+import { texture } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import {
+  CELLS,
+  cellWeights,
+  meteredLogLuminance,
+  TAPS
+} from '../../../packages/atmosphere/src/exposure/cpu/meteredLuminance'
+import { ExposureMeter } from '../../../packages/atmosphere/src/exposure/ExposureMeter'
+import { tonesOf } from '../../harness/tones'
+import { days, ExposureStage, nights, type ExposureScene } from '../harness/exposure-scenes'
+import { expectClose, expectTrue } from '../harness/expect'
+import type { GpuContext } from '../harness/context'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+
+const size = { width: 160, height: 90 }
+/** Size of scenes: their pixels take long in software. */
+const sceneSize = { width: 96, height: 54 }
+
+type Color = readonly [number, number, number]
+
+const luminance = ([r, g, b]: Color): number => 0.2126729 * r + 0.7151522 * g + 0.072175 * b
+
+/**
+ * A high range, the same upside down: nine stops from left to right, two from the edges to the middle, hues, a
+ * sun of infinite light, pixels that are black or no number.
+ */
+function pattern(width: number, height: number): { colors: Color[]; picture: Texture } {
+  const colors = Array.from({ length: width * height }, (_, i): Color => {
+    const x = (i % width) + 0.5
+    const y = Math.floor(i / width) + 0.5
+    const sun = Math.hypot(x - 0.7 * width, y - height / 2) < height / 30
+    if (sun) return [Infinity, Infinity, Infinity]
+    if ((i % width) % 11 === 3) return [NaN, NaN, NaN]
+    if ((i % width) % 13 === 5) return [0, 0, 0]
+    const base = 2 ** ((9 * x) / width - 6 + 2 * (1 - Math.abs((2 * y) / height - 1)))
+    return [base, base * (0.4 + (0.6 * x) / width), base * 0.3]
+  })
+  const data = new Float32Array(colors.flatMap(color => [...color, 1]))
+  const picture = new DataTexture(data, width, height, undefined, FloatType)
+  picture.minFilter = picture.magFilter = NearestFilter
+  picture.needsUpdate = true
+  return { colors, picture }
+}
+
+/** Float64 twin of `logLuminance` for all of a picture, four samples a cell, row by row. */
+function logLuminances(colors: readonly Color[], width: number, height: number): number[] {
+  const [columns, rows] = CELLS
+  const sample = (left: number, top: number): number => {
+    const logs = Array.from({ length: TAPS * TAPS }, (_, tap) => {
+      const x = left + ((tap % TAPS) + 0.5) / (2 * TAPS)
+      const y = top + (Math.floor(tap / TAPS) + 0.5) / (2 * TAPS)
+      const column = Math.floor((x / columns) * width)
+      const row = Math.floor((y / rows) * height)
+      return Math.log2(Math.min(luminance(colors[row * width + column]), 65_536))
+    }).filter(log => log > -24)
+    return logs.length > 0 ? logs.reduce((sum, log) => sum + log, 0) / logs.length : -24
+  }
+  return Array.from({ length: columns * rows * 4 }, (_, i) => {
+    const [column, row] = [(i >> 2) % columns, Math.floor((i >> 2) / columns)]
+    return sample(column + (i % 2) / 2, row + ((i >> 1) % 2) / 2)
+  })
+}
+
+gpuTest(
+  'log luminance agrees with its float64 twin, in a picture with a sun and holes',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const [width, height] = [333, 187]
+    const { colors, picture } = pattern(width, height)
+    const meter = new ExposureMeter()
+    const read = await new Promise<Float32Array>(resolve => {
+      meter.meter(renderer, picture, 1, reading => {
+        resolve(reading.logs)
+      })
+    })
+    // A read-back comes bottom-up on WebGL 2.
+    const row = (i: number): number => Math.floor(i / 4 / CELLS[0])
+    const flipped = (i: number): number => i + (CELLS[1] - 1 - 2 * row(i)) * 4 * CELLS[0]
+    const logs = t.backend === 'webgl' ? read.map((_, i) => read[flipped(i)]) : read
+    const expected = logLuminances(colors, width, height)
+    // Half floats hold eight stops within 1/256; a place between two pixels may be rounded to either.
+    const differences = logs.map((log, i) => Math.abs(log - expected[i])).toSorted()
+    const [median, most] = [0.5, 0.99].map(part => differences[Math.floor(part * logs.length)])
+    t.note(`differences: median ${median.toFixed(4)}, 99 % ${most.toFixed(4)} stops`)
+    expectTrue(median < 1 / 256, `median difference ${median}`)
+    expectTrue(most < 1 / 64, `difference ${most} in 1 %`)
+    meter.dispose()
+    picture.dispose()
+  }
+)
+
+/** Draws a picture through an exposure, and meters it. */
+async function metered(
+  renderer: WebGPURenderer,
+  picture: Texture,
+  isTexture: boolean
+): Promise<{ luminance: number; inTime: boolean; scale: number }> {
+  const atmosphere = new Atmosphere({ luminanceScale: 1e-3 })
+  const color = texture(picture)
+  const exposure = autoExposure(isTexture ? color : color.mul(1), atmosphere, {
+    darkNights: false,
+    centerWeight: 0.5,
+    percentiles: [0.1, 0.97]
+  })
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputNode = exposure
+  await nextFrame()
+  pipeline.render()
+  const inTime = exposure.luminance === null
+  atmosphere.luminanceScale = 1
+  await exposure.settle()
+  const result = { luminance: exposure.luminance!, inTime, scale: atmosphere.luminanceScale }
+  exposure.dispose()
+  pipeline.dispose()
+  return result
+}
+
+gpuTest('meters a high range within 2 %, by the scale that it was drawn with', async t => {
+  const renderer = await t.createRenderer(size)
+  const { colors, picture } = pattern(size.width, size.height)
+  const logs = logLuminances(colors, size.width, size.height)
+  const expected = 1000 * 2 ** meteredLogLuminance(logs, cellWeights(0.5), [0.1, 0.97]).mean
+  for (const isTexture of [true, false]) {
+    const { luminance, inTime, scale } = await metered(renderer, picture, isTexture)
+    t.note(`${isTexture ? 'texture' : 'node'}: ${(luminance / expected - 1).toExponential(1)}`)
+    expectTrue(inTime, 'the picture was read back within its frame')
+    expectClose(luminance, expected, { relative: 0.02 }, 'metered luminance')
+    expectClose(scale * luminance, 0.17, { relative: 1e-6 }, 'grey')
+  }
+  picture.dispose()
+})
+
+gpuTest('meters an even picture exactly, however large', async t => {
+  for (const [width, height] of [
+    [7, 3],
+    [64, 36],
+    [1000, 600]
+  ]) {
+    const renderer = await t.createRenderer(size)
+    const picture = new DataTexture(
+      new Float32Array(4 * width * height).fill(3),
+      width,
+      height,
+      undefined,
+      FloatType
+    )
+    picture.needsUpdate = true
+    const { luminance } = await metered(renderer, picture, true)
+    expectClose(luminance, 3000, { relative: 0.005 }, `${width}×${height}`)
+    picture.dispose()
+  }
+})
+
+/** Checks a scene's tones as viewers see them. */
+async function judge(
+  t: GpuContext,
+  scene: ExposureScene,
+  [darkest, brightest]: readonly [number, number]
+): Promise<void> {
+  const renderer = await t.createRenderer(sceneSize)
+  const stage = new ExposureStage(renderer, scene)
+  // From a scale for daylight; half floats hold no night in that.
+  await stage.settle(4)
+  const metered = stage.exposure.luminance!
+  const mappings = { AgX: AgXToneMapping, ACES: ACESFilmicToneMapping }
+  for (const [name, toneMapping] of Object.entries(mappings)) {
+    renderer.toneMapping = toneMapping
+    stage.refresh()
+    await nextFrame()
+    const picture = await t.capture(renderer, () => stage.draw())
+    const { mean, clipped } = tonesOf(picture.data, 1)
+    const figures = `mean ${mean.toFixed(3)}, clipped ${(100 * clipped).toFixed(2)} %`
+    const label = `${scene.name}, ${metered.toPrecision(3)} cd/m², ${name}: ${figures}`
+    t.note(label)
+    expectTrue(clipped <= 0.03, label)
+    expectTrue(mean >= darkest && mean <= brightest, label)
+  }
+  stage.dispose()
+}
+
+for (const scene of days) {
+  gpuTest(
+    `${scene.name}: at most 3 % clipped, mean 0.2 to 0.5`,
+    async t => judge(t, scene, [0.2, 0.5]),
+    { timeoutSeconds: 300 }
+  )
+}
+
+for (const scene of nights) {
+  gpuTest(
+    `${scene.name}: dark, not black, at most 3 % clipped`,
+    async t => judge(t, scene, [0.02, 0.2]),
+    { timeoutSeconds: 300 }
+  )
+}

@@ -1,0 +1,67 @@
+import { keyValue } from './keyValue'
+
+/** Mean luminance of a picture of daylight [–]: tone mappings (AgX, ACES) show it half as bright as white, in sRGB. */
+export const MIDDLE_GREY = 0.17
+
+/** Luminance in daylight, whose picture is the mean of all [cd/m²]. */
+const DAYLIGHT_LUMINANCE = 5000
+
+/**
+ * Most that the upper percentile becomes [–]. `AgXToneMapping` has white at 16, `ACESFilmicToneMapping` shows 98 % of it
+ * at 8.
+ */
+const HIGHLIGHT = 8
+
+/** Settings of an automatic exposure that need no picture. */
+export interface ExposureSettings {
+  /** Brightness over what is metered [EV]. */
+  compensation: number
+  /** Least and greatest luminance that is exposed for [cd/m²]. */
+  limits: readonly [number, number]
+  /** Pictures of dark scenes are darker. */
+  darkNights: boolean
+}
+
+/**
+ * Luminance of a picture: middle grey in daylight; where only rods see, as dark as eyes see it. In between the
+ * reciprocals add up, so that dusk is a little darker than day: 0.14 at 10 cd/m², 0.09 at 1 cd/m².
+ *
+ * @param luminance - What is metered, > 0 [cd/m²].
+ */
+const pictureLuminance = (luminance: number): number =>
+  1 / (1 / MIDDLE_GREY + 1 / keyValue(luminance) - 1 / keyValue(DAYLIGHT_LUMINANCE))
+
+/**
+ * Scale by which a metered luminance shows as middle grey, or darker by night.
+ *
+ * @param mean - Metered luminance, > 0 [cd/m²].
+ * @param bright - Luminance of the upper percentile, > 0 [cd/m²].
+ * @returns `luminanceScale`, > 0 [1/(cd/m²)].
+ */
+export function exposedScale(
+  mean: number,
+  bright: number,
+  { compensation, limits, darkNights }: ExposureSettings
+): number {
+  const [least, greatest] = limits
+  const luminance = Math.min(Math.max(mean, least), greatest)
+  const key = darkNights ? pictureLuminance(luminance) : MIDDLE_GREY
+  const highlight = Math.min(Math.max(bright, least), greatest)
+  return 2 ** compensation * Math.min(key / luminance, HIGHLIGHT / highlight)
+}
+
+/**
+ * Scale on its way to another: exponential in stops, as eyes and cameras count.
+ *
+ * @param seconds - Time since `from`, ≥ 0 [s].
+ * @param timeConstant - Time in which 63 % of the stops are taken, ≥ 0; 0 takes all [s].
+ */
+export function adaptedScale(
+  from: number,
+  to: number,
+  seconds: number,
+  timeConstant: number
+): number {
+  const rest = timeConstant > 0 ? Math.exp(-seconds / timeConstant) : 0
+  return to * (from / to) ** rest
+}

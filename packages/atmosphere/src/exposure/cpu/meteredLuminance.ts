@@ -1,0 +1,103 @@
+/** Cells of a picture that are metered, across and down; each has four samples. */
+export const CELLS = [64, 36] as const
+
+/** Pixels of a sample, across and down. */
+export const TAPS = 4
+
+/** log2 of the luminance that stands for black: the least number of a half float. */
+export const DARKEST = -24
+
+/** log2 of the most that is metered: the greatest number of a half float, rounded up. */
+export const MOST = 16
+
+/** Bins of the histogram per stop. */
+const BINS_PER_STOP = 8
+
+/** Stops under the upper percentile at which what is dark begins to count less, and counts no more. */
+const FADE = [8, 12] as const
+
+/** Standard deviation of the weight around the middle, in widths and heights of the picture. */
+const CENTER_WIDTH = 0.25
+
+/**
+ * Weights of cells, row by row: even, and more in the middle by a Gaussian.
+ *
+ * @param centerWeight - 0 is even, 1 the Gaussian alone.
+ */
+export function cellWeights(centerWeight: number): Float64Array {
+  const [width, height] = CELLS
+  return Float64Array.from({ length: width * height }, (_, i) => {
+    const x = ((i % width) + 0.5) / width - 0.5
+    const y = (Math.floor(i / width) + 0.5) / height - 0.5
+    const middle = Math.exp(-(x * x + y * y) / (2 * CENTER_WIDTH ** 2))
+    return 1 - centerWeight * (1 - middle)
+  })
+}
+
+/** Distribution of log2 luminance by weight. */
+interface Histogram {
+  /** Weight of each bin. */
+  weights: Float64Array
+  /** Weight times log2 luminance of each bin, so that means are exact. */
+  sums: Float64Array
+  total: number
+}
+
+function histogramOf(logs: ArrayLike<number>, weights: ArrayLike<number>): Histogram {
+  const bins = (MOST - DARKEST) * BINS_PER_STOP + 1
+  const histogram = { weights: new Float64Array(bins), sums: new Float64Array(bins), total: 0 }
+  for (let i = 0; i < logs.length; i++) {
+    const log = Math.min(logs[i], MOST)
+    if (!(log > DARKEST)) continue
+    const bin = Math.floor((log - DARKEST) * BINS_PER_STOP)
+    const weight = weights[i >> 2]
+    histogram.weights[bin] += weight
+    histogram.sums[bin] += weight * log
+    histogram.total += weight
+  }
+  return histogram
+}
+
+/** Bin and log2 luminance in which a part of the weight is reached. */
+function percentile({ weights, sums, total }: Histogram, part: number): number {
+  let sum = 0
+  let last = DARKEST
+  for (let bin = 0; bin < weights.length; bin++) {
+    if (weights[bin] === 0) continue
+    sum += weights[bin]
+    last = sums[bin] / weights[bin]
+    if (sum >= part * total) break
+  }
+  return last
+}
+
+/**
+ * log2 of the luminance that a picture is exposed for: the mean between two percentiles of the histogram, without
+ * what is too dark to be seen beside the bright.
+ *
+ * @param logs - Four samples a cell, row by row: log2 of luminance in any unit. {@link DARKEST} and less, or not a
+ *   number, is black and does not count.
+ * @param weights - Weight of each cell.
+ * @returns In the samples' unit; {@link DARKEST} if all is black.
+ */
+export function meteredLogLuminance(
+  logs: ArrayLike<number>,
+  weights: ArrayLike<number>,
+  percentiles: readonly [number, number]
+): { mean: number; bright: number } {
+  const histogram = histogramOf(logs, weights)
+  if (histogram.total === 0) return { mean: DARKEST, bright: DARKEST }
+  const [low, high] = percentiles.map(part => part * histogram.total)
+  const bright = percentile(histogram, percentiles[1])
+  let [below, sum, total] = [0, 0, 0]
+  histogram.weights.forEach((weight, bin) => {
+    if (weight === 0) return
+    const inside = Math.max(Math.min(below + weight, high) - Math.max(below, low), 0)
+    below += weight
+    const log = histogram.sums[bin] / weight
+    const seen = Math.min(Math.max((FADE[1] - (bright - log)) / (FADE[1] - FADE[0]), 0), 1)
+    sum += inside * seen * log
+    total += inside * seen
+  })
+  return { mean: total > 0 ? sum / total : bright, bright }
+}
