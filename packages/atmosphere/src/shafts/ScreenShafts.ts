@@ -4,14 +4,21 @@ import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
-import { RADIANCE_SCALE } from '../tables/tableSizes'
+import { rayLimits } from '../skyVolume/tsl/rayLimits'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
-import { lostLight, staggered, type ShadowedAir, type ShaftSteps } from './tsl/lostLight'
+import {
+  lostLight,
+  staggered,
+  type ShadowedAir,
+  type ShaftRay,
+  type ShaftSteps
+} from './tsl/lostLight'
 import { DepthRays } from '../view/DepthRays'
 
 /** Octaves of depth by which pixels may differ and still share light, and by which they share none. */
@@ -21,24 +28,12 @@ const OTHER_DEPTH = 0.6
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
-/**
- * Part of a colour that is taken at most where no pixel of its depth was marched nearby: along the horizon, where rows of
- * the ground are far apart. Greater: a dark row there (still *shafts-deck*).
- */
-const MOST_OF_STRANGERS = 0.4
-
-/** Distance in which about half of the light of a level ray is scattered [m]. */
-const HAZE = 30_000
-
-/** Most by which lost light grows with the distance from one pixel to the next, as a factor. */
-const MOST_MORE = 2
-
-/** Light of the air up to a distance, as a part of all. */
-const lightUpTo = (distance: Float): Float => distance.div(distance.add(HAZE))
+/** Range of the part of its light that a pixel may lose: more than none, as clouds reflect light, and than all, as its light is from a table. */
+const PARTS = [-20, 4] as const
 
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
-const PLANET = 1e8
+const PLANET = 1e9
 
 /** Part of the light from behind a veil that is not worth samples. */
 const OPAQUE = 0.01
@@ -78,6 +73,8 @@ export interface CameraShafts {
   readonly strengthNow: UniformNode<'float', number>
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   update(view: AtmosphereView): void
+  /** Called by a picture's shafts that are disposed of. */
+  forget(screen: ScreenShafts): void
 }
 
 /**
@@ -95,7 +92,7 @@ export class ScreenShafts implements ScreenShadows {
   /** Size of the picture, and of the target [pixels]. */
   readonly #size = vector2()
   readonly #halfSize = vector2()
-  readonly #lost: TextureNode
+  readonly #parts: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
@@ -109,7 +106,7 @@ export class ScreenShafts implements ScreenShadows {
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
-    this.#lost = texture(this.target.texture)
+    this.#parts = texture(this.target.texture)
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -160,13 +157,11 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const weights = float(0).toVar()
-      const lost = this.#sample(weights).mul(view.source.irradiance).mul(this.#strength).toConst()
+      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
       const { uniforms } = view.air
-      const most = left.mul(weights.min(1).mix(MOST_OF_STRANGERS, 1))
-      const taken = linearSRGB(uniforms, less).min(most)
+      const taken = linearSRGB(uniforms, less).min(left)
       left.assign(left.sub(taken).add(linearSRGB(uniforms, more)).max(0))
     })
     return left
@@ -186,33 +181,39 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #march(): Vec4 {
-    const shafts = this.#shafts
+    const { view, shadowedAir, steps } = this.#shafts
     return Fn(({ renderer }): Vec4 => {
       const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
       const at = this.#uvOf(pixel)
-      const { position, isSky } = this.#rays.at(renderer, at)
-      const { view } = shafts
-      const offset = view.toMapped(position).toConst()
-      const jitter = staggered(pixel)
+      const ray = this.#rayTo(renderer, at)
       const { seenFrom, most } = this.#seen(at)
-      const distance = isSky.select(FAR, offset.length()).min(most).toConst()
-      const towards = offset.normalize().toConst()
-      const cosView = towards.dot(view.up).clamp(-1, 1).toConst() as Float
-      const cosViewLight = towards.dot(view.lightDirection).toConst() as Float
-      const ray = { direction: towards, cosView, cosViewLight, distance, seenFrom }
-      return lostLight(view, shafts.shadowedAir, ray, shafts.steps, jitter).mul(RADIANCE_SCALE)
+      const distance = ray.distance.min(most).toConst() as Float
+      const jitter = staggered(pixel)
+      const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
+      return lost.div(this.#litAir(ray).max(1e-12)).clamp(...PARTS)
     })()
   }
 
-  /** Distance of what is seen: where nothing was drawn there is sky, or the planet [m]. */
-  #distanceOf(renderer: Renderer, at: Vec2): Float {
+  /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
+  #rayTo(renderer: Renderer, at: Vec2): ShaftRay {
     const { position, isSky } = this.#rays.at(renderer, at)
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst()
-    const distance = offset.length().max(1e-3).toConst()
-    const cosView = offset.div(distance).dot(view.up)
+    const length = offset.length().max(1e-3).toConst()
+    const direction = offset.div(length).toConst()
+    const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
+    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
     const background = cosView.lessThan(view.viewpoint.cosHorizon).select(PLANET, FAR)
-    return isSky.select(background, distance).toConst()
+    const distance = isSky.select(background, length).toConst() as Float
+    return { direction, cosView, cosViewLight, distance }
+  }
+
+  /** Light of the air on a ray without shadows [1/sr]. */
+  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Vec4 {
+    const { air, volume, viewpoint } = this.#shafts.view
+    const limits = rayLimits(viewpoint, cosView)
+    return sampleVolume(air.uniforms, volume, viewpoint, cosView, cosViewLight, limits, distance)
+      .radiance
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
@@ -221,39 +222,42 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /**
-   * Light that the pixel has lost: the mean of four, which have samples in all places of their steps.
-   *
-   * @param weights - Becomes the sum of their weights.
+   * Light that the pixel has lost: of the light of its air the mean part that four around have lost, which have
+   * samples in all places of their steps. So a pixel whose depth none of them has loses no more than it has.
    */
-  readonly #sample = (weights: Float & { assign: (n: number) => void } = float(0).toVar()): Vec4 =>
+  readonly #sample = (): Vec4 =>
     Fn(({ renderer }): Vec4 => {
       const at = uv() as unknown as Vec2
-      const distance = this.#distanceOf(renderer, at)
+      const ray = this.#rayTo(renderer, at)
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
+      const weights = float(0).toVar()
       for (const i of [0, 1, 2, 3]) {
         const pixel = first
           .add(vec2(i & 1, i >> 1))
           .min(this.#halfSize.sub(1))
           .toConst() as Vec2
-        const other = this.#distanceOf(renderer, this.#uvOf(pixel))
-        const apart = log2(distance.div(other)).abs()
+        const other = this.#rayTo(renderer, this.#uvOf(pixel))
+        const apart = log2(ray.distance.div(other.distance)).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(STRANGER, 1)
           .toConst() as Float
-        // As if light were lost evenly: rows of level ground are not alike, nor is what has none of its depth around.
-        const fewer = lightUpTo(distance).div(lightUpTo(other)).min(MOST_MORE)
-        const lost = sampleLevel0(this.#lost, pixel.add(0.5).div(this.#halfSize))
-        sum.addAssign(lost.mul(weight.mul(fewer)))
+        sum.addAssign(sampleLevel0(this.#parts, pixel.add(0.5).div(this.#halfSize)).mul(weight))
         weights.addAssign(weight)
       }
-      return sum.div(weights.mul(RADIANCE_SCALE))
+      return sum.div(weights).mul(this.#litAir(ray))
     })()
 
-  /** Frees the target. */
+  /** Takes them out of the shafts of their camera. */
   dispose(): void {
+    this.#shafts.forget(this)
+    this.free()
+  }
+
+  /** Frees the target, which is made again where they are drawn. */
+  free(): void {
     this.target.dispose()
     this.#pass?.dispose()
     this.#pass = null
