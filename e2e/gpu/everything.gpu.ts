@@ -156,8 +156,9 @@ class World {
       shadowNode: cloudShadow(this.#clouds, shadow(moonlight), luna.source)
     })
     const probes = [new SkyLightProbe(atmosphere), new SkyLightProbe(atmosphere, luna.source)]
-    for (const probe of probes) cloudSkyLight(probe, this.#clouds)
-    const lights: Light[] = [sun, moonlight, ...probes, new NightLightProbe(atmosphere)]
+    const night = new NightLightProbe(atmosphere)
+    for (const probe of [...probes, night]) cloudSkyLight(probe, this.#clouds)
+    const lights: Light[] = [sun, moonlight, ...probes, night]
     this.scene.add(...lights)
     this.#owned.push(sun, moonlight, this.shafts)
   }

@@ -29,6 +29,8 @@ function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
 
 /** The post path's picture: what a further effect, such as clouds, takes and where it goes. */
 export interface AirPost {
+  /** The scene without its air. */
+  readonly picture: Node
   /** The scene with its air. */
   readonly color: Node
   /** The scene's depth. */
@@ -66,7 +68,7 @@ export class Air {
       const pipeline = new RenderPipeline(renderer)
       pipeline.outputNode = color
       // #endregion
-      this.post = { color, depth, pipeline }
+      this.post = { picture: scenePass.getTextureNode(), color, depth, pipeline }
       this.#pipeline = pipeline
     }
   }

@@ -158,7 +158,7 @@ gpuTest('lights a plane and the sky over it as float64 predicts, within 2 %', as
     luna.phase = phase
     const picture = await t.render(renderer, scene, camera, small)
     const direct = moonIlluminanceAt(luna, camera.position)
-    const sky = skyIlluminanceAt(atmosphere, camera.position, up, luna.source)
+    const sky = skyIlluminanceAt(atmosphere, camera.position, up, { source: luna.source })
     const expected = direct.map((value, i) => (value * Math.sin(angle) + sky[i]) / Math.PI)
     const predicted = luminance(expected) * atmosphere.luminanceScale
     expectClose(luminance(picture.at(8, 8)), predicted, { relative: 0.02 }, `moon at ${elevation}°`)

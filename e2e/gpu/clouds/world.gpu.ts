@@ -34,6 +34,7 @@ import {
 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { stackDecks, type CloudDeck } from '../../../packages/clouds/src/environment/cpu/decks'
 import * as twin from '../../../packages/clouds/test/twins/overcast'
 import { eddington } from '../../../packages/clouds/src/environment/tsl/decks'
 import { cloudyIrradiance } from '../../../packages/clouds/src/environment/tsl/overcast'
@@ -91,8 +92,8 @@ gpuTest('an overcast gives surfaces light as its float64 twin does', async t => 
     return vec4(above.diffuse, above.direct, light.x, 0)
   })
   const expected = rows.flatMap(([over, mu, under, cosNormal]) => {
-    const deck = (thickness: number): twin.CloudDeck =>
-      twin.stackDecks([{ thickness, coverage: 1 }], mu, oneMinusAsymmetry)
+    const deck = (thickness: number): CloudDeck =>
+      stackDecks([[{ thickness, coverage: 1 }]], mu, oneMinusAsymmetry)
     const light = twin.cloudyIrradiance(
       {
         direct: { above: direct * mu, below: 0.9 * direct * mu },

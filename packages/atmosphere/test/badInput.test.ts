@@ -95,6 +95,22 @@ const cases: [message: string, call: () => unknown][] = [
     'exposureFor: camera must be a Camera, got undefined',
     () => exposureFor(atmosphere, wrong(undefined))
   ],
+  [
+    'exposureFor: clouds must be a CloudCover of @welkin/clouds, or null, got 0.5',
+    () => exposureFor(atmosphere, camera, { clouds: wrong(0.5) })
+  ],
+  [
+    'skyIlluminanceAt: clouds must be a CloudCover',
+    () => skyIlluminanceAt(atmosphere, zero, zero, { clouds: wrong({}) })
+  ],
+  [
+    'skyIlluminanceAt: source must be a LightSource',
+    () => skyIlluminanceAt(atmosphere, zero, zero, { source: wrong(luna) })
+  ],
+  [
+    'skyIlluminanceAt: options must be an object, got a LightSource',
+    () => skyIlluminanceAt(atmosphere, zero, zero, wrong(luna.source))
+  ],
   ['exposureFor: atmosphere must be an Atmosphere', () => exposureFor(wrong(undefined), camera)],
   ['illuminance must be finite and ≥ 0, got NaN', () => exposureOfIlluminance(NaN)],
   ['illuminance must be finite and ≥ 0, got -1', () => exposureOfIlluminance(-1)],
@@ -372,7 +388,7 @@ const cases: [message: string, call: () => unknown][] = [
   ['skyLuminanceAt: there are no tables yet', () => skyLuminanceAt(atmosphere, zero, zero)],
   [
     'skyLuminanceAt: source must be a LightSource',
-    () => skyLuminanceAt(atmosphere, zero, zero, wrong(null))
+    () => skyLuminanceAt(atmosphere, zero, zero, { source: wrong(null) })
   ],
   [
     'sunIlluminanceAt: atmosphere must be an Atmosphere, got undefined',

@@ -1,4 +1,4 @@
-import { PerspectiveCamera, Texture } from 'three'
+import { PerspectiveCamera, Texture, Vector3 } from 'three'
 import { texture } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
@@ -17,18 +17,23 @@ import {
   marsParameters,
   milkyWay,
   moon,
+  moonIlluminanceAt,
   planetGround,
   proceduralStars,
   skyEnvironment,
+  skyIlluminanceAt,
+  skyLuminanceAt,
   solveDiffuseLight,
   standardEarthParameters,
   Stars,
   stars,
-  sunFlare
+  sunFlare,
+  sunIlluminanceAt
 } from '@welkin/atmosphere'
 
 const atmosphere = new Atmosphere()
 const camera = new PerspectiveCamera()
+const zero = new Vector3()
 const picture = texture(new Texture())
 const luna = moon().attach(atmosphere)
 const parameters = new AtmosphereParameters()
@@ -72,6 +77,10 @@ const cases: [message: string, call: () => unknown][] = [
       ['DayCycle', 'rat', 'rate', o => new DayCycle(atmosphere, o)],
       ['DayCycle', 'flor', 'floor', o => new DayCycle(atmosphere, { exposureOptions: o })],
       ['exposureFor', 'source', 'sources', o => exposureFor(atmosphere, camera, o)],
+      ['skyIlluminanceAt', 'cloud', 'clouds', o => skyIlluminanceAt(atmosphere, zero, zero, o)],
+      ['sunIlluminanceAt', 'cloud', 'clouds', o => sunIlluminanceAt(atmosphere, zero, o)],
+      ['moonIlluminanceAt', 'cloud', 'clouds', o => moonIlluminanceAt(luna, zero, o)],
+      ['skyLuminanceAt', 'sorce', 'source', o => skyLuminanceAt(atmosphere, zero, zero, o)],
       ['AutoExposureNode', 'limit', 'limits', o => autoExposure(picture, atmosphere, o)],
       ['solveDiffuseLight', 'order', 'orders', o => solveDiffuseLight(parameters, o)],
       ['HeightFog', 'densty', 'density', o => heightFog(o)],

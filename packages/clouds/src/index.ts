@@ -18,3 +18,4 @@ export {
   type CloudEnvironmentOptions
 } from './environment/CloudEnvironment'
 export { CloudSkyLight, cloudSkyLight } from './environment/CloudSkyLight'
+export { CloudCover, type CloudCoverOptions } from './environment/CloudCover'

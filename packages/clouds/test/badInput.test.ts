@@ -3,6 +3,7 @@ import { Mesh, PerspectiveCamera, Scene, Texture } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
+  CloudCover,
   CloudLayer,
   CloudLayers,
   CloudLightTable,
@@ -37,6 +38,15 @@ const cases: [message: string, call: () => unknown][] = [
   [
     "CloudsNode.quality: unknown option 'step', did you mean 'steps'?",
     () => make({ quality: { step: 3 } })
+  ],
+  [
+    "CloudCover: unknown option 'ligt', did you mean 'light'?",
+    () => new CloudCover(layers, wrong({ ligt: node.light }))
+  ],
+  ['CloudCover: layers must be CloudLayers, got a CloudsNode', () => new CloudCover(wrong(node))],
+  [
+    'CloudCover: light must be a CloudLightTable, got 3',
+    () => new CloudCover(layers, { light: wrong(3) })
   ],
   [
     "CloudEnvironment: unknown option 'drft', did you mean 'drift'?",
@@ -135,7 +145,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => cloudsDebug(wrong(atmosphere), 'steps')
   ],
   [
-    'CloudSkyLight: probe must be a SkyLightProbe, got a CloudsNode',
+    'CloudSkyLight: probe must be a SkyLightProbe or NightLightProbe, got a CloudsNode',
     () => cloudSkyLight(wrong(node), wrong(probe))
   ],
   [

@@ -3,12 +3,14 @@ import { Vector3 } from 'three'
 import { checkNonNegative, checkOptions, checkPositive } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
+import { checkCloudedSky, type CloudedPlace, type CloudedSky } from '../queries/CloudedSky'
 import { clampCosine } from '../queries/LightQuery'
 import { sampleDiffuseLight } from '../diffuseLight/cpu/diffuseLight'
 import { lightTransmittance } from '../transmittance/cpu/transmittance'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../night/cpu/twilight'
 import { checkSources, type LightSource } from '../view/LightSource'
-import { luminanceOf } from '../parameters/photometry'
+import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
+import { luminanceOf, scaleToLuminance } from '../parameters/photometry'
 import { keyValue } from './cpu/keyValue'
 import { checkAtmosphere } from '../view/ViewNodes'
 
@@ -16,8 +18,10 @@ import { checkAtmosphere } from '../view/ViewNodes'
 export interface ExposureOptions {
   /** Light sources besides the sun, such as a moon's. */
   sources?: readonly LightSource[]
-  /** Illuminance that is always present, of the night sky or a city; > 0 [lx]. */
+  /** Illuminance that is always present, of the night sky or a city, and under clouds too; > 0 [lx]. By default the night sky's. */
   floor?: number
+  /** Clouds in the sky, in the mean over clouds and gaps: a `CloudCover` of `@welkin/clouds`. */
+  clouds?: CloudedSky | null
 }
 
 /** Mean reflectance of a scene. */
@@ -49,37 +53,93 @@ export function exposureOfIlluminance(illuminance: number): number {
 
 /** @throws If an option is of the wrong kind or out of range. */
 export function checkExposure(where: string, options: ExposureOptions = {}): ExposureOptions {
-  const { sources = [], floor = NIGHT_ILLUMINANCE } = checkOptions(
-    where,
-    options,
-    'sources',
-    'floor'
-  )
+  const { sources = [], floor, clouds } = checkOptions(where, options, 'sources', 'floor', 'clouds')
   checkSources(where, sources)
-  checkPositive(where, 'floor', floor)
+  if (floor !== undefined) checkPositive(where, 'floor', floor)
+  checkCloudedSky(where, clouds)
   return options
+}
+
+/** Position [world] whose ground is lit, and the clouds over it. */
+interface Ground {
+  readonly position: Vector3
+  /** Altitude of the position, whose clouds count [m]. */
+  readonly altitude: number
+  readonly clouds: CloudedSky | null
 }
 
 /** Illuminance of level ground by a light source [lx]. */
 function groundIlluminance(
   atmosphere: Atmosphere,
   source: LightSource,
-  position: Vector3,
+  ground: Ground,
   cosLight: number
 ): number {
   const { parameters, tables } = atmosphere
-  const irradiance = source.irradianceAt(position)
-  if (tables.data === null) {
-    const elevation = Math.asin(clampCosine(cosLight)) * (180 / Math.PI)
-    const bySun = almanacIlluminance(elevation) - almanacIlluminance(-90)
-    return bySun * (luminanceOf(parameters, irradiance) / SUN_ILLUMINANCE)
+  const { data } = tables
+  const { bottomRadius, topRadius } = parameters
+  const irradiance = source.irradianceAt(ground.position)
+  const facing = Math.max(cosLight, 0)
+  const direct = (altitude: number): number[] =>
+    lightTransmittance(parameters, bottomRadius + altitude, cosLight).map(value => value * facing)
+  if (data !== null) {
+    const part = 1 / (topRadius - bottomRadius)
+    const diffuse = (altitude: number): { up: number[]; down: number[] } => {
+      const [up, down] = sampleDiffuseLight(data, altitude * part, cosLight)
+        .slice(6)
+        .map(values => values.map(value => Math.max(value, 0)))
+      return { up, down }
+    }
+    return illuminanceOf(parameters, ground, { cosLight, direct, diffuse, irradiance })
   }
-  const direct = lightTransmittance(parameters, parameters.bottomRadius, cosLight)
-  const diffuse = sampleDiffuseLight(tables.data, 0, cosLight)[6]
-  const values = irradiance.map(
-    (value, i) => value * (direct[i] * Math.max(cosLight, 0) + Math.max(diffuse[i], 0))
-  )
+  const elevation = Math.asin(clampCosine(cosLight)) * (180 / Math.PI)
+  const bySun = almanacIlluminance(elevation) - almanacIlluminance(-90)
+  const part = luminanceOf(parameters, irradiance) / SUN_ILLUMINANCE
+  if (ground.clouds === null) return bySun * part
+  const onGround = direct(0)
+  const bySky = Math.max(bySun - luminanceOf(parameters, onGround), 0)
+  const diffuse = diffuseOverGround(parameters, bySky, onGround)
+  return part * illuminanceOf(parameters, ground, { cosLight, direct, diffuse })
+}
+
+/** Diffuse light of the spectrum of sunlight, the same at all altitudes, over ground that reflects it. */
+function diffuseOverGround(
+  parameters: AtmosphereParameters,
+  illuminance: number,
+  direct: readonly number[]
+): CloudedPlace['diffuse'] {
+  const up = scaleToLuminance(parameters, [1, 1, 1, 1], illuminance)
+  const down = parameters.groundAlbedo.map((albedo, i) => albedo * (direct[i] + up[i]))
+  return () => ({ up, down })
+}
+
+/** Light without clouds, for unit irradiance of its source. */
+interface ClearLight extends Pick<CloudedPlace, 'cosLight' | 'direct' | 'diffuse'> {
+  /** Irradiance of the source, over `solarIrradiance`; left out, 1. */
+  readonly irradiance?: readonly number[]
+}
+
+/** Illuminance of level ground in a source's light, under clouds if there are some [lx]. */
+function illuminanceOf(
+  parameters: AtmosphereParameters,
+  { position, altitude, clouds }: Ground,
+  { cosLight, direct, diffuse, irradiance = [1, 1, 1, 1] }: ClearLight
+): number {
+  const { groundAlbedo } = parameters
+  const place = { position, altitude, cosLight, groundAlbedo, direct, diffuse }
+  const [sun, clear] = [direct(0), diffuse(0).up]
+  const beam = clouds?.beam(place) ?? 1
+  const sky = clouds?.irradiance(place, 1, clear) ?? clear
+  const values = irradiance.map((value, i) => value * (sun[i] * beam + sky[i]))
   return Math.max(luminanceOf(parameters, values), 0)
+}
+
+/** Illuminance of level ground by the night sky [lx]. */
+function nightIlluminance(parameters: AtmosphereParameters, ground: Ground): number {
+  if (ground.clouds === null) return NIGHT_ILLUMINANCE
+  const none = [0, 0, 0, 0]
+  const diffuse = diffuseOverGround(parameters, NIGHT_ILLUMINANCE, none)
+  return illuminanceOf(parameters, ground, { cosLight: 1, direct: () => none, diffuse })
 }
 
 /**
@@ -98,7 +158,8 @@ function groundIlluminance(
  * It does not bring all scenes to one brightness: dusk is darker than day, and a moonless night darker
  * than one with a moon. The ground under the camera counts; from high up, ground that is nearer to the
  * source by half of the angle to the horizon. Until the tables have been read back, the almanac's
- * illuminance for the Earth stands in. Where the camera looks does not count.
+ * illuminance for the Earth stands in. Where the camera looks does not count. With clouds, the ground's light is
+ * dimmed by those above the camera: under an overcast it is that of the overcast, from above the clouds nothing changes.
  *
  * @param camera - Its `matrixWorld` must be up to date.
  * @returns Greater than 0; 1 in full daylight.
@@ -111,18 +172,20 @@ export function exposureFor(
 ): number {
   checkAtmosphere('exposureFor', atmosphere)
   checkCamera('exposureFor', camera)
-  const { sources = [], floor = NIGHT_ILLUMINANCE } = checkExposure('exposureFor', options)
+  const { sources = [], floor, clouds = null } = checkExposure('exposureFor', options)
   const { space, parameters } = atmosphere
   const position = new Vector3().setFromMatrixPosition(camera.matrixWorld)
   const up = space.position(position, new Vector3())
   const radius = Math.max(up.length(), parameters.bottomRadius)
   up.normalize()
+  const ground = { position, altitude: radius - parameters.bottomRadius, clouds }
   const halfHorizon = Math.acos(parameters.bottomRadius / radius) / 2
   const illuminances = [atmosphere.sun, ...sources].map(source => {
     const direction = space.direction(source.direction(_direction, position), new Vector3())
     const zenithAngle = Math.acos(clampCosine(up.dot(direction)))
     const cosLight = Math.cos(Math.max(zenithAngle - halfHorizon, 0))
-    return groundIlluminance(atmosphere, source, position, cosLight)
+    return groundIlluminance(atmosphere, source, ground, cosLight)
   })
-  return exposureOfIlluminance(illuminances.reduce((sum, value) => sum + value, floor))
+  const night = floor ?? nightIlluminance(parameters, ground)
+  return exposureOfIlluminance(illuminances.reduce((sum, value) => sum + value, night))
 }

@@ -25,6 +25,8 @@ export interface SkyLitPlane {
   readonly cosLight: Float
   /** Its normal against the zenith. */
   readonly cosNormal: Float
+  /** True in the light of the night sky, an even dome over ground that reflects it; left out, false. */
+  readonly isNight?: boolean
 }
 
 /**

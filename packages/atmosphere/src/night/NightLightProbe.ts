@@ -7,7 +7,9 @@ import type { Atmosphere } from '../Atmosphere'
 import { NIGHT_ILLUMINANCE } from './cpu/twilight'
 import { scaleToLuminance } from '../parameters/photometry'
 import { linearSRGB } from '../air/tsl/color'
-import type { Vec3 } from '../tsl-types'
+import type { SkyLitPlane } from '../lights/SkyLightProbe'
+import type { Vec3, Vec4 } from '../tsl-types'
+import { coveredPosition } from '../view/tsl/coveredPosition'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
 import { watchScene } from '../view/renderers'
@@ -16,13 +18,19 @@ import { watchScene } from '../view/renderers'
  * Light of the night sky on surfaces, so that nights without a moon are dark but not black.
  *
  * The sky is an even dome, and the ground reflects it from below. By day the light stays on, a hundred
- * million times weaker than daylight. `color` and `intensity` multiply the physical illuminance; the
+ * million times weaker than daylight. `cloudSkyLight` of `@welkin/clouds` dims it under clouds. `color` and `intensity` multiply the physical illuminance; the
  * probe's `sh` is not used.
  */
 export class NightLightProbe extends LightProbe {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
   #illuminance = NIGHT_ILLUMINANCE
+
+  /**
+   * Irradiance under clouds, given that of a plane without them, for a sky that gives level ground unit
+   * irradiance: see `SkyLightProbe`. Set it before the first render.
+   */
+  overcast: ((plane: SkyLitPlane, clear: Vec4) => Vec4) | null = null
 
   /**
    * @param illuminance - Illuminance of level ground, finite, ≥ 0 [lx].
@@ -89,13 +97,17 @@ export class NightLightProbeNode extends AnalyticLightNode<NightLightProbe> {
 
   override setup(builder: NodeBuilder): undefined {
     const irradiance = Fn(() => {
-      const { air, up } = this.#view
-      const normal = this.#view.toMapped(normalView).normalize().toConst()
-      const cosNormal = normal.dot(up).clamp(-1, 1).toConst()
+      const view = this.#view
+      const { uniforms } = view.air
+      const offset = view.toMapped(coveredPosition()).toConst()
+      const { altitude, cosLight, up } = view.localCoordinates(offset)
+      const cosNormal = view.toMapped(normalView).normalize().dot(up).clamp(-1, 1).toConst()
       const above = cosNormal.add(1).mul(0.5)
-      const below = air.uniforms.groundAlbedo.mul(cosNormal.oneMinus().mul(0.5))
-      const received = vec4(this.#irradiance.mul(below.add(above)))
-      return linearSRGB(air.uniforms, received).mul(
+      const below = uniforms.groundAlbedo.mul(cosNormal.oneMinus().mul(0.5))
+      const clear = vec4(below.add(above))
+      const plane = { view, offset, altitude, up, cosLight, cosNormal, isNight: true }
+      const received = this.#light.overcast?.(plane, clear) ?? clear
+      return linearSRGB(uniforms, received.mul(this.#irradiance)).mul(
         (this as unknown as { colorNode: Vec3 }).colorNode
       )
     })()

@@ -15,6 +15,8 @@ export class LightQuery {
   readonly parameters: AtmosphereParameters
   /** Planet's centre to the position, at least to the ground [m]. */
   readonly radius: number
+  /** World. */
+  readonly position: Vector3
   /** μ_s. */
   readonly cosLight: number
   /** Zenith at the position, and direction to the source: unit length, in the mapped space. */
@@ -42,6 +44,7 @@ export class LightQuery {
     checkSource(where, 'source', source)
     const { parameters, space, tables } = atmosphere
     this.#where = where
+    this.position = position
     this.parameters = parameters
     this.#space = space
     this.#data = tables.data
@@ -53,6 +56,11 @@ export class LightQuery {
     this.#irradiance = source.irradianceAt(position)
     this.#lightDirection = this.#direction('source', source.direction(new Vector3(), position))
     this.cosLight = clampCosine(this.#up.dot(this.#lightDirection))
+  }
+
+  /** Altitude above the ground [m]. */
+  get altitude(): number {
+    return this.radius - this.parameters.bottomRadius
   }
 
   /** A direction [world] in the mapped space, unit length. */
@@ -77,7 +85,7 @@ export class LightQuery {
   }
 
   /** Linear sRGB from values per unit of the source's irradiance. */
-  linearSRGB(perIrradiance: number[]): Triple {
+  linearSRGB(perIrradiance: readonly number[]): Triple {
     const { solarIrradiance } = this.parameters
     const values = perIrradiance.map((value, i) => value * solarIrradiance[i] * this.#irradiance[i])
     return spectralToLinearSRGB(this.parameters, values as unknown as Spectrum)

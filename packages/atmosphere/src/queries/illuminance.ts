@@ -1,17 +1,39 @@
 import type { Vector3 } from 'three'
-import { fail } from '@welkin/geo'
+import { checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Triple } from '../air/cpu/color'
 import { skyIrradiance } from '../diffuseLight/cpu/skyIrradiance'
 import { Moon } from '../moon/Moon'
 import { lightTransmittance } from '../transmittance/cpu/transmittance'
 import type { LightSource } from '../view/LightSource'
+import { checkCloudedSky, type CloudedSky } from './CloudedSky'
 import { LightQuery } from './LightQuery'
 
+/** Options of {@link sunIlluminanceAt} and {@link moonIlluminanceAt}. */
+export interface IlluminanceOptions {
+  /** Clouds in the sky, in the mean over clouds and gaps: a `CloudCover` of `@welkin/clouds`. */
+  clouds?: CloudedSky | null
+}
+
+/** Options of {@link skyIlluminanceAt}. */
+export interface SkyIlluminanceOptions extends IlluminanceOptions {
+  /** Whose light in the sky; by default the sun's. A moon's is `moon.source`. */
+  source?: LightSource
+}
+
+/** Clouds of options that have no others. */
+function cloudsOf(where: string, options: IlluminanceOptions): CloudedSky | null {
+  const { clouds = null } = checkOptions(where, options, 'clouds')
+  checkCloudedSky(where, clouds)
+  return clouds
+}
+
 /** Illuminance on a plane that faces the source. */
-function directIlluminance(query: LightQuery): Triple {
+function directIlluminance(query: LightQuery, clouds: CloudedSky | null): Triple {
   const { parameters, radius, cosLight } = query
-  return query.linearSRGB(lightTransmittance(parameters, radius, cosLight))
+  const passing = clouds?.beam(query) ?? 1
+  const transmittance = lightTransmittance(parameters, radius, cosLight)
+  return query.linearSRGB(transmittance.map(value => value * passing))
 }
 
 /**
@@ -19,9 +41,15 @@ function directIlluminance(query: LightQuery): Triple {
  *
  * @param position - World.
  * @returns Linear sRGB [lx].
+ * @throws If an argument is of the wrong kind.
  */
-export function sunIlluminanceAt(atmosphere: Atmosphere, position: Vector3): Triple {
-  return directIlluminance(new LightQuery('sunIlluminanceAt', atmosphere, position))
+export function sunIlluminanceAt(
+  atmosphere: Atmosphere,
+  position: Vector3,
+  options: IlluminanceOptions = {}
+): Triple {
+  const clouds = cloudsOf('sunIlluminanceAt', options)
+  return directIlluminance(new LightQuery('sunIlluminanceAt', atmosphere, position), clouds)
 }
 
 /**
@@ -30,31 +58,61 @@ export function sunIlluminanceAt(atmosphere: Atmosphere, position: Vector3): Tri
  * @param moon - Must be in an atmosphere.
  * @param position - World.
  * @returns Linear sRGB [lx].
+ * @throws If an argument is of the wrong kind.
  */
-export function moonIlluminanceAt(moon: Moon, position: Vector3): Triple {
+export function moonIlluminanceAt(
+  moon: Moon,
+  position: Vector3,
+  options: IlluminanceOptions = {}
+): Triple {
   if (!(moon instanceof Moon)) fail('moonIlluminanceAt', 'moon must be a Moon', moon)
+  const clouds = cloudsOf('moonIlluminanceAt', options)
   const { atmosphere, source } = moon
-  return directIlluminance(new LightQuery('moonIlluminanceAt', atmosphere, position, source))
+  return directIlluminance(
+    new LightQuery('moonIlluminanceAt', atmosphere, position, source),
+    clouds
+  )
 }
 
 /**
- * Illuminance by sky and ground on a plane.
+ * Illuminance by sky and ground on a plane; with clouds also by these, but without light that passes them
+ * unscattered: `sunIlluminanceAt` has that.
  *
  * @param position - World.
  * @param normal - World, unit length: where the plane faces.
- * @param source - Whose light in the sky; by default the sun's. A moon's is `moon.source`.
  * @returns Linear sRGB [lx].
- * @throws Before the tables were baked and read back: await `atmosphere.bake(renderer)` first.
+ * @throws If an argument is of the wrong kind, and before the tables were baked and read back: await
+ *   `atmosphere.bake(renderer)` first.
  */
 export function skyIlluminanceAt(
   atmosphere: Atmosphere,
   position: Vector3,
   normal: Vector3,
-  source?: LightSource
+  options: SkyIlluminanceOptions = {}
 ): Triple {
-  const query = new LightQuery('skyIlluminanceAt', atmosphere, position, source)
-  const { parameters, data, radius, cosLight } = query
+  const where = 'skyIlluminanceAt'
+  const { source, clouds } = checkOptions(where, options, 'source', 'clouds')
+  checkCloudedSky(where, clouds)
+  const query = new LightQuery(where, atmosphere, position, source)
+  const { parameters, data, altitude, cosLight } = query
+  const { bottomRadius, groundAlbedo } = parameters
   const { zenith, light } = query.cosinesOf('normal', normal)
-  const altitude = radius - parameters.bottomRadius
-  return query.linearSRGB(skyIrradiance(parameters, data, altitude, zenith, cosLight, light))
+  const clear = skyIrradiance(parameters, data, altitude, zenith, cosLight, light)
+  if (!clouds) return query.linearSRGB(clear)
+  const place = {
+    position,
+    altitude,
+    cosLight,
+    groundAlbedo,
+    direct: (height: number) =>
+      lightTransmittance(parameters, bottomRadius + height, cosLight).map(
+        value => value * Math.max(cosLight, 0)
+      ),
+    diffuse: (height: number) => {
+      const facing = (cosNormal: 1 | -1): number[] =>
+        skyIrradiance(parameters, data, height, cosNormal, cosLight, cosNormal * cosLight)
+      return { up: facing(1), down: facing(-1) }
+    }
+  }
+  return query.linearSRGB(clouds.irradiance(place, zenith, clear))
 }

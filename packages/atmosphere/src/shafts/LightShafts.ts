@@ -100,7 +100,7 @@ export class LightShafts implements ShadowedShafts {
   version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
   readonly strengthNow = number()
-  readonly #screens: ScreenShafts[] = []
+  readonly #screens = new Set<ScreenShafts>()
   #setStrength = 1
   /** Render whose shadows the map has. */
   #render = ''
@@ -222,18 +222,23 @@ export class LightShafts implements ShadowedShafts {
 
   upTo(depthNode: Node, veil?: Veil): ScreenShadows {
     const screen = new ScreenShafts(this, depthNode, veil)
-    this.#screens.push(screen)
+    this.#screens.add(screen)
     return screen
+  }
+
+  /** Called by a picture's shafts that are disposed of. */
+  forget(screen: ScreenShafts): void {
+    this.#screens.delete(screen)
   }
 
   /** True if a veil is drawn, by whose node shafts are. */
   get isVeiled(): boolean {
-    return this.#screens.some(({ veil }) => veil?.isDrawn)
+    return [...this.#screens].some(({ veil }) => veil?.isDrawn)
   }
 
   /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
-    const isPost = this.#screens.some(({ veil }) => veil === undefined)
+    const isPost = [...this.#screens].some(({ veil }) => veil === undefined)
     return !isPost && this.atmosphere.layers.includes(this)
   }
 
@@ -299,7 +304,7 @@ export class LightShafts implements ShadowedShafts {
   dispose(): void {
     this.#isActive = false
     this.#map.dispose()
-    for (const screen of this.#screens) screen.dispose()
+    for (const screen of this.#screens) screen.free()
   }
 }
 

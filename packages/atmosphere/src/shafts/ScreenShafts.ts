@@ -1,18 +1,24 @@
-import { NearestFilter, RGFormat, Vector2 } from 'three'
+import { NearestFilter, RedFormat, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
-import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { FragmentPass, tableTarget, twoOutputs, type Outputs } from '../tables/FragmentPass'
-import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { sampleLevel0, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { rayLimits } from '../skyVolume/tsl/rayLimits'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
-import { lostLight, staggered, type ShadowedAir, type ShaftSteps } from './tsl/lostLight'
+import {
+  lostLight,
+  staggered,
+  type ShadowedAir,
+  type ShaftRay,
+  type ShaftSteps
+} from './tsl/lostLight'
 import { DepthRays } from '../view/DepthRays'
 
 /** Octaves of depth by which pixels may differ and still share light, and by which they share none. */
@@ -22,29 +28,15 @@ const OTHER_DEPTH = 0.6
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
-/** Distance in which about half of the light of a level ray is scattered [m]. */
-const HAZE = 30_000
-
-/** Most by which lost light grows with the distance from one pixel to the next, as a factor. */
-const MOST_MORE = 2
-
-/** Light of the air up to a distance, as a part of all. */
-const lightUpTo = (distance: Float): Float => distance.div(distance.add(HAZE))
+/** Range of the part of its light that a pixel may lose: more than none, as clouds reflect light, and than all, as its light is from a table. */
+const PARTS = [-20, 4] as const
 
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
-const PLANET = 1e8
+const PLANET = 1e9
 
 /** Part of the light from behind a veil that is not worth samples. */
 const OPAQUE = 0.01
-
-/** What is seen in a pixel: see `ScreenShafts`. */
-interface Seen {
-  offset: Vec3
-  distance: Float
-  isSky: Bool
-  light: Float
-}
 
 const _size = new Vector2()
 
@@ -81,6 +73,8 @@ export interface CameraShafts {
   readonly strengthNow: UniformNode<'float', number>
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   update(view: AtmosphereView): void
+  /** Called by a picture's shafts that are disposed of. */
+  forget(screen: ScreenShafts): void
 }
 
 /**
@@ -98,8 +92,8 @@ export class ScreenShafts implements ScreenShadows {
   /** Size of the picture, and of the target [pixels]. */
   readonly #size = vector2()
   readonly #halfSize = vector2()
-  readonly #lost: TextureNode
-  /** Of its pixels: binary logarithm of the distance [m], and the light of the air up to there as a part of all. */
+  readonly #parts: TextureNode
+  /** Binary logarithm of the distances of its pixels [m]. */
   readonly #distances: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
@@ -114,9 +108,9 @@ export class ScreenShafts implements ScreenShadows {
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1, 2, NearestFilter)
-    const [lost, distances] = this.target.textures
-    distances.format = RGFormat
-    this.#lost = texture(lost)
+    const [parts, distances] = this.target.textures
+    distances.format = RedFormat
+    this.#parts = texture(parts)
     this.#distances = texture(distances)
   }
 
@@ -172,7 +166,8 @@ export class ScreenShafts implements ScreenShadows {
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
       const { uniforms } = view.air
-      left.assign(left.sub(linearSRGB(uniforms, less)).add(linearSRGB(uniforms, more)).max(0))
+      const taken = linearSRGB(uniforms, less).min(left)
+      left.assign(left.sub(taken).add(linearSRGB(uniforms, more)).max(0))
     })
     return left
   }
@@ -191,38 +186,40 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #march(): Outputs {
-    const shafts = this.#shafts
+    const { view, shadowedAir, steps } = this.#shafts
     return twoOutputs(renderer => {
       const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
       const at = this.#uvOf(pixel)
-      const { view } = shafts
-      const { offset, distance: drawn, isSky, light } = this.#seenAlong(renderer, at)
-      const jitter = staggered(pixel)
+      const ray = this.#rayTo(renderer, at)
       const { seenFrom, most } = this.#seen(at)
-      const distance = isSky.select(FAR, drawn).min(most).toConst()
-      const towards = offset.normalize().toConst()
-      const cosView = towards.dot(view.up).clamp(-1, 1).toConst() as Float
-      const cosViewLight = towards.dot(view.lightDirection).toConst() as Float
-      const ray = { direction: towards, cosView, cosViewLight, distance, seenFrom }
-      const lost = lostLight(view, shafts.shadowedAir, ray, shafts.steps, jitter)
-      return [lost.mul(RADIANCE_SCALE), vec4(log2(drawn), light, 0, 0)]
+      const distance = ray.distance.min(most).toConst() as Float
+      const jitter = staggered(pixel)
+      const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
+      const part = lost.div(this.#litAir(ray).max(1e-12)).clamp(...PARTS)
+      return [part, vec4(log2(ray.distance))]
     })
   }
 
-  /**
-   * Displacement of what is seen and its distance: where nothing was drawn that of sky, or of the planet [m]; and
-   * the light of the air up to there. It ends at the planet's surface, behind which ground may lie.
-   */
-  #seenAlong(renderer: Renderer, at: Vec2): Seen {
+  /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
+  #rayTo(renderer: Renderer, at: Vec2): ShaftRay {
     const { position, isSky } = this.#rays.at(renderer, at)
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst()
-    const distance = offset.length().max(1e-3).toConst()
-    const cosView = offset.div(distance).dot(view.up).toConst()
-    const limits = rayLimits(view.viewpoint, cosView)
-    const seen = isSky.select(limits.hitsGround.select(PLANET, FAR), distance).toConst()
-    const light = lightUpTo(seen.min(limits.start.add(limits.length))).toConst() as Float
-    return { offset, distance: seen, isSky, light }
+    const length = offset.length().max(1e-3).toConst()
+    const direction = offset.div(length).toConst()
+    const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
+    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+    const background = cosView.lessThan(view.viewpoint.cosHorizon).select(PLANET, FAR)
+    const distance = isSky.select(background, length).toConst() as Float
+    return { direction, cosView, cosViewLight, distance }
+  }
+
+  /** Light of the air on a ray without shadows [1/sr]. */
+  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Vec4 {
+    const { air, volume, viewpoint } = this.#shafts.view
+    const limits = rayLimits(viewpoint, cosView)
+    return sampleVolume(air.uniforms, volume, viewpoint, cosView, cosViewLight, limits, distance)
+      .radiance
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
@@ -230,12 +227,15 @@ export class ScreenShafts implements ScreenShadows {
     return pixel.mul(2).add(0.5).div(this.#size).toConst()
   }
 
-  /** Light that the pixel has lost: the mean of four, which have samples in all places of their steps. */
+  /**
+   * Light that the pixel has lost: of the light of its air the mean part that four around have lost, which have
+   * samples in all places of their steps. So a pixel whose depth none of them has loses no more than it has.
+   */
   readonly #sample = (): Vec4 =>
     Fn(({ renderer }): Vec4 => {
       const at = uv() as unknown as Vec2
-      const { distance, light } = this.#seenAlong(renderer, at)
-      const distanceLog = log2(distance).toConst()
+      const ray = this.#rayTo(renderer, at)
+      const distance = log2(ray.distance).toConst()
       const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
       const sum = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -245,24 +245,26 @@ export class ScreenShafts implements ScreenShadows {
           .min(this.#halfSize.sub(1))
           .toConst() as Vec2
         const place = pixel.add(0.5).div(this.#halfSize).toConst() as Vec2
-        const other = sampleLevel0(this.#distances, place).toConst()
-        const apart = distanceLog.sub(other.x).abs()
+        const apart = distance.sub(sampleLevel0(this.#distances, place).x).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(STRANGER, 1)
           .toConst() as Float
-        // As if light were lost evenly: rows of level ground are not alike, nor is what has none of its depth around.
-        const fewer = light.div(other.y.max(1e-7)).min(MOST_MORE)
-        const lost = sampleLevel0(this.#lost, place)
-        sum.addAssign(lost.mul(weight.mul(fewer)))
+        sum.addAssign(sampleLevel0(this.#parts, place).mul(weight))
         weights.addAssign(weight)
       }
-      return sum.div(weights.mul(RADIANCE_SCALE))
+      return sum.div(weights).mul(this.#litAir(ray))
     })()
 
-  /** Frees the target. */
+  /** Takes them out of the shafts of their camera. */
   dispose(): void {
+    this.#shafts.forget(this)
+    this.free()
+  }
+
+  /** Frees the target, which is made again where they are drawn. */
+  free(): void {
     this.target.dispose()
     this.#pass?.dispose()
     this.#pass = null

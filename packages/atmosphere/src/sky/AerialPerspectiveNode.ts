@@ -93,6 +93,11 @@ export class AerialPerspectiveNode extends PostEffectNode {
     return vec4(color.rgb, select(color.a.lessThan(1), color.a, a)).toConst()
   }
 
+  override dispose(): void {
+    this.#screenShafts?.dispose?.()
+    super.dispose()
+  }
+
   override setup(builder: NodeBuilder): Node {
     const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
     const position = (depth: Float): Vec3 => this.#rays.position(builder.renderer, uv(), depth)

@@ -4,6 +4,7 @@ import { float, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import { aerialPerspective, Atmosphere, lightShafts, SunDirectionalLight } from '@welkin/atmosphere'
 import type { AirOccluder } from '@welkin/atmosphere'
+import type { ScreenShafts } from '../../src/shafts/ScreenShafts'
 import { claimShadow, shadowMapsOf } from '../../src/shafts/shadowMaps'
 import { warpedDistance } from '../twins/shafts/warpedSteps'
 
@@ -98,6 +99,41 @@ describe('what is added to light shafts', () => {
     shafts.add(occluder, added).remove(added, added).add(added)
     expect(calls).toEqual(['cast', 'dispose', 'cast'])
     expect(shafts.version).toBeGreaterThan(version)
+  })
+
+  it('leaves nothing of a veil that was taken out, and takes forward shafts up again after a post effect', () => {
+    const shafts = lightShafts(atmosphere, camera, { light })
+    let [drawn, freed] = [0, 0]
+    const veil = {
+      get isDrawn() {
+        drawn++
+        return true
+      },
+      seenAt: () => ({ distance: float(1), transmittance: float(1) })
+    }
+    for (let i = 0; i < 3; i++) {
+      const screen = shafts.upTo(float(1), veil) as ScreenShafts
+      screen.target.addEventListener('dispose', () => freed++)
+      screen.dispose()
+    }
+    expect(freed).toBe(3)
+    shafts.dispose()
+    expect(freed).toBe(3)
+    expect(shafts.isVeiled).toBe(false)
+    expect(drawn).toBe(0)
+    const kept = shafts.upTo(float(1), veil) as ScreenShafts
+    kept.target.addEventListener('dispose', () => freed++)
+    shafts.dispose()
+    expect(freed).toBe(4)
+    expect(shafts.isVeiled).toBe(true)
+
+    const layered = new Atmosphere()
+    const post = lightShafts(layered, camera, { light: new SunDirectionalLight(layered) })
+    layered.add(post)
+    const node = aerialPerspective(vec4(0), float(1), camera, layered, { shafts: post })
+    expect(post.isForward).toBe(false)
+    node.dispose()
+    expect(post.isForward).toBe(true)
   })
 
   it('is not added where one of several is refused', () => {

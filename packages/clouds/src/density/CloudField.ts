@@ -17,8 +17,7 @@ import {
   layerPeriods,
   weatherScales
 } from '../layers/layerUniforms'
-import { meanColumn, type MeanColumn } from '../layers/meanColumn'
-import type { CloudLayerParameters } from '../layers/CloudLayer'
+import { meanColumnOf } from '../layers/meanColumn'
 import { billowForm } from './formConstants'
 import { vec4Array, type Float, type LevelTexture, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
@@ -144,11 +143,6 @@ export class CloudField {
   givenExtinction: ((offset: Vec3) => Float) | null = null
   /** Gain of `fadeIn` in a frame. */
   #fadeInStep = 1
-  readonly #columns: {
-    parameters: CloudLayerParameters
-    depthScale: number
-    column: MeanColumn
-  }[] = []
 
   /**
    * @param view - Nodes of the camera that samples are seen from.
@@ -232,7 +226,7 @@ export class CloudField {
     const periods = layerPeriods(parameters)
     const scales = weatherScales(weatherWeights, this.worldMap !== null, openCells)
     const { stretch, edge, coarseness } = layerForms(parameters)
-    const column = this.#meanColumn(index, parameters)
+    const column = meanColumnOf(parameters, this.depthScale.value)
     const bend = turbulence * billowForm.bend * periods.shape
     const lattice = (rotation: Quaternion, period: number, from: Vector3, across = 1): number[][] =>
       latticeRows(this.rotations[index], rotation, period, from, across)
@@ -254,16 +248,6 @@ export class CloudField {
       [1 / periods.weather, 1 / periods.detail, column.fullDensity, parameters.shear]
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
-  }
-
-  /** Means of a layer's columns, computed anew where it or the light has changed. */
-  #meanColumn(index: number, parameters: CloudLayerParameters): MeanColumn {
-    const depthScale = this.depthScale.value
-    const known = this.#columns[index]
-    if (known?.parameters === parameters && known.depthScale === depthScale) return known.column
-    const column = meanColumn(parameters, depthScale)
-    this.#columns[index] = { parameters, depthScale, column }
-    return column
   }
 
   /**

@@ -1,4 +1,4 @@
-import type { SkyLightProbe, SkyLitPlane, ViewNodes } from '@welkin/atmosphere'
+import type { NightLightProbe, SkyLightProbe, SkyLitPlane, ViewNodes } from '@welkin/atmosphere'
 import { checkRange } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { float, mix } from 'three/tsl'
@@ -9,23 +9,23 @@ import type { Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 
 /** Light that clouds give each probe now. */
-const _ofProbe = new WeakMap<SkyLightProbe, CloudSkyLight>()
+const _ofProbe = new WeakMap<SkyLightProbe | NightLightProbe, CloudSkyLight>()
 
 /**
  * Clouds in the light of the sky on surfaces: see {@link cloudSkyLight}.
  */
 export class CloudSkyLight {
   /** Shared, not owned. */
-  readonly probe: SkyLightProbe
+  readonly probe: SkyLightProbe | NightLightProbe
   /** Whose clouds; shared, not owned. */
   readonly clouds: CloudsNode
   readonly #strength = number(1)
   readonly #overcast: SkyLightProbe['overcast']
 
   /** @throws If an argument is missing, or they are of two atmospheres. */
-  constructor(probe: SkyLightProbe, clouds: CloudsNode) {
+  constructor(probe: SkyLightProbe | NightLightProbe, clouds: CloudsNode) {
     if (probe?.overcast === undefined) {
-      fail('CloudSkyLight', 'probe must be a SkyLightProbe', probe)
+      fail('CloudSkyLight', 'probe must be a SkyLightProbe or NightLightProbe', probe)
     }
     // The light of clouds that are gone makes room by itself.
     const before = _ofProbe.get(probe)
@@ -75,7 +75,7 @@ export class CloudSkyLight {
 }
 
 /**
- * Light that comes through clouds and from them, given by a `SkyLightProbe`: under an overcast less
+ * Light that comes through clouds and from them, given by a `SkyLightProbe` or `NightLightProbe`: under an overcast less
  * than all of a clear day's light, but more than its blue sky's; above the clouds that of the white below.
  *
  * ```ts
@@ -86,10 +86,12 @@ export class CloudSkyLight {
  *
  * It is a mean over some kilometres, from the weather alone, and goes together with `cloudShadow`, which
  * takes from the sun what is given here. Layers whose `shadow` is false have no part in it. A moon's probe
- * takes it too. After the clouds' `dispose` the sky is clear again. Where materials were compiled before, it
+ * takes it too, and that of the night sky. After the clouds' `dispose` the sky is clear again. Where materials were compiled before, it
  * comes with `renderer.contextNode.needsUpdate = true`.
  *
  * @throws If an argument is missing, or they are of two atmospheres.
  */
-export const cloudSkyLight = (probe: SkyLightProbe, clouds: CloudsNode): CloudSkyLight =>
-  new CloudSkyLight(probe, clouds)
+export const cloudSkyLight = (
+  probe: SkyLightProbe | NightLightProbe,
+  clouds: CloudsNode
+): CloudSkyLight => new CloudSkyLight(probe, clouds)

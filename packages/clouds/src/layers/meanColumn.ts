@@ -145,3 +145,20 @@ export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanCol
     )
   }
 }
+
+const _columns = new WeakMap<CloudLayerParameters, { depthScale: number; column: MeanColumn }>()
+
+/** {@link meanColumn} of parameters that do not change any more, computed once. */
+export function meanColumnOf(layer: CloudLayerParameters, depthScale: number): MeanColumn {
+  const known = _columns.get(layer)
+  if (known?.depthScale === depthScale) return known.column
+  const column = meanColumn(layer, depthScale)
+  _columns.set(layer, { depthScale, column })
+  return column
+}
+
+/** Density of a cloudy column, over the layer's [–]: `columnDensityAt` of density/tsl/unresolved.ts. */
+export const columnDensityAt = (
+  { columnDensity, fullDensity }: MeanColumn,
+  coverage: number
+): number => columnDensity + coverage ** 32 * (fullDensity - columnDensity)

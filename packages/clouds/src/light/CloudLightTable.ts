@@ -4,19 +4,11 @@ import type { UniformNode } from 'three/webgpu'
 import { withDefaults } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
 import { parameterProperties } from '../parameterProperties'
-import { scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
+import { fairWeatherPhase, scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { slabTableForm } from './cpu/slabTableForm'
 import { fillCloudLight } from './cpu/cloudLightTable'
 import type { LevelTexture, Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
-
-/** Droplets of fair-weather clouds: a strong forward peak and a weak broad back lobe. */
-const defaults: CloudPhaseParameters = {
-  forwardAsymmetry: 0.8,
-  backwardAsymmetry: -0.2,
-  forwardShare: 0.8,
-  scatteringAlbedo: 0.99999
-}
 
 const ranges = {
   forwardAsymmetry: [0, 0.95],
@@ -66,7 +58,7 @@ export class CloudLightTable {
   #steps: Generator<void, void, void> | null = null
 
   static {
-    parameterProperties(CloudLightTable.prototype, defaults, 'phase')
+    parameterProperties(CloudLightTable.prototype, fairWeatherPhase, 'phase')
   }
 
   /**
@@ -90,7 +82,7 @@ export class CloudLightTable {
       backwardAsymmetry: number(),
       forwardShare: number()
     }
-    this.#phase = defaults
+    this.#phase = fairWeatherPhase
     this.set(phase)
     this.#apply()
   }

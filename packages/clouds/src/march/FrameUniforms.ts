@@ -61,6 +61,9 @@ const CLOUD_CUT = 500
  */
 const LIGHT_CUT = 4
 
+/** `luminanceScale` by day, up to which light is raised by night [1/(cd/m²)]. */
+const DAYLIGHT_SCALE = 1e-4
+
 /** Greatest square of a move that counts as none, of the camera [m²] and of the sun's direction. */
 const NO_MOVE = 1e-12
 
@@ -124,6 +127,8 @@ export class FrameUniforms {
   /** Stored light per light, and the factor that brings history's light to it. */
   readonly gain = number(1)
   readonly gainChange = number(1)
+  /** Stored light per luminance of the last frame; 0 before the first. */
+  #stored = 0
   #count = 0
   #camera: Vector3 | null = null
   readonly #sun = new Vector3()
@@ -160,9 +165,14 @@ export class FrameUniforms {
     this.projectionInverse.value.copy(camera.projectionMatrixInverse)
     this.near.value = camera.near
     this.far.value = camera.far
-    const gain = nightGain(view, field.radius.value)
-    this.gainChange.value = gain / this.gain.value
+    // An exposure that has adapted to the night raises light as well: both are too much for half floats.
+    const { luminanceScale } = field.atmosphere
+    const raised = Math.max(luminanceScale / DAYLIGHT_SCALE, 1)
+    const gain = Math.max(nightGain(view, field.radius.value) / raised, 1)
+    const stored = gain * luminanceScale
+    this.gainChange.value = stored / (this.#stored || stored)
     this.gain.value = gain
+    this.#stored = stored
 
     viewpointMapped(view, _position)
     const isCut = !usesHistory || this.#isCut(view.height, field)

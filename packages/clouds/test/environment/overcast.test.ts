@@ -4,13 +4,13 @@ import { describe, expect, it } from 'vitest'
 import { scalePhase } from '../../src/light/cpu/cloudPhase'
 import { SlabSolver } from '../../src/light/cpu/solveSlab'
 import {
-  cloudyIrradiance,
   eddingtonDiffuse,
   eddingtonTransmittance,
   stackDecks,
-  type ClearLight,
   type CloudDeck
-} from '../twins/overcast'
+} from '../../src/environment/cpu/decks'
+import * as shipped from '../../src/environment/cpu/overcast'
+import { cloudyIrradiance } from '../twins/overcast'
 
 const phase = scalePhase({
   forwardAsymmetry: 0.8,
@@ -80,7 +80,7 @@ describe('stackDecks', () => {
   it('takes two layers one above the other for one', () => {
     fc.assert(
       fc.property(thicknesses, thicknesses, cosines, (a, b, mu0) => {
-        const layers = [a, b].map(thickness => ({ thickness, coverage: 1 }))
+        const layers = [a, b].map(thickness => [{ thickness, coverage: 1 }])
         const { diffuse, direct, beam } = stackDecks(layers, mu0, oneMinusAsymmetry)
         expect(diffuse).toBeCloseTo(eddingtonDiffuse(a + b, oneMinusAsymmetry), 9)
         expect(beam).toBeCloseTo(Math.exp(-(a + b) / mu0), 9)
@@ -94,8 +94,8 @@ describe('stackDecks', () => {
   it('passes no less where clouds cover less', () => {
     fc.assert(
       fc.property(thicknesses, cosines, fc.double({ min: 0, max: 1, noNaN: true }), (a, mu, c) => {
-        const some = stackDecks([{ thickness: a, coverage: c }], mu, oneMinusAsymmetry)
-        const all = stackDecks([{ thickness: a, coverage: 1 }], mu, oneMinusAsymmetry)
+        const some = stackDecks([[{ thickness: a, coverage: c }]], mu, oneMinusAsymmetry)
+        const all = stackDecks([[{ thickness: a, coverage: 1 }]], mu, oneMinusAsymmetry)
         for (const part of ['diffuse', 'direct', 'beam'] as const) {
           expect(some[part]).toBeCloseTo(1 - c + c * all[part], 9)
         }
@@ -105,7 +105,7 @@ describe('stackDecks', () => {
   })
 })
 
-describe('cloudyIrradiance', () => {
+describe('cloudyIrradiance, bounce by bounce', () => {
   const none: CloudDeck = { diffuse: 1, direct: 1, beam: 1 }
   const parts = fc.double({ min: 0.01, max: 1, noNaN: true })
   const decks = fc
@@ -115,7 +115,7 @@ describe('cloudyIrradiance', () => {
   /** Light where there is no air between clouds and ground. */
   const lights = fc
     .record({ direct: parts, sky: parts, albedo: albedos })
-    .map(({ direct, sky, albedo }): ClearLight & { all: number } => ({
+    .map(({ direct, sky, albedo }): shipped.ClearLight & { all: number } => ({
       direct: { above: direct, below: direct },
       sky: { here: sky, below: sky },
       ground: albedo * (direct + sky),
@@ -129,6 +129,23 @@ describe('cloudyIrradiance', () => {
       fc.property(lights, fc.double({ min: -1, max: 1, noNaN: true }), (clear, cosNormal) => {
         expect(cloudyIrradiance(clear, none, none, cosNormal)).toBeCloseTo(clear.plane, 12)
       })
+    )
+  })
+
+  it('is the sum of the geometric series that ships', () => {
+    // Decks that pass so little that 400 bounces are too few are left out.
+    const passing = decks.filter(({ diffuse }) => diffuse > 0.1)
+    fc.assert(
+      fc.property(
+        lights,
+        passing,
+        passing,
+        fc.double({ min: -1, max: 1, noNaN: true }),
+        (clear, above, below, cosNormal) => {
+          const sum = shipped.cloudyIrradiance(clear, above, below, cosNormal)
+          expect(sum).toBeCloseTo(cloudyIrradiance(clear, above, below, cosNormal), 8)
+        }
+      )
     )
   })
 
@@ -164,7 +181,7 @@ describe('cloudyIrradiance', () => {
       plane: 0.12,
       albedo: 0.2
     }
-    const deck = stackDecks([{ thickness: 12, coverage: 1 }], 0.85, oneMinusAsymmetry)
+    const deck = stackDecks([[{ thickness: 12, coverage: 1 }]], 0.85, oneMinusAsymmetry)
     const light = cloudyIrradiance(clear, deck, none, 1)
     expect(light).toBeGreaterThan(0.12)
     expect(light).toBeLessThan(0.3 * 0.92)

@@ -6,8 +6,9 @@ import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
 import { columnDensityAt } from '../../density/tsl/unresolved'
 import { filteredCoverageAt } from '../../density/tsl/weather'
+import { footprintForm, LOWEST_COSINE } from '../cpu/decks'
 
-/** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: test/twins/overcast.ts */
+/** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: cpu/decks.ts */
 export interface CloudDeckNodes {
   /** Part of diffuse light that passes. */
   diffuse: Float
@@ -20,16 +21,7 @@ export interface CloudDeckNodes {
 /** Clouds above or below a place, and the altitude of their tops; its own where there are none [m]. */
 export type PlacedDeck = CloudDeckNodes & { top: Float }
 
-/** Cosine of the lowest light; one below it counts as this. */
-export const LOWEST_COSINE = 0.05
-
-/**
- * Footprint on the clouds that light a plane: in heights of the clouds above it, and at least [m]. Smaller:
- * light under broken clouds changes with every gap (*Shadows*).
- */
-const footprintForm = { heights: 2, least: 1500 } as const
-
-/** Transmittances of a cloud by Eddington's approximation. Twin: test/twins/overcast.ts */
+/** Transmittances of a cloud by Eddington's approximation. Twin: cpu/decks.ts */
 export function eddington(
   thickness: Float,
   cosLight: Float,

@@ -1,12 +1,12 @@
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
 import type { SkyLitPlane, ViewUniforms } from '@welkin/atmosphere'
-import { float } from 'three/tsl'
+import { float, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { decksAround, type CloudDeckNodes, type Decks } from './decks'
 
-/** Light about a plane: see `ClearLight` of test/twins/overcast.ts. */
+/** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
 export interface ClearLightNodes {
   direct: { above: Vec4; below: Vec4 }
   sky: { here: Vec4; below: Vec4 }
@@ -18,7 +18,7 @@ export interface ClearLightNodes {
 /**
  * Irradiance of a plane among clouds: of sky and ground, with the direct light that clouds have scattered,
  * but without what arrives unscattered. Light to and fro between clouds and ground is summed as
- * geometric series. Twin: test/twins/overcast.ts
+ * geometric series. Twins: cpu/overcast.ts, test/twins/overcast.ts
  *
  * @param cosNormal - The plane's normal against the zenith.
  */
@@ -61,13 +61,24 @@ export function cloudyIrradiance(
 export function overcastIrradiance(
   field: CloudField,
   light: CloudLight,
-  { view, altitude, up, cosLight, cosNormal }: SkyLitPlane,
+  { view, altitude, up, cosLight, cosNormal, isNight }: SkyLitPlane,
   offset: Vec3,
   clear: Vec4
 ): Vec4 {
   const decks = decksAround(field, light, offset, altitude, up, cosLight)
-  const { lights } = lightsAbout(view, decks, altitude, cosLight)
+  const lights = isNight ? evenLights(view) : lightsAbout(view, decks, altitude, cosLight).lights
   return cloudyIrradiance({ ...lights, plane: clear }, decks.above, decks.below, cosNormal)
+}
+
+/** Light without clouds under an even sky, for unit irradiance of level ground. */
+function evenLights({ air }: ViewUniforms): Omit<ClearLightNodes, 'plane'> {
+  const albedo = air.uniforms.groundAlbedo as unknown as Vec4
+  const [none, all] = [vec4(0), vec4(1)]
+  const [direct, sky] = [
+    { above: none, below: none },
+    { here: all, below: all }
+  ]
+  return { direct, sky, ground: albedo, albedo }
 }
 
 /** Light without clouds at an altitude and on the decks about it, for unit irradiance of the source. */

@@ -10,6 +10,14 @@ export interface CloudPhaseParameters {
   readonly scatteringAlbedo: number
 }
 
+/** Droplets of fair-weather clouds: a strong forward peak and a weak broad back lobe. */
+export const fairWeatherPhase: CloudPhaseParameters = {
+  forwardAsymmetry: 0.8,
+  backwardAsymmetry: -0.2,
+  forwardShare: 0.8,
+  scatteringAlbedo: 0.99999
+}
+
 /**
  * A phase function whose forward peak counts as light that was not scattered: what is left is smooth
  * enough for three Legendre terms.
