@@ -43,9 +43,9 @@ export interface ShaftCost {
   shaftsMs: number
 }
 
-/** What of a city is drawn. */
+/** A city, as it is drawn. */
 type CityOptions = Pick<ShaftCost, 'path' | 'cascades' | 'withClouds'> & {
-  /** Of light shafts; null for none. */
+  /** Quality of light shafts; null for none. */
   quality: LightShaftsQuality | null
 }
 
