@@ -156,6 +156,8 @@ export const createLightShafts = (
       return {
         warmUpFrames: node === undefined ? undefined : STILL.frames,
         place: () => view,
+        // Exposure is that of the tables, in every frame of a screenshot.
+        prepare: () => atmosphere.bake(renderer),
         apply({ strength, turbidity, elevation, azimuth, exposure }) {
           shafts.strength = strength
           if (turbidity !== haze) atmosphere.parameters.set({ turbidity })

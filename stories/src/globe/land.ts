@@ -33,6 +33,8 @@ export interface LandStory<Args> {
   place(args: Args): Place
   /** Frames to draw before one counts; {@link WARM_UP_FRAMES} if left out. */
   readonly warmUpFrames?: number
+  /** Called before the frames of a screenshot: settles when all that these need is there. */
+  prepare?(): Promise<void>
   /** Follows its arguments. */
   apply(args: Args): void
   /** @param altitude - Of the camera above the ellipsoid [m]. */
@@ -104,6 +106,7 @@ export async function createLand<Args extends RendererArgs>(
     const count = ++loads
     const isOver = (): boolean => disposed || count !== loads
     ready = loadTiles(tilesets, prepare, isOver).then(async () => {
+      if (current.frame && !isOver()) await story.prepare?.()
       for (let i = 0; current.frame && !isOver() && i < warmUpFrames; i++) {
         // Passes draw their scene once in an animation frame: shadows of clouds are there in the last.
         if (i > 0 && i >= warmUpFrames - LAST_FRAMES) await new Promise(requestAnimationFrame)
