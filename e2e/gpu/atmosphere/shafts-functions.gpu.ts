@@ -93,7 +93,7 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     const blur = 3e-7 * (1 + Math.abs(z) / distance)
     expectClose(turn, 0.5, { absolute: 2e-5 + blur }, 'row')
     // WGSL asks 4096 units in the last place of atan2, and software gives no more.
-    expectClose(angle, -Math.atan2(z, distance), { absolute: 1e-4 }, 'angle')
+    expectClose(angle, Math.atan2(distance, Math.abs(z)), { absolute: 1e-4 }, 'angle')
     // Of sine and cosine it asks 2⁻¹¹.
     expectClose(
       crossing,

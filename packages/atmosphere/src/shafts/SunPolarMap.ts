@@ -1,4 +1,4 @@
-import { MathUtils, Matrix3, Matrix4, RedFormat, RepeatWrapping, Vector3 } from 'three'
+import { MathUtils, Matrix3, Matrix4, RGFormat, RepeatWrapping, Vector3 } from 'three'
 import type { RenderTarget, DepthTexture } from 'three'
 import { renderGroup, texture, uniform } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
@@ -49,7 +49,7 @@ export class SunPolarMap {
   constructor() {
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
     const [map] = this.target.textures
-    map.format = RedFormat
+    map.format = RGFormat
     map.wrapT = RepeatWrapping
     this.map = texture(map)
   }

@@ -9,7 +9,7 @@ import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPlace, AirShadow } from '../AirOccluder'
 import { litRay } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
-import { occluderAngleAt, polarRay, type PolarFrame } from './polarMap'
+import { isDark, polarRay, type PolarFrame } from './polarMap'
 import { warpedSteps } from './warpedSteps'
 
 /** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
@@ -107,8 +107,7 @@ export function lostLight(
       const fromEye = steps.distance(position).add(limits.start).toConst() as Float
       const dark = float(0).toVar()
       const readMap = (): void => {
-        const occluder = occluderAngleAt(map, frame, polar.row, fromEye.mul(polar.sinViewLight))
-        dark.assign(polar.angle.greaterThan(occluder).select(1, 0))
+        dark.assign(isDark(map, frame, polar, fromEye).select(1, 0))
       }
       if (isMapped === null) readMap()
       else If(isMapped, readMap)

@@ -106,7 +106,7 @@ const PROBES = 5
  * occluder on it.
  *
  * @param maps - From the finest on, as cascades are.
- * @returns Angle of the occluder from the source of light less π/2; π/2 where there is none [rad].
+ * @returns Angle θ of the occluder from the source of light, π where there is none; and π − θ [rad].
  */
 export function occluderAngle(
   frame: PolarFrame,
@@ -132,7 +132,7 @@ export function occluderAngle(
         }
       })
     })
-    return vec4(atan(nearest.negate(), distance))
+    return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
   })()
 }
 

@@ -1,6 +1,6 @@
 import { atan, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { sampleLevel0, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+import { sampleLevel0, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 
 /**
  * Polar coordinates about the camera with the source of light as pole: θ from the source, φ around it, ρ the
@@ -25,8 +25,10 @@ export interface PolarFrame {
 export interface PolarRay {
   /** sin θ, which turns a distance along the ray into ρ. */
   sinViewLight: Float
-  /** θ − π/2 [rad]. */
+  /** θ, or π − θ where the ray goes away from the light: half floats are finest near nought [rad]. */
   angle: Float
+  /** True if the ray goes towards the light. */
+  isTowards: Bool
   /** φ as a texture coordinate, in turns. */
   row: Float
 }
@@ -46,7 +48,8 @@ export function polarRay(
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
   return {
     sinViewLight,
-    angle: atan(cosViewLight.negate(), sinViewLight).toConst(),
+    angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
+    isTowards: cosViewLight.greaterThan(0).toConst() as Bool,
     row: atan(y, x)
       .mul(1 / (2 * Math.PI))
       .toConst()
@@ -76,17 +79,18 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
 }
 
 /**
- * Angle from the source of light at which the first occluder of a ray of light stands, less π/2; what is at
- * greater angles is dark [rad].
+ * Whether air on a view ray is dark: an occluder on its ray of light stands at a smaller angle from the light.
  *
- * @param row - φ of the ray of light: see {@link PolarRay}.
- * @param distance - Its ρ ≥ 0 [m].
+ * @param map - θ of the first occluder, and π − θ, of rays of light [rad].
+ * @param distance - From the camera [m].
  */
-export function occluderAngleAt(
+export function isDark(
   map: TextureNode,
   frame: PolarFrame,
-  row: Float,
+  { sinViewLight, angle, isTowards, row }: PolarRay,
   distance: Float
-): Float {
-  return sampleLevel0(map, vec2(columnAt(frame, distance), row)).x
+): Bool {
+  const at = vec2(columnAt(frame, distance.mul(sinViewLight)), row)
+  const occluder = sampleLevel0(map, at).toConst()
+  return isTowards.select(angle.greaterThan(occluder.x), angle.lessThan(occluder.y)) as Bool
 }
