@@ -49,7 +49,7 @@ export function polarRay(
   return {
     sinViewLight,
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
-    isTowards: cosViewLight.greaterThan(0).toConst() as Bool,
+    isTowards: cosViewLight.greaterThan(0).toConst(),
     row: atan(y, x)
       .mul(1 / (2 * Math.PI))
       .toConst()
@@ -79,7 +79,7 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
 }
 
 /**
- * Whether air on a view ray is dark: an occluder on its ray of light stands at a smaller angle from the light.
+ * True where air on a view ray is dark: an occluder on its ray of light stands at a smaller angle from the light.
  *
  * @param map - θ of the first occluder, and π − θ, of rays of light [rad].
  * @param distance - From the camera [m].
@@ -92,5 +92,5 @@ export function isDark(
 ): Bool {
   const at = vec2(columnAt(frame, distance.mul(sinViewLight)), row)
   const occluder = sampleLevel0(map, at).toConst()
-  return isTowards.select(angle.greaterThan(occluder.x), angle.lessThan(occluder.y)) as Bool
+  return isTowards.select(angle.greaterThan(occluder.x), angle.lessThan(occluder.y))
 }
