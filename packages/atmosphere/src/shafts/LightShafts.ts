@@ -2,7 +2,14 @@ import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
 import { float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
-import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
+import {
+  checkBoolean,
+  checkChoice,
+  checkNonNegative,
+  checkOptions,
+  fail,
+  setOptions
+} from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import type { Float, Vec4 } from '../tsl-types'
@@ -112,7 +119,7 @@ export class LightShafts implements ShadowedShafts {
   constructor(atmosphere: Atmosphere, camera: Camera, options: LightShaftsOptions) {
     checkAtmosphere('LightShafts', atmosphere)
     checkCamera('LightShafts', camera)
-    const { light, ...settings } = options ?? {}
+    const { light, ...settings } = checkOptions('LightShafts', options ?? {}, 'light', ...SETTINGS)
     const lightCamera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
     if (!lightCamera?.isOrthographicCamera)
       fail('LightShafts', 'light must be a DirectionalLight', light)

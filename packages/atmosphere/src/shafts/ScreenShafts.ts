@@ -5,7 +5,7 @@ import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/
 import { linearSRGB } from '../air/tsl/color'
 import { FragmentPass, tableTarget, twoOutputs, type Outputs } from '../tables/FragmentPass'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { radianceBetween, sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, Veil } from '../view/AirShadows'
@@ -140,12 +140,20 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = shafts.isForward ? 1 : 0
   }
 
-  glow(_: SkyRay, light: Vec4): Vec4 {
-    return this.#subtract(light)
+  glow({ direction, cosView, hitsGround }: SkyRay, light: Vec4): Vec4 {
+    const distance = hitsGround.select(PLANET, FAR).toConst() as Float
+    const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
+    return this.#subtract(light, distance, () =>
+      this.#litAir({ direction, cosView, cosViewLight, distance })
+    )
   }
 
-  inScatter(_: PointRay, light: Vec4): Vec4 {
-    return this.#subtract(light)
+  inScatter({ direction, distance, segment }: PointRay, light: Vec4): Vec4 {
+    const { air, volume, viewpoint, lightDirection } = this.#shafts.view
+    const cosViewLight = direction.dot(lightDirection).toConst() as Float
+    return this.#subtract(light, distance, () =>
+      radianceBetween(air.uniforms, volume, viewpoint, segment, cosViewLight)
+    )
   }
 
   /** True if the node of a veil draws the shafts, so that this one has no part in its shader. */
@@ -153,16 +161,22 @@ export class ScreenShafts implements ScreenShadows {
     return this.veil === undefined && this.#shafts.isVeiled
   }
 
-  #subtract(light: Vec4): Vec4 {
+  /** @param litAir - Light of the air up to the distance [m] without shadows [1/sr]. */
+  #subtract(light: Vec4, distance: Float, litAir: () => Vec4): Vec4 {
     if (this.#isElsewhere) return light
-    return without(light, this.#strength, this.#shafts.view, this.#sample)
+    const { view } = this.#shafts
+    return without(light, this.#strength, view, () => this.#partLost(distance).mul(litAir()))
   }
 
   dim(color: Vec3): Vec3 {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const lost = this.#sample().mul(view.source.irradiance).mul(this.#strength).toConst()
+      const unlit = Fn(({ renderer }): Vec4 => {
+        const ray = this.#rayTo(renderer, uv())
+        return this.#partLost(ray.distance).mul(this.#litAir(ray))
+      })()
+      const lost = unlit.mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
       const { uniforms } = view.air
@@ -228,34 +242,30 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /**
-   * Light that the pixel has lost: of the light of its air the mean part that four around have lost, which have
-   * samples in all places of their steps. So a pixel whose depth none of them has loses no more than it has.
+   * Part of the light of its air that the pixel has lost: the mean of four around, which have samples in all places
+   * of their steps. So a pixel whose depth none of them has loses no more than it has.
+   *
+   * @param distance - Of what is seen in it [m].
    */
-  readonly #sample = (): Vec4 =>
-    Fn(({ renderer }): Vec4 => {
-      const at = uv() as unknown as Vec2
-      const ray = this.#rayTo(renderer, at)
-      const distance = log2(ray.distance).toConst()
-      const first = at.mul(this.#size).mul(0.5).floor().toConst() as Vec2
-      const sum = vec4(0).toVar()
-      const weights = float(0).toVar()
-      for (const i of [0, 1, 2, 3]) {
-        const pixel = first
-          .add(vec2(i & 1, i >> 1))
-          .min(this.#halfSize.sub(1))
-          .toConst() as Vec2
-        const place = pixel.add(0.5).div(this.#halfSize).toConst() as Vec2
-        const apart = distance.sub(sampleLevel0(this.#distances, place).x).abs()
-        const weight = apart
-          .sub(OTHER_DEPTH)
-          .div(SAME_DEPTH - OTHER_DEPTH)
-          .clamp(STRANGER, 1)
-          .toConst() as Float
-        sum.addAssign(sampleLevel0(this.#parts, place).mul(weight))
-        weights.addAssign(weight)
-      }
-      return sum.div(weights).mul(this.#litAir(ray))
-    })()
+  #partLost(distance: Float): Vec4 {
+    const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
+    const octaves = log2(distance).toConst()
+    const sum = vec4(0).toVar()
+    const weights = float(0).toVar()
+    for (const i of [0, 1, 2, 3]) {
+      const pixel = first.add(vec2(i & 1, i >> 1)).min(this.#halfSize.sub(1))
+      const place = pixel.add(0.5).div(this.#halfSize).toConst() as Vec2
+      const apart = octaves.sub(sampleLevel0(this.#distances, place).x).abs()
+      const weight = apart
+        .sub(OTHER_DEPTH)
+        .div(SAME_DEPTH - OTHER_DEPTH)
+        .clamp(STRANGER, 1)
+        .toConst() as Float
+      sum.addAssign(sampleLevel0(this.#parts, place).mul(weight))
+      weights.addAssign(weight)
+    }
+    return sum.div(weights)
+  }
 
   /** Takes them out of the shafts of their camera. */
   dispose(): void {

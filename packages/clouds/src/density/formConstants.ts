@@ -37,7 +37,7 @@ export const strengthForm = {
   leastVariance: 0.05,
   /**
    * Deviation of the weather by which edges of the filtered coverage are soft: per shape amount, and at
-   * least [–]. Greater: fields of clouds have soft rims from orbit (*World clouds from afar*).
+   * least [–]. Greater: fields of clouds have soft rims from orbit (*World clouds from 12,000 km*).
    */
   edgeSoftness: 0.4,
   leastEdgeSoftness: 0.05

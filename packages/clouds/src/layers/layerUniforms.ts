@@ -23,7 +23,7 @@ export const noisePeriods = {
   fields: 3 * Math.sqrt(6),
   /**
    * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
-   * and clear zones (*World clouds from afar*, without its map).
+   * and clear zones (*World clouds from 12,000 km*, without its map).
    */
   regions: 2_300_000
 } as const

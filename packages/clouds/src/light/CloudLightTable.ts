@@ -43,7 +43,6 @@ export interface CloudLight {
  * ```ts
  * const light = new CloudLightTable()
  * light.bake()                                   // or a step a frame: light.update(1)
- * const source = cloudSource(light.nodes, sample)
  * ```
  */
 export class CloudLightTable {

@@ -70,7 +70,9 @@ export class CloudsNode extends AtmosphereNode {
   depthNode: Node
   /** The camera that drew it. */
   readonly camera: PerspectiveCamera
+  /** Density of the clouds, for their own passes and for others'. */
   readonly field: CloudField
+  /** Multiple scattering in clouds; shared if it was given, else owned. */
   readonly light: CloudLightTable
   /** Optical depths towards the sun about the camera. */
   readonly shadows: CloudShadowMap
@@ -209,7 +211,7 @@ export class CloudsNode extends AtmosphereNode {
     if (renderer === null) return
     this.#drawnBy = renderer
     const wasReady = this.isReady
-    // Of clouds that appear there is no history.
+    // Clouds that appear have no history.
     if (field.bake(renderer, this.#noiseSlices) && !wasReady) this.#frame.reset()
     // Light is there when the clouds are; later it may follow its changes slowly.
     light.update(this.isReady && !light.isReady ? Infinity : 1)
