@@ -41,8 +41,12 @@ describe('bad input to light shafts', () => {
       () => lightShafts(atmosphere, camera, wrong({}))
     ],
     [
-      "LightShafts: unknown option 'steps', there are strength, quality, enabled",
+      "LightShafts: unknown option 'steps', there are light, strength, quality, enabled",
       () => lightShafts(atmosphere, camera, wrong({ light, steps: 4 }))
+    ],
+    [
+      "LightShafts: unknown option 'ligth', did you mean 'light'?",
+      () => lightShafts(atmosphere, camera, wrong({ ligth: light }))
     ],
     [
       'LightShafts: strength must be finite and ≥ 0, got -1',
