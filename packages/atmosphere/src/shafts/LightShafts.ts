@@ -80,7 +80,7 @@ const _axes = new Matrix4()
  *
  * Clouds and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`. They need no shadow map of the light.
  *
- * Needs a texture of 1 MB, and 2.5 bytes a pixel of the picture.
+ * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
  *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"

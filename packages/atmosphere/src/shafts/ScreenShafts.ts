@@ -1,9 +1,9 @@
-import { NearestFilter, RedFormat, Vector2 } from 'three'
+import { NearestFilter, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
-import { FragmentPass, tableTarget, twoOutputs, type Outputs } from '../tables/FragmentPass'
+import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { radianceBetween, sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
@@ -30,6 +30,9 @@ const STRANGER = 1e-3
 
 /** Range of the part of its light that a pixel may lose: more than none, as clouds reflect light, and than all, as its light is from a table. */
 const PARTS = [-20, 4] as const
+
+/** Distance of 520 and 560 nm from their middle, over that from 440 to 630 nm. */
+const MIDDLES_APART = 20 / 190
 
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
@@ -92,9 +95,8 @@ export class ScreenShafts implements ScreenShadows {
   /** Size of the picture, and of the target [pixels]. */
   readonly #size = vector2()
   readonly #halfSize = vector2()
+  /** Parts of the light that are lost at 440, 540 and 630 nm, and the binary logarithm of the distance [m]. */
   readonly #parts: TextureNode
-  /** Binary logarithm of the distances of its pixels [m]. */
-  readonly #distances: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
@@ -107,11 +109,8 @@ export class ScreenShafts implements ScreenShadows {
     this.veil = veil
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
-    this.target = tableTarget('Welkin.LightShafts', 1, 1, 2, NearestFilter)
-    const [parts, distances] = this.target.textures
-    distances.format = RedFormat
-    this.#parts = texture(parts)
-    this.#distances = texture(distances)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
+    this.#parts = texture(this.target.texture)
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -199,9 +198,9 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
-  #march(): Outputs {
+  #march(): Vec4 {
     const { view, shadowedAir, steps } = this.#shafts
-    return twoOutputs(renderer => {
+    return Fn(({ renderer }): Vec4 => {
       const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
       const at = this.#uvOf(pixel)
       const ray = this.#rayTo(renderer, at)
@@ -209,9 +208,12 @@ export class ScreenShafts implements ScreenShadows {
       const distance = ray.distance.min(most).toConst() as Float
       const jitter = staggered(pixel)
       const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
-      const part = lost.div(this.#litAir(ray).max(1e-12)).clamp(...PARTS)
-      return [part, vec4(log2(ray.distance))]
-    })
+      const part = lost
+        .div(this.#litAir(ray).max(1e-12))
+        .clamp(...PARTS)
+        .toConst()
+      return vec4(part.x, part.y.add(part.z).mul(0.5), part.w, log2(ray.distance))
+    })()
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
@@ -255,16 +257,19 @@ export class ScreenShafts implements ScreenShadows {
     for (const i of [0, 1, 2, 3]) {
       const pixel = first.add(vec2(i & 1, i >> 1)).min(this.#halfSize.sub(1))
       const place = pixel.add(0.5).div(this.#halfSize).toConst() as Vec2
-      const apart = octaves.sub(sampleLevel0(this.#distances, place).x).abs()
+      const other = sampleLevel0(this.#parts, place).toConst() as Vec4
+      const apart = octaves.sub(other.w).abs()
       const weight = apart
         .sub(OTHER_DEPTH)
         .div(SAME_DEPTH - OTHER_DEPTH)
         .clamp(STRANGER, 1)
         .toConst() as Float
-      sum.addAssign(sampleLevel0(this.#parts, place).mul(weight))
+      sum.addAssign(other.mul(weight))
       weights.addAssign(weight)
     }
-    return sum.div(weights)
+    const { x, y, z } = sum.div(weights).toConst() as Vec4
+    const apart = z.sub(x).mul(MIDDLES_APART).toConst()
+    return vec4(x, y.sub(apart), y.add(apart), z)
   }
 
   /** Takes them out of the shafts of their camera. */
