@@ -31,9 +31,6 @@ const STRANGER = 1e-3
 /** Range of the part of its light that a pixel may lose: more than none, as clouds reflect light, and than all, as its light is from a table. */
 const PARTS = [-20, 4] as const
 
-/** Distance of 520 and 560 nm from their middle, over that from 440 to 630 nm. */
-const MIDDLES_APART = 20 / 190
-
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
 const PLANET = 1e9
@@ -95,7 +92,6 @@ export class ScreenShafts implements ScreenShadows {
   /** Size of the picture, and of the target [pixels]. */
   readonly #size = vector2()
   readonly #halfSize = vector2()
-  /** Parts of the light that are lost at 440, 540 and 630 nm, and the binary logarithm of the distance [m]. */
   readonly #parts: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
@@ -208,11 +204,7 @@ export class ScreenShafts implements ScreenShadows {
       const distance = ray.distance.min(most).toConst() as Float
       const jitter = staggered(pixel)
       const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
-      const part = lost
-        .div(this.#litAir(ray).max(1e-12))
-        .clamp(...PARTS)
-        .toConst()
-      return vec4(part.x, part.y.add(part.z).mul(0.5), part.w, log2(ray.distance))
+      return lost.div(this.#litAir(ray).max(1e-12)).clamp(...PARTS)
     })()
   }
 
@@ -250,26 +242,27 @@ export class ScreenShafts implements ScreenShadows {
    * @param distance - Of what is seen in it [m].
    */
   #partLost(distance: Float): Vec4 {
-    const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
-    const octaves = log2(distance).toConst()
-    const sum = vec4(0).toVar()
-    const weights = float(0).toVar()
-    for (const i of [0, 1, 2, 3]) {
-      const pixel = first.add(vec2(i & 1, i >> 1)).min(this.#halfSize.sub(1))
-      const place = pixel.add(0.5).div(this.#halfSize).toConst() as Vec2
-      const other = sampleLevel0(this.#parts, place).toConst() as Vec4
-      const apart = octaves.sub(other.w).abs()
-      const weight = apart
-        .sub(OTHER_DEPTH)
-        .div(SAME_DEPTH - OTHER_DEPTH)
-        .clamp(STRANGER, 1)
-        .toConst() as Float
-      sum.addAssign(other.mul(weight))
-      weights.addAssign(weight)
-    }
-    const { x, y, z } = sum.div(weights).toConst() as Vec4
-    const apart = z.sub(x).mul(MIDDLES_APART).toConst()
-    return vec4(x, y.sub(apart), y.add(apart), z)
+    return Fn(({ renderer }): Vec4 => {
+      const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
+      const sum = vec4(0).toVar()
+      const weights = float(0).toVar()
+      for (const i of [0, 1, 2, 3]) {
+        const pixel = first
+          .add(vec2(i & 1, i >> 1))
+          .min(this.#halfSize.sub(1))
+          .toConst() as Vec2
+        const other = this.#rayTo(renderer, this.#uvOf(pixel)).distance
+        const apart = log2(distance.div(other)).abs()
+        const weight = apart
+          .sub(OTHER_DEPTH)
+          .div(SAME_DEPTH - OTHER_DEPTH)
+          .clamp(STRANGER, 1)
+          .toConst() as Float
+        sum.addAssign(sampleLevel0(this.#parts, pixel.add(0.5).div(this.#halfSize)).mul(weight))
+        weights.addAssign(weight)
+      }
+      return sum.div(weights)
+    })()
   }
 
   /** Takes them out of the shafts of their camera. */
