@@ -28,7 +28,10 @@ const OTHER_DEPTH = 0.6
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
-/** Range of the part of its light that a pixel may lose: more than none, as clouds reflect light, and than all, as its light is from a table. */
+/**
+ * Range of the part of its light that a pixel may lose: less than none, as clouds reflect light, and more than all, as
+ * its light is from a table.
+ */
 const PARTS = [-20, 4] as const
 
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */

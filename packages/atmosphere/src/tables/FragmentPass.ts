@@ -1,6 +1,5 @@
 import { HalfFloatType, LinearFilter, NoBlending, RenderTarget } from 'three'
 import type { TextureFilter, NearestFilter } from 'three'
-import { Fn, outputStruct, property, vec4 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, RendererUtils } from 'three/webgpu'
 import type { Node, Renderer } from 'three/webgpu'
 import type { Vec4 } from '../tsl-types'
@@ -30,19 +29,6 @@ export function tableTarget(
 export interface Outputs {
   color: Vec4
   output: Node
-}
-
-/** Values for the two attachments of a target. */
-export function twoOutputs(body: (renderer: Renderer) => readonly [Vec4, Vec4]): Outputs {
-  const first = property('vec4') as unknown as Vec4
-  const second = property('vec4') as unknown as Vec4
-  const assign = Fn(({ renderer }): Vec4 => {
-    const values = body(renderer)
-    first.assign(values[0])
-    second.assign(values[1])
-    return vec4(0)
-  })
-  return { color: assign(), output: outputStruct(first, second) }
 }
 
 /** A fragment shader that fills a render target. */

@@ -1,6 +1,6 @@
-import { Fn, If, float, int, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { twoOutputs, type Outputs } from '../../tables/FragmentPass'
+import type { Outputs } from '../../tables/FragmentPass'
 import type { Texels } from '../../tables/TableAtlas'
 import {
   DEPTH_SIZE,
@@ -23,6 +23,24 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
+
+/** Values for the two attachments of a target. */
+interface Parts {
+  molecular: Vec4
+  aerosol: Vec4
+}
+
+function twoOutputs(body: () => Parts): Outputs {
+  const first = property('vec4') as unknown as Vec4
+  const second = property('vec4') as unknown as Vec4
+  const assign = Fn(() => {
+    const { molecular, aerosol } = body()
+    first.assign(molecular)
+    second.assign(aerosol)
+    return vec4(0)
+  })
+  return { color: assign(), output: outputStruct(first, second) }
+}
 
 /** Light that half floats hold. */
 const MOST_HALF = 65_000
@@ -120,7 +138,7 @@ export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Out
       const foot = pointAlong(air, ray, limits.length)
       molecular.assign(groundRadiance(air, foot.cosLight).mul(through).mul(RADIANCE_SCALE))
     })
-    return [molecular, aerosol]
+    return { molecular: molecular, aerosol: aerosol }
   })
 }
 
