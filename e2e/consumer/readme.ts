@@ -51,7 +51,7 @@ declare global {
  * a module that must compile.
  *
  * @param app - Folder of the app.
- * @returns How many blocks there are.
+ * @returns Number of blocks.
  */
 export function writeReadmeModules(root: string, app: string): number {
   const folder = join(app, 'src', 'readme')

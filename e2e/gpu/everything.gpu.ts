@@ -95,7 +95,7 @@ class World {
   readonly #environment
   readonly #owned: { dispose(): void }[] = []
 
-  /** @param isMapped - Whether clouds have a map of the world; else the lit material has six of its own. */
+  /** @param isMapped - True if clouds have a map of the world; else the lit material has six of its own. */
   constructor(
     readonly renderer: WebGPURenderer,
     isMapped: boolean

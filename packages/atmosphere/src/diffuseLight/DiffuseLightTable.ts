@@ -119,7 +119,7 @@ export class DiffuseLightTable {
   #resources: BakeResources | null = null
 
   /**
-   * @param region - Of {@link size}; its atlas frees it.
+   * @param region - Region of {@link size}; its atlas frees it.
    * @param transmittance - Baked before this one.
    */
   constructor(uniforms: AtmosphereUniforms, region: TableRegion, transmittance: Table) {

@@ -53,8 +53,8 @@ export interface VolumeSegment extends ViewRay {
 
 /**
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param limits - Of the same ray.
- * @param distance - From the viewpoint [m].
+ * @param limits - Limits of the same ray.
+ * @param distance - Distance from the viewpoint [m].
  */
 export function volumeSegment(
   atlas: Texels,
@@ -104,8 +104,8 @@ function readTile(atlas: Texels, texel: Vec2, phase: Vec4): Vec4 {
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
  * @param cosViewLight - ν, ray against sun.
- * @param limits - Of the same ray.
- * @param distance - From the viewpoint [m].
+ * @param limits - Limits of the same ray.
+ * @param distance - Distance from the viewpoint [m].
  */
 export function sampleVolume(
   uniforms: AtmosphereUniforms,

@@ -14,7 +14,7 @@ const [AZIMUTHS] = VOLUME_SIZE
  * √tan(α/2), α the angle from it.
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param hitsGround - Which half.
+ * @param hitsGround - True for the half below the horizon.
  * @param sinView - √(1 − μ²), which from far away is better known than μ tells.
  */
 export function elevationPosition(

@@ -88,7 +88,7 @@ class AzimuthMode {
    * A slab of this medium.
    *
    * @param thickness - Scaled optical thickness, > 0.
-   * @param depths - Where the light is wanted, from its top.
+   * @param depths - Optical depths at which the light is wanted, from its top.
    */
   slab(thickness: number, depths: readonly number[]): SlabMode {
     const rates = this.#rates

@@ -69,7 +69,7 @@ function accumulate(
  * Sample counts are stored with a minus sign where there is no cloud: where the cell is clear too, a pixel
  * is done without a look at its light.
  *
- * @param cells - From `gatherCells`.
+ * @param cells - Cells by `gatherCells`.
  * @param history - The target of the last frame.
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §5 (temporal upsampling)
  */
