@@ -11,7 +11,7 @@ import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
  * Air between a viewpoint and a point by marching the ray, where `sampleVolume` reads the sky volume.
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param cosViewLight - ν, ray against sun.
+ * @param cosViewLight - ν, ray against the light.
  * @param limits - Limits of the same ray.
  * @param distance - Distance from the viewpoint; null for the whole ray [m].
  * @param steps - Number of steps of the march.
@@ -36,7 +36,7 @@ export function marchedAir(
 
 /**
  * Radiance of all the air along a ray and of the ground behind it by marching, where `sampleSky` reads
- * the sky volume, for unit irradiance of the sun [1/sr].
+ * the sky volume, for unit irradiance of the light source [1/sr].
  *
  * @param limits - Limits of the same ray.
  * @param steps - Number of steps of the march.

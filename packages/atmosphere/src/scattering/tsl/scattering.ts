@@ -54,7 +54,7 @@ export function scatteredRadiance(
 }
 
 /**
- * Radiance of the Lambertian ground, for unit irradiance of the sun [1/sr].
+ * Radiance of the Lambertian ground, for unit irradiance of the light source [1/sr].
  *
  * @param cosLight - μ_s at the ground.
  * @param lights - Light to take into account.

@@ -103,7 +103,7 @@ function readTile(atlas: Texels, texel: Vec2, phase: Vec4): Vec4 {
  * Reads the air between the viewpoint and a point from the volume.
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param cosViewLight - ν, ray against sun.
+ * @param cosViewLight - ν, ray against the light.
  * @param limits - Limits of the same ray.
  * @param distance - Distance from the viewpoint [m].
  */
@@ -128,7 +128,7 @@ export function sampleVolume(
  * irradiance [1/sr].
  *
  * @param ray - View ray, which meets the air.
- * @param cosViewLight - ν, direction against the sun.
+ * @param cosViewLight - ν, direction against the light.
  */
 export function sampleSky(
   uniforms: AtmosphereUniforms,
