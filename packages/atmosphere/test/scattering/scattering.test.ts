@@ -24,7 +24,7 @@ const rays: fc.Arbitrary<RayNumbers> = fc
     cosViewLight: cosView * cosLight + Math.sqrt((1 - cosView ** 2) * (1 - cosLight ** 2)) * azimuth
   }))
 
-/** The same ray, begun anew at a distance along it. */
+/** Ray that begins at a distance along another one. */
 function along(ray: RayNumbers, distance: number): RayNumbers {
   const { radius, cosView, cosLight, cosViewLight } = ray
   const there = Math.sqrt(radius ** 2 + 2 * radius * cosView * distance + distance ** 2)
