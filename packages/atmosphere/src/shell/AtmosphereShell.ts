@@ -26,7 +26,8 @@ import { isOrthographic, ShellUniforms } from './ShellUniforms'
 import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from '../scattering/tsl/ray'
 import { shellFragment } from './tsl/shell'
-import { marchedShellLight, sampledShellLight, type ShellLight } from './tsl/shellMarch'
+import { marchedShellLight } from './tsl/shellMarch'
+import { sampleAir, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { singleScatteringLight } from './tsl/singleScattering'
 import type { ViewSegment } from './tsl/viewSegment'
 import type { Bool } from '../tsl-types'
@@ -210,7 +211,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   }
 
   /** Light of a segment: from the sky volume, marched on the tables, or scattered once. */
-  #light(air: Air, volumes: SkyVolumes | null): (segment: ViewSegment) => ShellLight {
+  #light(air: Air, volumes: SkyVolumes | null): (segment: ViewSegment) => MediumSegment {
     if (volumes === null) return segment => singleScatteringLight(air, this.#profile, segment)
     const isMarched = this.#isMarched.greaterThan(0) as Bool
     return segment => {
@@ -221,12 +222,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       }).Else(() => {
-        const light = sampledShellLight(
-          air.uniforms,
-          volumes.atlas,
-          this.#viewpoint,
-          segment.fromCamera
-        )
+        const light = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       })

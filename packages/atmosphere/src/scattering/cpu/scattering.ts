@@ -37,10 +37,10 @@ export function enterAir(p: AtmosphereParameters, ray: RayNumbers): RayNumbers |
 }
 
 /**
- * Radiance scattered to a ray's origin along a way in the air, for unit irradiance of the light source.
+ * Radiance scattered to a ray's origin along a path in the air, for unit irradiance of the light source.
  *
  * @param data - Diffuse-light table; null for single scattering.
- * @param distance - Length of the way, which does not cross the ground [m].
+ * @param distance - Length of the path, which does not cross the ground [m].
  * @returns One value per wavelength [1/sr].
  */
 export function inScatter(

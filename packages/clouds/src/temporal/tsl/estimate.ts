@@ -34,8 +34,8 @@ export interface Estimate extends Neighbourhood {
   readonly weight: Float
 }
 
-/** A pixel's place among marched ones. */
-export interface CellPlace {
+/** Position of a pixel among marched ones. */
+export interface CellPosition {
   /** Index of the cell's first corner. */
   readonly corner: Vec2
   /** Position from there on, in [0, 1). */
@@ -43,7 +43,7 @@ export interface CellPlace {
 }
 
 /** The cell that a pixel is in. */
-export function cellPlace({ frame }: ViewRayNodes, pixel: Vec2): CellPlace {
+export function cellPosition({ frame }: ViewRayNodes, pixel: Vec2): CellPosition {
   const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst() as Vec2
   const corner = at.floor().toConst() as Vec2
   return { corner, part: at.sub(corner).toConst() }
@@ -133,7 +133,7 @@ function gatherCorners(
 export function estimate(
   viewRays: ViewRayNodes,
   marched: CloudTargets,
-  { corner, part }: CellPlace,
+  { corner, part }: CellPosition,
   cell: Cell,
   end: Float
 ): Estimate {

@@ -76,19 +76,19 @@ export function reprojectHistory(
     // Transmittance, which overshoots at edges.
     light.w.assign(light.w.min(1))
   })
-  // Clouds at history's distance would have moved by another way: by that ratio of this one.
+  // Parallax: clouds at the distance of history would have moved by this ratio of the motion more or less.
   const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
-  const way = motion.length().toConst() as Float
-  const parallax = ratio.mul(way).div(MAX_PARALLAX).oneMinus().clamp()
+  const speed = motion.length().toConst() as Float
+  const parallax = ratio.mul(speed).div(MAX_PARALLAX).oneMinus().clamp()
   const validity = isInside.select(passesDepthTest(clampedEnd, apart), 0).mul(parallax)
   const { gainChange, maxSamples } = frame
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    stationarity: isSameEnd.select(way.oneMinus().max(0), 0),
+    stationarity: isSameEnd.select(speed.oneMinus().max(0), 0),
     samples: apart.z
       .abs()
-      .min(maxSamples.mul(way.div(FAST_MOTION).oneMinus()).max(FAST_SAMPLES))
+      .min(maxSamples.mul(speed.div(FAST_MOTION).oneMinus()).max(FAST_SAMPLES))
       .mul(validity)
       .toConst()
   }

@@ -3,7 +3,7 @@ import { outputs, type Float, type Outputs, type Vec2, type Vec4 } from '../../t
 import { viewRayAt, viewRayEnd, type ViewRayNodes } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
-import { cellPlace, estimate, type Estimate } from './estimate'
+import { cellPosition, estimate, type Estimate } from './estimate'
 import { interleavedNoise } from './noisePattern'
 import { encodeDistance, FARTHEST, pack, unpack } from './packing'
 import { CLEAR, type CloudTargets } from './renderTargets'
@@ -84,7 +84,7 @@ export function upscale(
     Fn(() => {
       const pixel = uv().mul(frame.size).floor().toConst() as unknown as Vec2
       const middle = pixel.add(0.5).div(frame.size).toConst() as Vec2
-      const where = cellPlace(viewRays, pixel)
+      const where = cellPosition(viewRays, pixel)
       const cellAt = where.corner.add(1.5).div(frame.marchedSize.add(1)).toConst() as Vec2
       const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
       const before = vec4(0).toVar() as Vec4
