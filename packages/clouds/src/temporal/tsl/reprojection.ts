@@ -1,6 +1,6 @@
 import { If, exp2, vec2, vec4 } from 'three/tsl'
 import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import type { ViewRay, ViewRayNodes } from '../../march/tsl/viewRay'
+import type { PixelRay, FrameInputs } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'
 import { clampDistance, unpack } from './packing'
 import type { CloudTargets } from './renderTargets'
@@ -46,10 +46,10 @@ export interface ReprojectedHistory {
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §3.2 (reprojection), §4.1 (rejection)
  */
 export function reprojectHistory(
-  { frame }: ViewRayNodes,
+  { frame }: FrameInputs,
   history: CloudTargets,
   pixel: Vec2,
-  { ndc, length }: ViewRay,
+  { ndc, length }: PixelRay,
   end: Float,
   distance: Float,
   origin: Vec3

@@ -1,6 +1,6 @@
 import { Fn, If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
 import { outputs, type Float, type Outputs, type Vec2, type Vec4 } from '../../tsl-types'
-import { viewRayAt, viewRayEnd, type ViewRayNodes } from '../../march/tsl/viewRay'
+import { viewRayAt, viewRayEnd, type FrameInputs } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
 import { cellPosition, estimate, type Estimate } from './estimate'
@@ -44,7 +44,7 @@ interface Accumulated {
  */
 function accumulate(
   { light, samples }: Accumulated,
-  { frame }: ViewRayNodes,
+  { frame }: FrameInputs,
   now: Estimate,
   history: ReprojectedHistory
 ): void {
@@ -74,7 +74,7 @@ function accumulate(
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §5 (temporal upsampling)
  */
 export function upscale(
-  viewRays: ViewRayNodes,
+  viewRays: FrameInputs,
   marched: CloudTargets,
   cells: CloudTargets,
   history: CloudTargets
