@@ -33,7 +33,7 @@ import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { MeshPhysicalNodeMaterial, Node, WebGPURenderer } from 'three/webgpu'
 import { createWater } from '../environment/water'
-import { createForest } from './forest'
+import { createForest, createGrove } from './forest'
 import { createGround, groundHeight, LAKE } from './ground'
 import { createVillage } from './village'
 import { valleyLayers, WeatherBlend, type WeatherName } from './weather'
@@ -80,7 +80,7 @@ const SHADOWS = 9000
 const LAMPS = [3, -2] as const
 
 /** Strength of the glow around what is bright. */
-const GLOW = 0.035
+const GLOW = 0.02
 
 /** A valley in the mountains with all that Welkin has, at any hour and in any weather. */
 export class Valley {
@@ -95,9 +95,9 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #mist = heightFog({ base: 6, falloff: 22, density: 0 })
   readonly #moon = moon()
-  readonly #nightSky = [milkyWay(), stars(), this.#moon, airglow()]
+  readonly #glows = [milkyWay(), stars(), airglow()]
   readonly #ground = createGround()
-  readonly #forest
+  readonly #trees
   readonly #village = createVillage()
   readonly #water = createWater(2400)
   readonly #node
@@ -112,15 +112,16 @@ export class Valley {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
     const quality = typeof state.quality === 'string' ? state.quality : 'low'
-    this.#forest = createForest(TREES[quality])
+    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 6))]
     const { scene, camera } = this
-    camera.position.set(620, groundHeight(620, 620) + 24, 620)
-    camera.lookAt(80, 150, -2400)
+    camera.position.set(300, groundHeight(300, 520) + 13, 520)
+    camera.lookAt(330, 75, -1500)
 
     // #region sky and light
     const atmosphere = (this.atmosphere = new Atmosphere({ parameters: standardEarthParameters() }))
     atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
-    atmosphere.add(...this.#nightSky, sunFlare(), this.#mist)
+    const [galaxy, starlight, glow] = this.#glows
+    atmosphere.add(galaxy, starlight, this.#moon, glow, sunFlare(), this.#mist)
     const sun = new SunDirectionalLight(atmosphere, 6000)
     const sky = new SkyLightProbe(atmosphere)
     const moonlight = new MoonDirectionalLight(atmosphere, this.#moon, 6000)
@@ -128,7 +129,7 @@ export class Valley {
     const night = new NightLightProbe(atmosphere)
     scene.add(sun, sun.target, sky, moonlight, moonlight.target, moonlitSky, night)
     // #endregion
-    scene.add(this.#ground, this.#forest, this.#village.object, this.#water.mesh)
+    scene.add(this.#ground, ...this.#trees, this.#village.object, this.#water.mesh)
     this.#water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
     this.#water.setSlope(0.0006)
 
@@ -139,7 +140,7 @@ export class Valley {
     const cascades = new CSMShadowNode(sun, { cascades: 3, maxFar: SHADOWS, lightMargin: 4000 })
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
-    const shafts = lightShafts(atmosphere, camera, { light: sun })
+    const shafts = lightShafts(atmosphere, camera, sun)
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     const node = clouds(air, depth, camera, atmosphere, this.#layers, { quality: state.quality })
     Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
@@ -156,8 +157,8 @@ export class Valley {
     const { material } = this.#water.mesh as unknown as { material: MeshPhysicalNodeMaterial }
     material.envNode = this.#environment as never
     this.#plain = exposure as unknown as Node
-    const glow = bloom(exposure as never, GLOW, 0.7, 0)
-    this.#glowing = (exposure as unknown as { add(other: unknown): Node }).add(glow)
+    const halo = bloom(exposure as never, GLOW, 0.7, 0)
+    this.#glowing = (exposure as unknown as { add(other: unknown): Node }).add(halo)
     this.pipeline = new RenderPipeline(renderer)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
     this.cycle.time = Date.UTC(2026, 5, 21, 12)
@@ -165,7 +166,7 @@ export class Valley {
     this.cycle.hour = state.hour
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      ...[glow, exposure, overlay, this.#environment, node, shafts].map(each => () => each.dispose()),
+      ...[halo, exposure, overlay, this.#environment, node, shafts].map(each => () => each.dispose()),
       ...[sun, sky, moonlight, moonlitSky, night].map(each => () => each.dispose()),
       () => cascades.dispose(),
       () => atmosphere.dispose()
@@ -194,8 +195,9 @@ export class Valley {
     if (hour !== before.hour) this.cycle.hour = hour
     this.#node.quality = quality
     this.#shafts.strength = shafts ? 1 : 0
-    for (const layer of this.#nightSky) layer.visible = nightSky
-    this.#forest.visible = trees
+    for (const layer of this.#glows) layer.intensity = nightSky ? 1 : 0
+    this.#moon.strength = nightSky ? 1 : 0
+    for (const each of this.#trees) each.visible = trees
     this.#village.object.visible = village
     this.#water.mesh.visible = water
     this.#applyWeather()
@@ -245,8 +247,10 @@ export class Valley {
 
   dispose(): void {
     for (const dispose of this.#dispose) dispose()
-    this.#forest.geometry.dispose()
-    this.#forest.dispose()
+    for (const each of this.#trees) {
+      each.geometry.dispose()
+      each.dispose()
+    }
     this.#ground.geometry.dispose()
     this.#village.dispose()
     this.#water.dispose()

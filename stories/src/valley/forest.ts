@@ -3,6 +3,7 @@ import {
   Color,
   ConeGeometry,
   CylinderGeometry,
+  IcosahedronGeometry,
   DynamicDrawUsage,
   InstancedMesh,
   Matrix4,
@@ -34,10 +35,42 @@ function spruce(): BufferGeometry {
   return mergeGeometries([...tiers, trunk])
 }
 
-/** Spruces on the slopes and along the shore. */
-export function createForest(count: number): InstancedMesh {
-  const random = randomSequence(11)
-  const geometry = spruce()
+/** A broad-leaved tree, 9 m high. */
+function limetree(): BufferGeometry {
+  const crowns = [
+    [0, 5.6, 0, 2.6],
+    [1.5, 4.6, 0.6, 1.9],
+    [-1.3, 4.9, 0.9, 1.8],
+    [0.2, 4.4, -1.5, 1.9],
+    [0.1, 7.3, 0.2, 1.7]
+  ].map(([x, y, z, size]) =>
+    painted(new IcosahedronGeometry(size, 1).translate(x, y, z), 0.055, 0.085, 0.022)
+  )
+  const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 6).toNonIndexed().translate(0, 1.6, 0)
+  return mergeGeometries([...crowns, painted(trunk, 0.07, 0.055, 0.04)])
+}
+
+/** Spruces on the slopes. */
+export const createForest = (count: number): InstancedMesh =>
+  plant(spruce(), count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0))
+
+/** Broad-leaved trees about the village, along the shore and among the fields. */
+export const createGrove = (count: number): InstancedMesh =>
+  plant(limetree(), count, 23, (x, z, height) => {
+    const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
+    const shore = height > 1.2 && height < 5 ? 0.35 : 0
+    const village = fromVillage > 30 && fromVillage < 210 ? 0.12 : 0
+    return height > 1.2 && height < 45 ? shore + village + 0.03 : 0
+  })
+
+/** @param shareAt - Chance of a tree at a place of a height, in [0, 1]. */
+function plant(
+  geometry: BufferGeometry,
+  count: number,
+  seed: number,
+  shareAt: (x: number, z: number, height: number) => number
+): InstancedMesh {
+  const random = randomSequence(seed)
   const material = new MeshStandardMaterial({ vertexColors: true, roughness: 1, side: 2 })
   const mesh = new InstancedMesh(geometry, material, count)
   mesh.instanceMatrix.setUsage(DynamicDrawUsage)
@@ -46,12 +79,11 @@ export function createForest(count: number): InstancedMesh {
   let placed = 0
   for (let tries = 0; placed < count && tries < 60 * count; tries++) {
     const angle = 2 * Math.PI * random()
-    const distance = REACH * random() ** 0.75
+    const distance = REACH * random() ** 0.8 + 14
     const x = VILLAGE.x + distance * Math.cos(angle)
     const z = VILLAGE.z + distance * Math.sin(angle)
     const height = groundHeight(x, z)
-    const share = forestAt(x, z) + (height > 2 && distance > 120 ? 0.006 : 0)
-    if (random() > share) continue
+    if (random() > shareAt(x, z, height)) continue
     const size = 0.55 + 0.95 * random() ** 1.5
     matrix.compose(
       new Vector3(x, height - 0.2, z),

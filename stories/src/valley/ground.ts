@@ -1,12 +1,13 @@
 import { BufferAttribute, Mesh, PlaneGeometry } from 'three'
+import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
   float,
   mix,
-  mx_noise_float,
   normalWorld,
   positionWorld,
   smoothstep,
+  texture,
   vec3
 } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
@@ -23,7 +24,7 @@ const RADIUS = 6_371_000
 /** Middle of the lake, its half axes and the height of its water [m]. */
 export const LAKE = { x: 150, z: -1750, halfWidth: 520, halfLength: 1500, height: 0 } as const
 /** Middle of the village [m]. */
-export const VILLAGE = { x: 430, z: 260 } as const
+export const VILLAGE = { x: 420, z: 230 } as const
 
 const clamp = (t: number): number => Math.min(Math.max(t, 0), 1)
 const smooth = (from: number, to: number, t: number): number => {
@@ -68,8 +69,8 @@ export function forestAt(x: number, z: number): number {
   )
   const patches = smoothNoise(x / 420, z / 420) + 0.5 * smoothNoise(x / 110, z / 110)
   const line = smooth(1250, 1000, height + 140 * smoothNoise(x / 300, z / 300))
-  const foot = smooth(6, 60, height + 30 * patches)
-  const village = smooth(180, 330, Math.hypot(x - VILLAGE.x, z - VILLAGE.z))
+  const foot = smooth(9, 34, height + 22 * patches)
+  const village = smooth(150, 260, Math.hypot(x - VILLAGE.x, z - VILLAGE.z))
   return line * foot * smooth(32, 18, slope) * smooth(-0.35, 0.1, patches) * village
 }
 
@@ -77,9 +78,13 @@ export function forestAt(x: number, z: number): number {
 function groundMaterial(): MeshStandardNodeMaterial {
   const material = new MeshStandardNodeMaterial({ roughness: 1 })
   const place = positionWorld.xz
-  const noise = (width: number): Node<'float'> => mx_noise_float(vec3(place.div(width), 0))
-  const broad = noise(170).toVar()
-  const fine = noise(9).add(noise(2.1).mul(0.6)).toVar()
+  const picture = createNoiseTexture()
+  material.addEventListener('dispose', () => picture.dispose())
+  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple.
+  const noise = (period: number): Node<'float'> =>
+    texture(picture, place.div(period)).r.sub(0.5).mul(2)
+  const broad = noise(1310).toVar()
+  const fine = noise(71).add(noise(7.3)).add(noise(1.9).mul(0.7)).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const slope = normalWorld.y.oneMinus().add(fine.mul(0.025)).toVar()
   const [forest, field] = [attribute<'vec2'>('cover', 'vec2').x, attribute<'vec2'>('cover', 'vec2').y]
@@ -88,11 +93,11 @@ function groundMaterial(): MeshStandardNodeMaterial {
   const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
   const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
   const alpine = mix(vec3(0.095, 0.1, 0.045), rock, smoothstep(1050, 1700, height.add(broad.mul(150))))
-  const lit = float(0.86).add(fine.mul(0.22))
+  const lit = float(0.95).add(fine.mul(0.3))
   let color: Node<'vec3'> = mix(crops, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)
-  color = mix(color.mul(lit), rock.mul(lit), smoothstep(0.2, 0.36, slope))
+  color = mix(color.mul(lit), rock.mul(lit), smoothstep(0.27, 0.42, slope))
   const snow = smoothstep(1350, 1750, height.add(broad.mul(170)).add(fine.mul(40)))
   color = mix(color, vec3(0.82, 0.84, 0.87), snow.mul(smoothstep(0.5, 0.3, slope)))
   material.colorNode = color

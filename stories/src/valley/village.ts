@@ -19,8 +19,8 @@ import { groundHeight, VILLAGE } from './ground'
 
 const HOUSES = 46
 /** Luminance of a lit window [cd/m²], and luminous intensity of a lamp [cd]. */
-const WINDOW = 60
-const LAMP = 250
+const WINDOW = 6
+const LAMP = 60
 
 /** A gabled roof over the unit square, of unit height. */
 function roof(): BufferGeometry {
