@@ -6,8 +6,8 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
 import type { ViewUniforms } from '../view/ViewUniforms'
 
-/** A place in the air that a camera looks through, as shader nodes. */
-export interface AirPlace {
+/** A point in the air that a camera looks through, as shader nodes. */
+export interface AirPoint {
   /** The camera's view in the light whose shadow it is; `view.localCoordinates(offset)` has altitude and zenith. */
   readonly view: ViewUniforms
   /** Displacement from the camera, in the mapped space [m]. */
@@ -34,12 +34,12 @@ export interface AirShadow {
   /** Sets uniforms for the camera whose air it is. Called before it is drawn. */
   update?(view: AtmosphereView): void
   /** Part of the light that arrives at a place, in [0, 1]: 1 where there is no shadow. Called in a loop and in branches. */
-  transmittance(place: AirPlace): Float
+  transmittance(point: AirPoint): Float
   /**
    * Diffuse light at a place, which air scatters again, over that without this occluder, at the four wavelengths [–]:
    * less under clouds that are thick, more under thin ones and above them. Left out, 1.
    */
-  diffuse?(place: AirPlace): Vec4
+  diffuse?(point: AirPoint): Vec4
   /** Called when it is taken out. */
   dispose?(): void
 }

@@ -8,7 +8,7 @@ import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { radianceBetween, sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import type { ScreenShadows, Veil } from '../view/AirShadows'
+import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
@@ -25,8 +25,8 @@ import { DepthRays } from '../view/DepthRays'
 const SAME_DEPTH = 0.2
 const OTHER_DEPTH = 0.6
 
-/** Weight of pixels of another depth, where there are no others. */
-const STRANGER = 1e-3
+/** Least weight in the bilateral upsampling: that of pixels of another depth. */
+const MIN_WEIGHT = 1e-3
 
 /**
  * Range of the part of its light that a pixel may lose: less than none, as clouds reflect light, and more than all, as
@@ -38,7 +38,7 @@ const PARTS = [-20, 4] as const
 const FAR = 1e10
 const PLANET = 1e9
 
-/** Part of the light from behind a veil that is not worth samples. */
+/** Part of the light from behind a foreground layer that is not worth samples. */
 const OPAQUE = 0.01
 
 const _size = new Vector2()
@@ -68,8 +68,8 @@ export interface CameraShafts {
   readonly isActive: boolean
   /** Grows whenever its shader changes. */
   readonly version: number
-  /** True if a veil is drawn, by whose node shafts are. */
-  readonly isVeiled: boolean
+  /** True if a foreground layer is drawn, by whose node shafts are. */
+  readonly hasForeground: boolean
   /** True if materials draw the shafts themselves. */
   readonly isForward: boolean
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -84,11 +84,11 @@ export interface CameraShafts {
  * Light shafts up to the depth of a picture, for post effects: marched for every second pixel of every
  * second row, then taken from the four around a pixel that are at its depth.
  *
- * Of a picture with a veil the light before it counts, and the light behind it as far as it passes: so the light
+ * Of a picture with a foreground layer the light before it counts, and the light behind it as far as it passes: so the light
  * is taken from the picture of both, at once.
  */
 export class ScreenShafts implements ScreenShadows {
-  readonly veil: Veil | undefined
+  readonly foreground: ForegroundLayer | undefined
   readonly target: RenderTarget
   readonly #shafts: CameraShafts
   readonly #rays: DepthRays
@@ -99,13 +99,13 @@ export class ScreenShafts implements ScreenShadows {
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
-  /** `strengthNow`; 0 while the node of a veil draws the shafts. */
+  /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
   readonly #strength = number()
-  /** 1 if what is behind the veil has shafts already. */
+  /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
 
-  constructor(shafts: CameraShafts, depthNode: Node, veil?: Veil) {
-    this.veil = veil
+  constructor(shafts: CameraShafts, depthNode: Node, foreground?: ForegroundLayer) {
+    this.foreground = foreground
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
@@ -154,9 +154,9 @@ export class ScreenShafts implements ScreenShadows {
     )
   }
 
-  /** True if the node of a veil draws the shafts, so that this one has no part in its shader. */
+  /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
   get #isElsewhere(): boolean {
-    return this.veil === undefined && this.#shafts.isVeiled
+    return this.foreground === undefined && this.#shafts.hasForeground
   }
 
   /** @param litAir - Light of the air up to the distance [m] without shadows [1/sr]. */
@@ -186,9 +186,9 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
   #seen(at: Vec2): { seenFrom?: (distance: Float) => Float; most: Float } {
-    if (this.veil === undefined) return { most: float(FAR) }
-    const { distance, transmittance } = this.veil.seenAt(at)
-    // Behind the veil the shadows of materials are dimmed with them.
+    if (this.foreground === undefined) return { most: float(FAR) }
+    const { distance, transmittance } = this.foreground.seenAt(at)
+    // Behind the foreground the shadows of materials are dimmed with them.
     const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
     const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
     return {
@@ -242,7 +242,7 @@ export class ScreenShafts implements ScreenShadows {
    * Part of the light of its air that the pixel has lost: the mean of four around, which have samples in all places
    * of their steps. So a pixel whose depth none of them has loses no more than it has.
    *
-   * @param distance - Of what is seen in it [m].
+   * @param distance - Distance of what is seen in it [m].
    */
   #partLost(distance: Float): Vec4 {
     return Fn(({ renderer }): Vec4 => {
@@ -259,7 +259,7 @@ export class ScreenShafts implements ScreenShadows {
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
-          .clamp(STRANGER, 1)
+          .clamp(MIN_WEIGHT, 1)
           .toConst() as Float
         sum.addAssign(sampleLevel0(this.#parts, pixel.add(0.5).div(this.#halfSize)).mul(weight))
         weights.addAssign(weight)

@@ -1,6 +1,6 @@
 import type {
   AirOccluder,
-  AirPlace,
+  AirPoint,
   AirShadow,
   AtmosphereView,
   ScreenShadows,
@@ -16,14 +16,14 @@ import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
-import { CloudVeil } from './CloudVeil'
+import { CloudForeground } from './CloudForeground'
 import { sampleShadows } from './tsl/sampleShadows'
 
 /** Shadow of clouds in the air, in one light: the part of it that arrives. */
 class CastShadow implements AirShadow {
   readonly #clouds: CloudsNode
   readonly #shafts: ShadowedShafts
-  readonly #veil: CloudVeil
+  readonly #foreground: CloudForeground
   /** The shafts as the clouds' node draws them, where both have the same camera. */
   readonly #screen: ScreenShadows | undefined
   /** Displacement from the clouds' camera, as their maps know it, to that of the shafts [m]. */
@@ -37,9 +37,9 @@ class CastShadow implements AirShadow {
       fail('CloudAirShadow', 'atmosphere must be that of the light shafts', clouds.atmosphere)
     this.#clouds = clouds
     this.#shafts = shafts
-    this.#veil = new CloudVeil(clouds)
+    this.#foreground = new CloudForeground(clouds)
     if (shafts.camera !== clouds.camera) return
-    this.#screen = shafts.upTo(clouds.depthNode, this.#veil)
+    this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
     clouds.needsUpdate = true
   }
@@ -58,12 +58,12 @@ class CastShadow implements AirShadow {
     viewpointMapped(view, this.#shift.value).sub(shadows.camera)
   }
 
-  transmittance({ view, offset, jitter }: AirPlace): Float {
+  transmittance({ view, offset, jitter }: AirPoint): Float {
     const { field, light, shadows } = this.#clouds
     const shifted = offset.add(this.#shift).toConst() as Vec3
-    const { shadow, known } = sampleShadows(shadows.nodes, shifted, jitter)
+    const { shadow, inMap } = sampleShadows(shadows.nodes, shifted, jitter)
     const depth = shadow.toVar()
-    If(known.mul(this.#isMapped).equal(0), () => {
+    If(inMap.mul(this.#isMapped).equal(0), () => {
       const { altitude, cosLight, up } = view.localCoordinates(offset)
       if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
       else {
@@ -80,7 +80,7 @@ class CastShadow implements AirShadow {
     return depth.mul(light.nodes.depthScale).negate().exp()
   }
 
-  diffuse({ view, offset }: AirPlace): Vec4 {
+  diffuse({ view, offset }: AirPoint): Vec4 {
     const { field, light } = this.#clouds
     const { altitude, cosLight, up } = view.localCoordinates(offset)
     const shifted = offset.add(this.#shift).toConst() as Vec3
@@ -92,7 +92,7 @@ class CastShadow implements AirShadow {
   }
 
   dispose(): void {
-    this.#veil.isRemoved = true
+    this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)
     this.#screen.dispose?.()

@@ -6,7 +6,7 @@ import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import type { AirPlace, AirShadow } from '../AirOccluder'
+import type { AirPoint, AirShadow } from '../AirOccluder'
 import { litRay } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
 import { isDark, polarRay, type PolarFrame } from './polarMap'
@@ -97,27 +97,27 @@ export function lostLight(
     const perGroup = float(1).div(groups).toConst()
     const perSample = float(1).div(samples).toConst()
 
-    const placeAt = (fromEye: Float): AirPlace => {
-      const offset = direction.mul(fromEye).toConst() as Vec3
+    const pointAt = (cameraDistance: Float): AirPoint => {
+      const offset = direction.mul(cameraDistance).toConst() as Vec3
       return { view, offset, jitter, positionWorld: () => toWorld(offset) }
     }
 
     /** Part of the light that a place does not get. */
     const darkAt = (position: Float, isMapped: Bool | null): Float => {
-      const fromEye = steps.distance(position).add(limits.start).toConst() as Float
+      const cameraDistance = steps.distance(position).add(limits.start).toConst() as Float
       const dark = float(0).toVar()
       const readMap = (): void => {
-        dark.assign(isDark(map, frame, polar, fromEye).select(1, 0))
+        dark.assign(isDark(map, frame, polar, cameraDistance).select(1, 0))
       }
       if (isMapped === null) readMap()
       else If(isMapped, readMap)
-      if (isMappedOnly) return seenFrom?.(fromEye).mul(dark) ?? dark
+      if (isMappedOnly) return seenFrom?.(cameraDistance).mul(dark) ?? dark
       If(dark.lessThan(1), () => {
-        const place = placeAt(fromEye)
+        const place = pointAt(cameraDistance)
         const passing = shadows.map(shadow => shadow.transmittance(place))
         dark.assign(passing.reduce((product, part) => product.mul(part)).oneMinus())
       })
-      return seenFrom?.(fromEye).mul(dark) ?? dark
+      return seenFrom?.(cameraDistance).mul(dark) ?? dark
     }
 
     const marchGroup = ({ from, width, isMapped, group }: Stretch): void => {
@@ -162,10 +162,10 @@ export function lostLight(
     const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
     if (dimming.length === 0) return
     const missingAt = (inAir: Float): Vec4 => {
-      const fromEye = inAir.add(limits.start).toConst() as Float
-      const parts = dimming.map(shadow => shadow.diffuse!(placeAt(fromEye)))
+      const cameraDistance = inAir.add(limits.start).toConst() as Float
+      const parts = dimming.map(shadow => shadow.diffuse!(pointAt(cameraDistance)))
       const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
-      return seenFrom === undefined ? missing : missing.mul(seenFrom(fromEye))
+      return seenFrom === undefined ? missing : missing.mul(seenFrom(cameraDistance))
     }
     const places = int(groups.mul(DIFFUSE_PART).max(1))
     const diffuse = { steps, at: airAt, cosViewLight, samples: places, jitter, missingAt }
