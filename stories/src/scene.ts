@@ -52,15 +52,18 @@ export type CreateScene<Args extends RendererArgs> = (
  */
 export const WARM_UP_FRAMES = 3
 
+/** @param trackTimestamp - Whether the GPU's time is kept. */
 export async function createRenderer(
   canvas: HTMLCanvasElement,
-  forceWebGL: boolean
+  forceWebGL: boolean,
+  trackTimestamp = false
 ): Promise<WebGPURenderer> {
   // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
   const renderer = new WebGPURenderer({
     canvas,
     antialias: true,
     forceWebGL,
+    trackTimestamp,
     reversedDepthBuffer: true
   })
   renderer.highPrecision = true

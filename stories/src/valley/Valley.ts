@@ -67,10 +67,10 @@ export interface ValleyState extends ValleyFeatures {
 
 /** Trees that stand one by one, by quality. */
 const TREES: Readonly<Record<CloudQualityName, number>> = {
-  low: 2500,
-  medium: 9000,
-  high: 14_000,
-  ultra: 20_000
+  low: 1500,
+  medium: 5000,
+  high: 10_000,
+  ultra: 18_000
 }
 
 /** Farthest shadows of the ground [m]. */
@@ -93,7 +93,7 @@ export class Valley {
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
-  readonly #mist = heightFog({ base: 6, falloff: 22, density: 0 })
+  readonly #mist = heightFog({ base: 6, falloff: 28, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()]
   readonly #ground = createGround()
@@ -112,7 +112,7 @@ export class Valley {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
     const quality = typeof state.quality === 'string' ? state.quality : 'low'
-    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 6))]
+    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 8))]
     const { scene, camera } = this
     camera.position.set(300, groundHeight(300, 520) + 13, 520)
     camera.lookAt(330, 75, -1500)

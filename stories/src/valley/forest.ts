@@ -35,6 +35,23 @@ function spruce(): BufferGeometry {
   return mergeGeometries([...tiers, trunk])
 }
 
+/** A crown with an uneven outline. */
+function leafy(size: number): BufferGeometry {
+  const crown = new IcosahedronGeometry(size, 1)
+  const { position } = crown.attributes
+  const vertex = new Vector3()
+  for (let i = 0; i < position.count; i++) {
+    vertex.fromBufferAttribute(position, i)
+    // Faces share places, not vertices.
+    const { x, y, z } = vertex.clone().multiplyScalar(7 / size).round()
+    const bump = Math.abs(Math.sin(12.9 * x + 78.2 * y + 37.7 * z + 10 * size) * 43_758.5) % 1
+    vertex.multiplyScalar(0.82 + 0.32 * bump)
+    position.setXYZ(i, vertex.x, vertex.y, vertex.z)
+  }
+  crown.computeVertexNormals()
+  return crown
+}
+
 /** A broad-leaved tree, 9 m high. */
 function limetree(): BufferGeometry {
   const crowns = [
@@ -44,7 +61,7 @@ function limetree(): BufferGeometry {
     [0.2, 4.4, -1.5, 1.9],
     [0.1, 7.3, 0.2, 1.7]
   ].map(([x, y, z, size]) =>
-    painted(new IcosahedronGeometry(size, 1).translate(x, y, z), 0.055, 0.085, 0.022)
+    painted(leafy(size).translate(x, y, z), 0.04, 0.066, 0.018)
   )
   const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 6).toNonIndexed().translate(0, 1.6, 0)
   return mergeGeometries([...crowns, painted(trunk, 0.07, 0.055, 0.04)])

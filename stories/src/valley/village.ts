@@ -18,9 +18,9 @@ import { randomSequence } from '../random'
 import { groundHeight, VILLAGE } from './ground'
 
 const HOUSES = 46
-/** Luminance of a lit window [cd/m²], and luminous intensity of a lamp [cd]. */
-const WINDOW = 6
-const LAMP = 60
+/** Luminance of a lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
+const WINDOW = 1.5
+const LAMP = 40
 
 /** A gabled roof over the unit square, of unit height. */
 function roof(): BufferGeometry {
@@ -98,16 +98,9 @@ export function createVillage(): Village {
   const naveRoof = new Mesh(roof().scale(11, 6, 22).translate(0, 9, 14), tiles)
   const church = new Group().add(tower, spire, nave, naveRoof)
   church.position.set(x, base, z)
-  const lamps = [
-    [14, -12],
-    [-30, 24],
-    [38, 40]
-  ].map(([dx, dz]) => {
-    const lamp = new PointLight('#ffb46b', 0, 160)
-    lamp.position.set(x + dx, groundHeight(x + dx, z + dz) + 6, z + dz)
-    return lamp
-  })
-  const object = new Group().add(bodies, roofs, church, ...lamps)
+  const lamp = new PointLight('#ffb46b', 0, 220)
+  lamp.position.set(x + 12, base + 9, z - 10)
+  const object = new Group().add(bodies, roofs, church, lamp)
   object.traverse(child => {
     child.castShadow = child.receiveShadow = child instanceof Mesh
   })
@@ -117,7 +110,7 @@ export function createVillage(): Village {
     light(share, luminanceScale) {
       lit.value = share
       luminance.value = WINDOW * luminanceScale
-      for (const lamp of lamps) lamp.intensity = share * LAMP * luminanceScale
+      lamp.intensity = share * LAMP * luminanceScale
     },
     dispose() {
       object.traverse(child => {
