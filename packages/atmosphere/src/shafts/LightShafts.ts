@@ -270,17 +270,17 @@ export class LightShafts implements ShadowedShafts {
     const maps = isLit ? shadowMapsOf(this.light) : []
     this.#map.update(renderer, view!, atmosphere.space, maps, rows)
     this.#isActive = maps.length > 0
-    if (isLit) this.#updateShadows(view)
+    if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups
     steps.samples.value = samples
   }
 
-  #updateShadows(view: AtmosphereView): void {
+  #updateShadows(view: AtmosphereView, renderer: Renderer): void {
     const { matrixWorld } = view.camera
     this.atmosphere.space.displacement(_axes.identity(), _linear)
     this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(matrixWorld)
     for (const shadow of this.#shadows.values()) {
-      shadow.update?.(view)
+      shadow.update?.(view, renderer)
       this.#isActive ||= shadow.isCast ?? true
     }
   }

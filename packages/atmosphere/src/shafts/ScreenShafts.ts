@@ -1,11 +1,11 @@
-import { NearestFilter, Vector2 } from 'three'
+import { Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
+import { densities, extinction } from '../air/tsl/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
-import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { radianceBetween, sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, Veil } from '../view/AirShadows'
@@ -21,22 +21,30 @@ import {
 } from './tsl/lostLight'
 import { DepthRays } from '../view/DepthRays'
 
-/** Octaves of depth by which pixels may differ and still share light, and by which they share none. */
+/**
+ * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
+ * silhouettes; smaller: the march's pixels show on slopes (*City in haze*).
+ */
 const SAME_DEPTH = 0.2
 const OTHER_DEPTH = 0.6
 
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
 
-/**
- * Range of the part of its light that a pixel may lose: less than none, as clouds reflect light, and more than all, as
- * its light is from a table.
- */
-const PARTS = [-20, 4] as const
+/** Greatest light that the target keeps: half floats hold a little more. */
+const MOST = 6e4
 
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
 const PLANET = 1e9
+
+/** The four pixels of the target about a place. */
+const CORNERS = [
+  [0, 0],
+  [1, 0],
+  [0, 1],
+  [1, 1]
+] as const
 
 /** Part of the light from behind a veil that is not worth samples. */
 const OPAQUE = 0.01
@@ -92,10 +100,10 @@ export class ScreenShafts implements ScreenShadows {
   readonly target: RenderTarget
   readonly #shafts: CameraShafts
   readonly #rays: DepthRays
-  /** Size of the picture, and of the target [pixels]. */
+  /** Size of the picture, and of either half of the target [pixels]. */
   readonly #size = vector2()
   readonly #halfSize = vector2()
-  readonly #parts: TextureNode
+  readonly #texels: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
@@ -108,8 +116,8 @@ export class ScreenShafts implements ScreenShadows {
     this.veil = veil
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
-    this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
-    this.#parts = texture(this.target.texture)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1)
+    this.#texels = texture(this.target.texture)
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -119,13 +127,13 @@ export class ScreenShafts implements ScreenShadows {
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
     this.#halfSize.value.copy(this.#size.value).multiplyScalar(0.5).ceil()
-    this.target.setSize(this.#halfSize.value.x, this.#halfSize.value.y)
+    this.target.setSize(2 * this.#halfSize.value.x, this.#halfSize.value.y)
     if (!shafts.isActive) return
     // What is drawn here and now reads the view.
     shafts.view.update(view)
     if (this.#compiled !== shafts.version) this.#pass?.dispose()
     if (this.#compiled !== shafts.version || this.#pass === null) {
-      this.#pass = new FragmentPass('Welkin.LightShafts', this.#march())
+      this.#pass = new FragmentPass('Welkin.LightShafts', this.#draw())
       this.#compiled = shafts.version
     }
     this.#pass.render(renderer, this.target)
@@ -138,20 +146,12 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = shafts.isForward ? 1 : 0
   }
 
-  glow({ direction, cosView, hitsGround }: SkyRay, light: Vec4): Vec4 {
-    const distance = hitsGround.select(PLANET, FAR).toConst() as Float
-    const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
-    return this.#subtract(light, distance, () =>
-      this.#litAir({ direction, cosView, cosViewLight, distance })
-    )
+  glow({ hitsGround }: SkyRay, light: Vec4): Vec4 {
+    return this.#subtract(light, hitsGround.select(PLANET, FAR).toConst() as Float)
   }
 
-  inScatter({ direction, distance, segment }: PointRay, light: Vec4): Vec4 {
-    const { air, volume, viewpoint, lightDirection } = this.#shafts.view
-    const cosViewLight = direction.dot(lightDirection).toConst() as Float
-    return this.#subtract(light, distance, () =>
-      radianceBetween(air.uniforms, volume, viewpoint, segment, cosViewLight)
-    )
+  inScatter({ distance }: PointRay, light: Vec4): Vec4 {
+    return this.#subtract(light, distance)
   }
 
   /** True if the node of a veil draws the shafts, so that this one has no part in its shader. */
@@ -159,21 +159,16 @@ export class ScreenShafts implements ScreenShadows {
     return this.veil === undefined && this.#shafts.isVeiled
   }
 
-  /** @param litAir - Light of the air up to the distance [m] without shadows [1/sr]. */
-  #subtract(light: Vec4, distance: Float, litAir: () => Vec4): Vec4 {
+  #subtract(light: Vec4, distance: Float): Vec4 {
     if (this.#isElsewhere) return light
-    const { view } = this.#shafts
-    return without(light, this.#strength, view, () => this.#partLost(distance).mul(litAir()))
+    return without(light, this.#strength, this.#shafts.view, () => this.#lostTo(distance))
   }
 
   dim(color: Vec3): Vec3 {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const unlit = Fn(({ renderer }): Vec4 => {
-        const ray = this.#rayTo(renderer, uv())
-        return this.#partLost(ray.distance).mul(this.#litAir(ray))
-      })()
+      const unlit = Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, uv()).distance))()
       const lost = unlit.mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
@@ -197,18 +192,47 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
-  #march(): Vec4 {
-    const { view, shadowedAir, steps } = this.#shafts
+  /** A texel of the target: light in its left half, distances in its right one. */
+  #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
-      const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
-      const at = this.#uvOf(pixel)
-      const ray = this.#rayTo(renderer, at)
-      const { seenFrom, most } = this.#seen(at)
-      const distance = ray.distance.min(most).toConst() as Float
-      const jitter = staggered(pixel)
-      const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
-      return lost.div(this.#litAir(ray).max(1e-12)).clamp(...PARTS)
+      const texel = uv().mul(this.#halfSize.mul(vec2(2, 1))).floor() as unknown as Vec2
+      const pixel = texel.toVar()
+      const result = vec4(0).toVar()
+      If(pixel.x.lessThan(this.#halfSize.x), () => {
+        result.assign(this.#march(renderer, pixel))
+      }).Else(() => {
+        pixel.x.subAssign(this.#halfSize.x)
+        const distances = CORNERS.map(([x, y]) => {
+          const next = pixel.add(vec2(x, y)).min(this.#halfSize.sub(1)).toConst() as Vec2
+          return this.#rayTo(renderer, this.#uvOf(next)).distance
+        }) as [Float, Float, Float, Float]
+        result.assign(log2(vec4(...distances)))
+      })
+      return result
     })()
+  }
+
+  /** Light that the ray of a pixel of the target loses, as the target keeps it. */
+  #march(renderer: Renderer, pixel: Vec2): Vec4 {
+    const { view, shadowedAir, steps } = this.#shafts
+    const at = this.#uvOf(pixel)
+    const ray = this.#rayTo(renderer, at)
+    const { seenFrom, most } = this.#seen(at)
+    const distance = ray.distance.min(most).toConst() as Float
+    const jitter = staggered(pixel)
+    const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
+    return lost.mul(RADIANCE_SCALE).div(this.#growth(ray.distance)).clamp(-MOST, MOST)
+  }
+
+  /**
+   * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
+   * whose distances differ a little, and is what they share.
+   */
+  #growth(distance: Float): Vec4 {
+    const { air, viewpoint } = this.#shafts.view
+    const there = extinction(air.uniforms, densities(air.uniforms, viewpoint.altitude))
+    const depth = there.mul(distance).max(1e-9).toConst() as Vec4
+    return depth.div(depth.add(1))
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
@@ -225,47 +249,40 @@ export class ScreenShafts implements ScreenShadows {
     return { direction, cosView, cosViewLight, distance }
   }
 
-  /** Light of the air on a ray without shadows [1/sr]. */
-  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Vec4 {
-    const { air, volume, viewpoint } = this.#shafts.view
-    const limits = rayLimits(viewpoint, cosView)
-    return sampleVolume(air.uniforms, volume, viewpoint, cosView, cosViewLight, limits, distance)
-      .radiance
-  }
-
   /** Place in the picture of the pixel that is marched for one of the target. */
   #uvOf(pixel: Vec2): Vec2 {
     return pixel.mul(2).add(0.5).div(this.#size).toConst()
   }
 
   /**
-   * Part of the light of its air that the pixel has lost: the mean of four around, which have samples in all places
-   * of their steps. So a pixel whose depth none of them has loses no more than it has.
+   * Light that a pixel loses, for unit irradiance [1/sr]: the mean of four around, which have samples in all places
+   * of their steps.
    *
    * @param distance - Of what is seen in it [m].
    */
-  #partLost(distance: Float): Vec4 {
-    return Fn(({ renderer }): Vec4 => {
-      const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
-      const sum = vec4(0).toVar()
-      const weights = float(0).toVar()
-      for (const i of [0, 1, 2, 3]) {
-        const pixel = first
-          .add(vec2(i & 1, i >> 1))
-          .min(this.#halfSize.sub(1))
-          .toConst() as Vec2
-        const other = this.#rayTo(renderer, this.#uvOf(pixel)).distance
-        const apart = log2(distance.div(other)).abs()
-        const weight = apart
-          .sub(OTHER_DEPTH)
-          .div(SAME_DEPTH - OTHER_DEPTH)
-          .clamp(STRANGER, 1)
-          .toConst() as Float
-        sum.addAssign(sampleLevel0(this.#parts, pixel.add(0.5).div(this.#halfSize)).mul(weight))
-        weights.addAssign(weight)
-      }
-      return sum.div(weights)
-    })()
+  #lostTo(distance: Float): Vec4 {
+    const size = this.#halfSize
+    const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
+    const read = (texel: Vec2): Vec4 =>
+      sampleLevel0(this.#texels, texel.div(size.mul(vec2(2, 1))))
+    const readLight = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
+    const distances = read(first.add(vec2(size.x, 0)).add(0.5))
+    const apart = distances.sub(log2(distance)).abs().toConst() as Vec4
+    // Between their middles the texture unit takes the mean of all four.
+    const light = readLight(first.add(1)).toVar()
+    If(apart.x.max(apart.y).max(apart.z).max(apart.w).greaterThan(SAME_DEPTH), () => {
+      const weights = apart
+        .sub(OTHER_DEPTH)
+        .div(SAME_DEPTH - OTHER_DEPTH)
+        .clamp(STRANGER, 1)
+        .toConst() as Vec4
+      const { x: a, y: b, z: c, w: d } = weights
+      const parts = [a, b, c, d].map((weight, i) =>
+        readLight(first.add(vec2(...CORNERS[i])).add(0.5)).mul(weight)
+      )
+      light.assign(parts.reduce((sum, part) => sum.add(part)).div(weights.dot(vec4(1))))
+    })
+    return light.mul(this.#growth(distance)).div(RADIANCE_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */

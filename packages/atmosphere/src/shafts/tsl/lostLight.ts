@@ -1,16 +1,17 @@
 import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
+import type { Air } from '../../scattering/tsl/ray'
 import { rayLimits } from '../../skyVolume/tsl/rayLimits'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPlace, AirShadow } from '../AirOccluder'
-import { litRay } from './litRay'
+import { litRay, type RayPlace } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
-import { isDark, polarRay, type PolarFrame } from './polarMap'
-import { warpedSteps } from './warpedSteps'
+import { isDark, polarRay, type PolarFrame, type PolarRay } from './polarMap'
+import { warpedSteps, type WarpedSteps } from './warpedSteps'
 
 /** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
 export interface ShadowedAir {
@@ -59,6 +60,20 @@ interface Stretch {
   readonly group: Float
 }
 
+/** What is marched of a view ray. */
+interface March {
+  readonly steps: WarpedSteps
+  /** Part of a place's light that the picture loses, by position among the steps. */
+  readonly darkAt: (position: Float, isMapped: Bool | null) => Float
+  /** Light scattered once at a distance in the air, if nothing casts shadows [1/(m sr)]. */
+  readonly scatteredAt: (inAir: Float) => Vec4
+  /** Parts of a stretch that a group has, and of a group that a sample has. */
+  readonly perGroup: Float
+  readonly perSample: Float
+  readonly samples: Int
+  readonly jitter: Float
+}
+
 /**
  * Single scattering that shadows keep from a view ray, for unit irradiance of the source [1/sr]:
  * ∫ σ_s p(ν) T_light T_view (1 − V) over the ray, where V is the part of the light that occluders let through. Besides
@@ -72,15 +87,16 @@ interface Stretch {
  */
 export function lostLight(
   view: ViewUniforms,
-  { map, frame, maximumRho, shadows, toWorld }: ShadowedAir,
-  { direction, cosView, cosViewLight, distance, seenFrom }: ShaftRay,
+  shadowedAir: ShadowedAir,
+  shaftRay: ShaftRay,
   { groups, samples }: ShaftSteps,
   jitter: Float
 ): Vec4 {
   const { air, viewpoint } = view
-  const { uniforms } = air
+  const { maximumRho, shadows } = shadowedAir
+  const { cosView, cosViewLight, distance } = shaftRay
   const limits = rayLimits(viewpoint, cosView)
-  const polar = polarRay(frame, direction, cosViewLight)
+  const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight)
   const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
   const isMappedOnly = shadows.length === 0
   const seen = limits.start.add(limits.length).min(distance)
@@ -90,61 +106,23 @@ export function lostLight(
   If(length.greaterThan(0), () => {
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
-    const steps = warpedSteps(uniforms, ray, length)
+    const steps = warpedSteps(air.uniforms, ray, length)
     const airAt = litRay(view, ray, limits, cosView)
-    const rayleigh = rayleighPhase(cosViewLight).toConst()
-    const mie = miePhase(uniforms, cosViewLight).toConst()
-    const perGroup = float(1).div(groups).toConst()
-    const perSample = float(1).div(samples).toConst()
-
-    const placeAt = (fromEye: Float): AirPlace => {
-      const offset = direction.mul(fromEye).toConst() as Vec3
-      return { view, offset, jitter, positionWorld: () => toWorld(offset) }
+    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
+    const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst() as Float
+    const march: March = {
+      steps,
+      darkAt: (position, isMapped) => darkAt(fromEye(steps.distance(position)), isMapped),
+      scatteredAt: scatteredOnce(air, airAt, cosViewLight),
+      perGroup: float(1).div(groups).toConst(),
+      perSample: float(1).div(samples).toConst(),
+      samples: int(samples).toConst() as Int,
+      jitter
     }
-
-    /** Part of the light that a place does not get. */
-    const darkAt = (position: Float, isMapped: Bool | null): Float => {
-      const fromEye = steps.distance(position).add(limits.start).toConst() as Float
-      const dark = float(0).toVar()
-      const readMap = (): void => {
-        dark.assign(isDark(map, frame, polar, fromEye).select(1, 0))
-      }
-      if (isMapped === null) readMap()
-      else If(isMapped, readMap)
-      if (isMappedOnly) return seenFrom?.(fromEye).mul(dark) ?? dark
-      If(dark.lessThan(1), () => {
-        const place = placeAt(fromEye)
-        const passing = shadows.map(shadow => shadow.transmittance(place))
-        dark.assign(passing.reduce((product, part) => product.mul(part)).oneMinus())
-      })
-      return seenFrom?.(fromEye).mul(dark) ?? dark
-    }
-
-    const marchGroup = ({ from, width, isMapped, group }: Stretch): void => {
-      const dark = float(0).toVar()
-      const sum = float(0).toVar()
-      loop('look', int(samples), look => {
-        const part = float(look).add(jitter).mul(perSample).add(group).mul(perGroup)
-        const position = part.mul(width).add(from).toConst() as Float
-        const here = darkAt(position, isMapped).toConst() as Float
-        dark.addAssign(here)
-        sum.addAssign(position.mul(here))
-      })
-      If(dark.greaterThan(0), () => {
-        const centre = sum.div(dark).toConst() as Float
-        const inAir = steps.distance(centre).toConst() as Float
-        const share = dark.mul(width).mul(perSample.mul(perGroup))
-        const place = airAt(inAir)
-        const scattering = place.seenRayleigh.mul(rayleigh).add(place.seenMie.mul(mie))
-        const { transmittance } = air
-        const light = lightTransmittance(uniforms, transmittance, place.altitude, place.cosLight)
-        lost.addAssign(scattering.mul(light).mul(steps.slope(centre).mul(share)))
-      })
-    }
-
     if (isMappedOnly) {
       loop('group', int(groups), group => {
-        marchGroup({ from: float(0), width: float(1), isMapped: null, group: float(group) })
+        const all = { from: float(0), width: float(1), isMapped: null }
+        lost.addAssign(lostInGroup(march, { ...all, group: float(group) }))
       })
       return
     }
@@ -156,20 +134,104 @@ export function lostLight(
       const width = isMapped.select(near, near.oneMinus()).toConst() as Float
       If(width.greaterThan(0), () => {
         const place = isMapped.select(index, index.sub(groups)).toConst() as Float
-        marchGroup({ from, width, isMapped, group: place })
+        lost.addAssign(lostInGroup(march, { from, width, isMapped, group: place }))
       })
     })
-    const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
-    if (dimming.length === 0) return
-    const missingAt = (inAir: Float): Vec4 => {
-      const fromEye = inAir.add(limits.start).toConst() as Float
-      const parts = dimming.map(shadow => shadow.diffuse!(placeAt(fromEye)))
-      const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
-      return seenFrom === undefined ? missing : missing.mul(seenFrom(fromEye))
-    }
+    if (missingAt === null) return
     const places = int(groups.mul(DIFFUSE_PART).max(1))
-    const diffuse = { steps, at: airAt, cosViewLight, samples: places, jitter, missingAt }
+    const diffuse = {
+      steps,
+      at: airAt,
+      cosViewLight,
+      samples: places,
+      jitter,
+      missingAt: (inAir: Float) => missingAt(fromEye(inAir))
+    }
     lost.addAssign(lostDiffuse(air, diffuse))
+  })
+  return lost
+}
+
+/** Shadows on a view ray, by the distance from the camera: the part of the light that the picture loses there. */
+function shadowsAlong(
+  view: ViewUniforms,
+  { map, frame, shadows, toWorld }: ShadowedAir,
+  { direction, seenFrom }: ShaftRay,
+  polar: PolarRay,
+  jitter: Float
+): {
+  darkAt: (distance: Float, isMapped: Bool | null) => Float
+  /** Of light scattered more than once; null if there is none. */
+  missingAt: ((distance: Float) => Vec4) | null
+} {
+  const placeAt = (distance: Float): AirPlace => {
+    const offset = direction.mul(distance).toConst() as Vec3
+    return { view, offset, distance, jitter, positionWorld: () => toWorld(offset) }
+  }
+  const passing = shadows.map(shadow => shadow.transmittance({ view, direction, jitter }))
+  const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
+  const missingAt = (distance: Float): Vec4 => {
+    const parts = dimming.map(shadow => shadow.diffuse!(placeAt(distance)))
+    const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
+    return seenFrom === undefined ? missing : missing.mul(seenFrom(distance))
+  }
+  return {
+    darkAt(distance, isMapped) {
+      const dark = float(0).toVar()
+      const readMap = (): void => {
+        dark.assign(isDark(map, frame, polar, distance).select(1, 0))
+      }
+      if (isMapped === null) readMap()
+      else If(isMapped, readMap)
+      if (passing.length > 0) {
+        If(dark.lessThan(1), () => {
+          const place = placeAt(distance)
+          const parts = passing.map(transmittance => transmittance(place))
+          dark.assign(parts.reduce((product, part) => product.mul(part)).oneMinus())
+        })
+      }
+      return seenFrom?.(distance).mul(dark) ?? dark
+    },
+    missingAt: dimming.length > 0 ? missingAt : null
+  }
+}
+
+/** Light scattered once that a ray gains at a distance in the air, for unit irradiance [1/(m sr)]. */
+function scatteredOnce(
+  { uniforms, transmittance }: Air,
+  airAt: (inAir: Float) => RayPlace,
+  cosViewLight: Float
+): (inAir: Float) => Vec4 {
+  const rayleigh = rayleighPhase(cosViewLight).toConst()
+  const mie = miePhase(uniforms, cosViewLight).toConst()
+  return inAir => {
+    const place = airAt(inAir)
+    const scattering = place.seenRayleigh.mul(rayleigh).add(place.seenMie.mul(mie))
+    const light = lightTransmittance(uniforms, transmittance, place.altitude, place.cosLight)
+    return scattering.mul(light)
+  }
+}
+
+/** Light scattered once that a group of samples loses: its dark part, times the light at that part's centre. */
+function lostInGroup(
+  { steps, darkAt, scatteredAt, perGroup, perSample, samples, jitter }: March,
+  { from, width, isMapped, group }: Stretch
+): Vec4 {
+  const dark = float(0).toVar()
+  const sum = float(0).toVar()
+  loop('look', samples, look => {
+    const part = float(look).add(jitter).mul(perSample).add(group).mul(perGroup)
+    const position = part.mul(width).add(from).toConst() as Float
+    const here = darkAt(position, isMapped).toConst() as Float
+    dark.addAssign(here)
+    sum.addAssign(position.mul(here))
+  })
+  const lost = vec4(0).toVar()
+  If(dark.greaterThan(0), () => {
+    const centre = sum.div(dark).toConst() as Float
+    const share = dark.mul(width).mul(perSample.mul(perGroup))
+    const inAir = steps.distance(centre).toConst() as Float
+    lost.assign(scatteredAt(inAir).mul(steps.slope(centre).mul(share)))
   })
   return lost
 }
