@@ -26,14 +26,14 @@ import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
 
 /**
- * Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in
- * each.
+ * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
+ * samples along a view ray; samples in each.
  */
 const qualities = {
-  low: { rows: 512, groups: 3, samples: 3 },
-  medium: { rows: 1024, groups: 4, samples: 3 },
-  high: { rows: 1024, groups: 4, samples: 4 },
-  reference: { rows: 2048, groups: 64, samples: 8 }
+  low: { rows: 512, spacing: 4, groups: 3, samples: 3 },
+  medium: { rows: 1024, spacing: 3, groups: 4, samples: 3 },
+  high: { rows: 1024, spacing: 2, groups: 4, samples: 4 },
+  reference: { rows: 2048, spacing: 2, groups: 64, samples: 8 }
 } as const
 
 /** Fineness of the march of light shafts. */
@@ -103,6 +103,8 @@ export class LightShafts implements ShadowedShafts {
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
   readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
+  /** Pixels of a picture from one that is marched to the next. */
+  spacing = 2
   /** Grows whenever something is added or removed. */
   version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -260,7 +262,8 @@ export class LightShafts implements ShadowedShafts {
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
-    const { rows, groups, samples } = qualities[this.#quality]
+    const { rows, spacing, groups, samples } = qualities[this.#quality]
+    this.spacing = spacing
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`

@@ -3,7 +3,7 @@ import type { Camera, RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
-import { densities, extinction } from '../air/tsl/medium'
+import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
@@ -72,6 +72,8 @@ export interface CameraShafts {
   readonly view: ViewNodes
   readonly shadowedAir: ShadowedAir
   readonly steps: ShaftSteps
+  /** Pixels from one that is marched to the next. */
+  readonly spacing: number
   /** True if there are shadows to be drawn, as of the last `prepare`. */
   readonly isActive: boolean
   /** Grows whenever its shader changes. */
@@ -89,8 +91,8 @@ export interface CameraShafts {
 }
 
 /**
- * Light shafts up to the depth of a picture, for post effects: marched for every second pixel of every
- * second row, then taken from the four around a pixel that are at its depth.
+ * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, every second or fourth of
+ * every second or fourth row, then taken from the four around a pixel that are at its depth.
  *
  * Of a picture with a veil the light before it counts, and the light behind it as far as it passes: so the light
  * is taken from the picture of both, at once.
@@ -102,7 +104,11 @@ export class ScreenShafts implements ScreenShadows {
   readonly #rays: DepthRays
   /** Size of the picture, and of either half of the target [pixels]. */
   readonly #size = vector2()
-  readonly #halfSize = vector2()
+  readonly #gridSize = vector2()
+  /** Pixels of the picture from one that is marched to the next. */
+  readonly #spacing = number(1)
+  /** Mean free path of light in the air at the camera [m]. */
+  readonly #freePath = number(1)
   readonly #texels: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
@@ -126,9 +132,13 @@ export class ScreenShafts implements ScreenShadows {
     shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
-    this.#halfSize.value.copy(this.#size.value).multiplyScalar(0.5).ceil()
-    this.target.setSize(2 * this.#halfSize.value.x, this.#halfSize.value.y)
+    this.#spacing.value = shafts.spacing
+    this.#gridSize.value.copy(this.#size.value).divideScalar(shafts.spacing).ceil()
+    this.target.setSize(2 * this.#gridSize.value.x, this.#gridSize.value.y)
     if (!shafts.isActive) return
+    const { parameters } = view.atmosphere
+    const here = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
+    this.#freePath.value = 1 / Math.max(...here, 1e-12)
     // What is drawn here and now reads the view.
     shafts.view.update(view)
     if (this.#compiled !== shafts.version) this.#pass?.dispose()
@@ -195,15 +205,15 @@ export class ScreenShafts implements ScreenShadows {
   /** A texel of the target: light in its left half, distances in its right one. */
   #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
-      const texel = uv().mul(this.#halfSize.mul(vec2(2, 1))).floor() as unknown as Vec2
+      const texel = uv().mul(this.#gridSize.mul(vec2(2, 1))).floor() as unknown as Vec2
       const pixel = texel.toVar()
       const result = vec4(0).toVar()
-      If(pixel.x.lessThan(this.#halfSize.x), () => {
+      If(pixel.x.lessThan(this.#gridSize.x), () => {
         result.assign(this.#march(renderer, pixel))
       }).Else(() => {
-        pixel.x.subAssign(this.#halfSize.x)
+        pixel.x.subAssign(this.#gridSize.x)
         const distances = CORNERS.map(([x, y]) => {
-          const next = pixel.add(vec2(x, y)).min(this.#halfSize.sub(1)).toConst() as Vec2
+          const next = pixel.add(vec2(x, y)).min(this.#gridSize.sub(1)).toConst() as Vec2
           return this.#rayTo(renderer, this.#uvOf(next)).distance
         }) as [Float, Float, Float, Float]
         result.assign(log2(vec4(...distances)))
@@ -228,11 +238,8 @@ export class ScreenShafts implements ScreenShadows {
    * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
    * whose distances differ a little, and is what they share.
    */
-  #growth(distance: Float): Vec4 {
-    const { air, viewpoint } = this.#shafts.view
-    const there = extinction(air.uniforms, densities(air.uniforms, viewpoint.altitude))
-    const depth = there.mul(distance).max(1e-9).toConst() as Vec4
-    return depth.div(depth.add(1))
+  #growth(distance: Float): Float {
+    return distance.div(distance.add(this.#freePath))
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
@@ -251,7 +258,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Place in the picture of the pixel that is marched for one of the target. */
   #uvOf(pixel: Vec2): Vec2 {
-    return pixel.mul(2).add(0.5).div(this.#size).toConst()
+    return pixel.mul(this.#spacing).add(0.5).div(this.#size).toConst()
   }
 
   /**
@@ -261,8 +268,8 @@ export class ScreenShafts implements ScreenShadows {
    * @param distance - Of what is seen in it [m].
    */
   #lostTo(distance: Float): Vec4 {
-    const size = this.#halfSize
-    const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
+    const size = this.#gridSize
+    const first = uv().mul(this.#size).div(this.#spacing).floor().toConst() as unknown as Vec2
     const read = (texel: Vec2): Vec4 =>
       sampleLevel0(this.#texels, texel.div(size.mul(vec2(2, 1))))
     const readLight = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))

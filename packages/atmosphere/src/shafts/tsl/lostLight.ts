@@ -5,7 +5,7 @@ import type { Air } from '../../scattering/tsl/ray'
 import { rayLimits } from '../../skyVolume/tsl/rayLimits'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
-import { loop, type Bool, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPlace, AirShadow } from '../AirOccluder'
 import { litRay, type RayPlace } from './litRay'
@@ -49,15 +49,16 @@ export interface ShaftSteps {
 /** Places at which diffuse light is evaluated, over groups: it changes slowly, and four pixels share theirs. */
 const DIFFUSE_PART = 0.5
 
-/** Stretch of a ray that is marched in some groups of samples, whatever its length. */
+/** Stretch of a ray that is marched in groups of samples, whatever its length. */
 interface Stretch {
   /** Light of the ray before it, and in it, as parts of all. */
   readonly from: Float
   readonly width: Float
+  /** Number of groups, and of samples in each. */
+  readonly groups: Float
+  readonly samples: Float
   /** True where the map has shadows; null where all of the ray is. */
   readonly isMapped: Bool | null
-  /** Index of the group in its stretch. */
-  readonly group: Float
 }
 
 /** What is marched of a view ray. */
@@ -67,10 +68,6 @@ interface March {
   readonly darkAt: (position: Float, isMapped: Bool | null) => Float
   /** Light scattered once at a distance in the air, if nothing casts shadows [1/(m sr)]. */
   readonly scatteredAt: (inAir: Float) => Vec4
-  /** Parts of a stretch that a group has, and of a group that a sample has. */
-  readonly perGroup: Float
-  readonly perSample: Float
-  readonly samples: Int
   readonly jitter: Float
 }
 
@@ -81,7 +78,7 @@ interface March {
  *
  * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the look-ups
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
- * Where there are shadows beyond the map, the ray goes on there in as many groups again.
+ * Where there are shadows beyond the map, the ray goes on there with about as many samples again.
  *
  * @param jitter - Place of samples in their steps, in (0, 1).
  */
@@ -114,28 +111,36 @@ export function lostLight(
       steps,
       darkAt: (position, isMapped) => darkAt(fromEye(steps.distance(position)), isMapped),
       scatteredAt: scatteredOnce(air, airAt, cosViewLight),
-      perGroup: float(1).div(groups).toConst(),
-      perSample: float(1).div(samples).toConst(),
-      samples: int(samples).toConst() as Int,
       jitter
     }
     if (isMappedOnly) {
+      const all = { from: float(0), width: float(1), groups, samples, isMapped: null }
       loop('group', int(groups), group => {
-        const all = { from: float(0), width: float(1), isMapped: null }
-        lost.addAssign(lostInGroup(march, { ...all, group: float(group) }))
+        lost.addAssign(lostInGroup(march, all, float(group)))
       })
       return
     }
     const near = steps.partAt(mapped.sub(limits.start).clamp(0, length)).toConst() as Float
-    loop('group', int(groups.mul(2)), group => {
+    // Each has groups by its light, and as many samples whatever that is; beyond the map shadows are soft.
+    const [first, rest] = [near, near.oneMinus()].map(
+      width => groups.mul(width).ceil().toConst() as Float
+    )
+    const samplesOf = (all: Float, among: Float): Float => groups.mul(all).div(among.max(1)).ceil()
+    const [many, few] = [samplesOf(samples, first), samplesOf(samples.sub(1), rest)].map(
+      count => count.toConst() as Float
+    )
+    loop('group', int(first.add(rest)), group => {
       const index = float(group)
-      const isMapped = index.lessThan(groups).toConst() as Bool
-      const from = isMapped.select(0, near).toConst() as Float
-      const width = isMapped.select(near, near.oneMinus()).toConst() as Float
-      If(width.greaterThan(0), () => {
-        const place = isMapped.select(index, index.sub(groups)).toConst() as Float
-        lost.addAssign(lostInGroup(march, { from, width, isMapped, group: place }))
-      })
+      const isMapped = index.lessThan(first).toConst() as Bool
+      const choose = (a: Float | number, b: Float): Float => isMapped.select(a, b).toConst() as Float
+      const stretch = {
+        from: choose(0, near),
+        width: choose(near, near.oneMinus()),
+        groups: choose(first, rest),
+        samples: choose(many, few),
+        isMapped
+      }
+      lost.addAssign(lostInGroup(march, stretch, choose(index, index.sub(first))))
     })
     if (missingAt === null) return
     const places = int(groups.mul(DIFFUSE_PART).max(1))
@@ -212,16 +217,22 @@ function scatteredOnce(
   }
 }
 
-/** Light scattered once that a group of samples loses: its dark part, times the light at that part's centre. */
+/**
+ * Light scattered once that a group of samples loses: its dark part, times the light at that part's centre.
+ *
+ * @param group - Its index in the stretch.
+ */
 function lostInGroup(
-  { steps, darkAt, scatteredAt, perGroup, perSample, samples, jitter }: March,
-  { from, width, isMapped, group }: Stretch
+  { steps, darkAt, scatteredAt, jitter }: March,
+  { from, width, groups, samples, isMapped }: Stretch,
+  group: Float
 ): Vec4 {
   const dark = float(0).toVar()
   const sum = float(0).toVar()
-  loop('look', samples, look => {
-    const part = float(look).add(jitter).mul(perSample).add(group).mul(perGroup)
-    const position = part.mul(width).add(from).toConst() as Float
+  const perSample = width.div(groups.mul(samples)).toConst() as Float
+  const start = from.add(group.div(groups).mul(width)).toConst()
+  loop('look', int(samples), look => {
+    const position = float(look).add(jitter).mul(perSample).add(start).toConst() as Float
     const here = darkAt(position, isMapped).toConst() as Float
     dark.addAssign(here)
     sum.addAssign(position.mul(here))
@@ -229,9 +240,8 @@ function lostInGroup(
   const lost = vec4(0).toVar()
   If(dark.greaterThan(0), () => {
     const centre = sum.div(dark).toConst() as Float
-    const share = dark.mul(width).mul(perSample.mul(perGroup))
     const inAir = steps.distance(centre).toConst() as Float
-    lost.assign(scatteredAt(inAir).mul(steps.slope(centre).mul(share)))
+    lost.assign(scatteredAt(inAir).mul(steps.slope(centre).mul(dark.mul(perSample))))
   })
   return lost
 }

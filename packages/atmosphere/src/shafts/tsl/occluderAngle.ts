@@ -3,6 +3,7 @@ import {
   Fn,
   If,
   atan,
+  bool,
   float,
   ivec2,
   max,
@@ -76,14 +77,12 @@ function comparedDepth(depth: TextureNode, at: Vec2, { isReversed }: DepthStorag
 const isEmpty = (stored: Float, { isReversed }: DepthStorage): Bool =>
   isReversed ? stored.lessThanEqual(EMPTY) : stored.greaterThanEqual(1 - EMPTY)
 
-/** Depths in the four texels next to a place. */
-function cornerDepths(depth: TextureNode, size: Vec2, first: Vec2): [Float, Float, Float, Float] {
-  const read = (x: number, y: number): Float => depthIn(depth, size, first.add(vec2(x, y)))
-  return [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
-}
-
 const depthIn = (depth: TextureNode, size: Vec2, texel: Vec2): Float =>
   (textureLoad(depth, ivec2(texel.clamp(vec2(0), size.sub(1)))) as unknown as Vec4).r.toConst()
+
+/** Depth of the texel that a place is in: a quarter of the reads of {@link mixedDepth}, for its ends. */
+const nearestDepth = (depth: TextureNode, size: Vec2, at: Vec2): Float =>
+  depthIn(depth, size, at.mul(size).floor())
 
 /**
  * Depth between the four texels next to a place, so that slopes in shadow at a flat angle cast no shadows in
@@ -93,7 +92,8 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const place = at.mul(size).sub(0.5).toConst()
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
-  const [a, b, c, d] = cornerDepths(depth, size, first)
+  const read = (x: number, y: number): Float => depthIn(depth, size, first.add(vec2(x, y)))
+  const [a, b, c, d] = [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
   const among = (weight: Vec2): Float => mix(mix(a, b, weight.x), mix(c, d, weight.x), weight.y)
   const farthest = isReversed ? min(a, b, c, d) : max(a, b, c, d)
   return isEmpty(farthest, { isReversed, isCompared: false })
@@ -101,7 +101,7 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
     .toConst()
 }
 
-/** Rays beside a texel's own, to its four sides, that are tried where that meets no caster. */
+/** Rays beside a texel's own, to its four sides, that are tried in their finest map where that meets no caster. */
 const PROBES = 4
 
 /**
@@ -121,21 +121,31 @@ export function occluderAngle(
     const { offset, distance } = lightRayAt(frame, texel)
     const nearest = float(NOTHING).toVar()
     // The first map is the finest: what a ray of light meets in it counts.
-    const search = (from: Vec3, isOwn: boolean): void => {
-      for (const map of maps) {
-        If(nearest.equal(NOTHING), () => {
-          nearest.assign(occluderAlong(map, from, storage, isOwn))
+    for (const map of maps) {
+      If(nearest.equal(NOTHING), () => {
+        const { isInside, read } = occluderAlong(map, offset, storage, mixedDepth)
+        If(isInside, () => {
+          nearest.assign(read())
         })
-      }
+      })
     }
-    search(offset, true)
     loop('probe', PROBES, probe => {
       If(nearest.equal(NOTHING), () => {
         const side = (positive: number): Float =>
           probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
         // A row is a quarter as high as a column is wide.
         const shift = vec2(side(0), side(2).mul(0.25)).mul(WIDENING).div(frame.columns)
-        search(lightRayAt(frame, texel.add(shift).toConst()).offset, false)
+        const beside = lightRayAt(frame, texel.add(shift).toConst()).offset
+        const isSought = bool(true).toVar() as Bool & { assign(value: boolean): void }
+        for (const map of maps) {
+          If(isSought, () => {
+            const { isInside, read } = occluderAlong(map, beside, storage, nearestDepth)
+            If(isInside, () => {
+              nearest.assign(read())
+              isSought.assign(false)
+            })
+          })
+        }
       })
     })
     return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
@@ -143,32 +153,30 @@ export function occluderAngle(
 }
 
 /**
- * Position along a ray of light of what it meets first in a map, towards the light [m].
+ * What a ray of light meets first in a map, if it is in the map: its position along the ray, towards the light [m].
  *
- * @param isMixed - Between the map's texels; else in the nearest one, at a quarter of the reads.
+ * @param depthAt - Reads the map at a place.
  */
 function occluderAlong(
   { depth, size, matrix, bounds, metersPerDepth }: ShadowMapNodes,
   offset: Vec3,
   storage: DepthStorage,
-  isMixed: boolean
-): Float {
-  const nearest = float(NOTHING).toVar()
+  depthAt: typeof mixedDepth
+): { isInside: Bool; read: () => Float } {
   const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
   const isInside = place.x
     .greaterThan(bounds.x)
     .and(place.y.greaterThan(bounds.y))
     .and(place.x.lessThan(bounds.z))
     .and(place.y.lessThan(bounds.w))
-  If(isInside, () => {
+  const read = (): Float => {
     // Texture coordinates run down, as three's shadow nodes have it.
     const at = vec2(place.x, place.y.oneMinus()).toConst()
-    const read = (): Float =>
-      isMixed ? mixedDepth(depth, size, at, storage) : depthIn(depth, size, at.mul(size).floor())
-    const stored = storage.isCompared ? comparedDepth(depth, at, storage) : read()
-    If(isEmpty(stored, storage).not(), () => {
-      nearest.assign(stored.sub(place.z).mul(metersPerDepth))
-    })
-  })
-  return nearest
+    const stored = storage.isCompared
+      ? comparedDepth(depth, at, storage)
+      : depthAt(depth, size, at, storage)
+    const position = stored.sub(place.z).mul(metersPerDepth)
+    return isEmpty(stored, storage).select(NOTHING, position).toConst() as Float
+  }
+  return { isInside, read }
 }
