@@ -30,10 +30,10 @@ import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
  * samples along a view ray; samples in each.
  */
 const qualities = {
-  low: { rows: 512, spacing: 4, groups: 3, samples: 3 },
-  medium: { rows: 1024, spacing: 3, groups: 4, samples: 3 },
-  high: { rows: 1024, spacing: 2, groups: 4, samples: 4 },
-  reference: { rows: 2048, spacing: 2, groups: 64, samples: 8 }
+  low: { rows: 512, spacing: 4, groups: 3, samples: 2 },
+  medium: { rows: 768, spacing: 4, groups: 4, samples: 3 },
+  high: { rows: 1024, spacing: 3, groups: 4, samples: 4 },
+  reference: { rows: 2048, spacing: 1, groups: 64, samples: 8 }
 } as const
 
 /** Fineness of the march of light shafts. */

@@ -1,12 +1,12 @@
 import { Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
-import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, exp2, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { loop, sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -37,14 +37,6 @@ const MOST = 6e4
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
 const PLANET = 1e9
-
-/** The four pixels of the target about a place. */
-const CORNERS = [
-  [0, 0],
-  [1, 0],
-  [0, 1],
-  [1, 1]
-] as const
 
 /** Part of the light from behind a veil that is not worth samples. */
 const OPAQUE = 0.01
@@ -91,8 +83,8 @@ export interface CameraShafts {
 }
 
 /**
- * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, every second or fourth of
- * every second or fourth row, then taken from the four around a pixel that are at its depth.
+ * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, then taken from those around a
+ * pixel that are at its depth.
  *
  * Of a picture with a veil the light before it counts, and the light behind it as far as it passes: so the light
  * is taken from the picture of both, at once.
@@ -202,7 +194,10 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
-  /** A texel of the target: light in its left half, distances in its right one. */
+  /**
+   * A texel of the target. In its left half light; in its right one log₂ of the distance, and the least and the greatest
+   * one of the nine pixels around.
+   */
   #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
       const texel = uv().mul(this.#gridSize.mul(vec2(2, 1))).floor() as unknown as Vec2
@@ -212,11 +207,18 @@ export class ScreenShafts implements ScreenShadows {
         result.assign(this.#march(renderer, pixel))
       }).Else(() => {
         pixel.x.subAssign(this.#gridSize.x)
-        const distances = CORNERS.map(([x, y]) => {
-          const next = pixel.add(vec2(x, y)).min(this.#gridSize.sub(1)).toConst() as Vec2
-          return this.#rayTo(renderer, this.#uvOf(next)).distance
-        }) as [Float, Float, Float, Float]
-        result.assign(log2(vec4(...distances)))
+        const distanceAt = (aside: Vec2): Float => {
+          const next = pixel.add(aside).clamp(vec2(0), this.#gridSize.sub(1)).toConst() as Vec2
+          return log2(this.#rayTo(renderer, this.#uvOf(next)).distance).toConst() as Float
+        }
+        const own = distanceAt(vec2(0))
+        result.assign(vec4(own, own, own, 0))
+        loop('neighbor', 9, index => {
+          const row = float(index).div(3).floor().toConst()
+          const other = distanceAt(vec2(float(index).sub(row.mul(3)), row).sub(1))
+          result.y.assign(result.y.min(other))
+          result.z.assign(result.z.max(other))
+        })
       })
       return result
     })()
@@ -262,34 +264,48 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /**
-   * Light that a pixel loses, for unit irradiance [1/sr]: the mean of four around, which have samples in all places
-   * of their steps.
+   * Light that a pixel loses, for unit irradiance [1/sr]: from nine around it, of which any four that touch have
+   * samples in all places of their steps; where those are of several depths, from the four nearest.
    *
    * @param distance - Of what is seen in it [m].
    */
   #lostTo(distance: Float): Vec4 {
     const size = this.#gridSize
-    const first = uv().mul(this.#size).div(this.#spacing).floor().toConst() as unknown as Vec2
+    const place = uv().mul(this.#size).sub(0.5).div(this.#spacing).toConst() as unknown as Vec2
     const read = (texel: Vec2): Vec4 =>
-      sampleLevel0(this.#texels, texel.div(size.mul(vec2(2, 1))))
-    const readLight = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
-    const distances = read(first.add(vec2(size.x, 0)).add(0.5))
-    const apart = distances.sub(log2(distance)).abs().toConst() as Vec4
-    // Between their middles the texture unit takes the mean of all four.
-    const light = readLight(first.add(1)).toVar()
-    If(apart.x.max(apart.y).max(apart.z).max(apart.w).greaterThan(SAME_DEPTH), () => {
-      const weights = apart
-        .sub(OTHER_DEPTH)
-        .div(SAME_DEPTH - OTHER_DEPTH)
-        .clamp(STRANGER, 1)
-        .toConst() as Vec4
-      const { x: a, y: b, z: c, w: d } = weights
-      const parts = [a, b, c, d].map((weight, i) =>
-        readLight(first.add(vec2(...CORNERS[i])).add(0.5)).mul(weight)
-      )
-      light.assign(parts.reduce((sum, part) => sum.add(part)).div(weights.dot(vec4(1))))
+      sampleLevel0(this.#texels, texel.div(size.mul(vec2(2, 1)))).toConst()
+    const light = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
+    const own = log2(distance).toConst() as Float
+    const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
+    const { y: least, z: greatest } = read(nearest.add(vec2(size.x, 0)).add(0.5))
+    const lost = vec4(0).toVar()
+    If(own.sub(least).max(greatest.sub(own)).lessThan(SAME_DEPTH), () => {
+      // The means of all fours, between them: weights 1 − w, 1, w over 2 in both axes, by four reads.
+      const after = place.sub(nearest).mul(0.5).add(0.5).toConst() as Vec2
+      const before = after.oneMinus().toConst() as Vec2
+      const low = nearest.sub(0.5).add(vec2(0.25).div(before)).toConst() as Vec2
+      const high = nearest.add(1.5).sub(vec2(0.25).div(after)).toConst() as Vec2
+      const upper = light(low).mul(before.x).add(light(vec2(high.x, low.y)).mul(after.x))
+      const lower = light(vec2(low.x, high.y)).mul(before.x).add(light(high).mul(after.x))
+      const sum = upper.mul(before.y).add(lower.mul(after.y))
+      lost.assign(sum.mul(this.#growth(distance)))
+    }).Else(() => {
+      const first = place.floor().toConst() as Vec2
+      const weights = float(0).toVar()
+      loop('corner', 4, index => {
+        const row = float(index).div(2).floor().toConst()
+        const corner = first.add(vec2(float(index).sub(row.mul(2)), row)).min(size.sub(1)).add(0.5)
+        const other = read(corner.add(vec2(size.x, 0))).x
+        const apart = other.sub(own).abs()
+        const weight = apart.sub(OTHER_DEPTH).div(SAME_DEPTH - OTHER_DEPTH).clamp(STRANGER, 1)
+        // Beyond what a ray meets nothing is known of it.
+        const common = distance.min(exp2(other.add(SAME_DEPTH)))
+        lost.addAssign(read(corner).mul(weight.mul(this.#growth(common))))
+        weights.addAssign(weight)
+      })
+      lost.divAssign(weights)
     })
-    return light.mul(this.#growth(distance)).div(RADIANCE_SCALE)
+    return lost.div(RADIANCE_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */
