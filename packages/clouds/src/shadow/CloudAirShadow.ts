@@ -42,7 +42,7 @@ class CastShadow implements AirShadow {
     this.#clouds = clouds
     this.#shafts = shafts
     this.#veil = new CloudVeil(clouds)
-    this.#diffuse = new DiffuseRatioTable(clouds.field, clouds.light.nodes)
+    this.#diffuse = new DiffuseRatioTable(clouds.shadows, clouds.light.nodes)
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#veil)
     clouds.screens.add(this.#screen)

@@ -1,33 +1,32 @@
-import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { RenderTarget } from 'three'
-import { Fn, texture, uv, vec2 } from 'three/tsl'
+import { FragmentPass } from '@welkin/atmosphere'
+import { Fn, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from '../density/CloudField'
 import { meanDecks } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudLight } from '../light/CloudLightTable'
-import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
-
-/** Cosines of the light, which crowd about the horizon, and altitudes, which crowd about the ground. */
-const SIZE = [32, 128] as const
+import type { Float, Vec4 } from '../tsl-types'
+import { CASCADE_SIZE as ROWS } from './CascadeState'
+import { TABLE_COLUMNS as COLUMNS, type CloudShadowMap } from './CloudShadowMap'
 
 /**
  * Diffuse light among clouds over that without clouds, by altitude and cosine of the light, where layers are the same
- * everywhere: computed once a frame and not at each sample of each pixel.
+ * everywhere: computed once a frame and not at each sample of each pixel. Columns crowd about the horizon, rows
+ * about the ground. It is kept beside the clouds' shadows, of whose texture it takes no more.
  */
 export class DiffuseRatioTable {
   readonly #field: CloudField
-  readonly #target: RenderTarget
+  readonly #shadows: CloudShadowMap
   readonly #pass: FragmentPass
-  readonly #table: LevelTexture<Vec2>
 
-  constructor(field: CloudField, light: CloudLight) {
+  constructor(shadows: CloudShadowMap, light: CloudLight) {
+    const { field } = shadows
     this.#field = field
-    this.#target = tableTarget('Welkin.CloudDiffuse', ...SIZE)
-    this.#table = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+    this.#shadows = shadows
     const { view } = field
     const ratio = Fn((): Vec4 => {
-      const place = uv().mul(vec2(...SIZE)).sub(0.5).div(vec2(SIZE[0] - 1, SIZE[1] - 1)).toConst()
+      const texel = uv().mul(vec2(COLUMNS, ROWS)).sub(0.5)
+      const place = texel.div(vec2(COLUMNS - 1, ROWS - 1)).toConst()
       const side = place.x.mul(2).sub(1).toConst() as Float
       const cosLight = side.mul(side.abs()).toConst() as Float
       const altitude = place.y.mul(place.y).mul(view.air.uniforms.thickness).toConst() as Float
@@ -38,19 +37,25 @@ export class DiffuseRatioTable {
 
   /** Draws it: layers and air may have changed. */
   update(renderer: Renderer): void {
-    this.#pass.render(renderer, this.#target)
+    const { target } = this.#shadows
+    for (const part of [target.viewport, target.scissor])
+      part.set(target.width - COLUMNS, 0, COLUMNS, ROWS)
+    target.scissorTest = true
+    this.#pass.render(renderer, target)
   }
 
+  /** Reads it, wherever the control flow is. */
   sample(altitude: Float, cosLight: Float): Vec4 {
-    const { thickness } = this.#field.view.air.uniforms
+    const { map } = this.#shadows.nodes
     const side = cosLight.sign().mul(cosLight.abs().sqrt()).mul(0.5).add(0.5)
-    const place = vec2(side, altitude.div(thickness).clamp().sqrt())
-    const at = place.mul(vec2(SIZE[0] - 1, SIZE[1] - 1)).add(0.5).div(vec2(...SIZE))
-    return this.#table.sample(at).level(0)
+    const height = altitude.div(this.#field.view.air.uniforms.thickness).clamp().sqrt()
+    const texel = vec2(side, height).mul(vec2(COLUMNS - 1, ROWS - 1)).add(0.5)
+    const { width } = this.#shadows.target
+    const at = texel.add(vec2(width - COLUMNS, 0)).div(vec2(width, ROWS))
+    return map.sample(at).level(0)
   }
 
   dispose(): void {
-    this.#target.dispose()
     this.#pass.dispose()
   }
 }

@@ -19,7 +19,7 @@ export interface CascadeNodes {
 export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
-  /** Number of tiles, one more than cascades. */
+  /** Width of the map in tiles. */
   readonly tileCount: number
   /** 1 for a map of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
