@@ -73,6 +73,7 @@ export const expectations: Record<string, Expectation> = {
   index: { wrongWith: checkQuickStart },
   clouds: { wrongWith: checkClouds },
   fiber: { wrongWith: checkQuickStart, allows: fibersClock },
+  fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },
   webpack: { wrongWith: checkQuickStart, backends: ['webgpu'] },
   geo: {
     wrongWith: png => [

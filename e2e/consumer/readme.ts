@@ -18,7 +18,10 @@ const pages: Record<string, string | undefined> = {
   'packages/clouds/README.md': 'clouds.ts'
 }
 
-/** The document whose block of TSX is the module of the app's page with React. */
+/**
+ * The document whose block of TSX is the module of the app's page with React. Those of others are modules that a page of the
+ * app mounts.
+ */
 const fiberDocument = 'packages/atmosphere/README.md'
 
 /** Names of the quick starts that the later blocks of their documents go on with. */
@@ -48,7 +51,7 @@ declare global {
  * a module that must compile.
  *
  * @param app - Folder of the app.
- * @returns How many blocks there are.
+ * @returns Number of blocks.
  */
 export function writeReadmeModules(root: string, app: string): number {
   const folder = join(app, 'src', 'readme')
@@ -66,13 +69,17 @@ export function writeReadmeModules(root: string, app: string): number {
       writeFileSync(join(folder, name), `${code}\nexport {}\n`)
     })
     count += blocks.length
-    if (document === fiberDocument) {
-      const [fiber] = codeBlocks(markdown, 'tsx')
-      if (fiber === undefined) throw new Error(`${document} has no block of TSX`)
-      writeFileSync(join(app, 'src', 'fiber.tsx'), fiber)
+    const fiber = codeBlocks(markdown, 'tsx')
+    count += fiber.length
+    if (document !== fiberDocument) {
+      fiber.forEach(code =>
+        writeFileSync(join(folder, `${document.replaceAll(/\W/g, '-')}.tsx`), code)
+      )
+    } else {
+      if (fiber.length !== 1) throw new Error(`${document} must have one block of TSX`)
+      writeFileSync(join(app, 'src', 'fiber.tsx'), fiber[0])
       // The quick start has no types of its own: to a bundler it is JavaScript.
       writeFileSync(join(app, 'webpack-entry.js'), blocks[0])
-      count++
     }
   }
   return count

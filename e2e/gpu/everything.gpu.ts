@@ -8,6 +8,7 @@ import {
   aerialPerspective,
   aerialPerspectiveFog,
   airglow,
+  autoExposure,
   distanceFog,
   heightFog,
   lightShafts,
@@ -20,7 +21,7 @@ import {
   starsOverlay,
   sunFlare
 } from '@welkin/atmosphere'
-import type { LightShafts } from '@welkin/atmosphere'
+import type { AutoExposureNode, LightShafts } from '@welkin/atmosphere'
 import {
   cloudAirShadow,
   cloudEnvironment,
@@ -90,12 +91,13 @@ class World {
   readonly #sun: SunDirectionalLight
   readonly #lit = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
   readonly shafts: LightShafts
+  readonly exposure: AutoExposureNode
   readonly #clouds
   readonly #cloudEnvironment
   readonly #environment
   readonly #owned: { dispose(): void }[] = []
 
-  /** @param isMapped - Whether clouds have a map of the world; else the lit material has six of its own. */
+  /** @param isMapped - True if clouds have a map of the world; else the lit material has six of its own. */
   constructor(
     readonly renderer: WebGPURenderer,
     isMapped: boolean
@@ -139,7 +141,8 @@ class World {
     this.#addThings(isMapped ? [] : this.pictures.slice(3))
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false
-    this.#pipeline.outputNode = starsOverlay(this.#clouds, depth, camera, atmosphere)
+    const starry = starsOverlay(this.#clouds, depth, camera, atmosphere)
+    this.#pipeline.outputNode = this.exposure = autoExposure(starry, atmosphere)
   }
 
   #addLights(): void {
@@ -217,6 +220,7 @@ class World {
     this.#environment.dispose()
     this.#cloudEnvironment.dispose()
     this.#clouds.dispose()
+    this.exposure.dispose()
     this.#pipeline.dispose()
     this.#pass.dispose()
     for (const each of [...this.#owned, ...this.pictures, this.cloudMap]) each.dispose()
@@ -265,6 +269,11 @@ gpuTest(
       expectLight(drawn, name)
       const lit = drawn.data.filter((value, i) => i % 4 < 3 && value > 0).length
       expectTrue(lit > 0.5 * size.width * size.height, `${name}: light in ${lit} numbers only`)
+      await world.exposure.settle()
+      const { luminance } = world.exposure
+      expectTrue(luminance !== null && luminance > 0, `${name}: ${luminance} cd/m² are metered`)
+      // Scenes of this size may have no light that half floats hold at another one's exposure.
+      world.atmosphere.luminanceScale = 1e-4
     }
     checkTextures(t, shaders)
     world.dispose()

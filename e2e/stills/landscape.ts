@@ -114,7 +114,7 @@ function trees(): Group {
 
 /** Landscape about the camera of a still, in a Y-up frame on the ground. */
 export class Landscape extends Group {
-  /** @param radius - Of the planet [m]. */
+  /** @param radius - Radius of the planet [m]. */
   constructor(radius: number, soil: Soil, hasTrees: boolean) {
     super()
     this.add(hills(radius, soil))

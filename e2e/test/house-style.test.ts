@@ -67,13 +67,11 @@ const unplaced = [
   'Cox & Munk 1954',
   'Janiczek & DeYoung 1987',
   'Jimenez 2014',
-  'Kieffer & Stone 2005',
   'Nakajima & Tanaka 1988',
   'Pollack et al. 1995',
   'Sneep & Ubachs 2005',
   'Tomasko et al. 1999',
   'U.S. Standard Atmosphere 1976',
-  'Willmer 2018',
   'Yusov 2014'
 ]
 

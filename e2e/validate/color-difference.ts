@@ -8,7 +8,7 @@ const radians = Math.PI / 180
 /**
  * CIE L*a*b* under D65.
  *
- * @param xyz - Of the colour.
+ * @param xyz - Tristimulus values of the colour.
  * @param whiteY - Y of the white that counts as L* = 100, same unit.
  */
 export function xyzToLab(xyz: Readonly<Triple>, whiteY: number): Triple {

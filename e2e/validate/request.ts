@@ -48,10 +48,10 @@ const sinDegrees = (degrees: number): number => Math.sin((degrees * Math.PI) / 1
 /**
  * A ray from the angles of the reference files.
  *
- * @param heightKm - Of the viewpoint above the ground [km].
- * @param viewZenith - Of the ray [°].
- * @param sunZenith - Of the sun [°].
- * @param azimuth - Of the ray from the sun's azimuth [°].
+ * @param heightKm - Height of the viewpoint above the ground [km].
+ * @param viewZenith - Zenith angle of the ray [°].
+ * @param sunZenith - Zenith angle of the sun [°].
+ * @param azimuth - Azimuth of the ray from the sun's azimuth [°].
  */
 export function rayFromAngles(
   heightKm: number,

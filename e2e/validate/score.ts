@@ -47,7 +47,7 @@ export function quantile(values: readonly number[], part: number): number {
  *
  * @param model - Per unit of `scale`.
  * @param scale - Per channel: what the reference's values are divided by.
- * @param label - Of the record.
+ * @param label - Label of the record.
  */
 export function compare(
   sunZenith: number,

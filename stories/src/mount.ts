@@ -36,8 +36,8 @@ const STYLE = `
  * The canvas fills the page; new arguments go to the running scene. With `frame` it draws once, when everything is
  * loaded, and sets `data-ready="true"` on the body.
  *
- * @param code - What a user writes for it: shown on request.
- * @param restartsWith - What of the arguments takes a new scene when it changes.
+ * @param code - Code that a user writes for it: shown on request.
+ * @param restartsWith - Key of the arguments that take a new scene when they change.
  */
 export function mount<Args extends RendererArgs>(
   create: CreateScene<Args>,

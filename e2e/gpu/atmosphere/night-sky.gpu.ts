@@ -280,8 +280,8 @@ gpuTest('dims stars by the air in a night that no day came before', async t => {
     const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
     const { parameters } = atmosphere
     const radius = parameters.bottomRadius + 2
-    const way = distanceToTop(radius, Math.sin(angle), parameters.topRadius)
-    const depth = opticalDepth(parameters, radius, Math.sin(angle), way)
+    const length = distanceToTop(radius, Math.sin(angle), parameters.topRadius)
+    const depth = opticalDepth(parameters, radius, Math.sin(angle), length)
     const light = starIrradiance(parameters, 0, VEGA * 10 ** -0.4)
     const dimmed = light.map((value, i) => value * Math.exp(-depth[i]))
     const ratio = illuminance(picture, fov) / luminanceOf(parameters, dimmed)

@@ -70,8 +70,8 @@ gpuTest('knows how much air is between a point and the sun without a table', asy
   expectTrue(absorber < 0.3, `the absorber is off by ${absorber}`)
 })
 
-/** The way of a ray of altitude, μ, μ_s and ν, from within the air. */
-function wayOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'>): AirSegment {
+/** Segment in the air of a ray of altitude, μ, μ_s and ν, from within the air. */
+function segmentOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'vec4'>): AirSegment {
   const { x: altitude, y: cosView, z: cosLight, w: cosViewLight } = ray
   const radius = bottomRadius.add(altitude).toConst()
   const discriminant = groundDiscriminant(altitude, cosView, bottomRadius).toConst()
@@ -119,7 +119,8 @@ gpuTest('scatters once as float64 has it, with few points', async t => {
     })
     const results = await t.evaluate(rays, input => {
       const ray = input.toVar()
-      return singleScatteringLight({ uniforms } as Air, constants, wayOf(uniforms, ray)).radiance
+      return singleScatteringLight({ uniforms } as Air, constants, segmentOf(uniforms, ray))
+        .radiance
     })
     const errors: number[] = []
     rays.forEach(([altitude, cosView, cosLight, cosViewLight], i) => {

@@ -71,8 +71,8 @@ gpuTest('clouds cast their shadows on the ground', async t => {
     const start = field.view.toMapped(input.xyz).toConst()
     const length = 3500 / STEPS
     loop('step', STEPS, index => {
-      const way = float(index).add(0.5).mul(length)
-      const offset = start.add(field.view.lightDirection.mul(way)).toConst() as Vec3
+      const distance = float(index).add(0.5).mul(length)
+      const offset = start.add(field.view.lightDirection.mul(distance)).toConst() as Vec3
       const { altitude, up } = field.view.localCoordinates(offset)
       const sample = { offset, altitude, up, distance: float(1000).toConst() }
       depth.addAssign(cloudExtinction(field, sample, false).mul(length))
@@ -132,8 +132,8 @@ gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
     loop('step', 200, index => {
       // Steps grow on the way.
       const [from, to] = [float(index), float(index).add(1)].map(at => at.mul(at).mul(0.5))
-      const way = from.add(to).mul(0.5)
-      const offset = start.add(field.view.lightDirection.mul(way)).toConst() as Vec3
+      const distance = from.add(to).mul(0.5)
+      const offset = start.add(field.view.lightDirection.mul(distance)).toConst() as Vec3
       const sample = {
         offset,
         ...field.view.localCoordinates(offset),

@@ -31,7 +31,7 @@ export class CloudColumns {
 
   /**
    * @param size - Pixels along an edge.
-   * @param width - Of the square that is seen [m].
+   * @param width - Width of the square that is seen [m].
    * @param steps - Samples in a column.
    */
   constructor(
@@ -146,7 +146,7 @@ export class PlanetColumns {
 
   /**
    * @param layer - The field's only one.
-   * @param distance - From where the clouds are seen [m].
+   * @param distance - Distance that the clouds are seen from [m].
    * @returns Optical depths.
    */
   async draw(

@@ -20,7 +20,7 @@ export const registeredTests: GpuTest[] = []
  * Adds a test that runs in Chromium once per backend, in a page of its suite's own.
  * It fails on a thrown error and on any error or warning of three's in the console.
  *
- * @param name - What holds, as a sentence; unique in its file.
+ * @param name - Sentence that holds; unique in its file.
  */
 export function gpuTest(
   name: string,

@@ -60,7 +60,7 @@ export interface Stage {
 /**
  * A scene with light shafts as a post effect; null for shafts draws the same without.
  *
- * @param elevation - Of the sun in the north, or of the full moon while the sun is down [°].
+ * @param elevation - Elevation of the sun in the north, or of the full moon while the sun is down [°].
  */
 export function stage(
   renderer: WebGPURenderer,

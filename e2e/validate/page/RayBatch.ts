@@ -36,7 +36,7 @@ export class RayBatch {
 
   /**
    * @param rays - With the number of each one's viewpoint.
-   * @param body - What is computed per ray.
+   * @param body - Function of a ray.
    */
   constructor(rays: (RayRequest & { viewpoint: number })[], body: (ray: RayNodes) => Vec4) {
     const rows = Math.max(Math.ceil(rays.length / COLUMNS), 1)

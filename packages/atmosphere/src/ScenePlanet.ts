@@ -148,7 +148,7 @@ export class ScenePlanet extends EventDispatcher<{ dispose: object }> {
    * world's origin or, if that is deep inside the planet as in ECEF, from the {@link place}.
    *
    * @param elevation - Above the horizon, in [−90, 90] [°].
-   * @param azimuth - From north, clockwise [°]. North is −Z of a local frame.
+   * @param azimuth - Angle from north, clockwise [°]. North is −Z of a local frame.
    */
   setSunAngles(elevation: number, azimuth: number): this {
     checkRange('Atmosphere.setSunAngles', 'elevation', elevation, -90, 90)

@@ -185,6 +185,13 @@ const cases: [message: string, call: () => unknown][] = [
   ['DayCycle: hour must be in [0, 24), got null', () => (cycle.hour = wrong(null))],
   ['DayCycle: latitude must be in [-90, 90], got NaN', () => (cycle.latitude = NaN)],
   ["DayCycle: daylight must be in (0, 1), got '0.5'", () => (cycle.daylight = wrong('0.5'))],
+  ['DayCycle: paused must be true or false, got 1', () => (cycle.paused = wrong(1))],
+  ["DayCycle: holdDay must be true or false, got 'no'", () => (cycle.holdDay = wrong('no'))],
+  [
+    'DayCycle: holdDay must be true or false, got null',
+    () => new DayCycle(atmosphere, { holdDay: wrong(null) })
+  ],
+  ["DayCycle: unknown option 'hour', there are rate,", () => cycle.set(wrong({ hour: 3 }))],
 
   // Null and [] are no numbers.
   ['HeightFog: density must be in [0, 100], got null', () => heightFog({ density: wrong(null) })],

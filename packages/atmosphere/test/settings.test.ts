@@ -6,6 +6,7 @@ import {
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
+  DayCycle,
   distanceFog,
   heightFog,
   marsParameters,
@@ -13,6 +14,7 @@ import {
   moon,
   NightLightProbe,
   planetGround,
+  skyEnvironment,
   standardEarthParameters,
   Stars,
   sunFlare,
@@ -51,6 +53,16 @@ it('settings are properties, and change together or not at all', () => {
   expect(new Stars({ catalogue: [], intensity: 4 }).set({ orientation: null }).intensity).toBe(4)
   expect(planetGround({ seed: 3 }).set({ windSpeed: 2 }).seed).toBe(3)
   expect(() => planetGround().set(wrong({ seed: 3 }))).toThrow("unknown option 'seed'")
+  const environment = skyEnvironment(atmosphere, { climb: 0.5 })
+  expect(() => environment.set({ angle: 1, climb: 0 })).toThrow('SkyEnvironmentNode: climb')
+  expect([environment.angle, environment.climb]).toEqual([0.1, 0.5])
+  const cycle = new DayCycle(world, { paused: true })
+  expect(() => cycle.set({ paused: false, rate: 2, daylight: 1 })).toThrow('DayCycle: daylight')
+  expect([cycle.paused, cycle.rate, cycle.daylight]).toEqual([true, 1440, 0.5])
+  expect(cycle.set({ holdDay: true, adaptation: undefined }).holdDay).toBe(true)
+  const shell = new AtmosphereShell(marsParameters(), 1, { sun: world })
+  expect(() => shell.set({ sun: atmosphere, luminanceScale: 0 })).toThrow('luminanceScale')
+  expect(shell.sun).toBe(world)
   const probe = new NightLightProbe(atmosphere)
   probe.illuminance = 1
   expect(() => (probe.illuminance = -1)).toThrow('NightLightProbe: illuminance')

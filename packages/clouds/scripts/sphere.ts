@@ -21,7 +21,7 @@ function randomNumbers(): () => number {
  *
  * @param diameter - Scaled optical diameter.
  * @param chi1 - χ′₁, and χ′₂ below: the phase function has no further terms.
- * @returns By ring from the axis outwards, then by part of the way from the side of the light.
+ * @returns Values by ring from the axis outwards, then by part of the way from the side of the light.
  */
 export function sphereSource(
   diameter: number,

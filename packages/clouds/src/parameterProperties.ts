@@ -6,7 +6,7 @@ interface Parametrized {
 /**
  * Makes a property of each parameter: it reads the object of all parameters, and assigning to it calls `set`.
  *
- * @param prototype - Of the class.
+ * @param prototype - Prototype of the class.
  * @param names - An object with all parameters.
  * @param all - Name of the property that has the object of all parameters.
  */

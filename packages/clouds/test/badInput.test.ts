@@ -111,6 +111,8 @@ const cases: [message: string, call: () => unknown][] = [
   ],
   ['CloudsNode: noise must be a CloudNoise, got {}', () => make({ noise: {} })],
   ["CloudsNode: light must be a CloudLightTable, got 'sun'", () => make({ light: 'sun' })],
+  ['CloudsNode: accumulates must be true or false, got 0', () => (node.accumulates = wrong(0))],
+  ["CloudsNode: unknown option 'noise', there are", () => node.set(wrong({ noise: null }))],
   [
     "CloudsNode: quality must be 'low', 'medium', 'high' or 'ultra', got 'best'",
     () => make({ quality: 'best' })

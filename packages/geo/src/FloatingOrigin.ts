@@ -84,7 +84,7 @@ export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
   /**
    * Rebases to the camera if it is farther than `threshold` from the world's origin.
    *
-   * @returns Whether it did.
+   * @returns True if it did.
    */
   update(): boolean {
     this.camera.updateWorldMatrix(true, false)

@@ -11,7 +11,7 @@ interface XYZ {
 /**
  * Every error of these packages.
  *
- * @param value - What was given, if that is the matter: strings are quoted, arrays and plain objects
+ * @param value - Value that was given, if that is the matter: strings are quoted, arrays and plain objects
  *   shown short, other objects by their class.
  */
 export function fail(where: string, rule: string, ...value: [unknown?]): never {

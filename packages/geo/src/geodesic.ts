@@ -98,8 +98,8 @@ function solveInverse(
 const solvers = /*#__PURE__*/ new WeakMap<Ellipsoid, Solver>()
 
 function solverOf(where: string, ellipsoid: Ellipsoid): Solver {
-  const known = solvers.get(ellipsoid)
-  if (known !== undefined) return known
+  const cached = solvers.get(ellipsoid)
+  if (cached !== undefined) return cached
   checkEllipsoid(where, ellipsoid)
   const { x, y } = ellipsoid.radii
   if (x !== y) fail(where, 'ellipsoid must have equal radii x and y', ellipsoid.radii)

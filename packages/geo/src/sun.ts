@@ -107,7 +107,7 @@ function terrestrialMillennia(date: Date): number {
 /**
  * Apparent direction to the sun, unit length.
  *
- * @param distance - Of the sun, for the aberration [au].
+ * @param distance - Distance of the sun, for the aberration [au].
  */
 function direction(date: Date, distance: number, target: Vector3): Vector3 {
   const days = universalDays(date)

@@ -37,7 +37,7 @@ export interface LandStory<Args> {
   prepare?(): Promise<void>
   /** Follows its arguments. */
   apply(args: Args): void
-  /** @param altitude - Of the camera above the ellipsoid [m]. */
+  /** @param altitude - Altitude of the camera above the ellipsoid [m]. */
   beforeDraw?(altitude: number): void
   dispose?(): void
 }

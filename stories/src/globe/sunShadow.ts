@@ -27,7 +27,7 @@ export function prepareShadow(light: SunDirectionalLight): void {
  *
  * The map moves in whole texels, so that the edges of shadows stand still while the camera moves.
  *
- * @param altitude - Of the camera above the ground [m].
+ * @param altitude - Altitude of the camera above the ground [m].
  * @param upWorld - Away from the ground, unit vector.
  */
 export function aimShadow(

@@ -103,8 +103,8 @@ class BakeResources {
 }
 
 /**
- * Moments (l ≤ 2) of the diffuse light in the air, by altitude and sun angle, all orders of scattering
- * and the ground's reflection included, for unit irradiance of the sun.
+ * Moments (l ≤ 2) of the diffuse light in the air, by altitude and angle of the light, all orders of scattering
+ * and the ground's reflection included, for unit irradiance of the light source.
  *
  * Solved by successive orders: sunlight scattered once, then light scattered n times from light
  * scattered n − 1 times. Each order gathers rays in every direction from every cell.
@@ -119,7 +119,7 @@ export class DiffuseLightTable {
   #resources: BakeResources | null = null
 
   /**
-   * @param region - Of {@link size}; its atlas frees it.
+   * @param region - Region of {@link size}; its atlas frees it.
    * @param transmittance - Baked before this one.
    */
   constructor(uniforms: AtmosphereUniforms, region: TableRegion, transmittance: Table) {

@@ -77,7 +77,7 @@ export class PrefilteredCube {
   /**
    * Filters the next part of the cube, which must not change from the first part on.
    *
-   * @returns Whether that was the last.
+   * @returns True if that was the last.
    */
   filterNext(renderer: Renderer): boolean {
     this.#allocate(renderer)

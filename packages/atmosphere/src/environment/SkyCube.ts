@@ -113,7 +113,7 @@ export class SkyCube {
   /**
    * Draws the next step of the overlay or the next face, or filters the next part, or does all that is left.
    *
-   * @returns Whether it is complete.
+   * @returns True once it is complete.
    */
   draw(renderer: Renderer, isWhole: boolean): boolean {
     const view = this.#atmosphere.viewOf(this.camera)

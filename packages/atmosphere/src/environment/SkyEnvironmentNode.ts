@@ -2,7 +2,7 @@ import type { Camera } from 'three'
 import { vec3 } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
-import { checkBoolean, checkOptions, checkPositive, fail } from '@welkin/geo'
+import { checkBoolean, checkOptions, checkPositive, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { DrawnSky } from './DrawnSky'
 import { mirrored, type EnvironmentOptions } from './ImageEnvironmentNode'
@@ -21,6 +21,8 @@ export interface SkyEnvironmentOptions extends EnvironmentOptions {
   /** Picture in front of the sky: `cloudEnvironment` of `@welkin/clouds`. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
+
+const SETTINGS = ['angle', 'climb'] as const
 
 /**
  * Sky and ground as what materials mirror: a scene's environment, through three's prefiltered maps.
@@ -72,8 +74,8 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     super('vec3')
     const where = 'SkyEnvironmentNode'
     checkAtmosphere(where, atmosphere)
-    checkOptions(where, options, 'diffuse', 'size', 'angle', 'climb', 'overlay')
-    const { diffuse, size = 256, angle = 0.1, climb = 0.1, overlay = null } = options
+    checkOptions(where, options, 'diffuse', 'size', 'overlay', ...SETTINGS)
+    const { diffuse, size = 256, overlay = null, ...settings } = options
     if (!(size >= 256 && size <= 2048 && Number.isInteger(Math.log2(size)))) {
       fail(where, 'size must be a power of two in [256, 2048]', size)
     }
@@ -84,8 +86,7 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     this.atmosphere = atmosphere
     this.diffuse = diffuse ?? null
     this.size = size
-    this.angle = angle
-    this.climb = climb
+    this.set(settings)
     this.overlay = overlay
     this.updateBeforeType = NodeUpdateType.RENDER
     this.updateType = NodeUpdateType.RENDER
@@ -93,6 +94,15 @@ export class SkyEnvironmentNode extends Node<'vec3'> {
     this.#drawn = new DrawnSky(atmosphere)
     this.#cube = new SkyCube(atmosphere, size, overlay)
     atmosphere.addEventListener('dispose', this.#release)
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: Pick<SkyEnvironmentOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('SkyEnvironmentNode', this, settings, ...SETTINGS)
   }
 
   /** See {@link SkyEnvironmentOptions}, > 0 [°]. */

@@ -13,7 +13,7 @@ export interface SkyOverlay {
    * Takes a step of its drawing; the view's nodes are up to date.
    *
    * @param view - Whose camera stands where the environment is seen from.
-   * @param step - From 0 to `steps` − 1.
+   * @param step - Index of the step, from 0 to `steps` − 1.
    */
   draw(renderer: Renderer, view: AtmosphereView, step: number): void
   /**
@@ -21,7 +21,7 @@ export interface SkyOverlay {
    *
    * @param direction - In the mapped space, unit length.
    * @param sky - Linear sRGB × `luminanceScale`.
-   * @returns The same with the overlay before it.
+   * @returns Colour with the overlay before it.
    */
   over(view: ViewNodes, direction: Vec3, sky: Vec3): Vec3
 }

@@ -1,6 +1,14 @@
 import type { Camera } from 'three'
 import { Matrix4, Vector3 } from 'three'
-import { checkDate, checkNonNegative, checkOptions, fail, Geodetic } from '@welkin/geo'
+import {
+  checkBoolean,
+  checkDate,
+  checkNonNegative,
+  checkOptions,
+  fail,
+  Geodetic,
+  setOptions
+} from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkRange } from '../check'
 import type { AutoExposureNode } from './AutoExposureNode'
@@ -28,6 +36,8 @@ export interface DayCycleOptions {
   daylight?: number
   /** Repeats the same day, so that season and moon stay. Default false. */
   holdDay?: boolean
+  /** Stops the clock; exposure still adapts. Default false. */
+  paused?: boolean
   /** Time in which exposure adapts by 63 %, ≥ 0; 0 adapts at once [s]. Default 0.3. */
   adaptation?: number
   /** Options of `exposureFor`. */
@@ -35,6 +45,8 @@ export interface DayCycleOptions {
   /** Exposure by what the camera sees, in place of `exposureFor`; by default null. Shared, not owned. */
   autoExposure?: AutoExposureNode | null
 }
+
+const SETTINGS = ['rate', 'daylight', 'holdDay', 'paused', 'adaptation'] as const
 
 const _origin = new Vector3()
 const _geodetic = new Geodetic()
@@ -62,10 +74,6 @@ const _scale = new Vector3()
 export class DayCycle {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
-  /** Stops the clock; exposure still adapts. */
-  paused = false
-  /** Repeats the same day, so that season and moon stay. */
-  holdDay: boolean
   /** Options of `exposureFor`. */
   readonly exposureOptions: ExposureOptions
   /** Exposure by what the camera sees, in place of `exposureFor`, or null. Shared, not owned. */
@@ -73,6 +81,8 @@ export class DayCycle {
   #time: number
   #rate = 1440
   #daylight = 0.5
+  #holdDay = false
+  #paused = false
   #adaptation = 0.3
   readonly #exposureAdaptation: ExposureAdaptation
   /** Season that was set, and the solar day that it led to; null if the time was set since. */
@@ -83,36 +93,29 @@ export class DayCycle {
     checkAtmosphere('DayCycle', atmosphere)
     const {
       date,
-      rate,
-      daylight,
-      adaptation,
-      holdDay,
       exposureOptions,
-      autoExposure = null
-    } = checkOptions(
-      'DayCycle',
-      options,
-      'date',
-      'rate',
-      'daylight',
-      'holdDay',
-      'adaptation',
-      'exposureOptions',
-      'autoExposure'
-    )
+      autoExposure = null,
+      ...settings
+    } = checkOptions('DayCycle', options, 'date', 'exposureOptions', 'autoExposure', ...SETTINGS)
     if (autoExposure !== null && autoExposure?.atmosphere !== atmosphere) {
       fail('DayCycle', 'autoExposure must be an autoExposure() of its atmosphere', autoExposure)
     }
     this.atmosphere = atmosphere
     this.autoExposure = autoExposure
     this.exposureOptions = checkExposure('DayCycle', exposureOptions)
-    this.holdDay = holdDay ?? false
-    if (rate !== undefined) this.rate = rate
-    if (daylight !== undefined) this.daylight = daylight
-    if (adaptation !== undefined) this.adaptation = adaptation
+    this.set(settings)
     this.#exposureAdaptation = new ExposureAdaptation(atmosphere)
     this.#time = 0
     this.date = date ?? atmosphere.date ?? new Date()
+  }
+
+  /**
+   * Changes some settings. Date and place are no settings, but the state of the clock and the atmosphere's.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: Pick<DayCycleOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('DayCycle', this, settings, ...SETTINGS)
   }
 
   /** Time that sun, moon and stars are drawn for [ms since 1970]. */
@@ -164,6 +167,26 @@ export class DayCycle {
       fail('DayCycle', 'daylight must be in (0, 1)', value)
     }
     this.#daylight = value
+  }
+
+  /** Repeats the same day, so that season and moon stay. */
+  get holdDay(): boolean {
+    return this.#holdDay
+  }
+
+  set holdDay(value: boolean) {
+    checkBoolean('DayCycle', 'holdDay', value)
+    this.#holdDay = value
+  }
+
+  /** Stops the clock; exposure still adapts. */
+  get paused(): boolean {
+    return this.#paused
+  }
+
+  set paused(value: boolean) {
+    checkBoolean('DayCycle', 'paused', value)
+    this.#paused = value
   }
 
   /** Time in which exposure adapts by 63 % [s]. */

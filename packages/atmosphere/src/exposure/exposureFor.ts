@@ -3,7 +3,7 @@ import { Vector3 } from 'three'
 import { checkNonNegative, checkOptions, checkPositive } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
-import { checkCloudedSky, type CloudedPlace, type CloudedSky } from '../queries/CloudedSky'
+import { checkCloudedSky, type CloudedPoint, type CloudedSky } from '../queries/CloudedSky'
 import { clampCosine } from '../queries/LightQuery'
 import { sampleDiffuseLight } from '../diffuseLight/cpu/diffuseLight'
 import { lightTransmittance } from '../transmittance/cpu/transmittance'
@@ -107,14 +107,14 @@ function diffuseOverGround(
   parameters: AtmosphereParameters,
   illuminance: number,
   direct: readonly number[]
-): CloudedPlace['diffuse'] {
+): CloudedPoint['diffuse'] {
   const up = scaleToLuminance(parameters, [1, 1, 1, 1], illuminance)
   const down = parameters.groundAlbedo.map((albedo, i) => albedo * (direct[i] + up[i]))
   return () => ({ up, down })
 }
 
 /** Light without clouds, for unit irradiance of its source. */
-interface ClearLight extends Pick<CloudedPlace, 'cosLight' | 'direct' | 'diffuse'> {
+interface ClearLight extends Pick<CloudedPoint, 'cosLight' | 'direct' | 'diffuse'> {
   /** Irradiance of the source, over `solarIrradiance`; left out, 1. */
   readonly irradiance?: readonly number[]
 }
@@ -126,10 +126,10 @@ function illuminanceOf(
   { cosLight, direct, diffuse, irradiance = [1, 1, 1, 1] }: ClearLight
 ): number {
   const { groundAlbedo } = parameters
-  const place = { position, altitude, cosLight, groundAlbedo, direct, diffuse }
+  const point = { position, altitude, cosLight, groundAlbedo, direct, diffuse }
   const [sun, clear] = [direct(0), diffuse(0).up]
-  const beam = clouds?.beam(place) ?? 1
-  const sky = clouds?.irradiance(place, 1, clear) ?? clear
+  const beam = clouds?.beam(point) ?? 1
+  const sky = clouds?.irradiance(point, 1, clear) ?? clear
   const values = irradiance.map((value, i) => value * (sun[i] * beam + sky[i]))
   return Math.max(luminanceOf(parameters, values), 0)
 }

@@ -32,7 +32,7 @@ export class SunDirectionalLight extends DirectionalLight {
   readonly source: LightSource
 
   /**
-   * @param distance - From the target to the light [world units].
+   * @param distance - Distance from the target to the light [world units].
    * @param source - Whose light it is; by default the sun's.
    */
   constructor(atmosphere: Atmosphere, distance = 1, source: LightSource = atmosphere?.sun) {

@@ -2,10 +2,10 @@ import type { Vector3 } from 'three'
 import { fail } from '@welkin/geo'
 
 /**
- * A place among clouds, and the light about it as it is without them: irradiances for unit irradiance of the
+ * A point among clouds, and the light about it as it is without them: irradiances for unit irradiance of the
  * source on a plane across its rays, a value for each wavelength.
  */
-export interface CloudedPlace {
+export interface CloudedPoint {
   /** World. */
   readonly position: Vector3
   /** Altitude above the ground [m]. */
@@ -21,15 +21,15 @@ export interface CloudedPlace {
 
 /** Clouds as questions about light ask for them: `CloudCover` of `@welkin/clouds`, or one's own. */
 export interface CloudedSky {
-  /** Part of the source's light that passes the clouds above a place unscattered, in the mean over clouds and gaps; in [0, 1]. */
-  beam(place: Omit<CloudedPlace, 'direct' | 'diffuse' | 'groundAlbedo'>): number
+  /** Part of the source's light that passes the clouds above a point unscattered, in the mean over clouds and gaps; in [0, 1]. */
+  beam(point: Omit<CloudedPoint, 'direct' | 'diffuse' | 'groundAlbedo'>): number
   /**
    * Irradiance of a plane by sky, clouds and ground, of what the clouds have scattered too.
    *
    * @param cosNormal - The plane's normal against the zenith.
    * @param clear - Irradiance by sky and ground without clouds.
    */
-  irradiance(place: CloudedPlace, cosNormal: number, clear: readonly number[]): readonly number[]
+  irradiance(point: CloudedPoint, cosNormal: number, clear: readonly number[]): readonly number[]
 }
 
 /** @throws If they are neither clouds nor left out. */

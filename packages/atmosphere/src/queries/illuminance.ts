@@ -99,7 +99,7 @@ export function skyIlluminanceAt(
   const { zenith, light } = query.cosinesOf('normal', normal)
   const clear = skyIrradiance(parameters, data, altitude, zenith, cosLight, light)
   if (!clouds) return query.linearSRGB(clear)
-  const place = {
+  const point = {
     position,
     altitude,
     cosLight,
@@ -114,5 +114,5 @@ export function skyIlluminanceAt(
       return { up: facing(1), down: facing(-1) }
     }
   }
-  return query.linearSRGB(clouds.irradiance(place, zenith, clear))
+  return query.linearSRGB(clouds.irradiance(point, zenith, clear))
 }

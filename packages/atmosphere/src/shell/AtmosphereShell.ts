@@ -10,7 +10,7 @@ import {
 } from 'three/tsl'
 import { NodeMaterial } from 'three/webgpu'
 import type { NodeFrame, Renderer } from 'three/webgpu'
-import { checkChoice, checkOptions, checkPositive, fail } from '@welkin/geo'
+import { checkChoice, checkOptions, checkPositive, fail, setOptions } from '@welkin/geo'
 import { checkParameters, type AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { checkTables, type AtmosphereTables } from '../tables/AtmosphereTables'
 import { AtmosphereUniforms } from '../air/AtmosphereUniforms'
@@ -26,7 +26,8 @@ import { isOrthographic, ShellUniforms } from './ShellUniforms'
 import { ProfileUniforms } from './tsl/chapman'
 import type { Air } from '../scattering/tsl/ray'
 import { shellFragment } from './tsl/shell'
-import { marchedShellLight, sampledShellLight, type ShellLight } from './tsl/shellMarch'
+import { marchedShellLight } from './tsl/shellMarch'
+import { sampleAir, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { singleScatteringLight } from './tsl/singleScattering'
 import type { ViewSegment } from './tsl/viewSegment'
 import type { Bool } from '../tsl-types'
@@ -52,6 +53,8 @@ export interface AtmosphereShellOptions {
   /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
   luminanceScale?: number
 }
+
+const SETTINGS = ['sun', 'luminanceScale'] as const
 
 /** Steps of the march on the tables, two points each. */
 const TABLE_STEPS = 8
@@ -111,8 +114,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly parameters: AtmosphereParameters
   /** Radius of the body in its own units. */
   readonly bodyRadius: number
-  #sun: ShellSun
-  #luminanceScale: number
+  #sun: ShellSun = new Vector3(1, Math.SQRT2, 1)
+  #luminanceScale = SHELL_SCALE
   /** See {@link AtmosphereShellOptions}. */
   readonly model: 'tables' | 'single-scattering'
   /** Tables of an atmosphere; null for those of all shells of its parameters, and without tables. */
@@ -143,12 +146,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const where = 'AtmosphereShell'
     checkParameters(where, parameters)
     checkPositive(where, 'bodyRadius', bodyRadius)
-    checkOptions(where, options, 'sun', 'model', 'tables', 'luminanceScale')
-    const {
-      sun = new Vector3(1, Math.SQRT2, 1),
-      model = 'tables',
-      luminanceScale = SHELL_SCALE
-    } = options
+    checkOptions(where, options, 'model', 'tables', ...SETTINGS)
+    const { model = 'tables', tables, ...settings } = options
     checkChoice(where, 'model', model, ['tables', 'single-scattering'])
     super(
       circumscribedSphere((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
@@ -156,15 +155,15 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     )
     this.parameters = parameters
     this.bodyRadius = bodyRadius
-    this.#sun = this.sun = sun
-    this.#luminanceScale = this.luminanceScale = luminanceScale
+    this.set(settings)
     this.name = 'AtmosphereShell'
     this.renderOrder = 1
     this.visible = !parameters.isAirless
 
     this.model = model
+    const { sun } = this
     const lends = isAtmosphere(sun) && sun.parameters === parameters
-    const given = options.tables ?? (lends ? sun.tables : null)
+    const given = tables ?? (lends ? sun.tables : null)
     if (given !== null) checkTables(where, given, parameters)
     this.#given = model === 'tables' ? given : null
   }
@@ -212,7 +211,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   }
 
   /** Light of a segment: from the sky volume, marched on the tables, or scattered once. */
-  #light(air: Air, volumes: SkyVolumes | null): (segment: ViewSegment) => ShellLight {
+  #light(air: Air, volumes: SkyVolumes | null): (segment: ViewSegment) => MediumSegment {
     if (volumes === null) return segment => singleScatteringLight(air, this.#profile, segment)
     const isMarched = this.#isMarched.greaterThan(0) as Bool
     return segment => {
@@ -223,17 +222,21 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       }).Else(() => {
-        const light = sampledShellLight(
-          air.uniforms,
-          volumes.atlas,
-          this.#viewpoint,
-          segment.fromCamera
-        )
+        const light = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
         radiance.assign(light.radiance)
         depth.assign(light.depth)
       })
       return { radiance, depth }
     }
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or refused; then nothing has changed.
+   */
+  set(settings: Pick<AtmosphereShellOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('AtmosphereShell', this, settings, ...SETTINGS)
   }
 
   /** Source of light. @throws If set to anything else, or to a direction of length 0. */

@@ -54,7 +54,7 @@ export class ShellUniforms {
   /**
    * Sets the direction to the sun.
    *
-   * @param directionWorld - Of any length; taken for +Y if zero.
+   * @param directionWorld - Direction to the sun, of any length; taken for +Y if zero.
    */
   setSun(directionWorld: Vector3, bodyToWorld: Matrix4): void {
     const direction = this.sunDirectionMapped.value.copy(directionWorld)

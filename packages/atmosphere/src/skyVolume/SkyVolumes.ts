@@ -101,7 +101,7 @@ export class SkyVolumes {
   #uses = 0
 
   /**
-   * @param atlas - Where they are kept; it grows, and is freed by its owner.
+   * @param atlas - Atlas that keeps them; it grows, and is freed by its owner.
    * @param segments - Those of other volumes, to share them; whose they are frees them.
    */
   constructor(
@@ -130,7 +130,7 @@ export class SkyVolumes {
   /**
    * Makes room for so many volumes.
    *
-   * @returns Whether the atlas grew: then all that was in it is lost.
+   * @returns True if the atlas grew: then all that was in it is lost.
    */
   reserve(count: number): boolean {
     if (count <= this.#volumes.length) return false

@@ -38,7 +38,7 @@ export class FragmentPass {
 
   /**
    * @param name - Name of the pass in a graphics debugger.
-   * @param output - What every texel becomes.
+   * @param output - Value of a texel, or several of them.
    */
   constructor(name: string, output: Vec4 | Outputs) {
     this.material = Object.assign(new NodeMaterial(), {
@@ -62,8 +62,8 @@ export class FragmentPass {
   /**
    * Draws into the target; the renderer is left as it was. Texels that the shader discards keep.
    *
-   * @param slice - Of a 3-D target.
-   * @param level - Of the target's levels of detail.
+   * @param slice - Slice of a 3-D target.
+   * @param level - Level of detail of the target.
    */
   render(renderer: Renderer, target: RenderTarget, slice = 0, level = 0): void {
     const state = RendererUtils.resetRendererState(renderer, {} as never)

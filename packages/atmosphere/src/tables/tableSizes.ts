@@ -1,7 +1,7 @@
 /** Transmittance: (cosine of the zenith angle, altitude). */
 export const TRANSMITTANCE_SIZE = [256, 64] as const
 
-/** Diffuse light: (sun's cosine, altitude), a tile per quantity in {@link DIFFUSE_TILES}. */
+/** Diffuse light: (cosine of the light's zenith angle, altitude), a tile per quantity in {@link DIFFUSE_TILES}. */
 export const DIFFUSE_SIZE = [96, 16] as const
 
 /**

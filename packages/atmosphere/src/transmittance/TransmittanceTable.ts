@@ -47,7 +47,7 @@ export class TransmittanceTable {
   readonly region: TableRegion
   readonly #pass: FragmentPass
 
-  /** @param region - Of `TRANSMITTANCE_SIZE`; its atlas frees it. */
+  /** @param region - Region of `TRANSMITTANCE_SIZE`; its atlas frees it. */
   constructor(uniforms: AtmosphereUniforms, region: TableRegion) {
     this.region = region
     const { sunAngularRadius } = uniforms

@@ -18,7 +18,7 @@ export class LightSource {
   /**
    * @param direction - Writes the direction to the source into its target, and answers with it: in world
    *   space, of unit length. `from` is the position that it is seen from, in world space.
-   * @param lightsAir - Whether its light in the air is seen, so that sky volumes are computed for it.
+   * @param lightsAir - True if its light in the air is seen, so that sky volumes are computed for it.
    */
   constructor(
     readonly direction: (target: Vector3, from?: Vector3) => Vector3,

@@ -56,7 +56,7 @@ export class ViewUniforms {
   /**
    * Local coordinates of a point: altitude [m], cosine between the light and the zenith, zenith in the mapped space.
    *
-   * @param offset - From the camera, in the mapped space [m].
+   * @param offset - Displacement from the camera, in the mapped space [m].
    */
   localCoordinates(offset: Vec3): { altitude: Float; cosLight: Float; up: Vec3 } {
     const { bottomRadius, thickness } = this.air.uniforms

@@ -6,18 +6,13 @@ import {
   AtmosphereParameters,
   DayCycle,
   exposureFor,
-  exposureOfIlluminance,
-  standardEarthParameters,
-  skyIlluminanceAt,
-  sunIlluminanceAt
+  exposureOfIlluminance
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
-import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../../src/night/cpu/twilight'
 import { number, runs } from '../arbitraries'
 
 const DAY = 86_400_000
-const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
 const noon = new Date('2026-06-21T12:00:00Z')
 
 describe('DayCycle', () => {
@@ -304,68 +299,5 @@ describe('exposure', () => {
 
   it('wants light', () => {
     expect(() => exposureFor(earth, camera, { floor: 0 })).toThrow('floor must be positive')
-  })
-})
-
-describe('twilight', () => {
-  /** Light of sun and sky on level ground over the almanac's, by the sun's elevation [°]. */
-  function overAlmanac(parameters: AtmosphereParameters): (elevation: number) => number {
-    const atmosphere = new Atmosphere({ parameters })
-    atmosphere.tables.data = solveDiffuseLight(parameters)
-    const [place, up] = [new Vector3(), new Vector3(0, 1, 0)]
-    return elevation => {
-      atmosphere.setSunAngles(elevation, 30)
-      const sky = luminance(skyIlluminanceAt(atmosphere, place, up))
-      const { y } = atmosphere.sunDirection
-      const sun = y > 0 ? y * luminance(sunIlluminanceAt(atmosphere, place)) : 0
-      return (sky + sun) / almanacIlluminance(elevation)
-    }
-  }
-
-  it('and day are within 25 % of the almanac in the standard atmosphere, until the sun is 12° down', () => {
-    const ratio = overAlmanac(standardEarthParameters())
-    for (let elevation = 90; elevation >= -18; elevation--) {
-      // Later in the evening the night sky has its share, which the almanac counts.
-      const night = NIGHT_ILLUMINANCE / almanacIlluminance(elevation)
-      const total = ratio(elevation) + night
-      if (elevation >= -12) expect(Math.abs(total - 1), `${elevation}°`).toBeLessThan(0.25)
-      else expect(Math.abs(Math.log2(total)), `${elevation}°`).toBeLessThan(1)
-      if (elevation === -12) expect(night).toBeLessThan(0.12)
-    }
-  })
-
-  it('is up to 1.9 times as bright in the default air, which has too many molecules high up', () => {
-    // At 50 km exp(−h/8 km) is 2.3 times the density of the U.S. Standard Atmosphere. The bounds are
-    // what the default has, with 10 % to spare.
-    const ratio = overAlmanac(new AtmosphereParameters())
-    for (const [elevation, expected] of [
-      [90, 0.95],
-      [20, 1.33],
-      [0, 1.37],
-      [-4, 1.83],
-      [-8, 1.38],
-      [-10, 1.56],
-      [-12, 1.22]
-    ] as const) {
-      expect(Math.abs(ratio(elevation) / expected - 1), `${elevation}°`).toBeLessThan(0.1)
-    }
-  })
-})
-
-describe('almanac', () => {
-  it('has the illuminance of the ends of the twilights', () => {
-    // Explanatory Supplement, p. 492.
-    expect(almanacIlluminance(-6)).toBeCloseTo(3.41, 1)
-    expect(almanacIlluminance(-12)).toBeCloseTo(0.0081, 3)
-    expect(almanacIlluminance(-18)).toBeCloseTo(0.00065, 4)
-    expect(almanacIlluminance(-19)).toBe(almanacIlluminance(-18))
-    expect(almanacIlluminance(90) / 128_800).toBeCloseTo(1, 2)
-  })
-
-  it('is continuous', () => {
-    for (const elevation of [20, 5, -0.8, -5, -12]) {
-      const ratio = almanacIlluminance(elevation + 1e-9) / almanacIlluminance(elevation - 1e-9)
-      expect(Math.abs(ratio - 1), `${elevation}°`).toBeLessThan(0.03)
-    }
   })
 })

@@ -136,9 +136,9 @@ describe('multiple scattering in fog', () => {
         const bend = (field(depth - step) - 2 * field(depth) + field(depth + step)) / step ** 2
         const source = (-3 / (4 * Math.PI)) * Math.exp(-depth / mu)
         expect(Math.abs(bend - source)).toBeLessThan(1e-4)
-        const slope = (at: number, way: number): number => {
-          const [a, b, c] = [field(at), field(at + way * step), field(at + 2 * way * step)]
-          return (way * (4 * b - 3 * a - c)) / (2 * step)
+        const slope = (at: number, sign: number): number => {
+          const [a, b, c] = [field(at), field(at + sign * step), field(at + 2 * sign * step)]
+          return (sign * (4 * b - 3 * a - c)) / (2 * step)
         }
         expect(Math.abs(field(0) - (2 / 3) * slope(0, 1))).toBeLessThan(1e-4)
         expect(Math.abs(field(whole) + (2 / 3) * slope(whole, -1))).toBeLessThan(1e-4)

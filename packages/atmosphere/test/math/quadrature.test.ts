@@ -35,3 +35,14 @@ describe('weightsTo', () => {
     weightsTo(nodes, nodes[0]).forEach((w, i) => expect(w).toBeCloseTo(expected[i], 12))
   })
 })
+
+describe('Gauss–Legendre quadrature', () => {
+  it.each([1, 2, 3, 6, 8, 12, 16])('of %i nodes is exact to degree 2n − 1', count => {
+    const { nodes, weights } = gaussLegendre(count)
+    for (let degree = 0; degree < 2 * count; degree++) {
+      const sum = nodes.reduce((total, node, i) => total + weights[i] * node ** degree, 0)
+      expect(Math.abs(sum - 1 / (degree + 1))).toBeLessThan(1e-13)
+    }
+    expect(nodes).toEqual(nodes.toSorted((a, b) => a - b))
+  })
+})

@@ -57,8 +57,8 @@ export const viewpointMapped = (
  * Map from a displacement [m] in the mapped space to a place in a lattice of noise, in its periods: the three
  * rows of a matrix, each with the place that displacements start from, in [0, 1).
  *
- * @param layerRotation - From the mapped space to the frame that drifts with the layer.
- * @param rotation - From there to the lattice.
+ * @param layerRotation - Rotation from the mapped space to the frame that drifts with the layer.
+ * @param rotation - Rotation from there to the lattice.
  * @param from - Start of displacements, from the planet's centre [m].
  * @param across - Factor along the layer frame's x and y, which draws noise out [–].
  */

@@ -1,4 +1,4 @@
-import type { CloudedPlace, CloudedSky } from '@welkin/atmosphere'
+import type { CloudedPoint, CloudedSky } from '@welkin/atmosphere'
 import { checkOptions, fail } from '@welkin/geo'
 import { CloudLayers } from '../layers/CloudLayers'
 import { columnDensityAt, meanColumnOf } from '../layers/meanColumn'
@@ -45,17 +45,17 @@ export class CloudCover implements CloudedSky {
     this.light = light ?? null
   }
 
-  beam({ altitude, cosLight }: Pick<CloudedPlace, 'altitude' | 'cosLight'>): number {
+  beam({ altitude, cosLight }: Pick<CloudedPoint, 'altitude' | 'cosLight'>): number {
     return this.#decks(altitude, cosLight)?.above.beam ?? 1
   }
 
-  irradiance(place: CloudedPlace, cosNormal: number, clear: readonly number[]): readonly number[] {
-    const { altitude, cosLight, groundAlbedo } = place
+  irradiance(point: CloudedPoint, cosNormal: number, clear: readonly number[]): readonly number[] {
+    const { altitude, cosLight, groundAlbedo } = point
     const decks = this.#decks(altitude, cosLight)
     if (decks === null) return clear
     const { above, below } = decks
-    const direct = { above: place.direct(above.top), below: place.direct(below.top) }
-    const [here, onClouds] = [place.diffuse(altitude), place.diffuse(below.top)]
+    const direct = { above: point.direct(above.top), below: point.direct(below.top) }
+    const [here, onClouds] = [point.diffuse(altitude), point.diffuse(below.top)]
     return clear.map((plane, i) => {
       const light = {
         direct: { above: direct.above[i], below: direct.below[i] },

@@ -153,7 +153,7 @@ export class CloudLayer {
   }
 
   /**
-   * @param parameters - What differs from scattered fair-weather cumulus.
+   * @param parameters - Values that differ from scattered fair-weather cumulus.
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   constructor(parameters: Partial<CloudLayerParameters> = {}) {

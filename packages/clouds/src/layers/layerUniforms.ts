@@ -120,7 +120,7 @@ export interface WeatherScales {
  * Factors of the weather's channels, each uniform in [−½, ½] about its mean, and of the planet's waves,
  * of variance 1: the sum of all has variance 1. No clouds count when all weights are 0.
  *
- * @param hasMap - Whether a map has what is larger than fields.
+ * @param hasMap - True if a map has what is larger than fields.
  * @param openCells - Share of open cells in stratocumulus, in [0, 1]: turns its sign.
  */
 export function weatherScales(

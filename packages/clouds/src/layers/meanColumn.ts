@@ -150,8 +150,8 @@ const _columns = new WeakMap<CloudLayerParameters, { depthScale: number; column:
 
 /** {@link meanColumn} of parameters that do not change any more, computed once. */
 export function meanColumnOf(layer: CloudLayerParameters, depthScale: number): MeanColumn {
-  const known = _columns.get(layer)
-  if (known?.depthScale === depthScale) return known.column
+  const cached = _columns.get(layer)
+  if (cached?.depthScale === depthScale) return cached.column
   const column = meanColumn(layer, depthScale)
   _columns.set(layer, { depthScale, column })
   return column

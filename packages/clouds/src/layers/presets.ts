@@ -125,7 +125,7 @@ export const cloudPresetNames = Object.keys(presets) as readonly CloudPresetName
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
  *
- * @param count - How many layers there are at least, to take other presets by `copy` later.
+ * @param count - Least number of layers, to take other presets by `copy` later.
  * @throws If there is no preset of this name.
  */
 export function cloudPreset(name: CloudPresetName, count = 1): CloudLayers {

@@ -9,7 +9,7 @@ const _axis = new Vector3()
  * Axis about which wind turns a shell of air: air at the zenith `up` moves along `cross(axis, up)`.
  *
  * @param up - Zenith where the wind blows as given; at a pole, east is that of longitude 0.
- * @returns Of unit length; 0 in calm.
+ * @returns Direction of unit length; 0 in calm.
  */
 export function windAxis({ east, north }: CloudWind, up: Vector3, target: Vector3): Vector3 {
   const speed = Math.hypot(east, north)
@@ -26,7 +26,7 @@ export function windAxis({ east, north }: CloudWind, up: Vector3, target: Vector
  *
  * @param up - Zenith where the wind blows as given; at a pole, east is that of longitude 0.
  * @param seconds - Time [s].
- * @param radius - Of the shell [m].
+ * @param radius - Radius of the shell [m].
  */
 export function windRotation(
   wind: CloudWind,

@@ -14,7 +14,7 @@ import { upscale } from '../temporal/tsl/upscale'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
 import { shadePoints } from './tsl/shadePoints'
-import { viewRayAt, viewRayEnd, type ViewRayNodes } from './tsl/viewRay'
+import { viewRayAt, viewRayEnd, type FrameInputs } from './tsl/viewRay'
 import {
   outputs,
   type Float,
@@ -26,10 +26,10 @@ import {
 
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
-  readonly viewRays: ViewRayNodes
+  readonly viewRays: FrameInputs
 }
 
-/** @param isPacked - Whether distances are bytes: see `pack`. */
+/** @param isPacked - True if distances are bytes: see `pack`. */
 function cloudTarget(name: string, isPacked = false): RenderTarget {
   const target = tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
   if (isPacked) target.textures[1].type = UnsignedByteType

@@ -1,6 +1,6 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
 import type { Atmosphere, ScreenShadows } from '@welkin/atmosphere'
-import { checkNonNegative, checkOptions, fail } from '@welkin/geo'
+import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
 import { Vector2 } from 'three'
 import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
@@ -14,6 +14,7 @@ import { CloudRenderer } from './CloudRenderer'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
 import { FrameUniforms } from './FrameUniforms'
 import {
+  cloudQualities,
   QualityUniforms,
   resolveQuality,
   type CloudQuality,
@@ -30,6 +31,12 @@ const NOISE_SLICES = 12
 export interface CloudsOptions {
   /** Fineness of the march; by default `'high'`. */
   quality?: CloudQualityName | CloudQuality
+  /** See {@link CloudsNode.time}; by default null. */
+  time?: number | null
+  /** See {@link CloudsNode.nightIlluminance}. */
+  nightIlluminance?: number
+  /** See {@link CloudsNode.accumulates}; by default true. */
+  accumulates?: boolean
   /** Cloud cover of the whole planet: `cloudWorldMap(texture)`. */
   worldMap?: CloudWorldMap | null
   /**
@@ -40,6 +47,8 @@ export interface CloudsOptions {
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
 }
+
+const SETTINGS = ['quality', 'time', 'nightIlluminance', 'accumulates'] as const
 
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
@@ -76,11 +85,10 @@ export class CloudsNode extends AtmosphereNode {
   readonly light: CloudLightTable
   /** Optical depths towards the sun about the camera. */
   readonly shadows: CloudShadowMap
-  /** Temporal accumulation on or off; without it, clouds are coarse. */
-  accumulates = true
   /** True after `dispose`: it casts no shadows any more. */
   isDisposed = false
   #time: number | null = null
+  #accumulates = true
   readonly #ownsLight: boolean
   readonly #noiseSlices: number
   readonly #uniforms = new QualityUniforms()
@@ -91,7 +99,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly #exposure = uniform(1)
   /** Shadows in the air of the picture with the clouds, drawn by this node: those of `cloudAirShadow`. */
   readonly screens = new Set<ScreenShadows>()
-  #quality: CloudQuality
+  #quality: CloudQuality = cloudQualities.high
 
   /** @throws If an argument is missing or of the wrong kind. */
   constructor(
@@ -103,8 +111,8 @@ export class CloudsNode extends AtmosphereNode {
     options: CloudsOptions = {}
   ) {
     super(atmosphere, camera)
-    checkOptions('CloudsNode', options, 'quality', 'worldMap', 'noise', 'light')
-    const { quality = 'high', worldMap, noise, light } = options
+    checkOptions('CloudsNode', options, 'worldMap', 'noise', 'light', ...SETTINGS)
+    const { worldMap, noise, light, ...settings } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
     if (!isDepth(depthNode)) {
       fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
@@ -116,8 +124,8 @@ export class CloudsNode extends AtmosphereNode {
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera
-    this.#quality = resolveQuality('CloudsNode', quality)
     this.field = new CloudField(atmosphere, layers, this.view, { noise, worldMap }, 'CloudsNode')
+    this.set(settings)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
@@ -140,6 +148,15 @@ export class CloudsNode extends AtmosphereNode {
     })
   }
 
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: Pick<CloudsOptions, (typeof SETTINGS)[number]>): this {
+    return setOptions('CloudsNode', this, settings, ...SETTINGS)
+  }
+
   /** Time, by which clouds drift [s]; null, the default, for the renderer's clock. */
   get time(): number | null {
     return this.#time
@@ -151,6 +168,17 @@ export class CloudsNode extends AtmosphereNode {
       fail('CloudsNode', 'time must be a finite number or null', seconds)
     }
     this.#time = seconds
+  }
+
+  /** Temporal accumulation on or off; without it, clouds are coarse. */
+  get accumulates(): boolean {
+    return this.#accumulates
+  }
+
+  /** @throws If it is no boolean. */
+  set accumulates(accumulates: boolean) {
+    checkBoolean('CloudsNode', 'accumulates', accumulates)
+    this.#accumulates = accumulates
   }
 
   /** Noise that clouds are made of; shared if it was given. */

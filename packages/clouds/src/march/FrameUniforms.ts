@@ -149,7 +149,7 @@ export class FrameUniforms {
   /**
    * Goes on to the next frame. Field and view must be up to date.
    *
-   * @param usesHistory - Whether frames are accumulated.
+   * @param usesHistory - True if frames are accumulated.
    * @param lightVersion - Changes with the table of the light that clouds scatter.
    */
   next(
@@ -220,7 +220,7 @@ export class FrameUniforms {
   /**
    * Sets what turns pixels to rays, and to places in the last frame.
    *
-   * @returns Whether neither the camera's place nor the clouds have moved since then.
+   * @returns True if neither the camera's place nor the clouds have moved since then.
    */
   #setReprojection(camera: PerspectiveCamera, view: AtmosphereView, field: CloudField): boolean {
     const { elements: e } = camera.projectionMatrixInverse

@@ -160,7 +160,7 @@ export class CloudNoise {
    * Draws what is missing.
    *
    * @param slices - Slices of the shape to draw, or as many others as cost the same.
-   * @returns Whether all texels are drawn.
+   * @returns True once all texels are drawn.
    * @throws If another renderer drew the noise that was not disposed of.
    */
   update(renderer: Renderer, slices = Infinity): boolean {

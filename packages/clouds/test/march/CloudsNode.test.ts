@@ -56,6 +56,17 @@ describe('CloudsNode', () => {
     node.dispose()
   })
 
+  test('changes all settings that it is given, or none', () => {
+    const node = make({ time: 7, accumulates: false, nightIlluminance: 2 })
+    expect([node.time, node.accumulates, node.nightIlluminance]).toEqual([7, false, 2])
+    const mixed = { quality: 'low', accumulates: true, time: NaN } as const
+    expect(() => node.set(mixed)).toThrow('CloudsNode: time must be a finite number or null')
+    expect([node.quality, node.accumulates]).toEqual([cloudQualities.high, false])
+    expect(node.set({ time: null, quality: undefined }).time).toBe(null)
+    expect(node.quality).toEqual(cloudQualities.high)
+    node.dispose()
+  })
+
   test('drifts by a time that is a number, or by the clock', () => {
     const node = make()
     node.time = 7

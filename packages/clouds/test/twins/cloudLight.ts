@@ -57,7 +57,7 @@ export function lateralLeak(
  * Source function of sun- or moonlight along a view ray, all orders of scattering: radiance per scaled
  * extinction for unit irradiance above the cloud [1/sr]. Float64 twin of the shader function.
  *
- * @param table - Of this phase function.
+ * @param table - Light table of this phase function.
  */
 export function cloudSource(
   phase: CloudPhaseParameters,

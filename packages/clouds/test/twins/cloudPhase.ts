@@ -1,13 +1,13 @@
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
 import { LEAST_ASYMMETRY } from '../../src/light/tsl/cloudPhase'
 
-/** The Henyey–Greenstein phase function [1/sr]. @param cosScatter - Of the scattering angle. */
+/** The Henyey–Greenstein phase function [1/sr]. @param cosScatter - Cosine of the scattering angle. */
 export function henyeyGreenstein(asymmetry: number, cosScatter: number): number {
   const squaredChord = 1 + asymmetry ** 2 - 2 * asymmetry * cosScatter
   return (1 - asymmetry ** 2) / (4 * Math.PI * squaredChord ** 1.5)
 }
 
-/** Both lobes [1/sr]. @param cosScatter - Of the scattering angle. */
+/** Both lobes [1/sr]. @param cosScatter - Cosine of the scattering angle. */
 export function cloudPhase(phase: CloudPhaseParameters, cosScatter: number): number {
   const { forwardAsymmetry, backwardAsymmetry, forwardShare } = phase
   return (

@@ -118,8 +118,8 @@ function planetWaves(zenith: Vector3, layerRotation: Quaternion): Vec3Array {
 /**
  * Float64 twin of `weatherBackground` and `cloudWeather`, in planet-centred coordinates without anchors.
  *
- * @param position - From the planet's centre, in the mapped space [m].
- * @param distance - From the camera [m].
+ * @param position - Displacement from the planet's centre, in the mapped space [m].
+ * @param distance - Distance from the camera [m].
  * @param height - ĥ in the layer, by which columns lean, in [0, 1].
  * @param bendAt - Displacement by turbulence [m] of columns, by the shift of the layer's noise.
  */
@@ -263,8 +263,8 @@ export interface LayerSample {
 /**
  * Float64 twin of `sampleLayer`, in the weather of that very place.
  *
- * @param position - From the planet's centre, in the mapped space [m].
- * @param distance - From the camera [m].
+ * @param position - Displacement from the planet's centre, in the mapped space [m].
+ * @param distance - Distance from the camera [m].
  */
 export function sampleLayer(
   state: CloudState,
@@ -340,8 +340,8 @@ export function sampleLayer(
 /**
  * Float64 twin of `cloudExtinction`.
  *
- * @param position - From the planet's centre, in the mapped space [m].
- * @param distance - From the camera [m].
+ * @param position - Displacement from the planet's centre, in the mapped space [m].
+ * @param distance - Distance from the camera [m].
  * @returns [1/m].
  */
 export function cloudExtinction(

@@ -76,7 +76,7 @@ const gradientPart = (bits: Int32Array, potential: number, axis: number): number
 /**
  * The three potentials whose curl is `stir`, and their slopes, per cell.
  *
- * @returns Of each potential: the value, and its derivatives along x, y and z.
+ * @returns For each potential: the value, and its derivatives along x, y and z.
  */
 export function potentials(p: Vec3Array, cells: number, seed: number): number[][] {
   const base = p.map(x => Math.floor(x * cells))

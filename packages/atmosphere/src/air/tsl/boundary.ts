@@ -17,7 +17,7 @@ const layout = (name: string, ...inputs: string[]) => ({
  * @param altitude - Ray origin above the ground, in [0, thickness] [m].
  * @param cosView - μ, cosine between ray and local up, in [−1, 1].
  * @param bottomRadius - Planet's centre to the ground [m].
- * @param thickness - Of the air [m].
+ * @param thickness - Thickness of the air [m].
  * @returns d ≥ 0 [m].
  * @see Bruneton 2017, "Distance to the top atmosphere boundary". Twin: cpu/boundary.ts
  */

@@ -6,7 +6,7 @@ import {
 } from '../../tables/tableSizes'
 
 /**
- * Spacing of the columns of the diffuse-light table over the sun's cosine μ_s: evenly in
+ * Spacing of the columns of the diffuse-light table over the light's cosine μ_s: evenly in
  * asinh((μ_s − centre)/width), from `min` (22° below the horizon) to 1.
  */
 export const diffuseLightCosine = { centre: -0.035, width: 0.12, min: -0.375 } as const
@@ -53,7 +53,7 @@ export function diffuseTexel(tile: number, column: number, row: number): number 
  *
  * @param altitudePart - Altitude over the air's thickness, in [0, 1].
  * @param cosLight - μ_s.
- * @returns A four-value spectrum per tile, for unit irradiance of the sun.
+ * @returns A four-value spectrum per tile, for unit irradiance of the light source.
  */
 export function sampleDiffuseLight(
   { values }: DiffuseLightData,

@@ -7,13 +7,13 @@ function harmonics(x: number, z: number): [number, number, number, number, numbe
 }
 
 /**
- * Σ_l a_l Σ_m M_lm Y_lm(v) for a field that is symmetric about the sun's vertical plane.
+ * Σ_l a_l Σ_m M_lm Y_lm(v) for a field that is symmetric about the light's vertical plane.
  *
  * @param moments - M₀₀, M₁₀, M₁₁/sin θ_s, M₂₀, M₂₁/sin θ_s, M₂₂/sin² θ_s.
  * @param weights - a₀, a₁, a₂.
  * @param cosView - v against the zenith.
- * @param cosLight - The sun against the zenith.
- * @param cosViewLight - v against the sun.
+ * @param cosLight - μ_s, the light against the zenith.
+ * @param cosViewLight - ν, v against the light.
  */
 export function applyMoments(
   moments: readonly number[],

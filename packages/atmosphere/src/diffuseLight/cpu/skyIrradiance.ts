@@ -6,7 +6,7 @@ import { applyMoments } from './moments'
 export const COSINE_LOBE = [Math.PI, (2 * Math.PI) / 3, Math.PI / 4] as const
 
 /**
- * Diffuse irradiance on a plane, for unit irradiance of the sun, one value per wavelength.
+ * Diffuse irradiance on a plane, for unit irradiance of the light source, one value per wavelength.
  *
  * The moments give it to degree 2; on horizontal planes, where the horizon's edge counts most, what
  * is missing is known exactly and blended in with the square of the normal's height.
@@ -14,7 +14,7 @@ export const COSINE_LOBE = [Math.PI, (2 * Math.PI) / 3, Math.PI / 4] as const
  * @param altitude - [m].
  * @param cosNormal - Plane's normal against the zenith.
  * @param cosLight - μ_s.
- * @param cosNormalLight - Plane's normal against the sun.
+ * @param cosNormalLight - Plane's normal against the light.
  */
 export function skyIrradiance(
   p: AtmosphereParameters,

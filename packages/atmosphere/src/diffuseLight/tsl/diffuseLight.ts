@@ -18,17 +18,17 @@ const INSET = 1 / 1024
 
 type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
 
-/** asinh of the sun's cosine, as the table spaces its columns: they crowd about the horizon. */
+/** asinh of the light's cosine μ_s, as the table spaces its columns: they crowd about the horizon. */
 export function compressCosine(cosLight: Float): Float {
   return asinh(cosLight.sub(diffuseLightCosine.centre).div(diffuseLightCosine.width).toConst())
 }
 
-/** The sun's cosine from {@link compressCosine} of it. */
+/** The light's cosine from {@link compressCosine} of it. */
 export function expandCosine(x: Float): Float {
   return sinh(x).mul(diffuseLightCosine.width).add(diffuseLightCosine.centre)
 }
 
-/** Position of the sun's cosine among the columns, in [0, 1]. */
+/** Position of the light's cosine among the columns, in [0, 1]. */
 function lightColumn(cosLight: Float): Float {
   return compressCosine(cosLight).sub(diffuseLightOrigin).mul(diffuseLightSlope).clamp()
 }
@@ -38,7 +38,7 @@ function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float 
   return altitude.div(thickness).clamp().sqrt()
 }
 
-/** A function that reads a tile of the diffuse-light table at an altitude and sun angle. */
+/** A function that reads a tile of the diffuse-light table at an altitude and angle of the light. */
 export function diffuseLightReader(
   uniforms: AtmosphereUniforms,
   table: Table,
@@ -60,11 +60,11 @@ export function diffuseLightReader(
 }
 
 /**
- * Moments of the diffuse light at a point, for unit irradiance of the sun, times `RADIANCE_SCALE`.
+ * Moments of the diffuse light at a point, for unit irradiance of the light source, times `RADIANCE_SCALE`.
  *
  * @param table - Diffuse-light table.
  * @param altitude - Above the ground, in [0, thickness] [m].
- * @param cosLight - μ_s, cosine of the sun's zenith angle.
+ * @param cosLight - μ_s, cosine of the light's zenith angle.
  */
 export function diffuseMoments(
   uniforms: AtmosphereUniforms,
@@ -80,10 +80,10 @@ export function diffuseMoments(
 }
 
 /**
- * Diffuse irradiance on horizontal ground, for unit irradiance of the sun.
+ * Diffuse irradiance on horizontal ground, for unit irradiance of the light source.
  *
  * @param table - Diffuse-light table.
- * @param cosLight - μ_s, cosine of the sun's zenith angle.
+ * @param cosLight - μ_s, cosine of the light's zenith angle.
  */
 export function groundIrradiance(
   uniforms: AtmosphereUniforms,

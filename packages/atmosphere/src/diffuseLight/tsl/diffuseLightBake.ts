@@ -20,8 +20,8 @@ export const BAKE_ROWS = 4
  * Shader of the first pass: a texel is a ray, a column its direction, a row its cell.
  *
  * @param firstRow - Row of the table that the target's first cells belong to.
- * @param width - Of the target: the most rays per cell.
- * @param steps - Of the march.
+ * @param width - Width of the target: the most rays per cell.
+ * @param steps - Number of steps of the march.
  * @returns Radiance, times `RADIANCE_SCALE`, of the light scattered last in the air or by the ground.
  */
 export function bakeRays(
@@ -76,7 +76,7 @@ export function bakeRays(
  *
  * @param rays - Target of {@link bakeRays}.
  * @param firstRow - Row of the table that the target's first cells belong to.
- * @param width - Of that target.
+ * @param width - Width of that target.
  */
 export function reduceRays(
   air: Air,

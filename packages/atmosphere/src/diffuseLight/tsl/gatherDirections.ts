@@ -12,8 +12,8 @@ const [COLUMNS, ROWS] = DIFFUSE_SIZE
 /** Lowest altitude that rays are sent out from: on the ground itself the horizon has no width [m]. */
 const LOWEST_ALTITUDE = 1
 
-/** Nearest to the zenith that the sun gets, so that moments can be divided by sin θ_s. */
-const HIGHEST_SUN = 0.9998
+/** Greatest cosine of the light's zenith angle, so that moments can be divided by sin θ_s. */
+const HIGHEST_LIGHT = 0.9998
 
 /** Directions that light is gathered from: their number, and the quadrature rule of elevations. */
 export interface Directions {
@@ -30,7 +30,7 @@ export interface Directions {
 /** Part of the spacing of elevations that is even; the rest crowds at the horizon. */
 const EVEN_SPACING = 0.3
 
-/** Altitude and sun of a cell, from its row (a float counted from the ground) and column. */
+/** Altitude and light angle of a cell, from its row (a float counted from the ground) and column. */
 export function cell(air: Air, row: Float, column: Float) {
   const { thickness } = air.uniforms
   const rowPosition = row.div(ROWS - 1).toConst()
@@ -43,7 +43,7 @@ export function cell(air: Air, row: Float, column: Float) {
   const cosLight = expandCosine(x)
   return {
     altitude: altitude.toConst() as Float,
-    cosLight: cosLight.min(HIGHEST_SUN).toConst() as Float
+    cosLight: cosLight.min(HIGHEST_LIGHT).toConst() as Float
   }
 }
 

@@ -7,7 +7,7 @@ export const SH20 = Math.sqrt(5 / (16 * Math.PI))
 export const SH21 = Math.sqrt(15 / (4 * Math.PI))
 export const SH22 = Math.sqrt(15 / (16 * Math.PI))
 
-/** The six moments of a field that is symmetric about the sun's vertical plane. */
+/** The six moments of a field that is symmetric about the light's vertical plane. */
 export interface Moments<T> {
   m00: T
   m10: T
@@ -23,13 +23,13 @@ export interface Moments<T> {
 /**
  * The basis functions that go with {@link Moments}, for a direction v.
  *
- * With x towards the sun's azimuth, v_x sin θ_s = ν − μ μ_s: dividing the moments by sin θ_s (once or
- * twice) and multiplying the basis by it leaves polynomials of the three cosines, smooth where the sun
+ * With x towards the light's azimuth, v_x sin θ_s = ν − μ μ_s: dividing the moments by sin θ_s (once or
+ * twice) and multiplying the basis by it leaves polynomials of the three cosines, smooth where the light
  * is at the zenith.
  *
  * @param cosView - μ, v against the zenith.
- * @param cosLight - μ_s, the sun against the zenith.
- * @param cosViewLight - ν, v against the sun.
+ * @param cosLight - μ_s, the light against the zenith.
+ * @param cosViewLight - ν, v against the light.
  */
 export function momentBasis(
   cosView: Float,

@@ -11,7 +11,7 @@ const COSINE_1 = 2 / 3
 const COSINE_2 = 1 / 4
 
 /**
- * Diffuse irradiance on a plane, for unit irradiance of the sun.
+ * Diffuse irradiance on a plane, for unit irradiance of the light source.
  *
  * The moments give it to degree 2; on horizontal planes, where the horizon's edge counts most, what
  * is missing is known exactly and blended in with the square of the normal's height.
@@ -20,7 +20,7 @@ const COSINE_2 = 1 / 4
  * @param altitude - In [0, thickness] [m].
  * @param cosNormal - Plane's normal against the zenith.
  * @param cosLight - μ_s.
- * @param cosNormalLight - Plane's normal against the sun.
+ * @param cosNormalLight - Plane's normal against the light.
  * @see Sloan 2008, "Stupid spherical harmonics tricks", "Irradiance environment maps". Twin: cpu/skyIrradiance.ts
  */
 export function skyIrradiance(
@@ -50,7 +50,7 @@ export function skyIrradiance(
 }
 
 /**
- * Diffuse irradiance on horizontal planes, for unit irradiance of the sun.
+ * Diffuse irradiance on horizontal planes, for unit irradiance of the light source.
  *
  * @param table - Diffuse-light table.
  * @param altitude - In [0, thickness] [m].

@@ -26,7 +26,7 @@ export interface ExposureSettings {
  * Luminance of a picture: middle grey in daylight; where only rods see, as dark as eyes see it. In between the
  * reciprocals add up, so that dusk is a little darker than day: 0.14 at 10 cd/m², 0.09 at 1 cd/m².
  *
- * @param luminance - What is metered, > 0 [cd/m²].
+ * @param luminance - Metered luminance, > 0 [cd/m²].
  */
 const pictureLuminance = (luminance: number): number =>
   1 / (1 / MIDDLE_GREY + 1 / keyValue(luminance) - 1 / keyValue(DAYLIGHT_LUMINANCE))

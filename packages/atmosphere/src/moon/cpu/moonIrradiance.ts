@@ -10,7 +10,8 @@ export const MOON_DISTANCE = 384_400_000
 /**
  * Irradiance by the full moon over that by the sun: V = −12.73 against −26.74.
  *
- * @see Krisciunas & Schaefer 1991, PASP 103, 1033, eq. 9; Willmer 2018, ApJS 236, 47 (the sun)
+ * @see Krisciunas & Schaefer 1991, PASP 103, 1033, eq. 9; Willmer 2018, ApJS 236, 47,
+ *   table 3 (the sun)
  */
 const FULL_MOON_IRRADIANCE = 10 ** (-0.4 * (26.74 - 12.73))
 
@@ -18,7 +19,7 @@ const FULL_MOON_IRRADIANCE = 10 ** (-0.4 * (26.74 - 12.73))
  * Colour of moonlight relative to sunlight at the four wavelengths, 1 in luminance: B − V is 0.92
  * against 0.65, and reflectance keeps rising, more slowly, into the red.
  *
- * @see Allen 1976, Astrophysical Quantities, §66; Kieffer & Stone 2005, AJ 129, 2887
+ * @see Allen 1976, Astrophysical Quantities, §66; Kieffer & Stone 2005, AJ 129, 2887, eq. 10
  */
 export const MOON_COLOR: Spectrum = [0.773, 0.931, 1.01, 1.119]
 

@@ -16,9 +16,9 @@ export interface RayNumbers {
   radius: number
   /** μ, ray against zenith. */
   cosView: number
-  /** μ_s, sun against zenith. */
+  /** μ_s, light against zenith. */
   cosLight: number
-  /** ν, ray against sun. */
+  /** ν, ray against the light. */
   cosViewLight: number
 }
 
@@ -37,10 +37,10 @@ export function enterAir(p: AtmosphereParameters, ray: RayNumbers): RayNumbers |
 }
 
 /**
- * Radiance scattered to a ray's origin along a way in the air, for unit irradiance of the sun.
+ * Radiance scattered to a ray's origin along a path in the air, for unit irradiance of the light source.
  *
  * @param data - Diffuse-light table; null for single scattering.
- * @param distance - Length of the way, which does not cross the ground [m].
+ * @param distance - Length of the path, which does not cross the ground [m].
  * @returns One value per wavelength [1/sr].
  */
 export function inScatter(
@@ -105,7 +105,7 @@ export function inScatter(
 }
 
 /**
- * Radiance of sky or ground in a direction, for unit irradiance of the sun; without the sun's disc.
+ * Radiance of sky or ground in a direction, for unit irradiance of the light source; without the sun's disc.
  *
  * @returns One value per wavelength [1/sr].
  */

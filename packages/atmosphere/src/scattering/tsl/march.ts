@@ -6,9 +6,9 @@ import { loop, type Float, type Int } from '../../tsl-types'
 const STEP_GROWTH = 0.3
 
 /**
- * κ of a way's steps, see {@link march}; never 0, where they would be 0/0.
+ * κ of the steps of a path, see {@link march}; never 0, where they would be 0/0.
  *
- * @param rise - Altitude at the end of the way less that at its start [m].
+ * @param rise - Altitude at the end of the path less that at its start [m].
  */
 export function stepExponent({ homogeneousHeight }: AtmosphereUniforms, rise: Float): Float {
   const wanted = rise.div(homogeneousHeight).mul(STEP_GROWTH).clamp(-4, 4)
@@ -16,10 +16,10 @@ export function stepExponent({ homogeneousHeight }: AtmosphereUniforms, rise: Fl
 }
 
 /**
- * Cuts a way into steps, t(x) = t_max (e^{κx} − 1)/(e^κ − 1): short where the air is dense, at the
- * lower end of the way.
+ * Cuts a path into steps, t(x) = t_max (e^{κx} − 1)/(e^κ − 1): short where the air is dense, at the
+ * lower end of the path.
  *
- * @param distance - Length of the way [m].
+ * @param distance - Length of the path [m].
  * @param rise - Altitude at its end less that at its start [m].
  * @param step - Called with the distances at which a step starts and ends [m].
  */

@@ -11,10 +11,10 @@ import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
  * Air between a viewpoint and a point by marching the ray, where `sampleVolume` reads the sky volume.
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param cosViewLight - ν, ray against sun.
- * @param limits - Of the same ray.
- * @param distance - From the viewpoint; null for the whole ray [m].
- * @param steps - Of the march.
+ * @param cosViewLight - ν, ray against the light.
+ * @param limits - Limits of the same ray.
+ * @param distance - Distance from the viewpoint; null for the whole ray [m].
+ * @param steps - Number of steps of the march.
  */
 export function marchedAir(
   air: Air,
@@ -36,10 +36,10 @@ export function marchedAir(
 
 /**
  * Radiance of all the air along a ray and of the ground behind it by marching, where `sampleSky` reads
- * the sky volume, for unit irradiance of the sun [1/sr].
+ * the sky volume, for unit irradiance of the light source [1/sr].
  *
- * @param limits - Of the same ray.
- * @param steps - Of the march.
+ * @param limits - Limits of the same ray.
+ * @param steps - Number of steps of the march.
  */
 export function marchedSky(
   air: Air,

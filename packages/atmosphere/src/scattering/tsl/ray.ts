@@ -18,9 +18,9 @@ export interface Ray {
   altitude: Float
   /** μ, ray against zenith, at the origin. */
   cosView: Float
-  /** μ_s, sun against zenith, at the origin. */
+  /** μ_s, light against zenith, at the origin. */
   cosLight: Float
-  /** ν, ray against sun. */
+  /** ν, ray against the light. */
   cosViewLight: Float
 }
 

@@ -19,7 +19,7 @@ import { scatterSegment, type LightParts, type Scattered } from './segment'
  * @param rise - Altitude at its end less that at its start [m].
  * @param steps - Two evaluations each; 12 are within 0.1 % by day.
  * @param lights - Light to take into account.
- * @returns Light scattered to the ray's origin, and optical depth of the way.
+ * @returns Light scattered to the ray's origin, and optical depth of the path.
  */
 export function scattering(
   air: Air,
@@ -54,7 +54,7 @@ export function scatteredRadiance(
 }
 
 /**
- * Radiance of the Lambertian ground, for unit irradiance of the sun [1/sr].
+ * Radiance of the Lambertian ground, for unit irradiance of the light source [1/sr].
  *
  * @param cosLight - μ_s at the ground.
  * @param lights - Light to take into account.

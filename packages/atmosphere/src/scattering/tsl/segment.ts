@@ -9,7 +9,7 @@ import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../../tsl-types'
 import { pointAlong, type Air, type Ray } from './ray'
 
-/** Light scattered towards a ray's origin, for unit irradiance of the sun, times `RADIANCE_SCALE`. */
+/** Light scattered towards a ray's origin, for unit irradiance of the light source, times `RADIANCE_SCALE`. */
 export interface Scattered {
   /** Light by molecules, and by aerosols what was scattered before [1/sr]. */
   molecular: Vec4

@@ -2,9 +2,9 @@ import { Fn, If, dot, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
 import type { Air } from '../../scattering/tsl/ray'
+import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../../tsl-types'
 import { fragmentDepth } from './fragmentDepth'
-import type { ShellLight } from './shellMarch'
 import { viewSegment, type ShellView, type ViewSegment } from './viewSegment'
 
 /** Luminance of the components of linear sRGB. */
@@ -25,7 +25,7 @@ const withBuilder = Fn as unknown as (
 export function shellFragment(
   { uniforms }: Air,
   view: ShellView,
-  lightOf: (segment: ViewSegment) => ShellLight
+  lightOf: (segment: ViewSegment) => MediumSegment
 ): { color: Vec4; depth: Float } {
   // three writes the depth first, if it does, in the same function.
   const segments = new WeakMap<NodeBuilder, ViewSegment>()

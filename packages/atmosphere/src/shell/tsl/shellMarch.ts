@@ -1,19 +1,11 @@
 import { float, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
-import type { Viewpoint } from '../../view/tsl/viewpoint'
 import { scatterSegment } from '../../scattering/tsl/segment'
 import { scatteredRadiance } from '../../scattering/tsl/scattering'
 import { stepExponent } from '../../scattering/tsl/march'
 import type { Air, Ray } from '../../scattering/tsl/ray'
-import { sampleAir, type AirRay } from '../../skyVolume/tsl/skyVolume'
-import type { Texels } from '../../tables/TableAtlas'
-
-/** Light scattered towards the start of a segment [1/sr], and optical depth of the segment. */
-export interface ShellLight {
-  radiance: Vec4
-  depth: Vec4
-}
+import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 
 /** Segment of a ray in the air, to the ground or out of the air. */
 export interface AirSegment {
@@ -75,7 +67,7 @@ export function marchFromLowest(
  *
  * @param steps - Number of steps, two evaluations each.
  */
-export function marchedShellLight(air: Air, segment: AirSegment, steps: number): ShellLight {
+export function marchedShellLight(air: Air, segment: AirSegment, steps: number): MediumSegment {
   const { altitude, radius, radiusCosView, radiusCosSun, cosViewLight } = segment
   const ray: Ray = {
     altitude,
@@ -96,14 +88,4 @@ export function marchedShellLight(air: Air, segment: AirSegment, steps: number):
   })
   const scattered = { molecular: molecular as unknown as Vec4, aerosol: aerosol as unknown as Vec4 }
   return { radiance: scatteredRadiance(air.uniforms, scattered, cosViewLight), depth: depth }
-}
-
-/** Light of the air along a view ray from a sky volume, all orders of scattering. */
-export function sampledShellLight(
-  uniforms: AtmosphereUniforms,
-  atlas: Texels,
-  viewpoint: Viewpoint,
-  ray: AirRay
-): ShellLight {
-  return sampleAir(uniforms, atlas, viewpoint, ray)
 }

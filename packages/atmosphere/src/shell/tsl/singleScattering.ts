@@ -3,7 +3,8 @@ import type { Air } from '../../scattering/tsl/ray'
 import type { ProfileConstants } from './chapman'
 import { denseEnd, marchHighSun, suitsHighSun } from './marchHighSun'
 import { marchSingleScattering } from './marchSingleScattering'
-import type { AirSegment, ShellLight } from './shellMarch'
+import type { AirSegment } from './shellMarch'
+import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 import { SingleScatteringSums } from './singleScatteringSums'
 
 /**
@@ -15,7 +16,7 @@ export function singleScatteringLight(
   { uniforms }: Air,
   constants: ProfileConstants,
   segment: AirSegment
-): ShellLight {
+): MediumSegment {
   const sums = new SingleScatteringSums(uniforms)
   const dense = denseEnd(uniforms, segment)
   If(suitsHighSun(uniforms, segment, dense), () => {

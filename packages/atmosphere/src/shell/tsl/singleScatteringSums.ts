@@ -4,7 +4,8 @@ import { extinction } from '../../air/tsl/medium'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { profileAt, type Profile, type ProfileConstants } from './chapman'
-import type { AirSegment, ShellLight } from './shellMarch'
+import type { AirSegment } from './shellMarch'
+import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 
 /** Weighted sum. */
 export const weighted = (values: readonly Vec3[], weights: readonly number[]): Vec3 =>
@@ -40,7 +41,7 @@ export class SingleScatteringSums {
   }
 
   /** Radiance and optical depth of the whole segment. */
-  result(cosViewLight: Float): ShellLight {
+  result(cosViewLight: Float): MediumSegment {
     const { rayleighScattering, mieScattering } = this.#uniforms
     const byMolecules = this.molecular.mul(rayleighScattering).mul(rayleighPhase(cosViewLight))
     const byAerosols = this.aerosol.mul(mieScattering).mul(miePhase(this.#uniforms, cosViewLight))

@@ -27,8 +27,8 @@ export function withMedia(
 /**
  * Air between the camera and a point, from the sky volume.
  *
- * @param displacementView - From the camera to the point, in view space [world units].
- * @param layers - Of the sky, and shadows in the air; by default the atmosphere's layers.
+ * @param displacementView - Displacement from the camera to the point, in view space [world units].
+ * @param layers - Sky layers, and shadows in the air; by default the atmosphere's layers.
  */
 export function aerialPerspectiveTo(
   view: ViewNodes,

@@ -19,7 +19,7 @@ export interface Foreground {
  * light cannot be negative: over black nothing, so that it adds its light to the sky.
  *
  * @param color - Linear, of what was drawn over the backdrop.
- * @param isEmpty - Whether nothing wrote depth here.
+ * @param isEmpty - True if nothing wrote depth here.
  */
 export function foregroundOf(color: Vec4, isEmpty: Bool, backdrop: Backdrop): Foreground {
   const clear = backdrop.color as unknown as Vec4

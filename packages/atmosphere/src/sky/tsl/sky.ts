@@ -16,7 +16,7 @@ import { sine } from '../../math/tsl/trigonometry'
  *
  * The limb darkens as I(ρ) ∝ 1 − u (1 − √(1 − ρ²)), normalised so that the disc gives the irradiance.
  *
- * @param direction - Of view, unit length.
+ * @param direction - View direction, of unit length.
  * @param sunDirection - Unit length, same frame.
  * @param pixel - Angle that a pixel covers, over which the edge is smoothed [rad].
  */
@@ -47,7 +47,7 @@ const BRIGHTEST = 60_000
  * Angle between a fragment's line of sight and that of the one diagonally next to it [rad]. Not for use in
  * branches.
  *
- * @param direction - Of unit length, in any frame.
+ * @param direction - Direction of unit length, in any frame.
  */
 export function pixelAngle(direction: Vec3): Float {
   const [across, up] = [direction.dFdx().toConst(), direction.dFdy().toConst()]
@@ -59,7 +59,7 @@ export function pixelAngle(direction: Vec3): Float {
  *
  * @param direction - In the mapped space, unit length.
  * @param pixel - {@link pixelAngle} of it; null to leave out what is beyond the air: sun, moon, stars.
- * @param layers - Of the sky, and shadows in the air; by default the atmosphere's layers.
+ * @param layers - Sky layers, and shadows in the air; by default the atmosphere's layers.
  * @returns Linear sRGB × `luminanceScale`.
  */
 export function skyColor(

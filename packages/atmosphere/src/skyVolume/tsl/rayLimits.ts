@@ -12,7 +12,7 @@ export interface RayLimits {
 
 /**
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param forcedGround - Whether the ray meets the ground, where rounding must not decide.
+ * @param forcedGround - True if the ray meets the ground, where rounding must not decide.
  */
 export function rayLimits(viewpoint: Viewpoint, cosView: Float, forcedGround?: Bool): RayLimits {
   const radial = viewpoint.radius.mul(cosView).toConst()

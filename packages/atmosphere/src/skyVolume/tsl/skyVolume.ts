@@ -53,8 +53,8 @@ export interface VolumeSegment extends ViewRay {
 
 /**
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param limits - Of the same ray.
- * @param distance - From the viewpoint [m].
+ * @param limits - Limits of the same ray.
+ * @param distance - Distance from the viewpoint [m].
  */
 export function volumeSegment(
   atlas: Texels,
@@ -103,9 +103,9 @@ function readTile(atlas: Texels, texel: Vec2, phase: Vec4): Vec4 {
  * Reads the air between the viewpoint and a point from the volume.
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param cosViewLight - ν, ray against sun.
- * @param limits - Of the same ray.
- * @param distance - From the viewpoint [m].
+ * @param cosViewLight - ν, ray against the light.
+ * @param limits - Limits of the same ray.
+ * @param distance - Distance from the viewpoint [m].
  */
 export function sampleVolume(
   uniforms: AtmosphereUniforms,
@@ -128,7 +128,7 @@ export function sampleVolume(
  * irradiance [1/sr].
  *
  * @param ray - View ray, which meets the air.
- * @param cosViewLight - ν, direction against the sun.
+ * @param cosViewLight - ν, direction against the light.
  */
 export function sampleSky(
   uniforms: AtmosphereUniforms,

@@ -14,7 +14,7 @@ const [AZIMUTHS] = VOLUME_SIZE
  * √tan(α/2), α the angle from it.
  *
  * @param cosView - μ, ray against the zenith of the viewpoint.
- * @param hitsGround - Which half.
+ * @param hitsGround - True for the half below the horizon.
  * @param sinView - √(1 − μ²), which from far away is better known than μ tells.
  */
 export function elevationPosition(
@@ -65,7 +65,7 @@ export function elevationCosine(
 }
 
 /**
- * The sun's cosine where a ray from outside the air meets the ground or passes nearest to it:
+ * The light's cosine μ_s where a ray from outside the air meets the ground or passes nearest to it:
  * the mean over azimuths, and the most that an azimuth adds or takes away.
  *
  * With b = r √(1 − μ²), the ray's distance from the planet's centre, that point is half a chord
@@ -92,9 +92,9 @@ function lightAtLowestPoint(
 }
 
 /**
- * Column of an azimuth φ from the sun, in texels.
+ * Column of an azimuth φ from the light, in texels.
  *
- * In the air: sin(φ/2), for the light is smooth in cos φ but changes most towards the sun. From outside
+ * In the air: sin(φ/2), for the light is smooth in cos φ but changes most towards its source. From outside
  * the azimuth sweeps over day, dusk and night: there columns crowd at dusk.
  *
  * @param cosView - μ.

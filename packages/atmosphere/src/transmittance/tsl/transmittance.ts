@@ -92,7 +92,7 @@ export function transmittanceRay(
  *
  * @param table - Optical depth to the top of the air.
  * @param altitude - Above the ground, in [0, thickness] [m].
- * @param cosLight - μ_s, cosine of the sun's zenith angle.
+ * @param cosLight - μ_s, cosine of the light's zenith angle.
  * @returns Four values in [0, 1].
  * @see Bruneton 2017, "Single scattering"; smoothstep stands for the area of a cut disc
  */

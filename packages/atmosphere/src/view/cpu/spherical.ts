@@ -14,7 +14,7 @@ export class SphericalSpace {
   flat = false
 
   /**
-   * @param worldToECEF - From world units to metres in ECEF.
+   * @param worldToECEF - Matrix from world units to metres in ECEF.
    * @param bottomRadius - Radius of the sphere [m].
    */
   set(worldToECEF: Matrix4, ellipsoid: Ellipsoid, bottomRadius: number): void {

@@ -16,7 +16,7 @@ function exponent(rise: number, height: number): number {
 /**
  * Scalars that the sky volume is computed and read with.
  *
- * @param altitude - Of the viewpoint in the mapped space [m].
+ * @param altitude - Altitude of the viewpoint in the mapped space [m].
  * @param cosLight - μ_s at the viewpoint.
  */
 export function viewpointScalars(

@@ -2,7 +2,7 @@ import { cameraProjectionMatrixInverse, screenUV, select, vec2, vec3, vec4 } fro
 import type { Bool, Mat4, Vec3 } from '../../tsl-types'
 
 /** A fragment's line of sight in view space. */
-export interface ScreenRay {
+interface ScreenRay {
   /** Direction, not of unit length. */
   direction: Vec3
   /** Start: the viewpoint, or for an orthographic camera a point beside it. */

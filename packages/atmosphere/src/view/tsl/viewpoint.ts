@@ -12,7 +12,7 @@ export interface ViewpointScalars<T> {
   toHorizon: T
   /** Square of that to the top of the air along the level; negative above the air [m²]. */
   toTop: T
-  /** μ_s, sun against zenith. */
+  /** μ_s, light against zenith. */
   cosLight: T
   /** √(1 − μ_s²). */
   sinLight: T

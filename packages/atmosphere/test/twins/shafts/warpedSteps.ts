@@ -3,9 +3,9 @@
  *
  * @param radius - Planet's centre to the start of the ray [m].
  * @param cosView - μ at the start.
- * @param homogeneousHeight - Of the atmosphere [m].
- * @param length - Of the ray [m].
- * @param part - Of all samples, in [0, 1].
+ * @param homogeneousHeight - Height of the atmosphere, were it as dense all the way as at the ground [m].
+ * @param length - Length of the ray [m].
+ * @param part - Part of all samples, in [0, 1].
  * @returns [m].
  */
 export function warpedDistance(

@@ -27,7 +27,7 @@ export interface Billows {
  * noise has baked in. One texture read.
  *
  * @param offset - Displacement from the camera, in the mapped space [m].
- * @param shift - Of `WeatherBackground`.
+ * @param shift - `shift` of `WeatherBackground`.
  * @param level - `Resolution.shapeLevel`: what is finer than the sample's footprint is left out.
  * @see Schneider & Vos 2015, "The real-time volumetric cloudscapes of Horizon: Zero Dawn", "Modeling"
  * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2

@@ -62,8 +62,8 @@ export function opticalDepthTowards(field: CloudField, sample: CloudSample, toLi
   const cosLight = sample.up.dot(toLight).toConst() as Float
   forShadowingLayers(field, sample.altitude, cosLight, (layer, above, slope) => {
     const middle = layer.baseAltitude.add(layer.thickness.mul(0.5))
-    const way = middle.sub(sample.altitude).max(0).div(slope)
-    const offset = sample.offset.add(toLight.mul(way)).toConst() as Vec3
+    const toMiddle = middle.sub(sample.altitude).max(0).div(slope)
+    const offset = sample.offset.add(toLight.mul(toMiddle)).toConst() as Vec3
     const { altitude, up } = view.localCoordinates(offset)
     const there = { offset, altitude, up, distance: sample.distance }
     const subpoint = subpointOffset(field, there).toConst()

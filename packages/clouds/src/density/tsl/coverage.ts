@@ -31,7 +31,7 @@ function shareAt(
 /**
  * Share of the sky that a layer covers around a place: its coverage, and that of the world map.
  *
- * @param width - Of the map [texels].
+ * @param width - Width of the map [texels].
  * @param coverage - The layer's.
  * @param up - Zenith there.
  * @param shift - Shifts the look-up of the map, by the fields of the weather: it hides the shapes of the

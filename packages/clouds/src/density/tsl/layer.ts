@@ -159,7 +159,7 @@ export interface LayerRange {
 /**
  * Calls back for each layer, with code for one if there is one. Not to be nested.
  *
- * @param range - Which ones; all if it is left out.
+ * @param range - Range of their indices; all if it is left out.
  */
 export function forLayers(field: CloudField, body: (index: Int) => void, range?: LayerRange): void {
   const { length } = field.layers

@@ -20,7 +20,7 @@ export const CAUTION = 0.3
  * Likely distance of a layer's clouds: strength is too wild for a distance that is sure, so a march that goes
  * by this has to look back. 0 in clouds [m].
  *
- * @param strength - Of a `LayerSample`.
+ * @param strength - Strength of a `LayerSample`.
  */
 export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
   strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)

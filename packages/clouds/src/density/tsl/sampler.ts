@@ -34,7 +34,7 @@ export function backgroundAt(
  * Extinction of all clouds at a place, in the weather of that very place: what the samplers below come
  * near to, which share its background between places.
  *
- * @param detail - Whether edges have detail.
+ * @param detail - True if edges have detail.
  * @returns [1/m], at least 0. Twin: test/twins/density.ts
  */
 export function cloudExtinction(field: CloudField, sample: CloudSample, detail: boolean): Float {

@@ -41,7 +41,7 @@ export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
  * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
  *   `leanAt`.
  * @param bend - Displacement by turbulence [m].
- * @param where - Where the filtered coverage is wanted: elsewhere it is 0.
+ * @param where - True where the filtered coverage is wanted: elsewhere it is 0.
  */
 export function cloudWeather(
   field: CloudField,

@@ -49,7 +49,7 @@ export interface Decks {
  *
  * To be called inside of a shader function.
  *
- * @param offset - From the field's camera, in the mapped space [m].
+ * @param offset - Displacement from the field's camera, in the mapped space [m].
  */
 export function decksAround(
   field: CloudField,

@@ -55,8 +55,8 @@ export function cloudyIrradiance(
  * Irradiance of a plane by sky and ground under and over clouds, for unit irradiance of the source of
  * light, sun or moon.
  *
- * @param offset - From the field's camera, in the mapped space [m].
- * @param clear - What it is without clouds.
+ * @param offset - Displacement from the field's camera, in the mapped space [m].
+ * @param clear - Irradiance without clouds.
  */
 export function overcastIrradiance(
   field: CloudField,
@@ -109,7 +109,7 @@ const MOST_DIFFUSE = 10
 /**
  * Diffuse light from above and below among clouds, over that without clouds [–].
  *
- * @param view - Of the source's light.
+ * @param view - View of the source's light.
  * @param decks - About the altitude.
  */
 export function diffuseRatio(

@@ -88,7 +88,7 @@ class AzimuthMode {
    * A slab of this medium.
    *
    * @param thickness - Scaled optical thickness, > 0.
-   * @param depths - Where the light is wanted, from its top.
+   * @param depths - Optical depths at which the light is wanted, from its top.
    */
   slab(thickness: number, depths: readonly number[]): SlabMode {
     const rates = this.#rates
@@ -110,9 +110,9 @@ class AzimuthMode {
     const sources = depths.map(depth =>
       this.#sources.map((row, l) =>
         SIDES.flatMap(side => {
-          const way = side === 1 ? depth : thickness - depth
+          const path = side === 1 ? depth : thickness - depth
           return row.map(
-            (value, j) => value * Math.exp(-rates[j] * way) * (side * rates[j]) ** (l % 2)
+            (value, j) => value * Math.exp(-rates[j] * path) * (side * rates[j]) ** (l % 2)
           )
         })
       )

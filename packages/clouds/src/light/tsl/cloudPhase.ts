@@ -11,7 +11,7 @@ const FOUR_PI = 4 * Math.PI
  * The Henyey–Greenstein phase function [1/sr]. Twin: cpu/cloudPhase.ts
  *
  * @param asymmetry - g, in (−1, 1).
- * @param cosScatter - Of the scattering angle.
+ * @param cosScatter - Cosine of the scattering angle.
  */
 export const henyeyGreenstein = /*#__PURE__*/ Fn(
   ([asymmetry, cosScatter]: [Float, Float]) => {
@@ -38,7 +38,7 @@ const lowTerms = (asymmetry: Float, cosScatter: Float): Float => {
  * Phase function for light scattered once [1/sr], its peak broadened near the light by what it was
  * scattered within the peak on the way. Twins: cpu/cloudPhase.ts (`cloudPhase`, `aureolePhase`)
  *
- * @param cosScatter - Of the scattering angle.
+ * @param cosScatter - Cosine of the scattering angle.
  * @param depth - Scaled depth from the light to the sample and on to the camera.
  */
 export function singlePhase(light: CloudLight, cosScatter: Float, depth: Float): Float {

@@ -69,7 +69,7 @@ export const stepState = (jitter: Float): StepState => ({
  *
  * @param density - Greatest extinction of a layer on it, as it counts in the light that comes through [1/m].
  * @param from - Distance from the camera [m].
- * @param to - The same of its end [m].
+ * @param to - Distance of its end [m].
  */
 export function enterSteps(
   { isFine, finest, longest, likely, before, part, jitter }: StepState,

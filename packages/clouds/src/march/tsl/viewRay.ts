@@ -14,7 +14,7 @@ import type { Bool, Float, Mat3, Vec2, Vec3 } from '../../tsl-types'
 import { FAR_AWAY, groundDistance } from './layerBoundaries'
 
 /** View ray through a pixel. */
-export interface ViewRay {
+export interface PixelRay {
   /** Normalized device coordinates of the pixel, and 1. */
   ndc: Vec3
   /** Length of `FrameUniforms.rays` times `ndc`, in the mapped space [m]. */
@@ -26,7 +26,7 @@ export interface ViewRay {
 }
 
 /** Inputs from which view rays are made: the camera of a frame and the depth that it drew. */
-export interface ViewRayNodes {
+export interface FrameInputs {
   readonly field: CloudField
   readonly frame: FrameUniforms
   /** Depth as the renderer writes it. */
@@ -34,7 +34,7 @@ export interface ViewRayNodes {
 }
 
 /** View ray through a point of the image; to be called inside of a shader function. */
-export function viewRayAt({ field, frame }: ViewRayNodes, uv: Vec2): ViewRay {
+export function viewRayAt({ field, frame }: FrameInputs, uv: Vec2): PixelRay {
   const ndc = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
   const rayView = (frame.rays as unknown as Mat3).mul(ndc).toConst() as Vec3
   const mapped = field.view.toMapped(rayView).toConst() as Vec3
@@ -63,9 +63,9 @@ const viewZAt = (frame: FrameUniforms, uv: Vec2, depth: Float): Float =>
  * @param missesGround - True where the ground is known not to be in sight.
  */
 export function viewRayEnd(
-  { field, frame, depthAt }: ViewRayNodes,
+  { field, frame, depthAt }: FrameInputs,
   uv: Vec2,
-  { direction, directionView }: ViewRay,
+  { direction, directionView }: PixelRay,
   missesGround?: Bool
 ): Float {
   const depth = depthAt(uv).toConst() as Float

@@ -18,7 +18,7 @@ export const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).recipr
 /**
  * One channel of a noise texture.
  *
- * @param index - Of the channel among all textures': sets the seeds.
+ * @param index - Index of the channel among all textures': sets the seeds.
  * @param p - Place in the texture, of period 1.
  * @returns In [0, 1]. Twin: test/twins/noise.ts
  */
@@ -47,7 +47,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
 /**
  * Turbulence: two components of a field without sinks and sources.
  *
- * @param index - Of the first of its two channels.
+ * @param index - Index of the first of its two channels.
  * @returns In [0, 1]. Twin: test/twins/noise.ts
  */
 export function curlNoise(index: number, p: Vec3): Vec2 {

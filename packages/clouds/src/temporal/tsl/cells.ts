@@ -10,7 +10,7 @@ import {
   type Vec4
 } from '../../tsl-types'
 import { forLayers, layerAt } from '../../density/tsl/layer'
-import { viewRayAt, type ViewRayNodes } from '../../march/tsl/viewRay'
+import { viewRayAt, type FrameInputs } from '../../march/tsl/viewRay'
 import { SAME_DISTANCE } from './depthTest'
 import { FARTHEST } from './packing'
 import { brightness, CLEAR, type CloudTargets } from './renderTargets'
@@ -73,7 +73,7 @@ function nearestLayer(field: CloudField, altitude: Float): Float {
 /** Draws {@link Cell}s: one more along each edge than there are marched pixels. */
 export function gatherCells(
   field: CloudField,
-  viewRays: ViewRayNodes,
+  viewRays: FrameInputs,
   marched: CloudTargets
 ): Outputs {
   const { frame } = viewRays

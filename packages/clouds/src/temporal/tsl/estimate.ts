@@ -1,6 +1,6 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
-import type { ViewRayNodes } from '../../march/tsl/viewRay'
+import type { FrameInputs } from '../../march/tsl/viewRay'
 import { passesCellDepthTest, type Cell } from './cells'
 import { passesDepthTest } from './depthTest'
 import { SAMPLE_STEPS } from './packing'
@@ -34,8 +34,8 @@ export interface Estimate extends Neighbourhood {
   readonly weight: Float
 }
 
-/** A pixel's place among marched ones. */
-export interface CellPlace {
+/** Position of a pixel among marched ones. */
+export interface CellPosition {
   /** Index of the cell's first corner. */
   readonly corner: Vec2
   /** Position from there on, in [0, 1). */
@@ -43,7 +43,7 @@ export interface CellPlace {
 }
 
 /** The cell that a pixel is in. */
-export function cellPlace({ frame }: ViewRayNodes, pixel: Vec2): CellPlace {
+export function cellPosition({ frame }: FrameInputs, pixel: Vec2): CellPosition {
   const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst() as Vec2
   const corner = at.floor().toConst() as Vec2
   return { corner, part: at.sub(corner).toConst() }
@@ -80,7 +80,7 @@ function cornerKernel(part: Vec2): CornerKernel {
 /** Estimate from those corners of a cell that pass the depth test, one by one. */
 function gatherCorners(
   gathered: Gathered,
-  { frame }: ViewRayNodes,
+  { frame }: FrameInputs,
   marched: CloudTargets,
   corner: Vec2,
   kernel: CornerKernel,
@@ -131,9 +131,9 @@ function gatherCorners(
  * @see Kopf et al. 2007, "Joint bilateral upsampling", eq. 3: weights by distance in the image and by depth
  */
 export function estimate(
-  viewRays: ViewRayNodes,
+  viewRays: FrameInputs,
   marched: CloudTargets,
-  { corner, part }: CellPlace,
+  { corner, part }: CellPosition,
   cell: Cell,
   end: Float
 ): Estimate {

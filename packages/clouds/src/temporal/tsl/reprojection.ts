@@ -1,6 +1,6 @@
 import { If, exp2, vec2, vec4 } from 'three/tsl'
 import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import type { ViewRay, ViewRayNodes } from '../../march/tsl/viewRay'
+import type { PixelRay, FrameInputs } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'
 import { clampDistance, unpack } from './packing'
 import type { CloudTargets } from './renderTargets'
@@ -46,10 +46,10 @@ export interface ReprojectedHistory {
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §3.2 (reprojection), §4.1 (rejection)
  */
 export function reprojectHistory(
-  { frame }: ViewRayNodes,
+  { frame }: FrameInputs,
   history: CloudTargets,
   pixel: Vec2,
-  { ndc, length }: ViewRay,
+  { ndc, length }: PixelRay,
   end: Float,
   distance: Float,
   origin: Vec3
@@ -76,19 +76,19 @@ export function reprojectHistory(
     // Transmittance, which overshoots at edges.
     light.w.assign(light.w.min(1))
   })
-  // Clouds at history's distance would have moved by another way: by that ratio of this one.
+  // Parallax: clouds at the distance of history would have moved by this ratio of the motion more or less.
   const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
-  const way = motion.length().toConst() as Float
-  const parallax = ratio.mul(way).div(MAX_PARALLAX).oneMinus().clamp()
+  const speed = motion.length().toConst() as Float
+  const parallax = ratio.mul(speed).div(MAX_PARALLAX).oneMinus().clamp()
   const validity = isInside.select(passesDepthTest(clampedEnd, apart), 0).mul(parallax)
   const { gainChange, maxSamples } = frame
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    stationarity: isSameEnd.select(way.oneMinus().max(0), 0),
+    stationarity: isSameEnd.select(speed.oneMinus().max(0), 0),
     samples: apart.z
       .abs()
-      .min(maxSamples.mul(way.div(FAST_MOTION).oneMinus()).max(FAST_SAMPLES))
+      .min(maxSamples.mul(speed.div(FAST_MOTION).oneMinus()).max(FAST_SAMPLES))
       .mul(validity)
       .toConst()
   }

@@ -6,7 +6,7 @@ import type { Float, LevelTexture, Vec2, Vec4 } from '../../tsl-types'
  * ones alone, frame after frame, would blur what moves.
  *
  * @param at - Place in the picture [pixels].
- * @param size - Of the picture [pixels].
+ * @param size - Size of the picture [pixels].
  * @see Keys 1981, "Cubic convolution interpolation for digital image processing", IEEE TASSP 29 (6), "The cubic
  * convolution interpolation kernel", p. 1155, a = −½
  */

@@ -1,9 +1,9 @@
 import { Fn, If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
 import { outputs, type Float, type Outputs, type Vec2, type Vec4 } from '../../tsl-types'
-import { viewRayAt, viewRayEnd, type ViewRayNodes } from '../../march/tsl/viewRay'
+import { viewRayAt, viewRayEnd, type FrameInputs } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
-import { cellPlace, estimate, type Estimate } from './estimate'
+import { cellPosition, estimate, type Estimate } from './estimate'
 import { interleavedNoise } from './noisePattern'
 import { encodeDistance, FARTHEST, pack, unpack } from './packing'
 import { CLEAR, type CloudTargets } from './renderTargets'
@@ -44,7 +44,7 @@ interface Accumulated {
  */
 function accumulate(
   { light, samples }: Accumulated,
-  { frame }: ViewRayNodes,
+  { frame }: FrameInputs,
   now: Estimate,
   history: ReprojectedHistory
 ): void {
@@ -69,12 +69,12 @@ function accumulate(
  * Sample counts are stored with a minus sign where there is no cloud: where the cell is clear too, a pixel
  * is done without a look at its light.
  *
- * @param cells - From `gatherCells`.
+ * @param cells - Cells by `gatherCells`.
  * @param history - The target of the last frame.
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §5 (temporal upsampling)
  */
 export function upscale(
-  viewRays: ViewRayNodes,
+  viewRays: FrameInputs,
   marched: CloudTargets,
   cells: CloudTargets,
   history: CloudTargets
@@ -84,7 +84,7 @@ export function upscale(
     Fn(() => {
       const pixel = uv().mul(frame.size).floor().toConst() as unknown as Vec2
       const middle = pixel.add(0.5).div(frame.size).toConst() as Vec2
-      const where = cellPlace(viewRays, pixel)
+      const where = cellPosition(viewRays, pixel)
       const cellAt = where.corner.add(1.5).div(frame.marchedSize.add(1)).toConst() as Vec2
       const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
       const before = vec4(0).toVar() as Vec4
