@@ -149,7 +149,7 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   glow({ hitsGround }: SkyRay, light: Vec4): Vec4 {
-    return this.#subtract(light, hitsGround.select(PLANET, FAR).toConst() as Float)
+    return this.#subtract(light, hitsGround.select(PLANET, FAR).toConst())
   }
 
   inScatter({ distance }: PointRay, light: Vec4): Vec4 {
@@ -200,7 +200,9 @@ export class ScreenShafts implements ScreenShadows {
    */
   #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
-      const texel = uv().mul(this.#gridSize.mul(vec2(2, 1))).floor() as unknown as Vec2
+      const texel = uv()
+        .mul(this.#gridSize.mul(vec2(2, 1)))
+        .floor() as unknown as Vec2
       const pixel = texel.toVar()
       const result = vec4(0).toVar()
       If(pixel.x.lessThan(this.#gridSize.x), () => {
@@ -209,7 +211,7 @@ export class ScreenShafts implements ScreenShadows {
         pixel.x.subAssign(this.#gridSize.x)
         const distanceAt = (aside: Vec2): Float => {
           const next = pixel.add(aside).clamp(vec2(0), this.#gridSize.sub(1)).toConst() as Vec2
-          return log2(this.#rayTo(renderer, this.#uvOf(next)).distance).toConst() as Float
+          return log2(this.#rayTo(renderer, this.#uvOf(next)).distance).toConst()
         }
         const own = distanceAt(vec2(0))
         result.assign(vec4(own, own, own, 0))
@@ -285,7 +287,9 @@ export class ScreenShafts implements ScreenShadows {
       const before = after.oneMinus().toConst() as Vec2
       const low = nearest.sub(0.5).add(vec2(0.25).div(before)).toConst() as Vec2
       const high = nearest.add(1.5).sub(vec2(0.25).div(after)).toConst() as Vec2
-      const upper = light(low).mul(before.x).add(light(vec2(high.x, low.y)).mul(after.x))
+      const upper = light(low)
+        .mul(before.x)
+        .add(light(vec2(high.x, low.y)).mul(after.x))
       const lower = light(vec2(low.x, high.y)).mul(before.x).add(light(high).mul(after.x))
       const sum = upper.mul(before.y).add(lower.mul(after.y))
       lost.assign(sum.mul(this.#growth(distance)))
@@ -294,10 +298,16 @@ export class ScreenShafts implements ScreenShadows {
       const weights = float(0).toVar()
       loop('corner', 4, index => {
         const row = float(index).div(2).floor().toConst()
-        const corner = first.add(vec2(float(index).sub(row.mul(2)), row)).min(size.sub(1)).add(0.5)
+        const corner = first
+          .add(vec2(float(index).sub(row.mul(2)), row))
+          .min(size.sub(1))
+          .add(0.5)
         const other = read(corner.add(vec2(size.x, 0))).x
         const apart = other.sub(own).abs()
-        const weight = apart.sub(OTHER_DEPTH).div(SAME_DEPTH - OTHER_DEPTH).clamp(STRANGER, 1)
+        const weight = apart
+          .sub(OTHER_DEPTH)
+          .div(SAME_DEPTH - OTHER_DEPTH)
+          .clamp(STRANGER, 1)
         // Beyond what a ray meets nothing is known of it.
         const common = distance.min(exp2(other.add(SAME_DEPTH)))
         lost.addAssign(read(corner).mul(weight.mul(this.#growth(common))))

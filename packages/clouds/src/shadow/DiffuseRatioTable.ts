@@ -49,7 +49,9 @@ export class DiffuseRatioTable {
     const { map } = this.#shadows.nodes
     const side = cosLight.sign().mul(cosLight.abs().sqrt()).mul(0.5).add(0.5)
     const height = altitude.div(this.#field.view.air.uniforms.thickness).clamp().sqrt()
-    const texel = vec2(side, height).mul(vec2(COLUMNS - 1, ROWS - 1)).add(0.5)
+    const texel = vec2(side, height)
+      .mul(vec2(COLUMNS - 1, ROWS - 1))
+      .add(0.5)
     const { width } = this.#shadows.target
     const at = texel.add(vec2(width - COLUMNS, 0)).div(vec2(width, ROWS))
     return map.sample(at).level(0)

@@ -106,7 +106,7 @@ export function lostLight(
     const steps = warpedSteps(air.uniforms, ray, length)
     const airAt = litRay(view, ray, limits, cosView)
     const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
-    const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst() as Float
+    const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
     const march: March = {
       steps,
       darkAt: (position, isMapped) => darkAt(fromEye(steps.distance(position)), isMapped),
@@ -132,7 +132,7 @@ export function lostLight(
     loop('group', int(first.add(rest)), group => {
       const index = float(group)
       const isMapped = index.lessThan(first).toConst() as Bool
-      const choose = (a: Float | number, b: Float): Float => isMapped.select(a, b).toConst() as Float
+      const choose = (a: Float | number, b: Float): Float => isMapped.select(a, b).toConst()
       const stretch = {
         from: choose(0, near),
         width: choose(near, near.oneMinus()),

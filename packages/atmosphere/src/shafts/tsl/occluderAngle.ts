@@ -176,7 +176,7 @@ function occluderAlong(
       ? comparedDepth(depth, at, storage)
       : depthAt(depth, size, at, storage)
     const position = stored.sub(place.z).mul(metersPerDepth)
-    return isEmpty(stored, storage).select(NOTHING, position).toConst() as Float
+    return isEmpty(stored, storage).select(NOTHING, position).toConst()
   }
   return { isInside, read }
 }

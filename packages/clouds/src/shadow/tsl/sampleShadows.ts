@@ -119,13 +119,13 @@ export function sampleShadowsAlong(
     const [first, last] = [middle.sub(half), middle.add(half)]
     const toAtlas = vec3(1 / tileCount, 1, 1)
     return {
-      start: start.add(vec3(atlasTile, 0, 0)).mul(toAtlas).toConst() as Vec3,
-      slope: slope.mul(toAtlas).toConst() as Vec3,
-      first: first.x.max(first.y).max(first.z).toConst() as Float,
-      last: isDrawn
-        .greaterThan(0)
-        .select(last.x.min(last.y).min(last.z), -1)
-        .toConst() as Float
+      start: start
+        .add(vec3(atlasTile, 0, 0))
+        .mul(toAtlas)
+        .toConst(),
+      slope: slope.mul(toAtlas).toConst(),
+      first: first.x.max(first.y).max(first.z).toConst(),
+      last: isDrawn.greaterThan(0).select(last.x.min(last.y).min(last.z), -1).toConst()
     }
   })
   return distance => {
