@@ -23,7 +23,8 @@ import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
 import { ScreenShafts, without } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
-import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
+import { lostLight, staggered } from './tsl/lostLight'
+import type { ShadowedAir } from './tsl/shadowsAlong'
 
 /**
  * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of

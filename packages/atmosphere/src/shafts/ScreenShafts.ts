@@ -12,13 +12,8 @@ import type { ScreenShadows, Veil } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
-import {
-  lostLight,
-  staggered,
-  type ShadowedAir,
-  type ShaftRay,
-  type ShaftSteps
-} from './tsl/lostLight'
+import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
+import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { DepthRays } from '../view/DepthRays'
 
 /**

@@ -1,11 +1,10 @@
 import { FragmentPass } from '@welkin/atmosphere'
 import { Fn, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import type { CloudField } from '../density/CloudField'
 import { meanDecks } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudLight } from '../light/CloudLightTable'
-import type { Float, Vec4 } from '../tsl-types'
+import type { Float, Vec2, Vec4 } from '../tsl-types'
 import { CASCADE_SIZE as ROWS } from './CascadeState'
 import { TABLE_COLUMNS as COLUMNS, type CloudShadowMap } from './CloudShadowMap'
 
@@ -15,18 +14,15 @@ import { TABLE_COLUMNS as COLUMNS, type CloudShadowMap } from './CloudShadowMap'
  * about the ground. It is kept beside the clouds' shadows, of whose texture it takes no more.
  */
 export class DiffuseRatioTable {
-  readonly #field: CloudField
   readonly #shadows: CloudShadowMap
   readonly #pass: FragmentPass
 
   constructor(shadows: CloudShadowMap, light: CloudLight) {
     const { field } = shadows
-    this.#field = field
     this.#shadows = shadows
     const { view } = field
     const ratio = Fn((): Vec4 => {
-      const texel = uv().mul(vec2(COLUMNS, ROWS)).sub(0.5)
-      const place = texel.div(vec2(COLUMNS - 1, ROWS - 1)).toConst()
+      const place = uv() as unknown as Vec2
       const side = place.x.mul(2).sub(1).toConst() as Float
       const cosLight = side.mul(side.abs()).toConst() as Float
       const altitude = place.y.mul(place.y).mul(view.air.uniforms.thickness).toConst() as Float
@@ -46,15 +42,16 @@ export class DiffuseRatioTable {
 
   /** Reads it, wherever the control flow is. */
   sample(altitude: Float, cosLight: Float): Vec4 {
-    const { map } = this.#shadows.nodes
+    const { nodes, target, field } = this.#shadows
     const side = cosLight.sign().mul(cosLight.abs().sqrt()).mul(0.5).add(0.5)
-    const height = altitude.div(this.#field.view.air.uniforms.thickness).clamp().sqrt()
-    const texel = vec2(side, height)
-      .mul(vec2(COLUMNS - 1, ROWS - 1))
-      .add(0.5)
-    const { width } = this.#shadows.target
-    const at = texel.add(vec2(width - COLUMNS, 0)).div(vec2(width, ROWS))
-    return map.sample(at).level(0)
+    // Before the first column lies a cascade.
+    const column = side
+      .max(0.5 / COLUMNS)
+      .sub(1)
+      .mul(COLUMNS / target.width)
+      .add(1)
+    const row = altitude.div(field.view.air.uniforms.thickness).sqrt()
+    return nodes.map.sample(vec2(column, row)).level(0)
   }
 
   dispose(): void {

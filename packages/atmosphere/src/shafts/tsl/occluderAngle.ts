@@ -121,31 +121,25 @@ export function occluderAngle(
     const { offset, distance } = lightRayAt(frame, texel)
     const nearest = float(NOTHING).toVar()
     // The first map is the finest: what a ray of light meets in it counts.
-    for (const map of maps) {
-      If(nearest.equal(NOTHING), () => {
-        const { isInside, read } = occluderAlong(map, offset, storage, mixedDepth)
-        If(isInside, () => {
-          nearest.assign(read())
+    const search = (from: Vec3, depthAt: typeof mixedDepth): void => {
+      const isSought = bool(true).toVar() as Bool & { assign(value: Bool | boolean): void }
+      for (const map of maps) {
+        If(isSought, () => {
+          seekOccluder(map, from, storage, depthAt, position => {
+            nearest.assign(position)
+            isSought.assign(depthAt === mixedDepth ? position.equal(NOTHING) : false)
+          })
         })
-      })
+      }
     }
+    search(offset, mixedDepth)
     loop('probe', PROBES, probe => {
       If(nearest.equal(NOTHING), () => {
         const side = (positive: number): Float =>
           probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
         // A row is a quarter as high as a column is wide.
         const shift = vec2(side(0), side(2).mul(0.25)).mul(WIDENING).div(frame.columns)
-        const beside = lightRayAt(frame, texel.add(shift).toConst()).offset
-        const isSought = bool(true).toVar() as Bool & { assign(value: boolean): void }
-        for (const map of maps) {
-          If(isSought, () => {
-            const { isInside, read } = occluderAlong(map, beside, storage, nearestDepth)
-            If(isInside, () => {
-              nearest.assign(read())
-              isSought.assign(false)
-            })
-          })
-        }
+        search(lightRayAt(frame, texel.add(shift).toConst()).offset, nearestDepth)
       })
     })
     return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
@@ -153,30 +147,31 @@ export function occluderAngle(
 }
 
 /**
- * What a ray of light meets first in a map, if it is in the map: its position along the ray, towards the light [m].
+ * Looks for the first occluder on a ray of light in a map, if the map has the ray.
  *
  * @param depthAt - Reads the map at a place.
+ * @param then - Takes the position along the ray, towards the light [m].
  */
-function occluderAlong(
+function seekOccluder(
   { depth, size, matrix, bounds, metersPerDepth }: ShadowMapNodes,
   offset: Vec3,
   storage: DepthStorage,
-  depthAt: typeof mixedDepth
-): { isInside: Bool; read: () => Float } {
+  depthAt: typeof mixedDepth,
+  then: (position: Float) => void
+): void {
   const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
   const isInside = place.x
     .greaterThan(bounds.x)
     .and(place.y.greaterThan(bounds.y))
     .and(place.x.lessThan(bounds.z))
     .and(place.y.lessThan(bounds.w))
-  const read = (): Float => {
+  If(isInside, () => {
     // Texture coordinates run down, as three's shadow nodes have it.
     const at = vec2(place.x, place.y.oneMinus()).toConst()
     const stored = storage.isCompared
       ? comparedDepth(depth, at, storage)
       : depthAt(depth, size, at, storage)
     const position = stored.sub(place.z).mul(metersPerDepth)
-    return isEmpty(stored, storage).select(NOTHING, position).toConst()
-  }
-  return { isInside, read }
+    then(isEmpty(stored, storage).select(NOTHING, position).toConst())
+  })
 }

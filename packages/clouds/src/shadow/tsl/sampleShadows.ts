@@ -110,10 +110,13 @@ export function sampleShadowsAlong(
   const edge = dither.mul(-FADE).add(0.5 - MARGIN)
   const extent = vec3(edge, edge, edge.mul(2 * MAXIMUM_DISTANCE)).toConst() as Vec3
   const stretches = cascades.map(({ u, v, w, isDrawn, atlasTile }) => {
-    const start = vec3(from.dot(u.xyz), from.dot(v.xyz), from.dot(w.xyz)).add(vec3(u.w, v.w, w.w))
-    const slope = vec3(direction.dot(u.xyz), direction.dot(v.xyz), direction.dot(w.xyz)).toConst()
+    const along = (place: Vec3): Vec3 => vec3(place.dot(u.xyz), place.dot(v.xyz), place.dot(w.xyz))
+    const start = along(from)
+      .add(vec3(u.w, v.w, w.w))
+      .toConst() as Vec3
+    const slope = along(direction).toConst() as Vec3
     // A ray that is level in an axis is in the cascade everywhere, or nowhere.
-    const perSlope = vec3(1).div(slope.abs().max(1e-12)).mul(slope.sign().add(0.5).sign())
+    const perSlope = vec3(1).div(slope.add(1e-12)).toConst() as Vec3
     const middle = vec3(0.5, 0.5, 0).sub(start).mul(perSlope).toConst() as Vec3
     const half = extent.mul(perSlope.abs()).toConst() as Vec3
     const [first, last] = [middle.sub(half), middle.add(half)]
@@ -125,7 +128,8 @@ export function sampleShadowsAlong(
         .toConst(),
       slope: slope.mul(toAtlas).toConst(),
       first: first.x.max(first.y).max(first.z).toConst(),
-      last: isDrawn.greaterThan(0).select(last.x.min(last.y).min(last.z), -1).toConst()
+      // Cascades that are not drawn end at the camera.
+      last: last.x.min(last.y).min(last.z).mul(isDrawn).toConst()
     }
   })
   return distance => {
