@@ -92,8 +92,10 @@ export class ScreenShafts implements ScreenShadows {
   /** Size of the picture, and of either half of the target [pixels]. */
   readonly #size = vector2()
   readonly #gridSize = vector2()
-  /** Pixels of the picture from one that is marched to the next. */
-  readonly #spacing = number(1)
+  /** Reciprocal of the pixels of the picture from one that is marched to the next. */
+  readonly #density = number(1)
+  /** Texel of the target in texture coordinates. */
+  readonly #texelSize = vector2()
   /** Mean free path of light in the air at the camera [m]. */
   readonly #freePath = number(1)
   readonly #texels: TextureNode
@@ -119,9 +121,11 @@ export class ScreenShafts implements ScreenShadows {
     shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
-    this.#spacing.value = shafts.spacing
+    this.#density.value = 1 / shafts.spacing
     this.#gridSize.value.copy(this.#size.value).divideScalar(shafts.spacing).ceil()
-    this.target.setSize(2 * this.#gridSize.value.x, this.#gridSize.value.y)
+    const { x, y } = this.#gridSize.value
+    this.target.setSize(2 * x, y)
+    this.#texelSize.value.set(0.5 / x, 1 / y)
     if (!shafts.isActive) return
     const { parameters } = view.atmosphere
     const here = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
@@ -195,10 +199,7 @@ export class ScreenShafts implements ScreenShadows {
    */
   #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
-      const texel = uv()
-        .mul(this.#gridSize.mul(vec2(2, 1)))
-        .floor() as unknown as Vec2
-      const pixel = texel.toVar()
+      const pixel = uv().div(this.#texelSize).floor().toVar()
       const result = vec4(0).toVar()
       If(pixel.x.lessThan(this.#gridSize.x), () => {
         result.assign(this.#march(renderer, pixel))
@@ -257,7 +258,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Place in the picture of the pixel that is marched for one of the target. */
   #uvOf(pixel: Vec2): Vec2 {
-    return pixel.mul(this.#spacing).add(0.5).div(this.#size).toConst()
+    return pixel.div(this.#density).add(0.5).div(this.#size).toConst()
   }
 
   /**
@@ -268,9 +269,9 @@ export class ScreenShafts implements ScreenShadows {
    */
   #lostTo(distance: Float): Vec4 {
     const size = this.#gridSize
-    const place = uv().mul(this.#size).sub(0.5).div(this.#spacing).toConst() as unknown as Vec2
+    const place = uv().mul(this.#size).sub(0.5).mul(this.#density).toConst() as unknown as Vec2
     const read = (texel: Vec2): Vec4 =>
-      sampleLevel0(this.#texels, texel.div(size.mul(vec2(2, 1)))).toConst()
+      sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
     const light = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
     const own = log2(distance).toConst() as Float
     const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
