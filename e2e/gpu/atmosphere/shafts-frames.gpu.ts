@@ -71,12 +71,17 @@ gpuTest('has the same shafts in world units of a kilometre and in ECEF axes', as
   }
   const [expected, lit] = await drawIn('metres')
   const shadows = apart(lit, expected)
-  expectTrue(shadows > 2e-4 * lit.data.reduce((sum, value) => sum + value, 0), 'towers cast shadows')
+  expectTrue(
+    shadows > 2e-4 * lit.data.reduce((sum, value) => sum + value, 0),
+    'towers cast shadows'
+  )
   for (const frame of ['kilometres', 'ECEF'] as const) {
     const [picture, litThere] = await drawIn(frame)
     const error = Math.abs(apart(litThere, picture) / shadows - 1)
     const difference = Math.abs(apart(picture, expected) - apart(litThere, lit)) / shadows
-    t.note(`${frame}: shafts ${(100 * error).toFixed(2)} % and ${(100 * difference).toFixed(2)} % apart`)
+    t.note(
+      `${frame}: shafts ${(100 * error).toFixed(2)} % and ${(100 * difference).toFixed(2)} % apart`
+    )
     expectTrue(error < 0.02, `${frame}: as much light is lost`)
     expectTrue(difference < 0.05, `${frame}: where it is lost`)
   }
@@ -99,41 +104,44 @@ function second({ scene, atmosphere, light }: Stage, renderer: WebGPURenderer, c
   }
 }
 
-gpuTest('takes from an orthographic camera what it takes from a narrow perspective one', async t => {
-  const renderer = await t.createRenderer(size)
-  const set = stage(renderer, 15)
-  addTowers(set, new Matrix4())
-  const cameras = [
-    new OrthographicCamera(-0.02, 0.02, 0.01, -0.01, 1, 1e6),
-    new PerspectiveCamera(0.01, size.width / size.height, 1, 1e6)
-  ]
-  for (const [label, target] of [
-    ['sky', new Vector3(70, 600, -600)],
-    ['tower', new Vector3(60, 300, -600)]
-  ] as const) {
-    const losses: number[] = []
-    for (const camera of cameras) {
-      camera.position.set(0, 2, 0)
-      camera.lookAt(target)
-      camera.updateMatrixWorld()
-      const { shafts, pipeline, dispose } = second(set, renderer, camera)
-      const draw = async (): Promise<number> => {
-        await nextFrame()
-        const picture = await drawToFloat(renderer, () => pipeline.render())
-        return picture.at(size.width / 2, size.height / 2)[1]
+gpuTest(
+  'takes from an orthographic camera what it takes from a narrow perspective one',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15)
+    addTowers(set, new Matrix4())
+    const cameras = [
+      new OrthographicCamera(-0.02, 0.02, 0.01, -0.01, 1, 1e6),
+      new PerspectiveCamera(0.01, size.width / size.height, 1, 1e6)
+    ]
+    for (const [label, target] of [
+      ['sky', new Vector3(70, 600, -600)],
+      ['tower', new Vector3(60, 300, -600)]
+    ] as const) {
+      const losses: number[] = []
+      for (const camera of cameras) {
+        camera.position.set(0, 2, 0)
+        camera.lookAt(target)
+        camera.updateMatrixWorld()
+        const { shafts, pipeline, dispose } = second(set, renderer, camera)
+        const draw = async (): Promise<number> => {
+          await nextFrame()
+          const picture = await drawToFloat(renderer, () => pipeline.render())
+          return picture.at(size.width / 2, size.height / 2)[1]
+        }
+        await draw()
+        const shadowed = await draw()
+        shafts.enabled = false
+        losses.push(1 - shadowed / (await draw()))
+        dispose()
       }
-      await draw()
-      const shadowed = await draw()
-      shafts.enabled = false
-      losses.push(1 - shadowed / (await draw()))
-      dispose()
+      t.note(`${label}: ${losses.map(part => part.toFixed(5)).join(', ')} of the light is lost`)
+      expectTrue(losses[1] > 1e-3, `${label}: a tower casts a shadow`)
+      expectClose(losses[0], losses[1], { relative: 0.01, absolute: 1e-4 }, label)
     }
-    t.note(`${label}: ${losses.map(part => part.toFixed(5)).join(', ')} of the light is lost`)
-    expectTrue(losses[1] > 1e-3, `${label}: a tower casts a shadow`)
-    expectClose(losses[0], losses[1], { relative: 0.01, absolute: 1e-4 }, label)
+    set.dispose()
   }
-  set.dispose()
-})
+)
 
 gpuTest('draws two cameras in a frame as it draws each alone', async t => {
   const renderer = await t.createRenderer(size)

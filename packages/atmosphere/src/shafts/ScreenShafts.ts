@@ -1,10 +1,12 @@
 import { Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
-import { Fn, If, exp2, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
+import { rayLimits } from '../skyVolume/tsl/rayLimits'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
@@ -20,8 +22,8 @@ import { DepthRays } from '../view/DepthRays'
  * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
  * silhouettes; smaller: the march's pixels show on slopes (*City in haze*).
  */
-const SAME_DEPTH = 0.2
-const OTHER_DEPTH = 0.6
+const SAME_DEPTH = 0.35
+const OTHER_DEPTH = 0.8
 
 /** Weight of pixels of another depth, where there are no others. */
 const STRANGER = 1e-3
@@ -96,7 +98,7 @@ export class ScreenShafts implements ScreenShadows {
   readonly #density = number(1)
   /** Texel of the target in texture coordinates. */
   readonly #texelSize = vector2()
-  /** Mean free path of light in the air at the camera [m]. */
+  /** Longest mean free path of light in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge*). */
   readonly #freePath = number(1)
   readonly #texels: TextureNode
   #pass: FragmentPass | null = null
@@ -129,7 +131,7 @@ export class ScreenShafts implements ScreenShadows {
     if (!shafts.isActive) return
     const { parameters } = view.atmosphere
     const here = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
-    this.#freePath.value = 1 / Math.max(...here, 1e-12)
+    this.#freePath.value = 1 / Math.max(Math.min(...here), 1e-12)
     // What is drawn here and now reads the view.
     shafts.view.update(view)
     if (this.#compiled !== shafts.version) this.#pass?.dispose()
@@ -147,12 +149,13 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = shafts.isForward ? 1 : 0
   }
 
-  glow({ hitsGround }: SkyRay, light: Vec4): Vec4 {
-    return this.#subtract(light, hitsGround.select(PLANET, FAR).toConst())
+  glow({ direction, cosView, hitsGround }: SkyRay, light: Vec4): Vec4 {
+    const distance = hitsGround.select(PLANET, FAR).toConst() as Float
+    return this.#subtract(light, { direction, cosView, distance })
   }
 
-  inScatter({ distance }: PointRay, light: Vec4): Vec4 {
-    return this.#subtract(light, distance)
+  inScatter(ray: PointRay, light: Vec4): Vec4 {
+    return this.#subtract(light, ray)
   }
 
   /** True if the node of a veil draws the shafts, so that this one has no part in its shader. */
@@ -160,16 +163,18 @@ export class ScreenShafts implements ScreenShadows {
     return this.veil === undefined && this.#shafts.isVeiled
   }
 
-  #subtract(light: Vec4, distance: Float): Vec4 {
+  #subtract(light: Vec4, ray: Pick<ShaftRay, 'direction' | 'cosView' | 'distance'>): Vec4 {
     if (this.#isElsewhere) return light
-    return without(light, this.#strength, this.#shafts.view, () => this.#lostTo(distance))
+    const { view } = this.#shafts
+    const cosViewLight = ray.direction.dot(view.lightDirection).toConst() as Float
+    return without(light, this.#strength, view, () => this.#lostTo({ ...ray, cosViewLight }))
   }
 
   dim(color: Vec3): Vec3 {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const unlit = Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, uv()).distance))()
+      const unlit = Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, uv())))()
       const lost = unlit.mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
@@ -194,8 +199,8 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /**
-   * A texel of the target. In its left half light; in its right one log₂ of the distance, and the least and the greatest
-   * one of the nine pixels around.
+   * A texel of the target. In its left half light; in its right one log₂ of the distance, the least and the greatest
+   * one of the nine pixels around, and the light that there is.
    */
   #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
@@ -205,15 +210,17 @@ export class ScreenShafts implements ScreenShadows {
         result.assign(this.#march(renderer, pixel))
       }).Else(() => {
         pixel.x.subAssign(this.#gridSize.x)
-        const distanceAt = (aside: Vec2): Float => {
+        const rayAt = (aside: Vec2): ShaftRay => {
           const next = pixel.add(aside).clamp(vec2(0), this.#gridSize.sub(1)).toConst() as Vec2
-          return log2(this.#rayTo(renderer, this.#uvOf(next)).distance).toConst()
+          return this.#rayTo(renderer, this.#uvOf(next))
         }
-        const own = distanceAt(vec2(0))
-        result.assign(vec4(own, own, own, 0))
+        const ray = rayAt(vec2(0))
+        const own = log2(ray.distance).toConst()
+        result.assign(vec4(own, own, own, this.#litAir(ray)))
         loop('neighbor', 9, index => {
           const row = float(index).div(3).floor().toConst()
-          const other = distanceAt(vec2(float(index).sub(row.mul(3)), row).sub(1))
+          const aside = vec2(float(index).sub(row.mul(3)), row).sub(1) as Vec2
+          const other = log2(rayAt(aside).distance).toConst()
           result.y.assign(result.y.min(other))
           result.z.assign(result.z.max(other))
         })
@@ -256,6 +263,19 @@ export class ScreenShafts implements ScreenShadows {
     return { direction, cosView, cosViewLight, distance }
   }
 
+  /** Light of the air on a ray without shadows, in the mean over wavelengths, as the target keeps light. */
+  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Float {
+    const { air, volume, viewpoint } = this.#shafts.view
+    const limits = rayLimits(viewpoint, cosView)
+    const { uniforms } = air
+    const at = [cosView, cosViewLight, limits, distance] as const
+    const { radiance } = sampleVolume(uniforms, volume, viewpoint, ...at)
+    const scale = this.#growth(distance)
+      .reciprocal()
+      .mul(RADIANCE_SCALE / 4)
+    return radiance.dot(vec4(scale)).clamp(1e-4, MOST).toConst()
+  }
+
   /** Place in the picture of the pixel that is marched for one of the target. */
   #uvOf(pixel: Vec2): Vec2 {
     return pixel.div(this.#density).add(0.5).div(this.#size).toConst()
@@ -265,15 +285,15 @@ export class ScreenShafts implements ScreenShadows {
    * Light that a pixel loses, for unit irradiance [1/sr]: from nine around it, of which any four that touch have
    * samples in all places of their steps; where those are of several depths, from the four nearest.
    *
-   * @param distance - Of what is seen in it [m].
+   * @param ray - View ray to what is seen in it.
    */
-  #lostTo(distance: Float): Vec4 {
+  #lostTo(ray: ShaftRay): Vec4 {
     const size = this.#gridSize
     const place = uv().mul(this.#size).sub(0.5).mul(this.#density).toConst() as unknown as Vec2
     const read = (texel: Vec2): Vec4 =>
       sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
-    const light = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
-    const own = log2(distance).toConst() as Float
+    const lightAt = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
+    const own = log2(ray.distance).toConst() as Float
     const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
     const { y: least, z: greatest } = read(nearest.add(vec2(size.x, 0)).add(0.5))
     const lost = vec4(0).toVar()
@@ -283,35 +303,35 @@ export class ScreenShafts implements ScreenShadows {
       const before = after.oneMinus().toConst() as Vec2
       const low = nearest.sub(0.5).add(vec2(0.25).div(before)).toConst() as Vec2
       const high = nearest.add(1.5).sub(vec2(0.25).div(after)).toConst() as Vec2
-      const upper = light(low)
+      const upper = lightAt(low)
         .mul(before.x)
-        .add(light(vec2(high.x, low.y)).mul(after.x))
-      const lower = light(vec2(low.x, high.y)).mul(before.x).add(light(high).mul(after.x))
+        .add(lightAt(vec2(high.x, low.y)).mul(after.x))
+      const lower = lightAt(vec2(low.x, high.y)).mul(before.x).add(lightAt(high).mul(after.x))
       const sum = upper.mul(before.y).add(lower.mul(after.y))
-      lost.assign(sum.mul(this.#growth(distance)))
+      lost.assign(sum)
     }).Else(() => {
       const first = place.floor().toConst() as Vec2
       const weights = float(0).toVar()
+      const light = this.#litAir(ray)
       loop('corner', 4, index => {
         const row = float(index).div(2).floor().toConst()
         const corner = first
           .add(vec2(float(index).sub(row.mul(2)), row))
           .min(size.sub(1))
           .add(0.5)
-        const other = read(corner.add(vec2(size.x, 0))).x
-        const apart = other.sub(own).abs()
+        const other = read(corner.add(vec2(size.x, 0)))
+        const apart = other.x.sub(own).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(STRANGER, 1)
-        // Beyond what a ray meets nothing is known of it.
-        const common = distance.min(exp2(other.add(SAME_DEPTH)))
-        lost.addAssign(read(corner).mul(weight.mul(this.#growth(common))))
+        // Of light that others have more of, or less, the same part.
+        lost.addAssign(read(corner).mul(weight.mul(light.div(other.w))))
         weights.addAssign(weight)
       })
       lost.divAssign(weights)
     })
-    return lost.div(RADIANCE_SCALE)
+    return lost.mul(this.#growth(ray.distance)).div(RADIANCE_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */
