@@ -88,7 +88,7 @@ function city(
     Object.assign(light.shadow, { shadowNode })
   }
   scene.add(light, light.target)
-  const shafts = quality === null ? undefined : lightShafts(atmosphere, camera, { light, quality })
+  const shafts = quality === null ? undefined : lightShafts(atmosphere, camera, light, { quality })
   const scenePass = pass(scene, camera, { samples: 0 })
   const pipeline = new RenderPipeline(renderer)
   if (path === 'forward') {

@@ -123,7 +123,7 @@ class World {
     )
     const depth = this.#pass.getTextureNode('depth')
     const light = (this.#sun = new SunDirectionalLight(atmosphere, 200))
-    const shafts = (this.shafts = lightShafts(atmosphere, camera, { light }))
+    const shafts = (this.shafts = lightShafts(atmosphere, camera, light))
     const drawn = this.#pass.getTextureNode()
     const air = aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('mixed', 4)

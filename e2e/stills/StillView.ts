@@ -122,7 +122,7 @@ export class StillView {
 
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
-    const shafts = still.shafts && lightShafts(atmosphere, camera, { light: sun })
+    const shafts = still.shafts && lightShafts(atmosphere, camera, sun)
     this.#shafts = shafts
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     let picture: Node = air

@@ -30,7 +30,10 @@ it('no file is longer than a reader takes in', () => {
 })
 
 it('docs name their thing first', () => {
-  const opening = /\/\*\*[\s*]*(?:Of|By|What|Where|Whether|How|Which|So|The same|From)\b[^\n]*/g
+  const start = /\/\*\*[\s*]*|@param [\w.[\]]+ - |@returns /.source
+  const first =
+    /(?:Of|By|What|Where|Whether|Whose|How|Which|So|The same|From|Among|Is|Those)\b[^\n]*/.source
+  const opening = new RegExp(`(?:${start})${first}`, 'g')
   const hidden = sources.flatMap(({ path, text }) =>
     [...text.matchAll(opening)].map(([doc]) => `${path}: ${doc.replaceAll(/\s+/g, ' ')}`)
   )

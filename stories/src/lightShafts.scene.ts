@@ -124,7 +124,7 @@ export const createLightShafts = (
       }
       const light = view.isNight ? moonlight : sun
       // #region light shafts
-      const shafts = lightShafts(atmosphere, camera, { light }) // the sun's, or a moon's
+      const shafts = lightShafts(atmosphere, camera, light) // the sun's, or a moon's
       const lit = aerialPerspective(color, depth, camera, atmosphere, { shafts })
       pipeline.outputNode = lit
       // #endregion

@@ -89,7 +89,7 @@ gpuTest('has the same shafts in world units of a kilometre and in ECEF axes', as
 
 /** A camera's own pipeline of the stage's scene, with shafts. */
 function second({ scene, atmosphere, light }: Stage, renderer: WebGPURenderer, camera: Camera) {
-  const shafts = lightShafts(atmosphere, camera, { light })
+  const shafts = lightShafts(atmosphere, camera, light)
   const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false

@@ -141,8 +141,8 @@ gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
       }
       marched.addAssign(cloudExtinction(field, sample, false).mul(to.sub(from)))
     })
-    const { toLight, through, known } = sampleShadows(shadows.nodes, start, float(0))
-    return vec4(toLight, marched, through, known)
+    const { toLight, through, inMap } = sampleShadows(shadows.nodes, start, float(0))
+    return vec4(toLight, marched, through, inMap)
   })
   let [apart, lit, wronglyDark, dark, wronglyLit] = [0, 0, 0, 0, 0]
   places.forEach((_, i) => {

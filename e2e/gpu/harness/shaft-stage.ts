@@ -65,7 +65,7 @@ export interface Stage {
 export function stage(
   renderer: WebGPURenderer,
   elevation: number,
-  options: Omit<LightShaftsOptions, 'light'> | null = {},
+  options: LightShaftsOptions | null = {},
   isMoonlit = false
 ): Stage {
   renderer.shadowMap.enabled = true
@@ -91,7 +91,7 @@ export function stage(
   scene.add(light, light.target, receiver)
   const camera = new PerspectiveCamera(60, stageSize.width / stageSize.height, 1, 1e6)
   camera.position.y = 2
-  const shafts = lightShafts(atmosphere, camera, { light, ...options })
+  const shafts = lightShafts(atmosphere, camera, light, options ?? {})
   const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false

@@ -170,8 +170,8 @@ export class Atmosphere extends ScenePlanet {
    * Bakes stale tables and computes the sky volume for a camera. Nodes call it as they are rendered;
    * call it yourself to choose when the work is done.
    *
-   * @param camera - Its `matrixWorld` must be up to date.
-   * @param source - Whose light it is.
+   * @param camera - Camera, whose `matrixWorld` must be up to date.
+   * @param source - Source of the light.
    */
   update(renderer: Renderer, camera: Camera, source: LightSource = this.sun): AtmosphereView {
     // Its room was left to others if it was disposed of.
@@ -245,7 +245,7 @@ export class Atmosphere extends ScenePlanet {
   /**
    * Bakes all tables now and reads back what `skyIlluminanceAt` and `skyLuminanceAt` need.
    *
-   * @param renderer - Is initialised first if it is not yet.
+   * @param renderer - Renderer, which is initialised first if it is not yet.
    */
   async bake(renderer: Renderer): Promise<void> {
     checkRenderer('Atmosphere', renderer)

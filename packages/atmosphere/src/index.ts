@@ -17,12 +17,12 @@ export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
 export type {
   AirOccluder,
-  AirPlace,
+  AirPoint,
   AirViewRay,
   AirShadow,
   ShadowedShafts
 } from './shafts/AirOccluder'
-export type { AirOptions, AirShadows, ScreenShadows, Veil } from './view/AirShadows'
+export type { AirOptions, AirShadows, ScreenShadows, ForegroundLayer } from './view/AirShadows'
 export { LightSource } from './view/LightSource'
 export type { LayerRay, PointRay, SkyLayer, SkyRay } from './view/SkyLayer'
 export { SunDirectionalLight } from './lights/SunDirectionalLight'

@@ -12,7 +12,7 @@ export interface SkyOverlay {
   /**
    * Takes a step of its drawing; the view's nodes are up to date.
    *
-   * @param view - Whose camera stands where the environment is seen from.
+   * @param view - View whose camera stands where the environment is seen from.
    * @param step - Index of the step, from 0 to `steps` − 1.
    */
   draw(renderer: Renderer, view: AtmosphereView, step: number): void

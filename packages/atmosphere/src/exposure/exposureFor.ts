@@ -161,7 +161,7 @@ function nightIlluminance(parameters: AtmosphereParameters, ground: Ground): num
  * illuminance for the Earth stands in. Where the camera looks does not count. With clouds, the ground's light is
  * dimmed by those above the camera: under an overcast it is that of the overcast, from above the clouds nothing changes.
  *
- * @param camera - Its `matrixWorld` must be up to date.
+ * @param camera - Camera, whose `matrixWorld` must be up to date.
  * @returns Greater than 0; 1 in full daylight.
  * @throws If an argument is of the wrong kind or out of range.
  */

@@ -49,7 +49,7 @@ export class SkyLightProbe extends LightProbe {
   overcast: ((plane: SkyLitPlane, clear: Vec4) => Vec4) | null = null
 
   /**
-   * @param source - Whose light sky and ground scatter; by default the sun's.
+   * @param source - Source of the light that sky and ground scatter; by default the sun.
    * @throws If an argument is of the wrong kind.
    */
   constructor(atmosphere: Atmosphere, source: LightSource = atmosphere?.sun) {

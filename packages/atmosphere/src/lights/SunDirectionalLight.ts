@@ -33,7 +33,7 @@ export class SunDirectionalLight extends DirectionalLight {
 
   /**
    * @param distance - Distance from the target to the light [world units].
-   * @param source - Whose light it is; by default the sun's.
+   * @param source - Source of the light; by default the sun.
    */
   constructor(atmosphere: Atmosphere, distance = 1, source: LightSource = atmosphere?.sun) {
     super()

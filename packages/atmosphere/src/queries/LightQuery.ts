@@ -31,7 +31,7 @@ export class LightQuery {
   /**
    * @param where - The function that the user called.
    * @param position - World.
-   * @param source - Whose light.
+   * @param source - Source of the light.
    */
   constructor(
     where: string,

@@ -17,7 +17,7 @@ export interface IlluminanceOptions {
 
 /** Options of {@link skyIlluminanceAt}. */
 export interface SkyIlluminanceOptions extends IlluminanceOptions {
-  /** Whose light in the sky; by default the sun's. A moon's is `moon.source`. */
+  /** Source of the light in the sky; by default the sun. A moon's is `moon.source`. */
   source?: LightSource
 }
 

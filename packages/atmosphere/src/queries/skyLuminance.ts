@@ -8,7 +8,7 @@ import { LightQuery } from './LightQuery'
 
 /** Options of {@link skyLuminanceAt}. */
 export interface SkyLuminanceOptions {
-  /** Whose light in the sky; by default the sun's. A moon's is `moon.source`. */
+  /** Source of the light in the sky; by default the sun. A moon's is `moon.source`. */
   source?: LightSource
 }
 

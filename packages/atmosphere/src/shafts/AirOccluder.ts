@@ -7,8 +7,8 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
 import type { ViewUniforms } from '../view/ViewUniforms'
 
-/** A place in the air that a camera looks through, as shader nodes. */
-export interface AirPlace {
+/** A point in the air that a camera looks through, as shader nodes. */
+export interface AirPoint {
   /** The camera's view in the light whose shadow it is; `view.localCoordinates(offset)` has altitude and zenith. */
   readonly view: ViewUniforms
   /** Displacement from the camera, in the mapped space, and its length [m]. */
@@ -21,7 +21,7 @@ export interface AirPlace {
 }
 
 /** A view ray through the air, as shader nodes. */
-export interface AirViewRay extends Pick<AirPlace, 'view' | 'jitter'> {
+export interface AirViewRay extends Pick<AirPoint, 'view' | 'jitter'> {
   /** Unit length, in the mapped space. */
   readonly direction: Vec3
 }
@@ -45,12 +45,12 @@ export interface AirShadow {
    * Part of the light that arrives at places of a view ray, in [0, 1]: 1 where there is no shadow. Called for each ray;
    * what it returns, in a loop and in branches.
    */
-  transmittance(ray: AirViewRay): (place: AirPlace) => Float
+  transmittance(ray: AirViewRay): (place: AirPoint) => Float
   /**
    * Diffuse light at a place, which air scatters again, over that without this occluder, at the four wavelengths [–]:
    * less under clouds that are thick, more under thin ones and above them. Left out, 1.
    */
-  diffuse?(place: AirPlace): Vec4
+  diffuse?(point: AirPoint): Vec4
   /** Called when it is taken out. */
   dispose?(): void
 }

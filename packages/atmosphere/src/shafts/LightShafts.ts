@@ -2,20 +2,13 @@ import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
 import { float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
-import {
-  checkBoolean,
-  checkChoice,
-  checkNonNegative,
-  checkOptions,
-  fail,
-  setOptions
-} from '@welkin/geo'
+import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import type { Float, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
-import type { ScreenShadows, Veil } from '../view/AirShadows'
+import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
 import type { LayerRay, PointRay, SkyRay } from '../view/SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
@@ -44,12 +37,6 @@ const names = Object.keys(qualities) as LightShaftsQuality[]
 
 /** Options of {@link LightShafts}. */
 export interface LightShaftsOptions {
-  /**
-   * Light whose shadows fall into the air: a `SunDirectionalLight`, a `MoonDirectionalLight`, or a directional
-   * light of one's own, three's `SunLight` too, that shines from the atmosphere's sun. It must cast shadows for
-   * there to be shafts.
-   */
-  light: ParallelLight
   /** See {@link LightShafts.strength}; by default 1. */
   strength?: number
   /** See {@link LightShafts.quality}; by default `'high'`. */
@@ -67,7 +54,7 @@ const _axes = new Matrix4()
  * Light shafts: what shadows take from the light that the air scatters to a camera.
  *
  * ```ts
- * const shafts = lightShafts(atmosphere, camera, { light: sun })
+ * const shafts = lightShafts(atmosphere, camera, sun)
  * const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
  * ```
  *
@@ -91,7 +78,7 @@ export class LightShafts implements ShadowedShafts {
   readonly atmosphere: Atmosphere
   /** Camera whose picture has the shafts. */
   readonly camera: Camera
-  /** Shared, not owned. */
+  /** Light whose shadows fall into the air; shared, not owned. */
   readonly light: ParallelLight
   /** Source of the light. */
   readonly source: LightSource
@@ -118,11 +105,21 @@ export class LightShafts implements ShadowedShafts {
   #enabled = true
   #isActive = false
 
-  /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
-  constructor(atmosphere: Atmosphere, camera: Camera, options: LightShaftsOptions) {
+  /**
+   * @param camera - Camera whose picture has the shafts.
+   * @param light - Light whose shadows fall into the air: a `SunDirectionalLight`, a `MoonDirectionalLight`, or a
+   *   directional light of one's own, three's `SunLight` too, that shines from the atmosphere's sun. It must cast
+   *   shadows for there to be shafts.
+   * @throws If an argument is missing or of the wrong kind, or an option is unknown.
+   */
+  constructor(
+    atmosphere: Atmosphere,
+    camera: Camera,
+    light: ParallelLight,
+    options: LightShaftsOptions = {}
+  ) {
     checkAtmosphere('LightShafts', atmosphere)
     checkCamera('LightShafts', camera)
-    const { light, ...settings } = checkOptions('LightShafts', options ?? {}, 'light', ...SETTINGS)
     const lightCamera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
     if (!lightCamera?.isOrthographicCamera)
       fail('LightShafts', 'light must be a DirectionalLight', light)
@@ -142,8 +139,8 @@ export class LightShafts implements ShadowedShafts {
       },
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
     }
+    this.set(options)
     claimShadow(light)
-    this.set(settings)
   }
 
   /**
@@ -151,7 +148,7 @@ export class LightShafts implements ShadowedShafts {
    *
    * @throws If one is unknown or refused; then nothing has changed.
    */
-  set(settings: Omit<LightShaftsOptions, 'light'>): this {
+  set(settings: LightShaftsOptions): this {
     return setOptions('LightShafts', this, settings, ...SETTINGS)
   }
 
@@ -230,8 +227,8 @@ export class LightShafts implements ShadowedShafts {
     return this.#isActive
   }
 
-  upTo(depthNode: Node, veil?: Veil): ScreenShadows {
-    const screen = new ScreenShafts(this, depthNode, veil)
+  upTo(depthNode: Node, foreground?: ForegroundLayer): ScreenShadows {
+    const screen = new ScreenShafts(this, depthNode, foreground)
     this.#screens.add(screen)
     return screen
   }
@@ -241,14 +238,14 @@ export class LightShafts implements ShadowedShafts {
     this.#screens.delete(screen)
   }
 
-  /** True if a veil is drawn, by whose node shafts are. */
-  get isVeiled(): boolean {
-    return [...this.#screens].some(({ veil }) => veil?.isDrawn)
+  /** True if a foreground layer is drawn, by whose node shafts are. */
+  get hasForeground(): boolean {
+    return [...this.#screens].some(({ foreground }) => foreground?.isDrawn)
   }
 
   /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
-    const isPost = [...this.#screens].some(({ veil }) => veil === undefined)
+    const isPost = [...this.#screens].some(({ foreground }) => foreground === undefined)
     return !isPost && this.atmosphere.layers.includes(this)
   }
 
@@ -323,5 +320,6 @@ export class LightShafts implements ShadowedShafts {
 export const lightShafts = (
   atmosphere: Atmosphere,
   camera: Camera,
-  options: LightShaftsOptions
-): LightShafts => new LightShafts(atmosphere, camera, options)
+  light: ParallelLight,
+  options?: LightShaftsOptions
+): LightShafts => new LightShafts(atmosphere, camera, light, options)

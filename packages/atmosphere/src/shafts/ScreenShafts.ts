@@ -10,7 +10,7 @@ import { sampleVolume } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { loop, sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import type { ScreenShadows, Veil } from '../view/AirShadows'
+import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
@@ -25,8 +25,8 @@ import { DepthRays } from '../view/DepthRays'
 const SAME_DEPTH = 0.35
 const OTHER_DEPTH = 0.8
 
-/** Weight of pixels of another depth, where there are no others. */
-const STRANGER = 1e-3
+/** Least weight in the bilateral upsampling: that of pixels of another depth. */
+const MIN_WEIGHT = 1e-3
 
 /** Greatest light that the target keeps: half floats hold a little more. */
 const MOST = 6e4
@@ -35,7 +35,7 @@ const MOST = 6e4
 const FAR = 1e10
 const PLANET = 1e9
 
-/** Part of the light from behind a veil that is not worth samples. */
+/** Part of the light from behind a foreground layer that is not worth samples. */
 const OPAQUE = 0.01
 
 const _size = new Vector2()
@@ -67,8 +67,8 @@ export interface CameraShafts {
   readonly isActive: boolean
   /** Grows whenever its shader changes. */
   readonly version: number
-  /** True if a veil is drawn, by whose node shafts are. */
-  readonly isVeiled: boolean
+  /** True if a foreground layer is drawn, by whose node shafts are. */
+  readonly hasForeground: boolean
   /** True if materials draw the shafts themselves. */
   readonly isForward: boolean
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -83,11 +83,11 @@ export interface CameraShafts {
  * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, then taken from those around a
  * pixel that are at its depth.
  *
- * Of a picture with a veil the light before it counts, and the light behind it as far as it passes: so the light
+ * Of a picture with a foreground layer the light before it counts, and the light behind it as far as it passes: so the light
  * is taken from the picture of both, at once.
  */
 export class ScreenShafts implements ScreenShadows {
-  readonly veil: Veil | undefined
+  readonly foreground: ForegroundLayer | undefined
   readonly target: RenderTarget
   readonly #shafts: CameraShafts
   readonly #rays: DepthRays
@@ -104,13 +104,13 @@ export class ScreenShafts implements ScreenShadows {
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
-  /** `strengthNow`; 0 while the node of a veil draws the shafts. */
+  /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
   readonly #strength = number()
-  /** 1 if what is behind the veil has shafts already. */
+  /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
 
-  constructor(shafts: CameraShafts, depthNode: Node, veil?: Veil) {
-    this.veil = veil
+  constructor(shafts: CameraShafts, depthNode: Node, foreground?: ForegroundLayer) {
+    this.foreground = foreground
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
@@ -158,9 +158,9 @@ export class ScreenShafts implements ScreenShadows {
     return this.#subtract(light, ray)
   }
 
-  /** True if the node of a veil draws the shafts, so that this one has no part in its shader. */
+  /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
   get #isElsewhere(): boolean {
-    return this.veil === undefined && this.#shafts.isVeiled
+    return this.foreground === undefined && this.#shafts.hasForeground
   }
 
   #subtract(light: Vec4, ray: Pick<ShaftRay, 'direction' | 'cosView' | 'distance'>): Vec4 {
@@ -187,9 +187,9 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
   #seen(at: Vec2): { seenFrom?: (distance: Float) => Float; most: Float } {
-    if (this.veil === undefined) return { most: float(FAR) }
-    const { distance, transmittance } = this.veil.seenAt(at)
-    // Behind the veil the shadows of materials are dimmed with them.
+    if (this.foreground === undefined) return { most: float(FAR) }
+    const { distance, transmittance } = this.foreground.seenAt(at)
+    // Behind the foreground the shadows of materials are dimmed with them.
     const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
     const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
     return {
@@ -324,7 +324,7 @@ export class ScreenShafts implements ScreenShadows {
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
-          .clamp(STRANGER, 1)
+          .clamp(MIN_WEIGHT, 1)
         // Of light that others have more of, or less, the same part.
         lost.addAssign(read(corner).mul(weight.mul(light.div(other.w))))
         weights.addAssign(weight)

@@ -47,7 +47,7 @@ export function claimShadow(light: ParallelLight): void {
  * Draws a shadow map now, if it would draw it later in the frame, or not at all since nothing in
  * view takes shadows. Cascades are drawn by three alone.
  *
- * @returns Whether the map is that of the frame.
+ * @returns True if the map is that of the frame.
  */
 export function drawShadow(light: ParallelLight, frame: NodeFrame, camera: Camera): boolean {
   let root: ParallelLight['parent'] = light

@@ -102,7 +102,7 @@ export class SkyVolumes {
 
   /**
    * @param atlas - Atlas that keeps them; it grows, and is freed by its owner.
-   * @param segments - Those of other volumes, to share them; whose they are frees them.
+   * @param segments - Segments of other volumes, to share them; their owner frees them.
    */
   constructor(
     air: Air,

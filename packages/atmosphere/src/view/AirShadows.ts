@@ -4,7 +4,7 @@ import type { Float, Vec2, Vec3 } from '../tsl-types'
 import type { SkyLayer } from './SkyLayer'
 
 /** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
-export interface Veil {
+export interface ForegroundLayer {
   /** False while it is not drawn. */
   readonly isDrawn: boolean
   /**
@@ -30,9 +30,9 @@ export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'glow'
    * Layer for a post effect, computed once for its pixels and not by every material.
    *
    * @param depthNode - Depth of the scene, as the renderer writes it.
-   * @param veil - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.
+   * @param foreground - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.
    */
-  upTo(depthNode: Node, veil?: Veil): ScreenShadows
+  upTo(depthNode: Node, foreground?: ForegroundLayer): ScreenShadows
 }
 
 /** Options of nodes that draw air. */

@@ -30,51 +30,51 @@ describe('bad input to light shafts', () => {
     ],
     [
       'LightShafts: atmosphere must be an Atmosphere, got a PerspectiveCamera',
-      () => lightShafts(wrong(camera), camera, { light })
+      () => lightShafts(wrong(camera), camera, light)
     ],
     [
       'LightShafts: camera must be a Camera, got an Atmosphere',
-      () => lightShafts(atmosphere, wrong(atmosphere), { light })
+      () => lightShafts(atmosphere, wrong(atmosphere), light)
     ],
     [
       'LightShafts: light must be a DirectionalLight, got undefined',
-      () => lightShafts(atmosphere, camera, wrong({}))
+      () => lightShafts(atmosphere, camera, wrong(undefined))
     ],
     [
-      "LightShafts: unknown option 'steps', there are light, strength, quality, enabled",
-      () => lightShafts(atmosphere, camera, wrong({ light, steps: 4 }))
+      "LightShafts: unknown option 'steps', there are strength, quality, enabled",
+      () => lightShafts(atmosphere, camera, light, wrong({ steps: 4 }))
     ],
     [
-      "LightShafts: unknown option 'ligth', did you mean 'light'?",
-      () => lightShafts(atmosphere, camera, wrong({ ligth: light }))
+      "LightShafts: unknown option 'strenght', did you mean 'strength'?",
+      () => lightShafts(atmosphere, camera, light, wrong({ strenght: 1 }))
     ],
     [
       'LightShafts: strength must be finite and ≥ 0, got -1',
-      () => lightShafts(atmosphere, camera, { light, strength: -1 })
+      () => lightShafts(atmosphere, camera, light, { strength: -1 })
     ],
     [
       "LightShafts: quality must be 'low', 'medium', 'high' or 'reference', got 'best'",
-      () => lightShafts(atmosphere, camera, { light, quality: wrong('best') })
+      () => lightShafts(atmosphere, camera, light, { quality: wrong('best') })
     ],
     [
       'LightShafts: enabled must be true or false, got 1',
-      () => lightShafts(atmosphere, camera, { light, enabled: wrong(1) })
+      () => lightShafts(atmosphere, camera, light, { enabled: wrong(1) })
     ],
     [
       'LightShafts: light must be a DirectionalLight, got a PointLight',
-      () => lightShafts(atmosphere, camera, { light: wrong(new PointLight()) })
+      () => lightShafts(atmosphere, camera, wrong(new PointLight()))
     ],
     [
       'LightShafts.add: occluder must be an AirOccluder, such as cloudAirShadow(), got a PerspectiveCamera',
-      () => lightShafts(atmosphere, camera, { light }).add(wrong(camera))
+      () => lightShafts(atmosphere, camera, light).add(wrong(camera))
     ],
     [
       'LightShafts.add: occluder must not have been added already',
-      () => lightShafts(atmosphere, camera, { light }).add(occluder, occluder)
+      () => lightShafts(atmosphere, camera, light).add(occluder, occluder)
     ],
     [
       'LightShafts: atmosphere must be that of its layers, got an Atmosphere',
-      () => new Atmosphere().add(lightShafts(atmosphere, camera, { light }))
+      () => new Atmosphere().add(lightShafts(atmosphere, camera, light))
     ]
   ]
   it.each(cases)('%s', (message, run) => {
@@ -82,7 +82,7 @@ describe('bad input to light shafts', () => {
   })
 
   it('changes nothing if a setting is refused', () => {
-    const shafts = lightShafts(atmosphere, camera, { light, strength: 0.5 })
+    const shafts = lightShafts(atmosphere, camera, light, { strength: 0.5 })
     expect(() => shafts.set({ strength: 2, quality: wrong('best') })).toThrow('quality')
     expect(shafts.strength).toBe(0.5)
     expect(shafts.quality).toBe('high')
@@ -98,17 +98,17 @@ describe('what is added to light shafts', () => {
         return { transmittance: () => () => float(1), dispose: () => calls.push('dispose') }
       }
     }
-    const shafts = lightShafts(atmosphere, camera, { light })
+    const shafts = lightShafts(atmosphere, camera, light)
     const { version } = shafts
     shafts.add(occluder, added).remove(added, added).add(added)
     expect(calls).toEqual(['cast', 'dispose', 'cast'])
     expect(shafts.version).toBeGreaterThan(version)
   })
 
-  it('leaves nothing of a veil that was taken out, and takes forward shafts up again after a post effect', () => {
-    const shafts = lightShafts(atmosphere, camera, { light })
+  it('leaves nothing of a foreground that was taken out, and takes forward shafts up again after a post effect', () => {
+    const shafts = lightShafts(atmosphere, camera, light)
     let [drawn, freed] = [0, 0]
-    const veil = {
+    const foreground = {
       get isDrawn() {
         drawn++
         return true
@@ -116,23 +116,23 @@ describe('what is added to light shafts', () => {
       seenAt: () => ({ distance: float(1), transmittance: float(1) })
     }
     for (let i = 0; i < 3; i++) {
-      const screen = shafts.upTo(float(1), veil) as ScreenShafts
+      const screen = shafts.upTo(float(1), foreground) as ScreenShafts
       screen.target.addEventListener('dispose', () => freed++)
       screen.dispose()
     }
     expect(freed).toBe(3)
     shafts.dispose()
     expect(freed).toBe(3)
-    expect(shafts.isVeiled).toBe(false)
+    expect(shafts.hasForeground).toBe(false)
     expect(drawn).toBe(0)
-    const kept = shafts.upTo(float(1), veil) as ScreenShafts
+    const kept = shafts.upTo(float(1), foreground) as ScreenShafts
     kept.target.addEventListener('dispose', () => freed++)
     shafts.dispose()
     expect(freed).toBe(4)
-    expect(shafts.isVeiled).toBe(true)
+    expect(shafts.hasForeground).toBe(true)
 
     const layered = new Atmosphere()
-    const post = lightShafts(layered, camera, { light: new SunDirectionalLight(layered) })
+    const post = lightShafts(layered, camera, new SunDirectionalLight(layered))
     layered.add(post)
     const node = aerialPerspective(vec4(0), float(1), camera, layered, { shafts: post })
     expect(post.isForward).toBe(false)
@@ -141,7 +141,7 @@ describe('what is added to light shafts', () => {
   })
 
   it('is not added where one of several is refused', () => {
-    const shafts = lightShafts(atmosphere, camera, { light })
+    const shafts = lightShafts(atmosphere, camera, light)
     expect(() => shafts.add(occluder, wrong({}))).toThrow('occluder')
     expect(shafts.shadowedAir.shadows).toHaveLength(0)
   })

@@ -17,7 +17,7 @@ const _ofProbe = new WeakMap<SkyLightProbe | NightLightProbe, CloudSkyLight>()
 export class CloudSkyLight {
   /** Shared, not owned. */
   readonly probe: SkyLightProbe | NightLightProbe
-  /** Whose clouds; shared, not owned. */
+  /** Clouds that change the light; shared, not owned. */
   readonly clouds: CloudsNode
   readonly #strength = number(1)
   readonly #overcast: SkyLightProbe['overcast']

@@ -195,7 +195,7 @@ export class CloudsNode extends AtmosphereNode {
    * Makes all that air and clouds need now: the atmosphere's tables, noise and the light table. Shaders are
    * compiled with the first frame.
    *
-   * @param renderer - Is initialised first if it is not yet.
+   * @param renderer - Renderer, which is initialised first if it is not yet.
    */
   async bake(renderer: Renderer): Promise<void> {
     await this.atmosphere.bake(renderer)

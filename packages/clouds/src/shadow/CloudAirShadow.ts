@@ -1,6 +1,6 @@
 import type {
   AirOccluder,
-  AirPlace,
+  AirPoint,
   AirViewRay,
   AirShadow,
   AtmosphereView,
@@ -18,7 +18,7 @@ import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
-import { CloudVeil } from './CloudVeil'
+import { CloudForeground } from './CloudForeground'
 import { DiffuseRatioTable } from './DiffuseRatioTable'
 import { sampleShadowsAlong } from './tsl/sampleShadows'
 
@@ -26,7 +26,7 @@ import { sampleShadowsAlong } from './tsl/sampleShadows'
 class CastShadow implements AirShadow {
   readonly #clouds: CloudsNode
   readonly #shafts: ShadowedShafts
-  readonly #veil: CloudVeil
+  readonly #foreground: CloudForeground
   readonly #diffuse: DiffuseRatioTable
   /** The shafts as the clouds' node draws them, where both have the same camera. */
   readonly #screen: ScreenShadows | undefined
@@ -41,10 +41,10 @@ class CastShadow implements AirShadow {
       fail('CloudAirShadow', 'atmosphere must be that of the light shafts', clouds.atmosphere)
     this.#clouds = clouds
     this.#shafts = shafts
-    this.#veil = new CloudVeil(clouds)
+    this.#foreground = new CloudForeground(clouds)
     this.#diffuse = new DiffuseRatioTable(clouds.shadows, clouds.light.nodes)
     if (shafts.camera !== clouds.camera) return
-    this.#screen = shafts.upTo(clouds.depthNode, this.#veil)
+    this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
     clouds.needsUpdate = true
   }
@@ -64,13 +64,13 @@ class CastShadow implements AirShadow {
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
   }
 
-  transmittance({ view, direction, jitter }: AirViewRay): (place: AirPlace) => Float {
+  transmittance({ view, direction, jitter }: AirViewRay): (place: AirPoint) => Float {
     const { field, light, shadows } = this.#clouds
     const mapped = sampleShadowsAlong(shadows.nodes, this.#shift, direction, jitter)
     return ({ offset, distance }) => {
-      const { shadow, known } = mapped(distance)
+      const { shadow, inMap } = mapped(distance)
       const depth = shadow.toVar()
-      If(known.mul(this.#isMapped).equal(0), () => {
+      If(inMap.mul(this.#isMapped).equal(0), () => {
         const { altitude, cosLight, up } = view.localCoordinates(offset)
         if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
         else {
@@ -85,7 +85,7 @@ class CastShadow implements AirShadow {
     }
   }
 
-  diffuse({ view, offset }: AirPlace): Vec4 {
+  diffuse({ view, offset }: AirPoint): Vec4 {
     const { field, light } = this.#clouds
     const { altitude, cosLight, up } = view.localCoordinates(offset)
     if (field.worldMap === null) return this.#diffuse.sample(altitude, cosLight)
@@ -96,7 +96,7 @@ class CastShadow implements AirShadow {
 
   dispose(): void {
     this.#diffuse.dispose()
-    this.#veil.isRemoved = true
+    this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)
     this.#screen.dispose?.()

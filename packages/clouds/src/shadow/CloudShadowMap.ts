@@ -145,7 +145,7 @@ export class CloudShadowMap {
    * Draws what no longer fits: a strip, or all cascades at once after a jump. The field must be up to
    * date.
    *
-   * @param view - Of the field's camera, up to date.
+   * @param view - View of the field's camera, up to date.
    */
   update(renderer: Renderer, view: AtmosphereView): void {
     const radius = this.field.radius.value

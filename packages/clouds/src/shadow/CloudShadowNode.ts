@@ -87,9 +87,9 @@ export class CloudShadowNode extends Node<'float'> {
     if (clouds.isDisposed) return this.shadowNode ?? float(1)
     return Fn(() => {
       const offset = this.#view.toMapped(positionView).add(this.#shift).toConst() as Vec3
-      const { shadow, known } = sampleShadows(shadows.nodes, offset, float(0))
+      const { shadow, inMap } = sampleShadows(shadows.nodes, offset, float(0))
       const depth = shadow.toVar()
-      If(known.mul(this.#isMapped).equal(0), () => {
+      If(inMap.mul(this.#isMapped).equal(0), () => {
         const distance = offset.length()
         const sample = { offset, ...field.view.localCoordinates(offset), distance }
         depth.assign(opticalDepthTowards(field, sample, this.#view.lightDirection))

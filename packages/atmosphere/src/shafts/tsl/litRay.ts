@@ -8,7 +8,7 @@ import type { Float, Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 
 /** Air at a distance on a view ray. */
-export interface RayPlace extends ReturnType<typeof pointAlong> {
+export interface LitPoint extends ReturnType<typeof pointAlong> {
   /** Scattering coefficients of molecules and of aerosols, as the camera sees them: times the transmittance [1/m]. */
   readonly seenRayleigh: Vec4
   readonly seenMie: Vec4
@@ -17,7 +17,7 @@ export interface RayPlace extends ReturnType<typeof pointAlong> {
 /**
  * Reads the air along a view ray from the tables of its view.
  *
- * @param ray - From its entry into the air.
+ * @param ray - View ray from its entry into the air.
  * @returns Air at a distance from there [m].
  */
 export function litRay(
@@ -25,7 +25,7 @@ export function litRay(
   ray: Ray,
   limits: RayLimits,
   cosView: Float
-): (inAir: Float) => RayPlace {
+): (inAir: Float) => LitPoint {
   const { uniforms } = air
   const elevation = viewRay(viewpoint, cosView, limits.hitsGround)
   return inAir => {

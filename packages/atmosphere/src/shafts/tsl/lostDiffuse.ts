@@ -5,13 +5,13 @@ import type { Air } from '../../scattering/tsl/ray'
 import { RAYLEIGH_MOMENT_2 } from '../../scattering/tsl/segment'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import { loop, type Float, type Int, type Vec4 } from '../../tsl-types'
-import type { RayPlace } from './litRay'
+import type { LitPoint } from './litRay'
 import type { WarpedSteps } from './warpedSteps'
 
 /** A view ray, as {@link lostDiffuse} goes along it. */
-export interface DiffuseRay {
+interface DiffuseRay {
   readonly steps: WarpedSteps
-  readonly at: (inAir: Float) => RayPlace
+  readonly at: (inAir: Float) => LitPoint
   readonly cosViewLight: Float
   /** Number of samples. */
   readonly samples: Int

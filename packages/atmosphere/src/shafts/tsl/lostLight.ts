@@ -6,7 +6,7 @@ import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import { litRay, type RayPlace } from './litRay'
+import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
 import { polarRay } from './polarMap'
 import { shadowsAlong, type ShadowedAir, type ShaftRay } from './shadowsAlong'
@@ -125,7 +125,7 @@ export function lostLight(
 /** Light scattered once that a ray gains at a distance in the air, for unit irradiance [1/(m sr)]. */
 function scatteredOnce(
   { uniforms, transmittance }: Air,
-  airAt: (inAir: Float) => RayPlace,
+  airAt: (inAir: Float) => LitPoint,
   cosViewLight: Float
 ): (inAir: Float) => Vec4 {
   const rayleigh = rayleighPhase(cosViewLight).toConst()

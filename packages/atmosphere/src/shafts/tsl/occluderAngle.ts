@@ -108,7 +108,7 @@ const PROBES = 4
  * A texel of the sun-polar shadow map: its ray of light through the shadow maps, up to the first that has an
  * occluder on it.
  *
- * @param maps - From the finest on, as cascades are.
+ * @param maps - Shadow maps from the finest on, as cascades are.
  * @returns Angle θ of the occluder from the source of light, π where there is none; and π − θ [rad].
  */
 export function occluderAngle(

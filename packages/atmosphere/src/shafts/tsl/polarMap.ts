@@ -34,7 +34,7 @@ export interface PolarRay {
 }
 
 /**
- * @param direction - Of view, unit length.
+ * @param direction - View direction, of unit length.
  * @param cosViewLight - ν, direction against the source.
  */
 export function polarRay(
@@ -82,7 +82,7 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
  * True where air on a view ray is dark: an occluder on its ray of light stands at a smaller angle from the light.
  *
  * @param map - θ of the first occluder, and π − θ, of rays of light [rad].
- * @param distance - From the camera [m].
+ * @param distance - Distance from the camera [m].
  */
 export function isDark(
   map: TextureNode,

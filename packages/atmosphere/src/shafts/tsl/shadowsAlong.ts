@@ -2,7 +2,7 @@ import { If, float } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import type { AirPlace, AirShadow } from '../AirOccluder'
+import type { AirPoint, AirShadow } from '../AirOccluder'
 import { isDark, type PolarFrame, type PolarRay } from './polarMap'
 
 /** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
@@ -42,7 +42,7 @@ export function shadowsAlong(
   /** Part of the light scattered more than once; null if none is missing. */
   missingAt: ((distance: Float) => Vec4) | null
 } {
-  const placeAt = (distance: Float): AirPlace => {
+  const placeAt = (distance: Float): AirPoint => {
     const offset = direction.mul(distance).toConst() as Vec3
     return { view, offset, distance, jitter, positionWorld: () => toWorld(offset) }
   }

@@ -21,7 +21,7 @@ export interface WarpedSteps {
  * the distance at which the air is densest and L falls with the slope of the ray there. The tails are long
  * because molecules reach higher than aerosols.
  *
- * @param ray - From its entry into the air.
+ * @param ray - View ray from its entry into the air.
  * @param length - > 0 [m].
  */
 export function warpedSteps(

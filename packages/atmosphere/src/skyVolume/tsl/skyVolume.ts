@@ -43,7 +43,7 @@ function tileReader(
 
 /** Part of a view ray up to a point, as the sky volumes of its viewpoint have it. */
 export interface VolumeSegment extends ViewRay {
-  /** Among the distances of its ray, in [0, 1]. */
+  /** Position among the distances of its ray, in [0, 1]. */
   position: Float
   /** Optical depth up to it. */
   depth: Vec4

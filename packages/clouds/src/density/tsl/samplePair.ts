@@ -45,7 +45,7 @@ const sampleNearby = (
  * Samples clouds at two places near each other on a ray, with detail.
  *
  * @param map - Weather around the camera; left out, it is looked up at the place itself.
- * @param clear - Is kept between samples of a ray.
+ * @param clear - Clear layers, kept between samples of a ray.
  * @param middle - The place between both, within the altitudes of the same layers.
  * @param length - Distance between them [m].
  * @param direction - Direction of the ray, in the mapped space.

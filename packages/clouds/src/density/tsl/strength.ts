@@ -13,7 +13,7 @@ import type { CloudWeather } from './weather'
  * over the share c of the sky. There strength goes from 0 to `strongest`, whatever the coverage: few clouds
  * are as tall as many. An offset makes up for the billows, which add more at edges than they take.
  *
- * @param weather - Its sum has variance 1: u is its rank.
+ * @param weather - Weather, whose sum has variance 1: u is its rank.
  * @param coverage - c, in [0, 1].
  */
 export function columnStrength(

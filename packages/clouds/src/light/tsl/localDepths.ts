@@ -92,14 +92,14 @@ export function localDepths(
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
   const far = sampleShadows(shadows, beyond, dither)
-  const known = far.known.mul(isMapped).toConst() as Float
+  const isMappedThere = far.inMap.mul(isMapped).toConst() as Float
   // Where no map is: as near, thinning out towards the top.
   const density = found.y.div(probed).toConst()
   const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
   const guess = density.mul(toTop.min(widest).sub(probed).max(0)).toConst()
-  const depthToLight = found.y.add(known.mix(guess, far.toLight)).toConst() as Float
+  const depthToLight = found.y.add(isMappedThere.mix(guess, far.toLight)).toConst() as Float
   const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
-  const through = known
+  const through = isMappedThere
     .mix(depthToLight.add(behind), far.through.max(depthToLight))
     .toConst() as Float
   const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))

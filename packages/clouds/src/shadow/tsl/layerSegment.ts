@@ -34,7 +34,7 @@ function crossings(
 /**
  * Stretch of a ray of light in a layer, the one nearest to the ray's start.
  *
- * @param maximumDistance - From the start, to either side [m].
+ * @param maximumDistance - Distance from the start, to either side [m].
  */
 export function layerSegment(
   field: CloudField,

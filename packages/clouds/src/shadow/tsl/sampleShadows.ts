@@ -36,7 +36,7 @@ export interface LightDepths {
   /** Optical depth from the point to the light, of layers that cast shadows. */
   shadow: Float
   /** 1 where the map has the place; 0 where it does not, and the depths are 0. */
-  known: Float
+  inMap: Float
 }
 
 /** Parts of a cascade's width that are left out at its edges: bilinear reads would mix in another one's. */
@@ -84,12 +84,12 @@ export function sampleShadows(
 
 /** Optical depths by a place in the map, the height over the cascade's plane there, and whether it is known. */
 function depthsAt(map: CloudShadows['map'], place: Vec4): LightDepths {
-  const known = place.w.toConst() as Float
-  const texel = map.sample(place.xy).level(0).mul(known).toConst() as Vec4
+  const inMap = place.w.toConst() as Float
+  const texel = map.sample(place.xy).level(0).mul(inMap).toConst() as Vec4
   // Front and half length come times the depth.
   const share = texel.x.sub(texel.z.mul(place.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
   const toLight = texel.z.mul(share).toConst() as Float
-  return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), known }
+  return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), inMap }
 }
 
 /**

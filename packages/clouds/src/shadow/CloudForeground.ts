@@ -1,4 +1,4 @@
-import type { Veil } from '@welkin/atmosphere'
+import type { ForegroundLayer } from '@welkin/atmosphere'
 import { exp2 } from 'three/tsl'
 import type { CloudsNode } from '../march/CloudsNode'
 import { DISTANCE_STEP, unpack } from '../temporal/tsl/packing'
@@ -9,7 +9,7 @@ import type { Float, Vec2, Vec4 } from '../tsl-types'
 const NEARBY = 0.6
 
 /** Clouds as light shafts see them: drawn over the air, half opaque. */
-export class CloudVeil implements Veil {
+export class CloudForeground implements ForegroundLayer {
   readonly #clouds: CloudsNode
   /** True once the shafts have no shadow of the clouds any more. */
   isRemoved = false
