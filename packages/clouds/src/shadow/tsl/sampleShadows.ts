@@ -99,7 +99,7 @@ function depthsAt(map: CloudShadows['map'], place: Vec4): LightDepths {
  * @param from - Start of the ray, from the camera of the map [m].
  * @param direction - Unit length.
  * @param dither - Noise in [0, 1), in which cascades meet.
- * @returns By the distance from the start [m].
+ * @returns Depths by the distance from the start [m].
  */
 export function sampleShadowsAlong(
   { map, cascades, tileCount }: CloudShadows,
