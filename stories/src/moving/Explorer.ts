@@ -1,0 +1,249 @@
+import { Quaternion, Vector2, Vector3 } from 'three'
+import type { PerspectiveCamera } from 'three'
+import { ExplorerInput } from './ExplorerInput'
+import type { ExplorerState } from './ExplorerState'
+import { Flight } from './Flight'
+import { LocalAxes } from './LocalAxes'
+import type { ViewAngles } from './LocalAxes'
+import { Walk } from './Walk'
+
+export interface ExplorerOptions {
+  /** Height of the ground below a place, along up, above the datum; NaN where none is known [m]. Default 0. */
+  groundAt?: (position: Vector3) => number
+  /** Unit vector up at a place. Default +Y. */
+  upAt?: (position: Vector3, target: Vector3) => Vector3
+  /** Height of a place above the datum [m]. Default its y. */
+  heightAt?: (position: Vector3) => number
+  /** Direction that north leans to, unit vector. Default −Z. */
+  pole?: Vector3
+  /** Times at which drags look: 'walking' leaves them to other controls otherwise. Default 'always'. */
+  drags?: 'always' | 'walking'
+}
+
+/** Longest time between two frames that counts; a hidden page has none [s]. */
+const LONGEST_FRAME = 0.1
+/** Speed of flight at the ground [m/s], and its growth with height [1/s]. */
+const SLOWEST = 3
+const SPEED_PER_HEIGHT = 0.5
+/** Speed of walking [m/s]. */
+const WALKING_SPEED = 3
+const FAST = 4
+/** Time in which speed comes and goes [s]. */
+const EASE = 0.1
+/** Least height of flight above the ground [m]. */
+const CLEARANCE = 0.5
+/** Turn of a drag across the canvas, over the field of view. */
+const TURN = 1.5
+const MOST_PITCH = (89.5 * Math.PI) / 180
+const DEGREES = 180 / Math.PI
+
+const wish = new Vector3()
+const turn = new Vector2()
+const axis = new Vector3()
+const before = new Vector3()
+const after = new Vector3()
+const quaternion = new Quaternion()
+
+/**
+ * Moves a camera by keys, mouse and touch: flight, and walks on the ground.
+ *
+ * A drag looks, WASD and QE fly at a speed that grows with height, Shift is faster, the wheel sets the speed, F walks and
+ * flies again, Space jumps. One finger looks, two move. The camera has no parent but the scene; whatever else moves it
+ * may do so between two updates.
+ */
+export class Explorer {
+  private readonly camera: PerspectiveCamera
+  private readonly input: ExplorerInput
+  private readonly groundAt: (position: Vector3) => number
+  private readonly upAt: (position: Vector3, target: Vector3) => Vector3
+  private readonly heightAt: (position: Vector3) => number
+  private readonly pole: Vector3
+  private readonly drags: 'always' | 'walking'
+  private readonly axes = new LocalAxes()
+  private readonly velocity = new Vector3()
+  private flight?: Flight
+  private walk?: Walk
+
+  constructor(camera: PerspectiveCamera, canvas: HTMLElement, options: ExplorerOptions = {}) {
+    this.camera = camera
+    this.input = new ExplorerInput(canvas)
+    this.groundAt = options.groundAt ?? (() => 0)
+    this.upAt = options.upAt ?? ((_, target) => target.set(0, 1, 0))
+    this.heightAt = options.heightAt ?? (position => position.y)
+    this.pole = options.pole ?? new Vector3(0, 0, -1)
+    this.drags = options.drags ?? 'always'
+    this.isWalking = false
+  }
+
+  get isWalking(): boolean {
+    return this.walk !== undefined
+  }
+
+  set isWalking(value: boolean) {
+    if (value !== this.isWalking) {
+      this.stop()
+      this.walk = value ? new Walk() : undefined
+    }
+    this.input.isLooking = value || this.drags === 'always'
+  }
+
+  /** Position, direction and way of moving, of which a link is made. Set, it ends a flight. */
+  get state(): ExplorerState {
+    const { heading, pitch } = this.angles()
+    const { x, y, z } = this.camera.position
+    const walking = Number(this.isWalking)
+    return { x, y, z, heading: heading * DEGREES, pitch: pitch * DEGREES, walking }
+  }
+
+  set state({ x, y, z, heading, pitch, walking }: ExplorerState) {
+    this.stop()
+    this.camera.position.set(x, y, z)
+    this.turnTo({ heading: heading / DEGREES, pitch: pitch / DEGREES })
+    this.isWalking = walking !== 0
+    this.camera.updateMatrixWorld()
+  }
+
+  /** Called once per frame. */
+  update(deltaSeconds: number): void {
+    const seconds = Math.min(Math.max(deltaSeconds, 0), LONGEST_FRAME)
+    const { input } = this
+    if (input.takeToggle()) this.isWalking = !this.isWalking
+    input.move(wish)
+    input.takeTurn(turn)
+    if (this.flight !== undefined) {
+      const isTaken = wish.lengthSq() + turn.lengthSq() > 0 || input.isJumping
+      if (!isTaken) {
+        this.follow(this.flight, seconds)
+        return
+      }
+      this.stop()
+    }
+    if (turn.lengthSq() > 0) this.look()
+    if (this.walk === undefined) this.fly(seconds)
+    else this.step(this.walk, seconds)
+  }
+
+  /**
+   * Flies smoothly to a view, above what ground lies between. Moving or looking breaks it off.
+   *
+   * @param view - Position, and unit vector of the direction.
+   * @returns Promise that settles on arrival, or when the flight is broken off.
+   */
+  async flyTo(view: { position: Vector3; direction: Vector3 }, seconds: number): Promise<void> {
+    this.isWalking = false
+    this.stop()
+    const { heading } = this.angles()
+    const from = this.endOf(this.camera.position, this.camera.quaternion)
+    this.axesAt(view.position)
+    const angles = this.axes.anglesOfDirection(view.direction, heading)
+    const to = this.endOf(view.position, this.axes.rotation(angles, quaternion))
+    await new Promise<void>(resolve => {
+      this.flight = new Flight(from, to, seconds, resolve)
+    })
+  }
+
+  dispose(): void {
+    this.stop()
+    this.input.dispose()
+  }
+
+  private stop(): void {
+    this.velocity.set(0, 0, 0)
+    this.flight?.end()
+    this.flight = undefined
+  }
+
+  private endOf(position: Vector3, rotation: Quaternion) {
+    const height = this.heightAt(position)
+    return { position: position.clone(), rotation: rotation.clone(), height }
+  }
+
+  private axesAt(position: Vector3): LocalAxes {
+    return this.axes.set(this.upAt(position, axis), this.pole)
+  }
+
+  private angles(): ViewAngles {
+    return this.axesAt(this.camera.position).anglesOf(this.camera.quaternion)
+  }
+
+  private turnTo(angles: ViewAngles): void {
+    this.axesAt(this.camera.position).rotation(angles, this.camera.quaternion)
+  }
+
+  private look(): void {
+    const { heading, pitch } = this.angles()
+    const share = (TURN * this.camera.fov) / DEGREES
+    const raised = Math.min(Math.max(pitch + turn.y * share, -MOST_PITCH), MOST_PITCH)
+    this.turnTo({ heading: heading + turn.x * share, pitch: raised })
+  }
+
+  private follow(flight: Flight, seconds: number): void {
+    const { position, quaternion } = this.camera
+    const height = flight.advance(seconds, position, quaternion)
+    const ground = flight.isOver ? NaN : this.groundAt(position)
+    this.setHeight(Number.isFinite(ground) ? Math.max(height, ground + CLEARANCE) : height)
+    if (flight.isOver) this.stop()
+  }
+
+  /** Eases the velocity to the wished one. */
+  private accelerate(target: Vector3, seconds: number): void {
+    const rest = Math.exp(-seconds / EASE)
+    this.velocity.sub(target).multiplyScalar(rest).add(target)
+    if (target.lengthSq() === 0 && this.velocity.length() < 0.01) this.velocity.set(0, 0, 0)
+  }
+
+  private get factor(): number {
+    return this.input.speed * (this.input.isFast ? FAST : 1)
+  }
+
+  private fly(seconds: number): void {
+    if (wish.lengthSq() + this.velocity.lengthSq() === 0) return
+    const { position, quaternion } = this.camera
+    const ground = this.groundAt(position)
+    const height = this.heightAt(position) - (Number.isFinite(ground) ? ground : 0)
+    const speed = (SLOWEST + SPEED_PER_HEIGHT * Math.max(height, 0)) * this.factor
+    const { up } = this.axesAt(position)
+    const along = after.set(wish.x, 0, -wish.z).applyQuaternion(quaternion)
+    along.addScaledVector(up, wish.y).clampLength(0, 1)
+    this.accelerate(along.multiplyScalar(speed), seconds)
+    this.moveBy(seconds)
+    const floor = this.groundAt(position) + CLEARANCE
+    if (this.heightAt(position) < floor) this.setHeight(floor)
+  }
+
+  private step(walk: Walk, seconds: number): void {
+    const { position } = this.camera
+    const { heading } = this.angles()
+    const level = this.axes.ahead(heading, after).multiplyScalar(wish.z)
+    level.addScaledVector(this.axes.ahead(heading + Math.PI / 2, axis), wish.x)
+    this.accelerate(level.multiplyScalar(WALKING_SPEED * this.factor), seconds)
+    before.copy(position)
+    const eye = this.heightAt(position)
+    this.moveBy(seconds)
+    const distance = position.distanceTo(before)
+    if (walk.isBlocked(eye, this.groundAt(position), distance)) {
+      position.copy(before)
+      this.velocity.set(0, 0, 0)
+    }
+    this.setHeight(walk.advance(eye, this.groundAt(position), this.input.isJumping, seconds))
+  }
+
+  /** Moves along the velocity; the view turns with up. */
+  private moveBy(seconds: number): void {
+    const { position, quaternion: rotation } = this.camera
+    const up = this.upAt(position, after)
+    position.addScaledVector(this.velocity, seconds)
+    quaternion.setFromUnitVectors(up, this.upAt(position, axis))
+    rotation.premultiply(quaternion)
+    this.velocity.applyQuaternion(quaternion)
+  }
+
+  /** Puts the camera at a height above the datum [m]; what is far below it takes a second try. */
+  private setHeight(height: number): void {
+    const { position } = this.camera
+    for (let i = 0; i < 2; i++) {
+      this.upAt(position, axis)
+      position.addScaledVector(axis, height - this.heightAt(position))
+    }
+  }
+}
