@@ -156,8 +156,8 @@ export class Valley {
     this.#environment = skyEnvironment(atmosphere, { overlay })
     const { material } = this.#water.mesh as unknown as { material: MeshPhysicalNodeMaterial }
     material.envNode = this.#environment as never
-    this.#plain = exposure as unknown as Node
-    const halo = bloom(exposure as never, GLOW, 0.7, 0)
+    this.#plain = exposure
+    const halo = bloom(exposure, GLOW, 0.7, 0)
     this.#glowing = (exposure as unknown as { add(other: unknown): Node }).add(halo)
     this.pipeline = new RenderPipeline(renderer)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
@@ -166,7 +166,9 @@ export class Valley {
     this.cycle.hour = state.hour
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      ...[halo, exposure, overlay, this.#environment, node, shafts].map(each => () => each.dispose()),
+      ...[halo, exposure, overlay, this.#environment, node, shafts].map(
+        each => () => each.dispose()
+      ),
       ...[sun, sky, moonlight, moonlitSky, night].map(each => () => each.dispose()),
       () => cascades.dispose(),
       () => atmosphere.dispose()

@@ -1,10 +1,10 @@
 import {
-  BufferGeometry,
+  type BufferGeometry,
   Color,
   ConeGeometry,
   CylinderGeometry,
   IcosahedronGeometry,
-  DynamicDrawUsage,
+  Float32BufferAttribute,
   InstancedMesh,
   Matrix4,
   MeshStandardMaterial,
@@ -12,7 +12,6 @@ import {
   Vector3
 } from 'three'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
-import { Float32BufferAttribute } from 'three'
 import { randomSequence } from '../random'
 import { forestAt, groundHeight, VILLAGE } from './ground'
 
@@ -29,9 +28,21 @@ function painted(geometry: BufferGeometry, r: number, g: number, b: number): Buf
 /** A spruce, 10 m high: tiers of branches about a trunk. */
 function spruce(): BufferGeometry {
   const tiers = [0, 1, 2, 3].map(i =>
-    painted(new ConeGeometry(2.3 - 0.5 * i, 3.6 - 0.3 * i, 7, 1, true).translate(0, 2.9 + 1.9 * i, 0).rotateY(i), 0.032, 0.05, 0.02)
+    painted(
+      new ConeGeometry(2.3 - 0.5 * i, 3.6 - 0.3 * i, 7, 1, true)
+        .translate(0, 2.9 + 1.9 * i, 0)
+        .rotateY(i),
+      0.032,
+      0.05,
+      0.02
+    )
   )
-  const trunk = painted(new CylinderGeometry(0.12, 0.2, 2, 5).translate(0, 0.8, 0), 0.06, 0.04, 0.03)
+  const trunk = painted(
+    new CylinderGeometry(0.12, 0.2, 2, 5).translate(0, 0.8, 0),
+    0.06,
+    0.04,
+    0.03
+  )
   return mergeGeometries([...tiers, trunk])
 }
 
@@ -43,7 +54,10 @@ function leafy(size: number): BufferGeometry {
   for (let i = 0; i < position.count; i++) {
     vertex.fromBufferAttribute(position, i)
     // Faces share places, not vertices.
-    const { x, y, z } = vertex.clone().multiplyScalar(7 / size).round()
+    const { x, y, z } = vertex
+      .clone()
+      .multiplyScalar(7 / size)
+      .round()
     const bump = Math.abs(Math.sin(12.9 * x + 78.2 * y + 37.7 * z + 10 * size) * 43_758.5) % 1
     vertex.multiplyScalar(0.82 + 0.32 * bump)
     position.setXYZ(i, vertex.x, vertex.y, vertex.z)
@@ -60,9 +74,7 @@ function limetree(): BufferGeometry {
     [-1.3, 4.9, 0.9, 1.8],
     [0.2, 4.4, -1.5, 1.9],
     [0.1, 7.3, 0.2, 1.7]
-  ].map(([x, y, z, size]) =>
-    painted(leafy(size).translate(x, y, z), 0.04, 0.066, 0.018)
-  )
+  ].map(([x, y, z, size]) => painted(leafy(size).translate(x, y, z), 0.04, 0.066, 0.018))
   const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 6).toNonIndexed().translate(0, 1.6, 0)
   return mergeGeometries([...crowns, painted(trunk, 0.07, 0.055, 0.04)])
 }
@@ -90,7 +102,6 @@ function plant(
   const random = randomSequence(seed)
   const material = new MeshStandardMaterial({ vertexColors: true, roughness: 1, side: 2 })
   const mesh = new InstancedMesh(geometry, material, count)
-  mesh.instanceMatrix.setUsage(DynamicDrawUsage)
   const matrix = new Matrix4()
   const color = new Color()
   let placed = 0

@@ -87,12 +87,19 @@ function groundMaterial(): MeshStandardNodeMaterial {
   const fine = noise(71).add(noise(7.3)).add(noise(1.9).mul(0.7)).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const slope = normalWorld.y.oneMinus().add(fine.mul(0.025)).toVar()
-  const [forest, field] = [attribute<'vec2'>('cover', 'vec2').x, attribute<'vec2'>('cover', 'vec2').y]
+  const [forest, field] = [
+    attribute<'vec2'>('cover', 'vec2').x,
+    attribute<'vec2'>('cover', 'vec2').y
+  ]
   const meadow = mix(vec3(0.06, 0.095, 0.025), vec3(0.13, 0.13, 0.045), broad.mul(0.6).add(0.5))
   const crops = mix(meadow, vec3(0.19, 0.16, 0.06), field)
   const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
   const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
-  const alpine = mix(vec3(0.095, 0.1, 0.045), rock, smoothstep(1050, 1700, height.add(broad.mul(150))))
+  const alpine = mix(
+    vec3(0.095, 0.1, 0.045),
+    rock,
+    smoothstep(1050, 1700, height.add(broad.mul(150)))
+  )
   const lit = float(0.95).add(fine.mul(0.3))
   let color: Node<'vec3'> = mix(crops, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
@@ -132,4 +139,3 @@ function fieldAt(x: number, z: number): number {
   const isField = Math.abs(Math.sin(127.1 * strip + 311.7 * row)) > 0.62
   return isField ? smooth(40, 20, flatHeight(x, z)) * smooth(4, 8, flatHeight(x, z)) : 0
 }
-

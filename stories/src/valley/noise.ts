@@ -16,7 +16,11 @@ export function smoothNoise(x: number, y: number): number {
   const [u, v] = [x - column, y - row]
   const across = fade(u)
   const near = mix(gradient(column, row, u, v), gradient(column + 1, row, u - 1, v), across)
-  const far = mix(gradient(column, row + 1, u, v - 1), gradient(column + 1, row + 1, u - 1, v - 1), across)
+  const far = mix(
+    gradient(column, row + 1, u, v - 1),
+    gradient(column + 1, row + 1, u - 1, v - 1),
+    across
+  )
   return mix(near, far, fade(v))
 }
 
@@ -33,7 +37,8 @@ export function ridges(x: number, y: number): number {
   let amplitude = 0.5
   let scale = 1
   for (let octave = 0; octave < 8; octave++) {
-    const ridge = (1 - Math.abs(1.4 * smoothNoise(u * scale + 17 * octave, v * scale - 9 * octave))) ** 2
+    const ridge =
+      (1 - Math.abs(1.4 * smoothNoise(u * scale + 17 * octave, v * scale - 9 * octave))) ** 2
     sum += amplitude * weight * ridge
     weight = Math.min(Math.max(1.6 * ridge * weight, 0), 1)
     amplitude *= 0.5

@@ -1,7 +1,9 @@
 import {
   BoxGeometry,
+  BufferGeometry,
   Color,
   ConeGeometry,
+  Float32BufferAttribute,
   Group,
   InstancedMesh,
   Matrix4,
@@ -11,8 +13,17 @@ import {
   Quaternion,
   Vector3
 } from 'three'
-import { BufferGeometry, Float32BufferAttribute } from 'three'
-import { float, fract, hash, instanceIndex, normalLocal, positionLocal, step, uniform, vec3 } from 'three/tsl'
+import {
+  float,
+  fract,
+  hash,
+  instanceIndex,
+  normalLocal,
+  positionLocal,
+  step,
+  uniform,
+  vec3
+} from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { groundHeight, VILLAGE } from './ground'
@@ -67,7 +78,11 @@ export function createVillage(): Village {
     .mul(step(0.35, inCell.y))
     .mul(step(inCell.y, 0.8))
     .mul(step(normalLocal.y.abs(), 0.5))
-  const number = cell.floor().dot(vec3(1, 7, 13)).add(float(instanceIndex).mul(101)).add(500)
+  const number = cell
+    .floor()
+    .dot(vec3(1, 7, 13))
+    .add(float(instanceIndex).mul(101))
+    .add(500)
   const isLit = step(hash(number), lit.mul(0.55))
   walls.emissiveNode = vec3(1, 0.62, 0.28).mul(isWindow.mul(isLit).mul(luminance))
   const tiles = new MeshStandardMaterial({ color: '#5b3a2e', roughness: 0.95 })
@@ -84,8 +99,14 @@ export function createVillage(): Village {
     const [width, depth, height] = [8 + 4 * random(), 9 + 5 * random(), 5 + 2 * random()]
     turn.setFromAxisAngle(new Vector3(0, 1, 0), 0.5 * Math.floor(4 * random()) + 0.2 * random())
     const base = Math.min(groundHeight(x, z), groundHeight(x + 5, z), groundHeight(x, z + 5)) - 0.5
-    bodies.setMatrixAt(i, matrix.compose(new Vector3(x, base, z), turn, new Vector3(width, height, depth)))
-    roofs.setMatrixAt(i, matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth)))
+    bodies.setMatrixAt(
+      i,
+      matrix.compose(new Vector3(x, base, z), turn, new Vector3(width, height, depth))
+    )
+    roofs.setMatrixAt(
+      i,
+      matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth))
+    )
     bodies.setColorAt(i, color.setHSL(0.09, 0.12 * random(), 0.5 + 0.22 * random()))
     roofs.setColorAt(i, color.setScalar(0.6 + 0.6 * random()))
   }
@@ -93,7 +114,10 @@ export function createVillage(): Village {
   const base = groundHeight(x, z) - 0.5
   const plaster = new MeshStandardMaterial({ color: '#cfc8ba', roughness: 0.9 })
   const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
-  const spire = new Mesh(new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0), tiles)
+  const spire = new Mesh(
+    new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),
+    tiles
+  )
   const nave = new Mesh(new BoxGeometry(11, 9, 22).translate(0, 4.5, 14), plaster)
   const naveRoof = new Mesh(roof().scale(11, 6, 22).translate(0, 9, 14), tiles)
   const church = new Group().add(tower, spire, nave, naveRoof)

@@ -80,7 +80,7 @@ export class WeatherBlend {
     const s = this.#share * this.#share * (3 - 2 * this.#share)
     const keys = Object.keys(this.#to) as (keyof Weather)[]
     const blend = keys.map(key => [key, this.#from[key] * (1 - s) + this.#to[key] * s])
-    return Object.fromEntries(blend) as unknown as Weather
+    return Object.fromEntries(blend) as Weather
   }
 
   /** @returns Whether the weather has changed. */
