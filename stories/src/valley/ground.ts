@@ -53,7 +53,7 @@ function flatHeight(x: number, z: number): number {
   const floor = 7 + 0.012 * Math.max(wall - 250, 0) + knolls * smooth(120, 700, wall)
   const height = floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200))
   const basin = smooth(1.25, 0.8, lakeDistance(x, z))
-  return height + (-14 - height) * basin * smooth(900, 500, height)
+  return height + (-14 - height) * basin * smooth(150, 50, height)
 }
 
 /** Height of the ground, with the bend of the planet [m]. */
