@@ -52,7 +52,7 @@ export type CreateScene<Args extends RendererArgs> = (
  */
 export const WARM_UP_FRAMES = 3
 
-/** @param trackTimestamp - Whether the GPU's time is kept. */
+/** @param trackTimestamp - True to keep the GPU's time. */
 export async function createRenderer(
   canvas: HTMLCanvasElement,
   forceWebGL: boolean,

@@ -7,9 +7,9 @@ import { createValley, VIEWS } from './valley.scene'
 import type { ValleyArgs } from './valley.scene'
 import { weathers } from './valley/weather'
 
-const code = `${storyCode('valley/Valley.ts', 'sky and light')}
+const code = `${storyCode('valleyAir.ts', 'sky and light')}
 
-${storyCode('valley/Valley.ts', 'everything')}`
+${storyCode('valleyAir.ts', 'everything')}`
 
 const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
 
@@ -89,7 +89,7 @@ export default meta
 type Story = StoryObj<ValleyArgs>
 
 /** A day in a valley: sun, moon and stars, clouds and their shadows, mist, water and a village. */
-export const Day: Story = { name: 'A day', tags: ['screenshot', 'webgpu-only'] }
+export const Day: Story = { name: 'A day', tags: ['screenshot'] }
 
 /** Mist over the lake before the sun is over the mountains. */
 export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope', dayLength: 1800 } }

@@ -1,38 +1,21 @@
 import {
-  aerialPerspective,
   airglow,
-  Atmosphere,
-  autoExposure,
   DayCycle,
   heightFog,
-  lightShafts,
   milkyWay,
   moon,
-  MoonDirectionalLight,
-  NightLightProbe,
   skyEnvironment,
-  SkyLightProbe,
-  standardEarthParameters,
-  stars,
-  sunFlare,
-  SunDirectionalLight
+  stars
 } from '@welkin/atmosphere'
-import {
-  cloudAirShadow,
-  cloudEnvironment,
-  CloudLayers,
-  clouds,
-  cloudShadow,
-  cloudSkyLight
-} from '@welkin/clouds'
+import type { Atmosphere } from '@welkin/atmosphere'
+import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
 import { PerspectiveCamera, Scene } from 'three'
-import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
-import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import type { MeshPhysicalNodeMaterial, Node, WebGPURenderer } from 'three/webgpu'
 import { createWater } from '../environment/water'
+import { valleyAir } from '../valleyAir'
 import { createForest, createGrove } from './forest'
 import { createGround, groundHeight, LAKE } from './ground'
 import { createVillage } from './village'
@@ -73,9 +56,6 @@ const TREES: Readonly<Record<CloudQualityName, number>> = {
   ultra: 18_000
 }
 
-/** Farthest shadows of the ground [m]. */
-const SHADOWS = 9000
-
 /** Elevations of the sun between which lamps are lit [degrees]. */
 const LAMPS = [3, -2] as const
 
@@ -95,7 +75,7 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #mist = heightFog({ base: 6, falloff: 28, density: 0 })
   readonly #moon = moon()
-  readonly #glows = [milkyWay(), stars(), airglow()]
+  readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #ground = createGround()
   readonly #trees
   readonly #village = createVillage()
@@ -117,38 +97,18 @@ export class Valley {
     camera.position.set(300, groundHeight(300, 520) + 13, 520)
     camera.lookAt(330, 75, -1500)
 
-    // #region sky and light
-    const atmosphere = (this.atmosphere = new Atmosphere({ parameters: standardEarthParameters() }))
+    const layers = this.#layers
+    const { quality: cloudQuality } = state
+    const sky = [...this.#glows, this.#moon] as const
+    const air = valleyAir(scene, camera, layers, cloudQuality, sky)
+    const { atmosphere, clouds: node, shafts, exposure } = air
+    this.atmosphere = atmosphere
     atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
-    const [galaxy, starlight, glow] = this.#glows
-    atmosphere.add(galaxy, starlight, this.#moon, glow, sunFlare(), this.#mist)
-    const sun = new SunDirectionalLight(atmosphere, 6000)
-    const sky = new SkyLightProbe(atmosphere)
-    const moonlight = new MoonDirectionalLight(atmosphere, this.#moon, 6000)
-    const moonlitSky = new SkyLightProbe(atmosphere, this.#moon.source)
-    const night = new NightLightProbe(atmosphere)
-    scene.add(sun, sun.target, sky, moonlight, moonlight.target, moonlitSky, night)
-    // #endregion
+    atmosphere.add(this.#mist)
     scene.add(this.#ground, ...this.#trees, this.#village.object, this.#water.mesh)
     this.#water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
     this.#water.setSlope(0.0006)
 
-    // #region everything
-    sun.castShadow = true
-    sun.shadow.mapSize.setScalar(2048)
-    sun.shadow.normalBias = 0.4
-    const cascades = new CSMShadowNode(sun, { cascades: 3, maxFar: SHADOWS, lightMargin: 4000 })
-    const scenePass = pass(scene, camera, { samples: 0 })
-    const depth = scenePass.getTextureNode('depth')
-    const shafts = lightShafts(atmosphere, camera, sun)
-    const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
-    const node = clouds(air, depth, camera, atmosphere, this.#layers, { quality: state.quality })
-    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
-    cloudSkyLight(sky, node)
-    cloudSkyLight(night, node)
-    shafts.add(cloudAirShadow(node))
-    const exposure = autoExposure(node, atmosphere)
-    // #endregion
     this.#node = node
     this.#shafts = shafts
     this.exposure = exposure
@@ -169,8 +129,7 @@ export class Valley {
       ...[halo, exposure, overlay, this.#environment, node, shafts].map(
         each => () => each.dispose()
       ),
-      ...[sun, sky, moonlight, moonlitSky, night].map(each => () => each.dispose()),
-      () => cascades.dispose(),
+      () => air.dispose(),
       () => atmosphere.dispose()
     )
     this.set(state, true)

@@ -57,7 +57,7 @@ export interface Village {
    * Lights of the evening.
    *
    * @param share - Part of them that are lit, in [0, 1].
-   * @param luminanceScale - Of the atmosphere.
+   * @param luminanceScale - The atmosphere's.
    */
   light(share: number, luminanceScale: number): void
   dispose(): void

@@ -83,7 +83,7 @@ export class WeatherBlend {
     return Object.fromEntries(blend) as Weather
   }
 
-  /** @returns Whether the weather has changed. */
+  /** @returns True if the weather has changed. */
   update(seconds: number): boolean {
     if (this.#share === 1 && !this.#isNew) return false
     this.#isNew = false
