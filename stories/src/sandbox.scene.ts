@@ -89,7 +89,7 @@ export async function createSandbox(
     if (sky === undefined || sky.parameters.bottomRadius !== init.bottomRadius) build(init)
     const { parameters } = sky!
     // #region sandbox
-    // new Atmosphere({ parameters: new AtmosphereParameters({ mieScaleHeight: 3000, … }) }): metres, 1/m
+    // They were given to it: new Atmosphere({ parameters: new AtmosphereParameters({ … }) })
     parameters.set(init) // at any time; tables are baked again, no shader is compiled
     // #endregion
     shownAir = air

@@ -14,15 +14,16 @@ interface Range {
 
 const ranges = Object.entries(airArgTypes).flatMap(([name, type]) => {
   const control = type.control as Range | 'boolean'
-  return control === 'boolean' ? [] : [[name as keyof AirArgs, control] as const]
+  return control === 'boolean' ? [] : [{ slider: name as keyof AirArgs, ...control }]
 })
 
 describe('sliders of the sandbox', () => {
   it.each(Object.keys(presets) as PresetName[])('hold the preset %s', name => {
-    for (const [slider, { min, max }] of ranges) {
-      const value = presets[name][slider]
-      expect(value, slider).toBeGreaterThanOrEqual(min)
-      expect(value, slider).toBeLessThanOrEqual(max)
+    for (const { slider, min, max } of ranges) {
+      const value = Number(presets[name][slider])
+      expect({ slider, value, isHeld: value >= min && value <= max }).toMatchObject({
+        isHeld: true
+      })
     }
     expect(parametersOf(presets[name], EARTH).notes).toEqual([])
   })
@@ -43,7 +44,7 @@ describe('sliders of the sandbox', () => {
     const random = randomSequence(5)
     for (let i = 0; i < 500; i++) {
       const args = { ...presets.earth, standardLayers: random() < 0.5 }
-      for (const [slider, { min, max }] of ranges) {
+      for (const { slider, min, max } of ranges) {
         const part = random()
         const [isLeast, isMost] = [part < 0.1, part > 0.9]
         const value = isLeast ? min : isMost ? max : min + (max - min) * random()
