@@ -27,7 +27,7 @@ export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
 }
 
 /** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 8 }
+const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 6 }
 
 /** Time of the clouds' drift in a still [s]. */
 const STILL_TIME = 100

@@ -48,6 +48,14 @@ export interface ValleyState extends ValleyFeatures {
   quality: CloudQualityName | CloudQuality
 }
 
+/** Quads of the ground along a side, by quality. */
+const QUADS: Readonly<Record<CloudQualityName, number>> = {
+  low: 256,
+  medium: 512,
+  high: 640,
+  ultra: 800
+}
+
 /** Trees that stand one by one, by quality. */
 const TREES: Readonly<Record<CloudQualityName, number>> = {
   low: 1500,
@@ -76,7 +84,7 @@ export class Valley {
   readonly #mist = heightFog({ base: 6, falloff: 28, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
-  readonly #ground = createGround()
+  readonly #ground
   readonly #trees
   readonly #village = createVillage()
   readonly #water = createWater(2400)
@@ -92,6 +100,7 @@ export class Valley {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
     const quality = typeof state.quality === 'string' ? state.quality : 'low'
+    this.#ground = createGround(QUADS[quality])
     this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 8))]
     const { scene, camera } = this
     camera.position.set(300, groundHeight(300, 520) + 13, 520)

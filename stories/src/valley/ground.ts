@@ -16,8 +16,6 @@ import { ridges, smoothNoise } from './noise'
 
 /** Half width of the land [m]. */
 const EXTENT = 45_000
-/** Quads along a side. */
-const QUADS = 640
 /** Radius of the planet, away from which the land bends [m]. */
 const RADIUS = 6_371_000
 
@@ -111,9 +109,13 @@ function groundMaterial(): MeshStandardNodeMaterial {
   return material
 }
 
-/** The valley and its mountains, finer about the middle. */
-export function createGround(): Mesh {
-  const geometry = new PlaneGeometry(2, 2, QUADS, QUADS).rotateX(-Math.PI / 2)
+/**
+ * The valley and its mountains, finer about the middle.
+ *
+ * @param quads - Quads along a side.
+ */
+export function createGround(quads: number): Mesh {
+  const geometry = new PlaneGeometry(2, 2, quads, quads).rotateX(-Math.PI / 2)
   const positions = geometry.attributes.position as BufferAttribute
   const cover = new Float32Array(2 * positions.count)
   const stretch = (t: number): number => EXTENT * (0.045 * t + 0.955 * t ** 3)
