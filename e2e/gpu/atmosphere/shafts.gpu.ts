@@ -237,7 +237,10 @@ gpuTest("has an occluder of one's own beyond all shadow maps", async t => {
   const lit = await draw()
   const occluder: AirOccluder = {
     castInto: () => ({
-      transmittance: ({ positionWorld }) => positionWorld().x.greaterThan(5000).select(0, 1)
+      transmittance:
+        () =>
+        ({ positionWorld }) =>
+          positionWorld().x.greaterThan(5000).select(0, 1)
     })
   }
   shafts.add(occluder)
@@ -272,7 +275,7 @@ gpuTest('takes light scattered more than once where an occluder dims it', async 
   const [direct, diffuse] = [uniform(1), uniform(1)]
   shafts.add({
     castInto: () => ({
-      transmittance: () => direct,
+      transmittance: () => () => direct,
       diffuse: () => vec4(diffuse)
     })
   })

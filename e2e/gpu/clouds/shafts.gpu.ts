@@ -121,8 +121,8 @@ const castsOnce = (node: CloudsNode): AirOccluder => ({
       get isCast() {
         return shadow.isCast
       },
-      update: view => shadow.update?.(view),
-      transmittance: place => shadow.transmittance(place),
+      update: (view, renderer) => shadow.update?.(view, renderer),
+      transmittance: ray => shadow.transmittance(ray),
       dispose: () => shadow.dispose?.()
     }
   }

@@ -15,7 +15,13 @@ export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './sky/AerialPers
 export { AerialPerspectiveNode, aerialPerspective } from './sky/AerialPerspectiveNode'
 export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
-export type { AirOccluder, AirPoint, AirShadow, ShadowedShafts } from './shafts/AirOccluder'
+export type {
+  AirOccluder,
+  AirPoint,
+  AirViewRay,
+  AirShadow,
+  ShadowedShafts
+} from './shafts/AirOccluder'
 export type { AirOptions, AirShadows, ScreenShadows, ForegroundLayer } from './view/AirShadows'
 export { LightSource } from './view/LightSource'
 export type { LayerRay, PointRay, SkyLayer, SkyRay } from './view/SkyLayer'

@@ -1,4 +1,5 @@
 import type { Camera } from 'three'
+import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { AirShadows } from '../view/AirShadows'
@@ -10,12 +11,19 @@ import type { ViewUniforms } from '../view/ViewUniforms'
 export interface AirPoint {
   /** The camera's view in the light whose shadow it is; `view.localCoordinates(offset)` has altitude and zenith. */
   readonly view: ViewUniforms
-  /** Displacement from the camera, in the mapped space [m]. */
+  /** Displacement from the camera, in the mapped space, and its length [m]. */
   readonly offset: Vec3
+  readonly distance: Float
   /** Position in world space [world units]. */
   readonly positionWorld: () => Vec3
   /** Noise in (0, 1), for what is read in steps. */
   readonly jitter: Float
+}
+
+/** A view ray through the air, as shader nodes. */
+export interface AirViewRay extends Pick<AirPoint, 'view' | 'jitter'> {
+  /** Unit length, in the mapped space. */
+  readonly direction: Vec3
 }
 
 /** Light shafts as what casts shadows into them sees them. */
@@ -31,10 +39,13 @@ export interface ShadowedShafts extends AirShadows {
 export interface AirShadow {
   /** False while there is nothing that takes light; left out, there always may be. */
   readonly isCast?: boolean
-  /** Sets uniforms for the camera whose air it is. Called before it is drawn. */
-  update?(view: AtmosphereView): void
-  /** Part of the light that arrives at a place, in [0, 1]: 1 where there is no shadow. Called in a loop and in branches. */
-  transmittance(point: AirPoint): Float
+  /** Sets uniforms, and draws tables, for the camera whose air it is. Called before it is drawn. */
+  update?(view: AtmosphereView, renderer: Renderer): void
+  /**
+   * Part of the light that arrives at places of a view ray, in [0, 1]: 1 where there is no shadow. Called for each ray;
+   * what it returns, in a loop and in branches.
+   */
+  transmittance(ray: AirViewRay): (place: AirPoint) => Float
   /**
    * Diffuse light at a place, which air scatters again, over that without this occluder, at the four wavelengths [–]:
    * less under clouds that are thick, more under thin ones and above them. Left out, 1.

@@ -16,17 +16,18 @@ import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
 import { ScreenShafts, without } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
-import { lostLight, staggered, type ShadowedAir } from './tsl/lostLight'
+import { lostLight, staggered } from './tsl/lostLight'
+import type { ShadowedAir } from './tsl/shadowsAlong'
 
 /**
- * Directions around the light that the shadow map tells apart; groups of samples along a view ray; samples in
- * each.
+ * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
+ * samples along a view ray; samples in each.
  */
 const qualities = {
-  low: { rows: 512, groups: 3, samples: 3 },
-  medium: { rows: 1024, groups: 4, samples: 3 },
-  high: { rows: 1024, groups: 4, samples: 4 },
-  reference: { rows: 2048, groups: 64, samples: 8 }
+  low: { rows: 512, spacing: 4, groups: 3, samples: 2 },
+  medium: { rows: 768, spacing: 4, groups: 4, samples: 3 },
+  high: { rows: 1024, spacing: 3, groups: 4, samples: 4 },
+  reference: { rows: 2048, spacing: 1, groups: 64, samples: 8 }
 } as const
 
 /** Fineness of the march of light shafts. */
@@ -90,6 +91,8 @@ export class LightShafts implements ShadowedShafts {
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
   readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
+  /** Pixels of a picture from one that is marched to the next. */
+  spacing = 2
   /** Grows whenever something is added or removed. */
   version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -257,7 +260,8 @@ export class LightShafts implements ShadowedShafts {
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
-    const { rows, groups, samples } = qualities[this.#quality]
+    const { rows, spacing, groups, samples } = qualities[this.#quality]
+    this.spacing = spacing
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
@@ -267,17 +271,17 @@ export class LightShafts implements ShadowedShafts {
     const maps = isLit ? shadowMapsOf(this.light) : []
     this.#map.update(renderer, view!, atmosphere.space, maps, rows)
     this.#isActive = maps.length > 0
-    if (isLit) this.#updateShadows(view)
+    if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups
     steps.samples.value = samples
   }
 
-  #updateShadows(view: AtmosphereView): void {
+  #updateShadows(view: AtmosphereView, renderer: Renderer): void {
     const { matrixWorld } = view.camera
     this.atmosphere.space.displacement(_axes.identity(), _linear)
     this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(matrixWorld)
     for (const shadow of this.#shadows.values()) {
-      shadow.update?.(view)
+      shadow.update?.(view, renderer)
       this.#isActive ||= shadow.isCast ?? true
     }
   }

@@ -1,38 +1,35 @@
-import { NearestFilter, Vector2 } from 'three'
+import { Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
+import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { radianceBetween, sampleVolume } from '../skyVolume/tsl/skyVolume'
-import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { RADIANCE_SCALE } from '../tables/tableSizes'
+import { loop, sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { PointRay, SkyRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
-import {
-  lostLight,
-  staggered,
-  type ShadowedAir,
-  type ShaftRay,
-  type ShaftSteps
-} from './tsl/lostLight'
+import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
+import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { DepthRays } from '../view/DepthRays'
 
-/** Octaves of depth by which pixels may differ and still share light, and by which they share none. */
-const SAME_DEPTH = 0.2
-const OTHER_DEPTH = 0.6
+/**
+ * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
+ * silhouettes; smaller: the march's pixels show on slopes (*City in haze*).
+ */
+const SAME_DEPTH = 0.35
+const OTHER_DEPTH = 0.8
 
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
 
-/**
- * Range of the part of its light that a pixel may lose: less than none, as clouds reflect light, and more than all, as
- * its light is from a table.
- */
-const PARTS = [-20, 4] as const
+/** Greatest light that the target keeps: half floats hold a little more. */
+const MOST = 6e4
 
 /** Distances that stand for the sky and for the planet where it was not drawn [m]. */
 const FAR = 1e10
@@ -64,6 +61,8 @@ export interface CameraShafts {
   readonly view: ViewNodes
   readonly shadowedAir: ShadowedAir
   readonly steps: ShaftSteps
+  /** Pixels from one that is marched to the next. */
+  readonly spacing: number
   /** True if there are shadows to be drawn, as of the last `prepare`. */
   readonly isActive: boolean
   /** Grows whenever its shader changes. */
@@ -81,8 +80,8 @@ export interface CameraShafts {
 }
 
 /**
- * Light shafts up to the depth of a picture, for post effects: marched for every second pixel of every
- * second row, then taken from the four around a pixel that are at its depth.
+ * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, then taken from those around a
+ * pixel that are at its depth.
  *
  * Of a picture with a foreground layer the light before it counts, and the light behind it as far as it passes: so the light
  * is taken from the picture of both, at once.
@@ -92,10 +91,16 @@ export class ScreenShafts implements ScreenShadows {
   readonly target: RenderTarget
   readonly #shafts: CameraShafts
   readonly #rays: DepthRays
-  /** Size of the picture, and of the target [pixels]. */
+  /** Size of the picture, and of either half of the target [pixels]. */
   readonly #size = vector2()
-  readonly #halfSize = vector2()
-  readonly #parts: TextureNode
+  readonly #gridSize = vector2()
+  /** Reciprocal of the pixels of the picture from one that is marched to the next. */
+  readonly #density = number(1)
+  /** Texel of the target in texture coordinates. */
+  readonly #texelSize = vector2()
+  /** Longest mean free path of light in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge*). */
+  readonly #freePath = number(1)
+  readonly #texels: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
@@ -108,8 +113,8 @@ export class ScreenShafts implements ScreenShadows {
     this.foreground = foreground
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
-    this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
-    this.#parts = texture(this.target.texture)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1)
+    this.#texels = texture(this.target.texture)
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -118,14 +123,20 @@ export class ScreenShafts implements ScreenShadows {
     shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
-    this.#halfSize.value.copy(this.#size.value).multiplyScalar(0.5).ceil()
-    this.target.setSize(this.#halfSize.value.x, this.#halfSize.value.y)
+    this.#density.value = 1 / shafts.spacing
+    this.#gridSize.value.copy(this.#size.value).divideScalar(shafts.spacing).ceil()
+    const { x, y } = this.#gridSize.value
+    this.target.setSize(2 * x, y)
+    this.#texelSize.value.set(0.5 / x, 1 / y)
     if (!shafts.isActive) return
+    const { parameters } = view.atmosphere
+    const here = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
+    this.#freePath.value = 1 / Math.max(Math.min(...here), 1e-12)
     // What is drawn here and now reads the view.
     shafts.view.update(view)
     if (this.#compiled !== shafts.version) this.#pass?.dispose()
     if (this.#compiled !== shafts.version || this.#pass === null) {
-      this.#pass = new FragmentPass('Welkin.LightShafts', this.#march())
+      this.#pass = new FragmentPass('Welkin.LightShafts', this.#draw())
       this.#compiled = shafts.version
     }
     this.#pass.render(renderer, this.target)
@@ -140,18 +151,11 @@ export class ScreenShafts implements ScreenShadows {
 
   glow({ direction, cosView, hitsGround }: SkyRay, light: Vec4): Vec4 {
     const distance = hitsGround.select(PLANET, FAR).toConst() as Float
-    const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
-    return this.#subtract(light, distance, () =>
-      this.#litAir({ direction, cosView, cosViewLight, distance })
-    )
+    return this.#subtract(light, { direction, cosView, distance })
   }
 
-  inScatter({ direction, distance, segment }: PointRay, light: Vec4): Vec4 {
-    const { air, volume, viewpoint, lightDirection } = this.#shafts.view
-    const cosViewLight = direction.dot(lightDirection).toConst() as Float
-    return this.#subtract(light, distance, () =>
-      radianceBetween(air.uniforms, volume, viewpoint, segment, cosViewLight)
-    )
+  inScatter(ray: PointRay, light: Vec4): Vec4 {
+    return this.#subtract(light, ray)
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
@@ -159,21 +163,18 @@ export class ScreenShafts implements ScreenShadows {
     return this.foreground === undefined && this.#shafts.hasForeground
   }
 
-  /** @param litAir - Light of the air up to the distance [m] without shadows [1/sr]. */
-  #subtract(light: Vec4, distance: Float, litAir: () => Vec4): Vec4 {
+  #subtract(light: Vec4, ray: Pick<ShaftRay, 'direction' | 'cosView' | 'distance'>): Vec4 {
     if (this.#isElsewhere) return light
     const { view } = this.#shafts
-    return without(light, this.#strength, view, () => this.#partLost(distance).mul(litAir()))
+    const cosViewLight = ray.direction.dot(view.lightDirection).toConst() as Float
+    return without(light, this.#strength, view, () => this.#lostTo({ ...ray, cosViewLight }))
   }
 
   dim(color: Vec3): Vec3 {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const unlit = Fn(({ renderer }): Vec4 => {
-        const ray = this.#rayTo(renderer, uv())
-        return this.#partLost(ray.distance).mul(this.#litAir(ray))
-      })()
+      const unlit = Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, uv())))()
       const lost = unlit.mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
@@ -197,18 +198,55 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
-  #march(): Vec4 {
-    const { view, shadowedAir, steps } = this.#shafts
+  /**
+   * A texel of the target. In its left half light; in its right one log₂ of the distance, the least and the greatest
+   * one of the nine pixels around, and the light that there is.
+   */
+  #draw(): Vec4 {
     return Fn(({ renderer }): Vec4 => {
-      const pixel = uv().mul(this.#halfSize).floor().toConst() as unknown as Vec2
-      const at = this.#uvOf(pixel)
-      const ray = this.#rayTo(renderer, at)
-      const { seenFrom, most } = this.#seen(at)
-      const distance = ray.distance.min(most).toConst() as Float
-      const jitter = staggered(pixel)
-      const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
-      return lost.div(this.#litAir(ray).max(1e-12)).clamp(...PARTS)
+      const pixel = uv().div(this.#texelSize).floor().toVar()
+      const result = vec4(0).toVar()
+      If(pixel.x.lessThan(this.#gridSize.x), () => {
+        result.assign(this.#march(renderer, pixel))
+      }).Else(() => {
+        pixel.x.subAssign(this.#gridSize.x)
+        const rayAt = (aside: Vec2): ShaftRay => {
+          const next = pixel.add(aside).clamp(vec2(0), this.#gridSize.sub(1)).toConst() as Vec2
+          return this.#rayTo(renderer, this.#uvOf(next))
+        }
+        const ray = rayAt(vec2(0))
+        const own = log2(ray.distance).toConst()
+        result.assign(vec4(own, own, own, this.#litAir(ray)))
+        loop('neighbor', 9, index => {
+          const row = float(index).div(3).floor().toConst()
+          const aside = vec2(float(index).sub(row.mul(3)), row).sub(1) as Vec2
+          const other = log2(rayAt(aside).distance).toConst()
+          result.y.assign(result.y.min(other))
+          result.z.assign(result.z.max(other))
+        })
+      })
+      return result
     })()
+  }
+
+  /** Light that the ray of a pixel of the target loses, as the target keeps it. */
+  #march(renderer: Renderer, pixel: Vec2): Vec4 {
+    const { view, shadowedAir, steps } = this.#shafts
+    const at = this.#uvOf(pixel)
+    const ray = this.#rayTo(renderer, at)
+    const { seenFrom, most } = this.#seen(at)
+    const distance = ray.distance.min(most).toConst() as Float
+    const jitter = staggered(pixel)
+    const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
+    return lost.mul(RADIANCE_SCALE).div(this.#growth(ray.distance)).clamp(-MOST, MOST)
+  }
+
+  /**
+   * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
+   * whose distances differ a little, and is what they share.
+   */
+  #growth(distance: Float): Float {
+    return distance.div(distance.add(this.#freePath))
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
@@ -225,47 +263,75 @@ export class ScreenShafts implements ScreenShadows {
     return { direction, cosView, cosViewLight, distance }
   }
 
-  /** Light of the air on a ray without shadows [1/sr]. */
-  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Vec4 {
+  /** Light of the air on a ray without shadows, in the mean over wavelengths, as the target keeps light. */
+  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Float {
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
-    return sampleVolume(air.uniforms, volume, viewpoint, cosView, cosViewLight, limits, distance)
-      .radiance
+    const { uniforms } = air
+    const at = [cosView, cosViewLight, limits, distance] as const
+    const { radiance } = sampleVolume(uniforms, volume, viewpoint, ...at)
+    const scale = this.#growth(distance)
+      .reciprocal()
+      .mul(RADIANCE_SCALE / 4)
+    return radiance.dot(vec4(scale)).clamp(1e-4, MOST).toConst()
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
   #uvOf(pixel: Vec2): Vec2 {
-    return pixel.mul(2).add(0.5).div(this.#size).toConst()
+    return pixel.div(this.#density).add(0.5).div(this.#size).toConst()
   }
 
   /**
-   * Part of the light of its air that the pixel has lost: the mean of four around, which have samples in all places
-   * of their steps. So a pixel whose depth none of them has loses no more than it has.
+   * Light that a pixel loses, for unit irradiance [1/sr]: from nine around it, of which any four that touch have
+   * samples in all places of their steps; where those are of several depths, from the four nearest.
    *
-   * @param distance - Distance of what is seen in it [m].
+   * @param ray - View ray to what is seen in it.
    */
-  #partLost(distance: Float): Vec4 {
-    return Fn(({ renderer }): Vec4 => {
-      const first = uv().mul(this.#size).mul(0.5).floor().toConst() as unknown as Vec2
-      const sum = vec4(0).toVar()
+  #lostTo(ray: ShaftRay): Vec4 {
+    const size = this.#gridSize
+    const place = uv().mul(this.#size).sub(0.5).mul(this.#density).toConst() as unknown as Vec2
+    const read = (texel: Vec2): Vec4 =>
+      sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
+    const lightAt = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
+    const own = log2(ray.distance).toConst() as Float
+    const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
+    const { y: least, z: greatest } = read(nearest.add(vec2(size.x, 0)).add(0.5))
+    const lost = vec4(0).toVar()
+    If(own.sub(least).max(greatest.sub(own)).lessThan(SAME_DEPTH), () => {
+      // The means of all fours, between them: weights 1 − w, 1, w over 2 in both axes, by four reads.
+      const after = place.sub(nearest).mul(0.5).add(0.5).toConst() as Vec2
+      const before = after.oneMinus().toConst() as Vec2
+      const low = nearest.sub(0.5).add(vec2(0.25).div(before)).toConst() as Vec2
+      const high = nearest.add(1.5).sub(vec2(0.25).div(after)).toConst() as Vec2
+      const upper = lightAt(low)
+        .mul(before.x)
+        .add(lightAt(vec2(high.x, low.y)).mul(after.x))
+      const lower = lightAt(vec2(low.x, high.y)).mul(before.x).add(lightAt(high).mul(after.x))
+      const sum = upper.mul(before.y).add(lower.mul(after.y))
+      lost.assign(sum)
+    }).Else(() => {
+      const first = place.floor().toConst() as Vec2
       const weights = float(0).toVar()
-      for (const i of [0, 1, 2, 3]) {
-        const pixel = first
-          .add(vec2(i & 1, i >> 1))
-          .min(this.#halfSize.sub(1))
-          .toConst() as Vec2
-        const other = this.#rayTo(renderer, this.#uvOf(pixel)).distance
-        const apart = log2(distance.div(other)).abs()
+      const light = this.#litAir(ray)
+      loop('corner', 4, index => {
+        const row = float(index).div(2).floor().toConst()
+        const corner = first
+          .add(vec2(float(index).sub(row.mul(2)), row))
+          .min(size.sub(1))
+          .add(0.5)
+        const other = read(corner.add(vec2(size.x, 0)))
+        const apart = other.x.sub(own).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(MIN_WEIGHT, 1)
-          .toConst() as Float
-        sum.addAssign(sampleLevel0(this.#parts, pixel.add(0.5).div(this.#halfSize)).mul(weight))
+        // Of light that others have more of, or less, the same part.
+        lost.addAssign(read(corner).mul(weight.mul(light.div(other.w))))
         weights.addAssign(weight)
-      }
-      return sum.div(weights)
-    })()
+      })
+      lost.divAssign(weights)
+    })
+    return lost.mul(this.#growth(ray.distance)).div(RADIANCE_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */

@@ -16,7 +16,7 @@ const light = new SunDirectionalLight(atmosphere)
 const wrong = (value: unknown): never => value as never
 
 /** An occluder that takes nothing. */
-const occluder: AirOccluder = { castInto: () => ({ transmittance: () => float(1) }) }
+const occluder: AirOccluder = { castInto: () => ({ transmittance: () => () => float(1) }) }
 
 describe('bad input to light shafts', () => {
   const cases: [string, () => unknown][] = [
@@ -95,7 +95,7 @@ describe('what is added to light shafts', () => {
     const added: AirOccluder = {
       castInto: ({ camera: seen }) => {
         calls.push(seen === camera ? 'cast' : 'other')
-        return { transmittance: () => float(1), dispose: () => calls.push('dispose') }
+        return { transmittance: () => () => float(1), dispose: () => calls.push('dispose') }
       }
     }
     const shafts = lightShafts(atmosphere, camera, light)

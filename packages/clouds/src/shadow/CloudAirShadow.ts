@@ -1,6 +1,7 @@
 import type {
   AirOccluder,
   AirPoint,
+  AirViewRay,
   AirShadow,
   AtmosphereView,
   ScreenShadows,
@@ -8,22 +9,25 @@ import type {
 } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { If } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import { meanDepthTowards, opticalDepthTowards } from '../density/tsl/columns'
-import { decksAround, meanDecks } from '../environment/tsl/decks'
+import { decksAround } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
 import { CloudForeground } from './CloudForeground'
-import { sampleShadows } from './tsl/sampleShadows'
+import { DiffuseRatioTable } from './DiffuseRatioTable'
+import { sampleShadowsAlong } from './tsl/sampleShadows'
 
 /** Shadow of clouds in the air, in one light: the part of it that arrives. */
 class CastShadow implements AirShadow {
   readonly #clouds: CloudsNode
   readonly #shafts: ShadowedShafts
   readonly #foreground: CloudForeground
+  readonly #diffuse: DiffuseRatioTable
   /** The shafts as the clouds' node draws them, where both have the same camera. */
   readonly #screen: ScreenShadows | undefined
   /** Displacement from the clouds' camera, as their maps know it, to that of the shafts [m]. */
@@ -38,6 +42,7 @@ class CastShadow implements AirShadow {
     this.#clouds = clouds
     this.#shafts = shafts
     this.#foreground = new CloudForeground(clouds)
+    this.#diffuse = new DiffuseRatioTable(clouds.shadows, clouds.light.nodes)
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
@@ -52,46 +57,45 @@ class CastShadow implements AirShadow {
     return !isDisposed && field.fadeIn > 0 && casts
   }
 
-  update(view: AtmosphereView): void {
-    const { shadows } = this.#clouds
+  update(view: AtmosphereView, renderer: Renderer): void {
+    const { field, shadows } = this.#clouds
     this.#isMapped.value = shadows.source === this.#shafts.source ? 1 : 0
     viewpointMapped(view, this.#shift.value).sub(shadows.camera)
+    if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
   }
 
-  transmittance({ view, offset, jitter }: AirPoint): Float {
+  transmittance({ view, direction, jitter }: AirViewRay): (place: AirPoint) => Float {
     const { field, light, shadows } = this.#clouds
-    const shifted = offset.add(this.#shift).toConst() as Vec3
-    const { shadow, inMap } = sampleShadows(shadows.nodes, shifted, jitter)
-    const depth = shadow.toVar()
-    If(inMap.mul(this.#isMapped).equal(0), () => {
-      const { altitude, cosLight, up } = view.localCoordinates(offset)
-      if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
-      else {
-        const sample = {
-          offset: shifted,
-          altitude,
-          up,
-          distance: shifted.length().toConst() as Float
+    const mapped = sampleShadowsAlong(shadows.nodes, this.#shift, direction, jitter)
+    return ({ offset, distance }) => {
+      const { shadow, inMap } = mapped(distance)
+      const depth = shadow.toVar()
+      If(inMap.mul(this.#isMapped).equal(0), () => {
+        const { altitude, cosLight, up } = view.localCoordinates(offset)
+        if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
+        else {
+          const shifted = offset.add(this.#shift).toConst() as Vec3
+          const seen = shifted.length().toConst() as Float
+          const sample = { offset: shifted, altitude, up, distance: seen }
+          depth.assign(opticalDepthTowards(field, sample, view.lightDirection))
         }
-        depth.assign(opticalDepthTowards(field, sample, view.lightDirection))
-      }
-    })
-    // What is scattered within the forward peak arrives with the sun.
-    return depth.mul(light.nodes.depthScale).negate().exp()
+      })
+      // What is scattered within the forward peak arrives with the sun.
+      return depth.mul(light.nodes.depthScale).negate().exp()
+    }
   }
 
   diffuse({ view, offset }: AirPoint): Vec4 {
     const { field, light } = this.#clouds
     const { altitude, cosLight, up } = view.localCoordinates(offset)
+    if (field.worldMap === null) return this.#diffuse.sample(altitude, cosLight)
     const shifted = offset.add(this.#shift).toConst() as Vec3
-    const decks =
-      field.worldMap === null
-        ? meanDecks(field, light.nodes, altitude, cosLight)
-        : decksAround(field, light.nodes, shifted, altitude, up, cosLight)
+    const decks = decksAround(field, light.nodes, shifted, altitude, up, cosLight)
     return diffuseRatio(view, decks, altitude, cosLight)
   }
 
   dispose(): void {
+    this.#diffuse.dispose()
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)

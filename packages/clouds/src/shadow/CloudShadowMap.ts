@@ -57,6 +57,9 @@ const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
 const STALE_LIGHT = 6e-4
 
+/** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
+export const TABLE_COLUMNS = 32
+
 interface Cascade {
   readonly nodes: CascadeNodes
   isDrawn: boolean
@@ -102,8 +105,8 @@ export class CloudShadowMap {
   constructor(field: CloudField) {
     this.field = field
     this.source = field.atmosphere.sun
-    const tileCount = HALF_WIDTHS.length + 1
-    this.target = tableTarget('Welkin.CloudShadows', SIZE * tileCount, SIZE)
+    const width = SIZE * (HALF_WIDTHS.length + 1) + TABLE_COLUMNS
+    this.target = tableTarget('Welkin.CloudShadows', width, SIZE)
     this.#cascades = HALF_WIDTHS.map((_, i) => ({
       nodes: {
         u: vector4(),
@@ -119,7 +122,7 @@ export class CloudShadowMap {
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
-      tileCount,
+      tileCount: width / SIZE,
       isMoonlit: number()
     }
     this.#ray = {

@@ -1,41 +1,16 @@
 import { If, float, int, vec2, vec4 } from 'three/tsl'
-import type { TextureNode } from 'three/webgpu'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
+import type { Air } from '../../scattering/tsl/ray'
 import { rayLimits } from '../../skyVolume/tsl/rayLimits'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import type { AirPoint, AirShadow } from '../AirOccluder'
-import { litRay } from './litRay'
+import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
-import { isDark, polarRay, type PolarFrame } from './polarMap'
-import { warpedSteps } from './warpedSteps'
-
-/** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
-export interface ShadowedAir {
-  readonly map: TextureNode
-  readonly frame: PolarFrame
-  /** Greatest ρ at which the map may have shadows [m]. */
-  readonly maximumRho: Float
-  /** Shadows of clouds and the like. */
-  readonly shadows: readonly Pick<AirShadow, 'transmittance' | 'diffuse'>[]
-  /** World position of a displacement from the camera in the mapped space [m]. */
-  readonly toWorld: (offset: Vec3) => Vec3
-}
-
-/** A view ray, and as far as it is marched. */
-export interface ShaftRay {
-  /** Unit length, in the mapped space. */
-  readonly direction: Vec3
-  readonly cosView: Float
-  /** ν, against the source of light. */
-  readonly cosViewLight: Float
-  /** Distance to what is seen; beyond the air for the sky [m]. */
-  readonly distance: Float
-  /** Part of the light from a distance [m] that reaches the picture; left out, all. */
-  readonly seenFrom?: (distance: Float) => Float
-}
+import { polarRay } from './polarMap'
+import { shadowsAlong, type ShadowedAir, type ShaftRay } from './shadowsAlong'
+import { warpedSteps, type WarpedSteps } from './warpedSteps'
 
 /** Number of samples on a ray. */
 export interface ShaftSteps {
@@ -48,15 +23,26 @@ export interface ShaftSteps {
 /** Places at which diffuse light is evaluated, over groups: it changes slowly, and four pixels share theirs. */
 const DIFFUSE_PART = 0.5
 
-/** Stretch of a ray that is marched in some groups of samples, whatever its length. */
+/** Stretch of a ray that is marched in groups of samples, whatever its length. */
 interface Stretch {
   /** Light of the ray before it, and in it, as parts of all. */
   readonly from: Float
   readonly width: Float
-  /** True where the map has shadows; null where all of the ray is. */
-  readonly isMapped: Bool | null
-  /** Index of the group in its stretch. */
-  readonly group: Float
+  /** Number of groups, and of samples in each. */
+  readonly groups: Float
+  readonly samples: Float
+  /** True where the map has shadows. */
+  readonly isMapped: boolean
+}
+
+/** March along a view ray. */
+interface March {
+  readonly steps: WarpedSteps
+  /** Part of a place's light that the picture loses, by position among the steps. */
+  readonly darkAt: (position: Float, isMapped: boolean) => Float
+  /** Light scattered once at a distance in the air, if nothing casts shadows [1/(m sr)]. */
+  readonly scatteredAt: (inAir: Float) => Vec4
+  readonly jitter: Float
 }
 
 /**
@@ -66,21 +52,22 @@ interface Stretch {
  *
  * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the look-ups
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
- * Where there are shadows beyond the map, the ray goes on there in as many groups again.
+ * Where there are shadows beyond the map, the ray goes on there with about as many samples again.
  *
  * @param jitter - Place of samples in their steps, in (0, 1).
  */
 export function lostLight(
   view: ViewUniforms,
-  { map, frame, maximumRho, shadows, toWorld }: ShadowedAir,
-  { direction, cosView, cosViewLight, distance, seenFrom }: ShaftRay,
+  shadowedAir: ShadowedAir,
+  shaftRay: ShaftRay,
   { groups, samples }: ShaftSteps,
   jitter: Float
 ): Vec4 {
   const { air, viewpoint } = view
-  const { uniforms } = air
+  const { maximumRho, shadows } = shadowedAir
+  const { cosView, cosViewLight, distance } = shaftRay
   const limits = rayLimits(viewpoint, cosView)
-  const polar = polarRay(frame, direction, cosViewLight)
+  const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight)
   const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
   const isMappedOnly = shadows.length === 0
   const seen = limits.start.add(limits.length).min(distance)
@@ -90,97 +77,97 @@ export function lostLight(
   If(length.greaterThan(0), () => {
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
-    const steps = warpedSteps(uniforms, ray, length)
+    const steps = warpedSteps(air.uniforms, ray, length)
     const airAt = litRay(view, ray, limits, cosView)
-    const rayleigh = rayleighPhase(cosViewLight).toConst()
-    const mie = miePhase(uniforms, cosViewLight).toConst()
-    const perGroup = float(1).div(groups).toConst()
-    const perSample = float(1).div(samples).toConst()
-
-    const pointAt = (cameraDistance: Float): AirPoint => {
-      const offset = direction.mul(cameraDistance).toConst() as Vec3
-      return { view, offset, jitter, positionWorld: () => toWorld(offset) }
+    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
+    const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
+    const march: March = {
+      steps,
+      darkAt: (position, isMapped) => darkAt(fromEye(steps.distance(position)), isMapped),
+      scatteredAt: scatteredOnce(air, airAt, cosViewLight),
+      jitter
     }
-
-    /** Part of the light that a place does not get. */
-    const darkAt = (position: Float, isMapped: Bool | null): Float => {
-      const cameraDistance = steps.distance(position).add(limits.start).toConst() as Float
-      const dark = float(0).toVar()
-      const readMap = (): void => {
-        dark.assign(isDark(map, frame, polar, cameraDistance).select(1, 0))
-      }
-      if (isMapped === null) readMap()
-      else If(isMapped, readMap)
-      if (isMappedOnly) return seenFrom?.(cameraDistance).mul(dark) ?? dark
-      If(dark.lessThan(1), () => {
-        const place = pointAt(cameraDistance)
-        const passing = shadows.map(shadow => shadow.transmittance(place))
-        dark.assign(passing.reduce((product, part) => product.mul(part)).oneMinus())
-      })
-      return seenFrom?.(cameraDistance).mul(dark) ?? dark
-    }
-
-    const marchGroup = ({ from, width, isMapped, group }: Stretch): void => {
-      const dark = float(0).toVar()
-      const sum = float(0).toVar()
-      loop('look', int(samples), look => {
-        const part = float(look).add(jitter).mul(perSample).add(group).mul(perGroup)
-        const position = part.mul(width).add(from).toConst() as Float
-        const here = darkAt(position, isMapped).toConst() as Float
-        dark.addAssign(here)
-        sum.addAssign(position.mul(here))
-      })
-      If(dark.greaterThan(0), () => {
-        const centre = sum.div(dark).toConst() as Float
-        const inAir = steps.distance(centre).toConst() as Float
-        const share = dark.mul(width).mul(perSample.mul(perGroup))
-        const place = airAt(inAir)
-        const scattering = place.seenRayleigh.mul(rayleigh).add(place.seenMie.mul(mie))
-        const { transmittance } = air
-        const light = lightTransmittance(uniforms, transmittance, place.altitude, place.cosLight)
-        lost.addAssign(scattering.mul(light).mul(steps.slope(centre).mul(share)))
+    const marchStretch = (name: string, stretch: Stretch): void => {
+      const perGroup = stretch.width.div(stretch.groups).toConst()
+      loop(name, int(stretch.groups), group => {
+        lost.addAssign(lostInGroup(march, stretch, perGroup.mul(float(group)).add(stretch.from)))
       })
     }
-
     if (isMappedOnly) {
-      loop('group', int(groups), group => {
-        marchGroup({ from: float(0), width: float(1), isMapped: null, group: float(group) })
-      })
+      const all = { from: float(0), width: float(1), groups, samples, isMapped: true }
+      marchStretch('group', all)
       return
     }
     const near = steps.partAt(mapped.sub(limits.start).clamp(0, length)).toConst() as Float
-    loop('group', int(groups.mul(2)), group => {
-      const index = float(group)
-      const isMapped = index.lessThan(groups).toConst() as Bool
-      const from = isMapped.select(0, near).toConst() as Float
-      const width = isMapped.select(near, near.oneMinus()).toConst() as Float
-      If(width.greaterThan(0), () => {
-        const place = isMapped.select(index, index.sub(groups)).toConst() as Float
-        marchGroup({ from, width, isMapped, group: place })
-      })
-    })
-    const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
-    if (dimming.length === 0) return
-    const missingAt = (inAir: Float): Vec4 => {
-      const cameraDistance = inAir.add(limits.start).toConst() as Float
-      const parts = dimming.map(shadow => shadow.diffuse!(pointAt(cameraDistance)))
-      const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
-      return seenFrom === undefined ? missing : missing.mul(seenFrom(cameraDistance))
+    // Each has groups by its light, and as many samples whatever that is; beyond the map shadows are soft.
+    const part = (from: Float, width: Float, most: Float, isMapped: boolean): Stretch => {
+      const some = groups.mul(width).ceil().toConst() as Float
+      const each = groups.mul(most).div(some.max(1)).ceil().toConst() as Float
+      return { from, width, groups: some, samples: each, isMapped }
     }
+    marchStretch('near', part(float(0), near, samples, true))
+    marchStretch('far', part(near, near.oneMinus().toConst(), samples.sub(1), false))
+    if (missingAt === null) return
     const places = int(groups.mul(DIFFUSE_PART).max(1))
-    const diffuse = { steps, at: airAt, cosViewLight, samples: places, jitter, missingAt }
+    const diffuse = {
+      steps,
+      at: airAt,
+      cosViewLight,
+      samples: places,
+      jitter,
+      missingAt: (inAir: Float) => missingAt(fromEye(inAir))
+    }
     lost.addAssign(lostDiffuse(air, diffuse))
   })
   return lost
 }
 
-/** Places of samples in their steps, in 2 × 2 pixels: any four that touch have all of them. */
-const STAGGERED = [0.125, 0.625, 0.875, 0.375]
-
-/** Place of a pixel's samples in their steps. */
-export function staggered(pixel: Vec2): Float {
-  const [left, right, lowerLeft, lowerRight] = STAGGERED
-  const odd = pixel.mod(2).greaterThan(vec2(0.5)).toConst() as unknown as { x: Bool; y: Bool }
-  const upper = odd.x.select(right, left)
-  return odd.y.select(odd.x.select(lowerRight, lowerLeft), upper).toConst()
+/** Light scattered once that a ray gains at a distance in the air, for unit irradiance [1/(m sr)]. */
+function scatteredOnce(
+  { uniforms, transmittance }: Air,
+  airAt: (inAir: Float) => LitPoint,
+  cosViewLight: Float
+): (inAir: Float) => Vec4 {
+  const rayleigh = rayleighPhase(cosViewLight).toConst()
+  const mie = miePhase(uniforms, cosViewLight).toConst()
+  return inAir => {
+    const place = airAt(inAir)
+    const scattering = place.seenRayleigh.mul(rayleigh).add(place.seenMie.mul(mie))
+    const light = lightTransmittance(uniforms, transmittance, place.altitude, place.cosLight)
+    return scattering.mul(light)
+  }
 }
+
+/**
+ * Light scattered once that a group of samples loses: its dark part, times the light at that part's centre.
+ *
+ * @param start - Light of the ray before it, as a part of all.
+ */
+function lostInGroup(
+  { steps, darkAt, scatteredAt, jitter }: March,
+  { width, groups, samples, isMapped }: Stretch,
+  start: Float
+): Vec4 {
+  const dark = float(0).toVar()
+  const sum = float(0).toVar()
+  const perSample = width.div(groups.mul(samples)).toConst() as Float
+  loop('look', int(samples), look => {
+    const position = float(look).add(jitter).mul(perSample).add(start).toConst() as Float
+    const here = darkAt(position, isMapped).toConst() as Float
+    dark.addAssign(here)
+    sum.addAssign(position.mul(here))
+  })
+  const lost = vec4(0).toVar()
+  If(dark.greaterThan(0), () => {
+    const centre = sum.div(dark).toConst() as Float
+    const inAir = steps.distance(centre).toConst() as Float
+    lost.assign(scatteredAt(inAir).mul(steps.slope(centre).mul(dark.mul(perSample))))
+  })
+  return lost
+}
+
+/**
+ * Place of a pixel's samples in their steps: 1/8, 5/8, 7/8 or 3/8, of which any four pixels that touch have all.
+ */
+export const staggered = (pixel: Vec2): Float =>
+  pixel.mod(2).dot(vec2(0.5, 0.75)).add(0.125).fract().toConst()

@@ -3,6 +3,7 @@ import {
   Fn,
   If,
   atan,
+  bool,
   float,
   ivec2,
   max,
@@ -76,6 +77,13 @@ function comparedDepth(depth: TextureNode, at: Vec2, { isReversed }: DepthStorag
 const isEmpty = (stored: Float, { isReversed }: DepthStorage): Bool =>
   isReversed ? stored.lessThanEqual(EMPTY) : stored.greaterThanEqual(1 - EMPTY)
 
+const depthIn = (depth: TextureNode, size: Vec2, texel: Vec2): Float =>
+  (textureLoad(depth, ivec2(texel.clamp(vec2(0), size.sub(1)))) as unknown as Vec4).r.toConst()
+
+/** Depth of the texel that a place is in: a quarter of the reads of {@link mixedDepth}, for its ends. */
+const nearestDepth = (depth: TextureNode, size: Vec2, at: Vec2): Float =>
+  depthIn(depth, size, at.mul(size).floor())
+
 /**
  * Depth between the four texels next to a place, so that slopes in shadow at a flat angle cast no shadows in
  * steps; of the nearest one where a caster ends, which would shrink.
@@ -84,22 +92,17 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const place = at.mul(size).sub(0.5).toConst()
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
-  const read = (x: number, y: number): Float => {
-    const texel = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
-    return (textureLoad(depth, ivec2(texel)) as unknown as Vec4).r.toConst()
-  }
-  const corners = [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
-  const among = (weight: Vec2): Float =>
-    mix(mix(corners[0], corners[1], weight.x), mix(corners[2], corners[3], weight.x), weight.y)
-  const [a, b, c, d] = corners
+  const read = (x: number, y: number): Float => depthIn(depth, size, first.add(vec2(x, y)))
+  const [a, b, c, d] = [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
+  const among = (weight: Vec2): Float => mix(mix(a, b, weight.x), mix(c, d, weight.x), weight.y)
   const farthest = isReversed ? min(a, b, c, d) : max(a, b, c, d)
   return isEmpty(farthest, { isReversed, isCompared: false })
     .select(among(step(0.5, part)), among(part))
     .toConst()
 }
 
-/** Rays that are tried for a texel until one meets a caster: its own, and those to its four sides. */
-const PROBES = 5
+/** Rays beside a texel's own, to its four sides, that are tried in their finest map where that meets no caster. */
+const PROBES = 4
 
 /**
  * A texel of the sun-polar shadow map: its ray of light through the shadow maps, up to the first that has an
@@ -115,34 +118,47 @@ export function occluderAngle(
 ): Vec4 {
   return Fn(() => {
     const texel = uv() as unknown as Vec2
-    const { distance } = lightRayAt(frame, texel)
+    const { offset, distance } = lightRayAt(frame, texel)
     const nearest = float(NOTHING).toVar()
+    // The first map is the finest: what a ray of light meets in it counts.
+    const search = (from: Vec3, depthAt: typeof mixedDepth): void => {
+      const isSought = bool(true).toVar() as Bool & { assign(value: Bool | boolean): void }
+      for (const map of maps) {
+        If(isSought, () => {
+          seekOccluder(map, from, storage, depthAt, position => {
+            nearest.assign(position)
+            isSought.assign(depthAt === mixedDepth ? position.equal(NOTHING) : false)
+          })
+        })
+      }
+    }
+    search(offset, mixedDepth)
     loop('probe', PROBES, probe => {
       If(nearest.equal(NOTHING), () => {
         const side = (positive: number): Float =>
           probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
         // A row is a quarter as high as a column is wide.
-        const shift = vec2(side(1), side(3).mul(0.25)).mul(WIDENING).div(frame.columns)
-        const { offset } = lightRayAt(frame, texel.add(shift).toConst())
-        // The first map is the finest: what a ray of light meets in it counts.
-        for (const map of maps) {
-          If(nearest.equal(NOTHING), () => {
-            nearest.assign(occluderAlong(map, offset, storage))
-          })
-        }
+        const shift = vec2(side(0), side(2).mul(0.25)).mul(WIDENING).div(frame.columns)
+        search(lightRayAt(frame, texel.add(shift).toConst()).offset, nearestDepth)
       })
     })
     return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
   })()
 }
 
-/** Position along a ray of light of what it meets first in a map, towards the light [m]. */
-function occluderAlong(
+/**
+ * Looks for the first occluder on a ray of light in a map, if the map has the ray.
+ *
+ * @param depthAt - Reads the map at a place.
+ * @param then - Takes the position along the ray, towards the light [m].
+ */
+function seekOccluder(
   { depth, size, matrix, bounds, metersPerDepth }: ShadowMapNodes,
   offset: Vec3,
-  storage: DepthStorage
-): Float {
-  const nearest = float(NOTHING).toVar()
+  storage: DepthStorage,
+  depthAt: typeof mixedDepth,
+  then: (position: Float) => void
+): void {
   const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
   const isInside = place.x
     .greaterThan(bounds.x)
@@ -154,10 +170,8 @@ function occluderAlong(
     const at = vec2(place.x, place.y.oneMinus()).toConst()
     const stored = storage.isCompared
       ? comparedDepth(depth, at, storage)
-      : mixedDepth(depth, size, at, storage)
-    If(isEmpty(stored, storage).not(), () => {
-      nearest.assign(stored.sub(place.z).mul(metersPerDepth))
-    })
+      : depthAt(depth, size, at, storage)
+    const position = stored.sub(place.z).mul(metersPerDepth)
+    then(isEmpty(stored, storage).select(NOTHING, position).toConst())
   })
-  return nearest
 }

@@ -22,7 +22,7 @@ export interface PolarFrame {
 }
 
 /** A view ray in a {@link PolarFrame}. */
-interface PolarRay {
+export interface PolarRay {
   /** sin θ, which turns a distance along the ray into ρ. */
   sinViewLight: Float
   /** θ, or π − θ where the ray goes away from the light: half floats are finest near nought [rad]. */

@@ -1,5 +1,5 @@
 import type { Vector3, Vector4 } from 'three'
-import { If, vec2, vec4 } from 'three/tsl'
+import { If, vec2, vec3, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { MAXIMUM_DISTANCE } from './shadowRay'
@@ -19,7 +19,7 @@ export interface CascadeNodes {
 export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
-  /** Number of tiles, one more than cascades. */
+  /** Width of the map in tiles. */
   readonly tileCount: number
   /** 1 for a map of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
@@ -79,10 +79,67 @@ export function sampleShadows(
       place.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))
     })
   }
+  return depthsAt(map, place)
+}
+
+/** Optical depths by a place in the map, the height over the cascade's plane there, and whether it is known. */
+function depthsAt(map: CloudShadows['map'], place: Vec4): LightDepths {
   const inMap = place.w.toConst() as Float
   const texel = map.sample(place.xy).level(0).mul(inMap).toConst() as Vec4
   // Front and half length come times the depth.
   const share = texel.x.sub(texel.z.mul(place.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
   const toLight = texel.z.mul(share).toConst() as Float
   return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), inMap }
+}
+
+/**
+ * Optical depths along a ray: as {@link sampleShadows} has them, for less at each place, since cascades are
+ * chosen by the stretch of the ray that is in them.
+ *
+ * @param from - Start of the ray, from the camera of the map [m].
+ * @param direction - Unit length.
+ * @param dither - Noise in [0, 1), in which cascades meet.
+ * @returns Depths by the distance from the start [m].
+ */
+export function sampleShadowsAlong(
+  { map, cascades, tileCount }: CloudShadows,
+  from: Vec3,
+  direction: Vec3,
+  dither: Float
+): (distance: Float) => LightDepths {
+  const edge = dither.mul(-FADE).add(0.5 - MARGIN)
+  const extent = vec3(edge, edge, edge.mul(2 * MAXIMUM_DISTANCE)).toConst() as Vec3
+  const stretches = cascades.map(({ u, v, w, isDrawn, atlasTile }) => {
+    const along = (place: Vec3): Vec3 => vec3(place.dot(u.xyz), place.dot(v.xyz), place.dot(w.xyz))
+    const start = along(from)
+      .add(vec3(u.w, v.w, w.w))
+      .toConst() as Vec3
+    const slope = along(direction).toConst() as Vec3
+    // A ray that is level in an axis is in the cascade everywhere, or nowhere.
+    const perSlope = vec3(1).div(slope.add(1e-12)).toConst() as Vec3
+    const middle = vec3(0.5, 0.5, 0).sub(start).mul(perSlope).toConst() as Vec3
+    const half = extent.mul(perSlope.abs()).toConst() as Vec3
+    const [first, last] = [middle.sub(half), middle.add(half)]
+    const toAtlas = vec3(1 / tileCount, 1, 1)
+    return {
+      start: start
+        .add(vec3(atlasTile, 0, 0))
+        .mul(toAtlas)
+        .toConst(),
+      slope: slope.mul(toAtlas).toConst(),
+      first: first.x.max(first.y).max(first.z).toConst(),
+      // Cascades that are not drawn end at the camera.
+      last: last.x.min(last.y).min(last.z).mul(isDrawn).toConst()
+    }
+  })
+  return distance => {
+    const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
+    // From the widest to the narrowest: the last that fits stays.
+    for (const { start, slope, first, last } of stretches.toReversed()) {
+      If(distance.greaterThan(first).and(distance.lessThan(last)), () => {
+        place.assign(vec4(start.add(slope.mul(distance)), 1))
+      })
+    }
+    return depthsAt(map, place)
+  }
 }

@@ -1,0 +1,173 @@
+import { aerialPerspective, lightShafts } from '@welkin/atmosphere'
+import {
+  Group,
+  Matrix4,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Quaternion,
+  Vector3,
+  FloatType,
+  type Camera
+} from 'three'
+import { pass } from 'three/tsl'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { drawToFloat } from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+import { addBox, expectSame, stage, stageSize as size, type Stage } from '../harness/shaft-stage'
+
+const apart = (a: Picture, b: Picture): number =>
+  a.data.reduce((sum, value, i) => sum + Math.abs(value - b.data[i]), 0)
+
+/** Towers on the sun's side of the camera, as they stand in a frame. */
+function addTowers(set: Stage, frame: Matrix4): void {
+  const group = new Group()
+  for (const [x, width] of [
+    [-300, 200],
+    [50, 60],
+    [260, 150]
+  ])
+    group.add(addBox(set.scene, [x, 200, -600], [width, 500, 60]))
+  group.applyMatrix4(frame)
+  set.scene.add(group)
+}
+
+gpuTest('has the same shafts in world units of a kilometre and in ECEF axes', async t => {
+  // Vertices of the planet's size are none of three's, but by this.
+  const renderer = await t.createRenderer(size)
+  renderer.highPrecision = true
+  const drawIn = async (frame: 'metres' | 'kilometres' | 'ECEF'): Promise<Picture[]> => {
+    const set = stage(renderer, 15)
+    const { atmosphere, camera, light, shafts } = set
+    const before = atmosphere.worldToECEF.clone()
+    if (frame === 'kilometres') atmosphere.metersPerUnit = 1000
+    if (frame === 'ECEF') {
+      atmosphere.worldToECEF.identity()
+      atmosphere.sunDirection = atmosphere.sunDirection.clone().transformDirection(before)
+    }
+    const matrix = atmosphere.worldToECEF.clone().invert().multiply(before)
+    const units = matrix.getMaxScaleOnAxis()
+    addTowers(set, matrix)
+    const [position, turn] = [camera.position.clone().applyMatrix4(matrix), new Quaternion()]
+    matrix.decompose(light.target.position, turn, new Vector3())
+    camera.position.copy(position)
+    camera.quaternion.premultiply(turn)
+    camera.near *= units
+    camera.far *= units
+    camera.updateProjectionMatrix()
+    light.distance = 6000 * units
+    const { camera: lens } = light.shadow
+    for (const side of ['left', 'right', 'bottom', 'top', 'near', 'far'] as const)
+      lens[side] *= units
+    lens.updateProjectionMatrix()
+    await set.draw()
+    const shadowed = await set.draw()
+    shafts.enabled = false
+    const lit = await set.draw()
+    set.dispose()
+    return [shadowed, lit]
+  }
+  const [expected, lit] = await drawIn('metres')
+  const shadows = apart(lit, expected)
+  expectTrue(
+    shadows > 2e-4 * lit.data.reduce((sum, value) => sum + value, 0),
+    'towers cast shadows'
+  )
+  for (const frame of ['kilometres', 'ECEF'] as const) {
+    const [picture, litThere] = await drawIn(frame)
+    const error = Math.abs(apart(litThere, picture) / shadows - 1)
+    const difference = Math.abs(apart(picture, expected) - apart(litThere, lit)) / shadows
+    t.note(
+      `${frame}: shafts ${(100 * error).toFixed(2)} % and ${(100 * difference).toFixed(2)} % apart`
+    )
+    expectTrue(error < 0.02, `${frame}: as much light is lost`)
+    expectTrue(difference < 0.05, `${frame}: where it is lost`)
+  }
+})
+
+/** A camera's own pipeline of the stage's scene, with shafts. */
+function second({ scene, atmosphere, light }: Stage, renderer: WebGPURenderer, camera: Camera) {
+  const shafts = lightShafts(atmosphere, camera, light)
+  const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputColorTransform = false
+  const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
+  pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+  return {
+    shafts,
+    pipeline,
+    dispose: () => {
+      for (const owned of [scenePass, pipeline, shafts]) owned.dispose()
+    }
+  }
+}
+
+gpuTest(
+  'takes from an orthographic camera what it takes from a narrow perspective one',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15)
+    addTowers(set, new Matrix4())
+    const cameras = [
+      new OrthographicCamera(-0.02, 0.02, 0.01, -0.01, 1, 1e6),
+      new PerspectiveCamera(0.01, size.width / size.height, 1, 1e6)
+    ]
+    for (const [label, target] of [
+      ['sky', new Vector3(70, 600, -600)],
+      ['tower', new Vector3(60, 300, -600)]
+    ] as const) {
+      const losses: number[] = []
+      for (const camera of cameras) {
+        camera.position.set(0, 2, 0)
+        camera.lookAt(target)
+        camera.updateMatrixWorld()
+        const { shafts, pipeline, dispose } = second(set, renderer, camera)
+        const draw = async (): Promise<number> => {
+          await nextFrame()
+          const picture = await drawToFloat(renderer, () => pipeline.render())
+          return picture.at(size.width / 2, size.height / 2)[1]
+        }
+        await draw()
+        const shadowed = await draw()
+        shafts.enabled = false
+        losses.push(1 - shadowed / (await draw()))
+        dispose()
+      }
+      t.note(`${label}: ${losses.map(part => part.toFixed(5)).join(', ')} of the light is lost`)
+      expectTrue(losses[1] > 1e-3, `${label}: a tower casts a shadow`)
+      expectClose(losses[0], losses[1], { relative: 0.01, absolute: 1e-4 }, label)
+    }
+    set.dispose()
+  }
+)
+
+gpuTest('draws two cameras in a frame as it draws each alone', async t => {
+  const renderer = await t.createRenderer(size)
+  const set = stage(renderer, 15)
+  addTowers(set, new Matrix4())
+  const camera = set.camera.clone()
+  camera.position.set(-200, 60, 100)
+  camera.lookAt(0, 300, -600)
+  camera.updateMatrixWorld()
+  set.camera.updateMatrixWorld()
+  const other = second(set, renderer, camera)
+  const pipelines = [set.pipeline, other.pipeline]
+  const alone: Picture[] = []
+  for (const pipeline of pipelines) {
+    for (let i = 0; i < 2; i++) {
+      await nextFrame()
+      alone[pipelines.indexOf(pipeline)] = await drawToFloat(renderer, () => pipeline.render())
+    }
+  }
+  expectTrue(apart(alone[0], alone[1]) > 0, 'the cameras see something else')
+  for (let i = 0; i < 2; i++) {
+    await nextFrame()
+    for (const [k, pipeline] of pipelines.entries()) {
+      expectSame(await drawToFloat(renderer, () => pipeline.render()), alone[k], `camera ${k}`)
+    }
+  }
+  other.dispose()
+  set.dispose()
+})

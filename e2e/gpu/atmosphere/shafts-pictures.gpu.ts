@@ -1,0 +1,109 @@
+import type { LightShaftsQuality } from '@welkin/atmosphere'
+import { Vector3 } from 'three'
+import { drawForward } from '../harness/atmosphere'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+import { addBox, stage, type Stage } from '../harness/shaft-stage'
+
+const size = { width: 320, height: 180 }
+
+/** Turn of the camera in a frame: 60°/s at 60 Hz [rad]. */
+const TURN = Math.PI / 180
+
+/** Towers before a low sun, of which each has its shaft in the haze. */
+function city({ scene, camera, light }: Stage): void {
+  for (let i = 0; i < 16; i++) {
+    const [column, row] = [i % 4, Math.floor(i / 4)]
+    const height = 120 + 60 * ((7 * i) % 5)
+    const tower = addBox(
+      scene,
+      [(column - 1.5) * 160 + 25 * row, height / 2, -400 - 220 * row],
+      [40, height, 40]
+    )
+    tower.material.color.set(0x404040)
+  }
+  const ground = addBox(scene, [0, -5, 0], [8000, 10, 8000])
+  ground.material.color.set(0x606060)
+  light.shadow.mapSize.setScalar(2048)
+  const { camera: lens } = light.shadow
+  Object.assign(lens, { left: -1600, right: 1600, bottom: -1600, top: 1600 })
+  lens.updateProjectionMatrix()
+  camera.position.set(30, 2, 150)
+}
+
+/** Has the camera look somewhat up, at an angle from the sun's azimuth [rad]. */
+function turnTo({ camera }: Stage, angle: number): void {
+  const direction = new Vector3(Math.sin(angle), 0.2, -Math.cos(angle))
+  camera.lookAt(direction.add(camera.position))
+  camera.updateMatrixWorld()
+}
+
+const encode = (light: number): number =>
+  light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055
+
+/** Likeness of pictures as displays show them, where one pixel in fifty is white [dB]. */
+function likeness(a: Picture, b: Picture): number {
+  const colors = a.data.filter((_, i) => i % 4 < 3)
+  const white = colors.toSorted()[Math.floor(0.98 * colors.length)]
+  const shown = (value: number): number => encode(Math.min(Math.max(value / white, 0), 1))
+  let sum = 0
+  a.data.forEach((value, i) => {
+    if (i % 4 < 3) sum += (shown(value) - shown(b.data[i])) ** 2
+  })
+  return -10 * Math.log10(sum / colors.length)
+}
+
+const goals: [LightShaftsQuality, number][] = [
+  ['high', 48],
+  ['medium', 46],
+  ['low', 44]
+]
+
+gpuTest(
+  'draws what 512 steps a pixel do, standing still and turning',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15)
+    const { shafts, atmosphere, scene, camera } = set
+    city(set)
+    /** All steps for each pixel, by the scene's materials. */
+    const exact = async (): Promise<Picture> => {
+      shafts.set({ quality: 'reference' })
+      atmosphere.add(shafts)
+      await nextFrame()
+      await drawForward(renderer, scene, camera, atmosphere)
+      await nextFrame()
+      const picture = await drawForward(renderer, scene, camera, atmosphere)
+      atmosphere.remove(shafts)
+      scene.backgroundNode = scene.fogNode = null
+      return picture
+    }
+    for (const angle of [0.3, -0.9]) {
+      turnTo(set, angle)
+      const expected = await exact()
+      shafts.enabled = false
+      await set.draw()
+      const lit = await set.draw()
+      shafts.enabled = true
+      t.note(`without shafts ${likeness(expected, lit).toFixed(1)} dB`)
+      for (const [quality, goal] of goals) {
+        shafts.set({ quality })
+        turnTo(set, angle)
+        await set.draw()
+        const still = likeness(expected, await set.draw())
+        for (const before of [3, 2, 1]) {
+          turnTo(set, angle - before * TURN)
+          await set.draw()
+        }
+        turnTo(set, angle)
+        const turning = likeness(expected, await set.draw())
+        t.note(`${quality}: ${still.toFixed(1)} dB, turning ${turning.toFixed(1)} dB`)
+        expectTrue(Math.min(still, turning) >= goal, `${quality} shafts`)
+      }
+    }
+    set.dispose()
+  },
+  { backends: ['webgpu'], timeoutSeconds: 240 }
+)

@@ -1,0 +1,71 @@
+import { If, float } from 'three/tsl'
+import type { TextureNode } from 'three/webgpu'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import type { ViewUniforms } from '../../view/ViewUniforms'
+import type { AirPoint, AirShadow } from '../AirOccluder'
+import { isDark, type PolarFrame, type PolarRay } from './polarMap'
+
+/** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
+export interface ShadowedAir {
+  readonly map: TextureNode
+  readonly frame: PolarFrame
+  /** Greatest ρ at which the map may have shadows [m]. */
+  readonly maximumRho: Float
+  /** Shadows of clouds and the like. */
+  readonly shadows: readonly Pick<AirShadow, 'transmittance' | 'diffuse'>[]
+  /** World position of a displacement from the camera in the mapped space [m]. */
+  readonly toWorld: (offset: Vec3) => Vec3
+}
+
+/** A view ray, and as far as it is marched. */
+export interface ShaftRay {
+  /** Unit length, in the mapped space. */
+  readonly direction: Vec3
+  readonly cosView: Float
+  /** ν, against the source of light. */
+  readonly cosViewLight: Float
+  /** Distance to what is seen; beyond the air for the sky [m]. */
+  readonly distance: Float
+  /** Part of the light from a distance [m] that reaches the picture; left out, all. */
+  readonly seenFrom?: (distance: Float) => Float
+}
+
+/** Shadows on a view ray, by the distance from the camera: the part of the light that the picture loses there. */
+export function shadowsAlong(
+  view: ViewUniforms,
+  { map, frame, shadows, toWorld }: ShadowedAir,
+  { direction, seenFrom }: ShaftRay,
+  polar: PolarRay,
+  jitter: Float
+): {
+  darkAt: (distance: Float, isMapped: boolean) => Float
+  /** Part of the light scattered more than once; null if none is missing. */
+  missingAt: ((distance: Float) => Vec4) | null
+} {
+  const placeAt = (distance: Float): AirPoint => {
+    const offset = direction.mul(distance).toConst() as Vec3
+    return { view, offset, distance, jitter, positionWorld: () => toWorld(offset) }
+  }
+  const passing = shadows.map(shadow => shadow.transmittance({ view, direction, jitter }))
+  const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
+  const missingAt = (distance: Float): Vec4 => {
+    const parts = dimming.map(shadow => shadow.diffuse!(placeAt(distance)))
+    const missing = parts.reduce((product, part) => product.mul(part)).oneMinus()
+    return seenFrom === undefined ? missing : missing.mul(seenFrom(distance))
+  }
+  return {
+    darkAt(distance, isMapped) {
+      const inMap = isMapped ? isDark(map, frame, polar, distance).select(1, 0) : float(0)
+      const dark = inMap.toVar()
+      if (passing.length > 0) {
+        If(dark.lessThan(1), () => {
+          const place = placeAt(distance)
+          const parts = passing.map(transmittance => transmittance(place))
+          dark.assign(parts.reduce((product, part) => product.mul(part)).oneMinus())
+        })
+      }
+      return seenFrom?.(distance).mul(dark) ?? dark
+    },
+    missingAt: dimming.length > 0 ? missingAt : null
+  }
+}
