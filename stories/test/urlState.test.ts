@@ -3,7 +3,7 @@ import { keepInUrl } from '../src/moving/urlState'
 
 /** A page with an address, and nothing else. */
 function pageAt(hash: string) {
-  const location = { pathname: '/story', search: '?args=hour:7', hash }
+  const location = { pathname: '/story', search: '?path=/story/plain', hash }
   const state = { of: 'Storybook' }
   const replaceState = vi.fn<(state: unknown, title: string, url: string) => void>(
     (_state, _title, url) => {
@@ -36,7 +36,7 @@ it('writes what has changed, twice a second at most, beside what others have the
   expect(replaceState).toHaveBeenLastCalledWith(
     state,
     '',
-    '/story?args=hour:7#hour=7&view=99,%C3%A9%26%3D'
+    '/story?path=/story/plain#hour=7&view=99,%C3%A9%26%3D'
   )
   end()
   value = 'later'
@@ -80,4 +80,18 @@ it('puts back what Storybook took off the address', () => {
   location.hash = ''
   vi.advanceTimersByTime(600)
   expect(location.hash).toBe('#view=moved')
+})
+
+it('puts arguments of a story where Storybook finds them again', () => {
+  const { page, replaceState } = pageAt('#view=1,2&args=hour:8;exposure:2')
+  keepInUrl(
+    'view',
+    () => '1,2',
+    () => {},
+    { page }
+  )
+  vi.advanceTimersByTime(600)
+  const url = '/story?path=/story/plain&args=hour:8;exposure:2#view=1,2'
+  expect(replaceState).toHaveBeenLastCalledWith(expect.anything(), '', url)
+  expect(replaceState).toHaveBeenCalledTimes(1)
 })

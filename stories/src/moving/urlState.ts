@@ -10,11 +10,14 @@ function pageWindow(): Window {
   return window
 }
 
-/** Parts of an address behind its `#`: `#view=1,2,3&hour=7`. */
+/** Parameters of Storybook, which it adds at the end of an address, behind a `#` as well. */
+const STORYBOOK = ['args', 'globals']
+
+/** Parts of an address behind its `#`, encoded: `#view=1,2,3&hour=7`. */
 function partsOf({ location }: Window): Map<string, string> {
   const parts = location.hash.replace(/^#/, '').split('&')
   const pairs = parts.filter(part => part.includes('=')).map(part => part.split('=', 2))
-  return new Map(pairs.map(([key, value]) => [key, decode(value)]))
+  return new Map(pairs.map(([key, value]) => [key, value]))
 }
 
 function decode(text: string): string {
@@ -41,19 +44,23 @@ export interface KeepOptions {
  * The address stays as it is until that something changes; a link put into the open page is followed.
  *
  * @param key - Name in the address, letters alone.
- * @param read - Answers with the present value; undefined leaves the address alone.
+ * @param ask - Answers with the present value; undefined leaves the address alone.
  * @param write - Takes a value from the address, which may be any text.
  * @returns Function that ends it.
  */
 export function keepInUrl(
   key: string,
-  read: () => string | undefined,
+  ask: () => string | undefined,
   write: (value: string) => void,
   { restores = true, page = pageWindow() }: KeepOptions = {}
 ): () => void {
   const restore = (): void => {
     const value = partsOf(page).get(key)
-    if (value !== undefined) write(value)
+    if (value !== undefined) write(decode(value))
+  }
+  const read = (): string | undefined => {
+    const value = ask()
+    return value === undefined ? undefined : encode(value)
   }
   const first = read()
   if (restores) restore()
@@ -62,12 +69,18 @@ export function keepInUrl(
     const value = read()
     const parts = partsOf(page)
     const kept = parts.get(key)
-    if (value === undefined || value === kept || (kept === undefined && value === first)) return
-    parts.set(key, value)
-    const hash = [...parts].map(([name, text]) => `${name}=${encode(text)}`).join('&')
+    const isKept = value === undefined || value === kept || (kept === undefined && value === first)
+    const misplaced = STORYBOOK.filter(name => parts.has(name))
+    if (isKept && misplaced.length === 0) return
+    if (!isKept) parts.set(key, value)
     const { pathname, search } = page.location
+    const moved = misplaced.map(name => `&${name}=${parts.get(name)}`).join('')
+    const hash = [...parts]
+      .filter(([name]) => !misplaced.includes(name))
+      .map(part => part.join('='))
+    const url = `${pathname}${search}${moved}#${hash.join('&')}`
     // Storybook keeps its own state with the entry.
-    page.history.replaceState(page.history.state, '', `${pathname}${search}#${hash}`)
+    page.history.replaceState(page.history.state, '', url)
   }
   const timer = setInterval(keep, INTERVAL)
   page.addEventListener('hashchange', restore)
