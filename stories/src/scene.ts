@@ -55,15 +55,18 @@ export type CreateScene<Args extends RendererArgs> = (
  */
 export const WARM_UP_FRAMES = 3
 
+/** @param trackTimestamp - True to keep the GPU's time. */
 export async function createRenderer(
   canvas: HTMLCanvasElement,
-  forceWebGL: boolean
+  forceWebGL: boolean,
+  trackTimestamp = false
 ): Promise<WebGPURenderer> {
   // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
   const renderer = new WebGPURenderer({
     canvas,
     antialias: true,
     forceWebGL,
+    trackTimestamp,
     reversedDepthBuffer: true
   })
   renderer.highPrecision = true

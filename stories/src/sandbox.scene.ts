@@ -1,0 +1,191 @@
+import type { AtmosphereParametersInit } from '@welkin/atmosphere'
+import { Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { Explorer } from './moving/Explorer'
+import { parametersOf } from './sandbox/airArgs'
+import type { AirArgs } from './sandbox/airArgs'
+import { planetGeometry } from './sandbox/planetMesh'
+import { EARTH, presets } from './sandbox/presets'
+import type { PresetName } from './sandbox/presets'
+import { SandboxSky } from './sandbox/SandboxSky'
+import type { LightsArgs } from './sandbox/SandboxSky'
+import { createThings, disposeMeshes } from './sandbox/things'
+import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import type { RendererArgs, SceneHandle } from './scene'
+
+export interface SandboxArgs extends RendererArgs, AirArgs, LightsArgs {
+  preset: PresetName
+  /** Preset that the sliders were last set to. */
+  shown: PresetName
+  /** Height of the camera above the ground [m]. */
+  height: number
+  /** Direction of view from north, clockwise [°]. */
+  heading: number
+  /** Direction of view above the horizontal [°]. */
+  pitch: number
+}
+
+/** Frames in which exposure settles, from daylight's to a night's. */
+const EXPOSURE_FRAMES = 3
+
+/** All parameters of air, sun and moon under sliders, over a planet of any size. */
+export async function createSandbox(
+  canvas: HTMLCanvasElement,
+  args: SandboxArgs
+): Promise<SceneHandle<SandboxArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(60, 1, 0.5, 1e9)
+  const ground = new Mesh(planetGeometry(1e4), new MeshStandardMaterial({ roughness: 0.95 }))
+  ground.receiveShadow = true
+  const things = createThings()
+  scene.add(ground, ...things)
+  const current = { ...args }
+  const note = noteOver(canvas)
+  let onArgs: SceneHandle<SandboxArgs>['onArgs']
+  let sky: SandboxSky | undefined
+  /** Parameters on show, as text. */
+  let shownAir = ''
+
+  const center = new Vector3()
+  const explorer = args.frame
+    ? undefined
+    : new Explorer(camera, canvas, {
+        upAt: (position, target) => target.copy(position).sub(center).normalize(),
+        heightAt: position => position.distanceTo(center) + center.y
+      })
+
+  /** Shows a planet of another size, which takes an atmosphere of its own. */
+  const build = (init: AtmosphereParametersInit): void => {
+    const made = new SandboxSky(init, {
+      renderer,
+      scene,
+      camera,
+      path: current.path,
+      frame: current.frame
+    })
+    made.atmosphere.luminanceScale = sky?.atmosphere.luminanceScale ?? 1e-4
+    sky?.dispose()
+    sky = made
+    const { bottomRadius } = made.parameters
+    center.set(0, -bottomRadius, 0)
+    ground.geometry.dispose()
+    ground.geometry = planetGeometry(bottomRadius)
+    placeCamera()
+  }
+
+  const placeCamera = (): void => {
+    const { height, heading, pitch } = current
+    const [turn, lift] = [-heading, pitch].map(angle => (angle * Math.PI) / 180)
+    // Farther away the higher it is, so that it sees the things from above.
+    camera.position.set(0, height, 14 + Math.min(height, 200))
+    camera.rotation.set(lift, turn, 0, 'YXZ')
+    camera.updateMatrixWorld()
+  }
+
+  const applyAir = (): string[] => {
+    const { init, notes } = parametersOf(current, EARTH)
+    const air = JSON.stringify(init)
+    if (air === shownAir) return notes
+    if (sky === undefined || sky.parameters.bottomRadius !== init.bottomRadius) build(init)
+    const { parameters } = sky!
+    // #region sandbox
+    // They were given to it: new Atmosphere({ parameters: new AtmosphereParameters({ … }) })
+    parameters.set(init) // at any time; tables are baked again, no shader is compiled
+    // #endregion
+    shownAir = air
+    const [blue, green, yellow, red] = init.groundAlbedo!
+    ground.material.color.setRGB(red, (green + yellow) / 2, blue)
+    return notes
+  }
+
+  const takePreset = (): void => {
+    if (current.preset === current.shown) return
+    const changes = { ...presets[current.preset], shown: current.preset }
+    Object.assign(current, changes)
+    onArgs?.(changes)
+  }
+
+  /** Shows the arguments; what is refused leaves the picture as it is, and says so. */
+  const apply = (): void => {
+    takePreset()
+    const messages: string[] = []
+    for (const step of [applyAir, () => (sky?.apply(current), [])]) {
+      try {
+        messages.push(...step())
+      } catch (error) {
+        messages.push(error instanceof Error ? error.message : String(error))
+      }
+    }
+    note.show(messages)
+  }
+  apply()
+
+  let last: number | undefined
+  const draw = (): void => {
+    const now = performance.now()
+    const seconds = current.frame || last === undefined ? 0 : (now - last) / 1000
+    last = now
+    explorer?.update(seconds)
+    camera.updateMatrixWorld()
+    if (!current.frame) sky?.exposure.adapt(Math.min(seconds, 0.1))
+    sky?.render()
+  }
+
+  const settle = async (): Promise<void> => {
+    for (let i = 0; current.frame && i < WARM_UP_FRAMES + EXPOSURE_FRAMES; i++) {
+      await new Promise(resolve => requestAnimationFrame(resolve))
+      draw()
+      await sky?.exposure.settle()
+    }
+  }
+
+  let ready: Promise<void> = Promise.resolve()
+  return {
+    renderer,
+    scene,
+    camera,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render: draw,
+    resize(width, height, pixelRatio) {
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
+      ready = settle()
+    },
+    update(changes) {
+      const { height, heading, pitch } = current
+      Object.assign(current, changes)
+      apply()
+      const isMoved =
+        height !== current.height || heading !== current.heading || pitch !== current.pitch
+      if (isMoved) placeCamera()
+    },
+    set onArgs(value: typeof onArgs) {
+      onArgs = value
+    },
+    dispose() {
+      explorer?.dispose()
+      note.dispose()
+      sky?.dispose()
+      disposeMeshes([ground, ...things])
+      void renderer.dispose()
+    }
+  }
+}
+
+/** Overlay with messages, in a corner over a canvas. */
+function noteOver(canvas: HTMLCanvasElement) {
+  const element = document.createElement('div')
+  element.setAttribute('role', 'status')
+  element.style.cssText = `position: absolute; right: 12px; top: 12px; max-width: 45%; padding: 6px 10px;
+    border-radius: 6px; background: rgb(5 7 10 / 70%); white-space: pre-line; pointer-events: none`
+  canvas.parentElement?.append(element)
+  return {
+    show(messages: readonly string[]) {
+      element.textContent = messages.join('\n')
+      element.hidden = messages.length === 0
+    },
+    dispose: () => element.remove()
+  }
+}
