@@ -2,12 +2,15 @@ import { AgXToneMapping } from 'three'
 import type { Camera, PerspectiveCamera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
 import type { Air, AirPath } from './air'
+import type { Explorer } from './moving/Explorer'
 
 /** A scene that draws itself, apart from the page and the clock: what a story shows and a test drives. */
 export interface SceneHandle<Args> {
   readonly renderer: WebGPURenderer
   readonly scene: Scene
   readonly camera: Camera
+  /** Moves the camera; the page shows its keys and keeps the view in the address. */
+  readonly explorer?: Explorer
   /** Settles when everything that the current view needs is loaded. */
   readonly ready: Promise<void>
   /** Fraction that is loaded, in [0, 1]. */
