@@ -93,6 +93,7 @@ export async function createValley(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
