@@ -23,6 +23,7 @@ const steps = [
     args: ['--check', '--path', 'march']
   },
   { id: 'visual', title: 'Visual regression', script: 'test:visual' },
+  { id: 'moving', title: 'Moving in stories', script: 'test:moving' },
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer' }
 ]
 const stepMinutes = 40

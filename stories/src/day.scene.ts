@@ -17,10 +17,11 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   Scene,
-  SphereGeometry
+  SphereGeometry,
+  Timer
 } from 'three'
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { Air } from './air'
+import { Explorer } from './moving/Explorer'
 import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -47,9 +48,9 @@ export async function createDay(
   const scene = new Scene()
   const camera = new PerspectiveCamera(65, 1, 0.1, 30_000)
   camera.position.set(-14, 2.5, 0)
-  const controls = new OrbitControls(camera, args.frame ? null : canvas)
-  controls.target.set(0, 6.35, 0)
-  controls.update()
+  camera.lookAt(0, 6.35, 0)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const timer = new Timer()
   const current = { ...args }
 
   const material = new MeshStandardMaterial({ color: '#8f8a7c', roughness: 0.95 })
@@ -127,12 +128,13 @@ export async function createDay(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
     progress: 1,
     render() {
-      if (!current.frame) controls.update()
+      explorer?.update(timer.update().getDelta())
       draw()
     },
     resize(width, height, pixelRatio) {
@@ -150,7 +152,7 @@ export async function createDay(
       apply(changes)
     },
     dispose() {
-      if (controls.domElement !== null) controls.dispose()
+      explorer?.dispose()
       for (const light of [moonlight, moonlitSky, night]) light.dispose()
       exposure.dispose()
       air.dispose()

@@ -7,12 +7,13 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   Scene,
-  SphereGeometry
+  SphereGeometry,
+  Timer
 } from 'three'
 import type { Material } from 'three'
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { Air } from './air'
 import { createWater } from './environment/water'
+import { Explorer } from './moving/Explorer'
 import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -76,11 +77,9 @@ export async function createEnvironment(
   const scene = new Scene()
   const camera = new PerspectiveCamera(44, 1, 0.1, 2 * SEA_RADIUS)
   camera.position.set(-1.5, 2.6, 12)
-  const controls = new OrbitControls(camera, args.frame ? null : canvas)
-  controls.target.set(0, 1.5, 0)
-  controls.maxPolarAngle = Math.PI * 0.52
-  controls.enableDamping = true
-  controls.update()
+  camera.lookAt(0, 1.5, 0)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const timer = new Timer()
 
   const current = { ...args }
   const air = new Air(renderer, scene, camera, args.path)
@@ -121,13 +120,14 @@ export async function createEnvironment(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
     progress: 1,
     render() {
+      explorer?.update(timer.update().getDelta())
       if (!current.frame) {
-        controls.update()
         water.setTime((performance.now() - start) / 1000)
       }
       air.render()
@@ -141,9 +141,7 @@ export async function createEnvironment(
       apply()
     },
     dispose() {
-      if (controls.domElement !== null) {
-        controls.dispose()
-      }
+      explorer?.dispose()
       environment.dispose()
       air.dispose()
       water.dispose()

@@ -1,3 +1,7 @@
+import type { Explorer } from './moving/Explorer'
+import { formatState, parseState } from './moving/ExplorerState'
+import { showHelp } from './moving/help'
+import { keepInUrl } from './moving/urlState'
 import type { CreateScene, RendererArgs, SceneHandle } from './scene'
 
 declare global {
@@ -16,12 +20,23 @@ interface Mounted {
 
 let mounted: Mounted | undefined
 
+/** Keeps the view in the page's address; what it has when the page opens is the first story's. */
+function keepView(explorer: Explorer, restores: boolean): () => void {
+  const write = (text: string): void => {
+    const state = parseState(text)
+    if (state !== undefined) explorer.state = state
+  }
+  return keepInUrl('view', () => formatState(explorer.state), write, { restores })
+}
+
 const STYLE = `
   .welkin { position: fixed; inset: 0; background: #05070a; font: 13px/1.4 system-ui, sans-serif; color: #e8edf2 }
   .welkin canvas { display: block; width: 100%; height: 100%; outline: none }
   .welkin-note { position: absolute; left: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px;
     background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity .4s }
   .welkin-note progress { width: 140px; height: 6px; margin-right: 8px; accent-color: #8fc7ff }
+  .welkin-help { position: absolute; right: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px; opacity: 0;
+    background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity 1s }
   .welkin-code { position: absolute; left: 12px; top: 12px; max-width: calc(100% - 24px); border-radius: 6px;
     background: rgb(5 7 10 / 70%) }
   .welkin-code summary { padding: 6px 10px; cursor: pointer }
@@ -49,8 +64,9 @@ export function mount<Args extends RendererArgs>(
     if (mounted?.key === key && mounted.element.isConnected) {
       mounted.update(args)
     } else {
+      const isFirst = mounted === undefined
       mounted?.dispose()
-      mounted = start(key, id, create, code, args)
+      mounted = start(key, id, create, code, args, isFirst)
     }
     return mounted.element
   }
@@ -67,13 +83,15 @@ function start<Args extends RendererArgs>(
   id: string,
   create: CreateScene<Args>,
   code: string,
-  args: Args
+  args: Args,
+  isFirst: boolean
 ): Mounted {
   delete document.body.dataset.ready
   const element = document.createElement('div')
   element.className = 'welkin'
   element.innerHTML = `<style>${STYLE}</style><canvas></canvas>
     <div class="welkin-note"><progress max="1"></progress><span>Loading</span></div>
+    <div class="welkin-help"></div>
     <details class="welkin-code"><summary>Code</summary><pre></pre></details>`
   element.querySelector('pre')!.textContent = code
   element.querySelector<HTMLElement>('.welkin-code')!.hidden = args.frame
@@ -82,6 +100,7 @@ function start<Args extends RendererArgs>(
   let latest = args
   let handle: SceneHandle<Args> | undefined
   let disposed = false
+  let forgetView: (() => void) | undefined
 
   const resize = (): void => {
     const { clientWidth, clientHeight } = element
@@ -95,6 +114,7 @@ function start<Args extends RendererArgs>(
     if (!disposed) {
       disposed = true
       observer.disconnect()
+      forgetView?.()
       void handle?.renderer.setAnimationLoop(null)
       handle?.dispose()
       delete window.welkinScene
@@ -127,6 +147,11 @@ function start<Args extends RendererArgs>(
     handle.onArgs = changes => void showArgs(id, changes)
     window.welkinScene = created as unknown as SceneHandle<never>
     handle.update(latest)
+    const { explorer } = handle
+    if (explorer !== undefined && !args.frame) {
+      forgetView = keepView(explorer, isFirst)
+      showHelp(element.querySelector<HTMLElement>('.welkin-help')!, explorer)
+    }
     resize()
     observer.observe(element)
     if (args.frame) {

@@ -7,11 +7,12 @@ import {
   PerspectiveCamera,
   Scene,
   SphereGeometry,
-  TorusKnotGeometry
+  TorusKnotGeometry,
+  Timer
 } from 'three'
 import type { Material } from 'three'
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { Air } from './air'
+import { Explorer } from './moving/Explorer'
 import { applyTime, createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
@@ -91,11 +92,9 @@ export async function createPlain(
   const scene = new Scene()
   const camera = new PerspectiveCamera(48, 1, 0.1, 2 * GROUND_RADIUS)
   camera.position.set(3.5, 3, 11.5)
-  const controls = new OrbitControls(camera, args.frame ? null : canvas)
-  controls.target.set(0.2, 1.5, -1)
-  controls.maxPolarAngle = Math.PI * 0.53
-  controls.enableDamping = true
-  controls.update()
+  camera.lookAt(0.2, 1.5, -1)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const timer = new Timer()
   const meshes = populate(scene)
 
   const current = { ...args }
@@ -124,14 +123,13 @@ export async function createPlain(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
     progress: 1,
     render() {
-      if (!current.frame) {
-        controls.update()
-      }
+      explorer?.update(timer.update().getDelta())
       air.render()
     },
     resize(width, height, pixelRatio) {
@@ -143,9 +141,7 @@ export async function createPlain(
       apply()
     },
     dispose() {
-      if (controls.domElement !== null) {
-        controls.dispose()
-      }
+      explorer?.dispose()
       air.dispose()
       for (const { geometry, material } of meshes) {
         geometry.dispose()

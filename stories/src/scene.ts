@@ -2,12 +2,15 @@ import { AgXToneMapping } from 'three'
 import type { Camera, PerspectiveCamera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
 import type { Air, AirPath } from './air'
+import type { Explorer } from './moving/Explorer'
 
 /** A scene that draws itself, apart from the page and the clock: what a story shows and a test drives. */
 export interface SceneHandle<Args> {
   readonly renderer: WebGPURenderer
   readonly scene: Scene
   readonly camera: Camera
+  /** Moves the camera; the page shows its keys and keeps the view in the address. */
+  readonly explorer?: Explorer
   /** Settles when everything that the current view needs is loaded. */
   readonly ready: Promise<void>
   /** Fraction that is loaded, in [0, 1]. */
@@ -52,15 +55,18 @@ export type CreateScene<Args extends RendererArgs> = (
  */
 export const WARM_UP_FRAMES = 3
 
+/** @param trackTimestamp - True to keep the GPU's time. */
 export async function createRenderer(
   canvas: HTMLCanvasElement,
-  forceWebGL: boolean
+  forceWebGL: boolean,
+  trackTimestamp = false
 ): Promise<WebGPURenderer> {
   // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
   const renderer = new WebGPURenderer({
     canvas,
     antialias: true,
     forceWebGL,
+    trackTimestamp,
     reversedDepthBuffer: true
   })
   renderer.highPrecision = true

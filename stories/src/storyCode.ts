@@ -1,10 +1,9 @@
 import { codeRegion } from './codeRegion'
 
-const sources = import.meta.glob<string>(['./quickStart.ts', './air.ts', './*.scene.ts'], {
-  query: '?raw',
-  import: 'default',
-  eager: true
-})
+const sources = import.meta.glob<string>(
+  ['./quickStart.ts', './air.ts', './*.scene.ts', './valleyAir.ts'],
+  { query: '?raw', import: 'default', eager: true }
+)
 
 /** The code of a story, as `mount` shows it: the region NAME of a file beside this one. */
 export function storyCode(file: string, name: string): string {

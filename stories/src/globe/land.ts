@@ -1,13 +1,16 @@
 import { GlobeControls } from '3d-tiles-renderer'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
-import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { Group, PerspectiveCamera, Scene, Timer, Vector3 } from 'three'
 import type { DataTexture } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Air } from '../air'
+import { Explorer } from '../moving/Explorer'
+import { EYE_HEIGHT } from '../moving/Walk'
 import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from '../scene'
 import type { RendererArgs, SceneHandle } from '../scene'
 import { createNoiseTexture } from './detailNoise'
 import { createEarthSurface } from './earthSurface'
+import { groundHeight } from './groundHeight'
 import { loadTiles, tilesProgress } from './loadTiles'
 import { moveCamera } from './places'
 import type { Place } from './places'
@@ -45,6 +48,9 @@ export interface LandStory<Args> {
 /** Number of frames before a screenshot in which the land is drawn anew. */
 const LAST_FRAMES = 3
 
+/** Direction above the horizontal that drags may turn to [rad]. */
+const HIGHEST_PITCH = 1.2
+
 /**
  * A scene on the Earth's land, in a world that is ECEF, in metres.
  *
@@ -77,15 +83,28 @@ export async function createLand<Args extends RendererArgs>(
 
   const controls = new GlobeControls(ground, camera, args.frame ? undefined : canvas)
   controls.setEllipsoid(surface.tiles.ellipsoid, surface.tiles.group)
-  controls.cameraRadius = 1.7
+  controls.cameraRadius = EYE_HEIGHT
+  controls.maxAltitude = HIGHEST_PITCH + Math.PI / 2
   controls.enableDamping = true
   hidePivot(controls)
+  const explorer = args.frame
+    ? undefined
+    : new Explorer(camera, canvas, {
+        groundAt: groundHeight(terrain.tiles.group, surface.tiles.group),
+        upAt: (position, target) => Ellipsoid.WGS84.surfaceNormal(position, target),
+        heightAt: position => Ellipsoid.WGS84.heightAt(position),
+        pole: new Vector3(0, 0, 1),
+        drags: 'walking'
+      })
+  const timer = new Timer()
 
   const current = { ...args }
   const up = new Vector3()
   let ready: Promise<void> = Promise.resolve()
   let disposed = false
   let loads = 0
+  /** False until the land stands: coarse tiles would lift the camera. */
+  let isLoaded = false
 
   const prepare = (): void => {
     camera.updateMatrixWorld()
@@ -112,6 +131,7 @@ export async function createLand<Args extends RendererArgs>(
         if (i > 0 && i >= warmUpFrames - LAST_FRAMES) await new Promise(requestAnimationFrame)
         draw()
       }
+      if (!isOver()) isLoaded = true
       // Whoever awaits a load that another has cut short awaits that one.
       if (!disposed && isOver()) await ready
     })
@@ -125,6 +145,18 @@ export async function createLand<Args extends RendererArgs>(
     load()
   }
 
+  /** Flies there; a single frame is there at once. */
+  const flyTo = (place: Place): void => {
+    if (explorer === undefined) {
+      goTo(place)
+      return
+    }
+    const aim = moveCamera(new PerspectiveCamera(), place)
+    const direction = aim.getWorldDirection(new Vector3())
+    const distance = camera.position.distanceTo(aim.position)
+    void explorer.flyTo({ position: aim.position, direction }, 1 + 0.5 * Math.log10(1 + distance))
+  }
+
   story.apply(current)
   goTo(story.place(current))
 
@@ -132,6 +164,7 @@ export async function createLand<Args extends RendererArgs>(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
@@ -139,7 +172,11 @@ export async function createLand<Args extends RendererArgs>(
       return tilesProgress(tilesets)
     },
     render() {
-      if (!current.frame) controls.update()
+      if (explorer !== undefined) {
+        explorer.update(timer.update().getDelta())
+        controls.enabled = isLoaded && !explorer.isWalking && !explorer.isFlying
+        controls.update()
+      }
       draw()
     },
     resize(width, height, pixelRatio) {
@@ -154,10 +191,11 @@ export async function createLand<Args extends RendererArgs>(
       Object.assign(current, changes)
       story.apply(current)
       const place = story.place(current)
-      if (place !== before) goTo(place)
+      if (place !== before) flyTo(place)
     },
     dispose() {
       disposed = true
+      explorer?.dispose()
       controls.dispose()
       story.dispose?.()
       surface.dispose()

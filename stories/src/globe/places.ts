@@ -85,7 +85,7 @@ const right = new Vector3()
 const radians = Math.PI / 180
 
 /** Puts a camera at a place of a world that is ECEF, in metres. */
-export function moveCamera(camera: PerspectiveCamera, place: Place): void {
+export function moveCamera(camera: PerspectiveCamera, place: Place): PerspectiveCamera {
   const position = Ellipsoid.WGS84.geodeticToECEF(place)
   Ellipsoid.WGS84.eastNorthUpFrame(position, frame).extractBasis(east, north, up)
   const heading = place.heading * radians
@@ -101,4 +101,5 @@ export function moveCamera(camera: PerspectiveCamera, place: Place): void {
   camera.quaternion.setFromRotationMatrix(frame.makeBasis(right, up, back))
   camera.position.copy(position)
   camera.updateMatrixWorld()
+  return camera
 }

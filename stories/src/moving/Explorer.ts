@@ -1,29 +1,18 @@
 import { Quaternion, Vector2, Vector3 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import { ExplorerInput } from './ExplorerInput'
+import type { ExplorerOptions } from './ExplorerOptions'
 import type { ExplorerState } from './ExplorerState'
 import { Flight } from './Flight'
 import { LocalAxes } from './LocalAxes'
 import type { ViewAngles } from './LocalAxes'
 import { Walk } from './Walk'
 
-export interface ExplorerOptions {
-  /** Height of the ground below a place, along up, above the datum; NaN where none is known [m]. Default 0. */
-  groundAt?: (position: Vector3) => number
-  /** Unit vector up at a place. Default +Y. */
-  upAt?: (position: Vector3, target: Vector3) => Vector3
-  /** Height of a place above the datum [m]. Default its y. */
-  heightAt?: (position: Vector3) => number
-  /** Direction that north leans to, unit vector. Default −Z. */
-  pole?: Vector3
-  /** Times at which drags look: 'walking' leaves them to other controls otherwise. Default 'always'. */
-  drags?: 'always' | 'walking'
-}
+export type { ExplorerOptions, ExplorerState }
 
 /** Longest time between two frames that counts; a hidden page has none [s]. */
 const LONGEST_FRAME = 0.1
-/** Speed of flight at the ground [m/s], and its growth with height [1/s]. */
-const SLOWEST = 3
+const SLOWEST = 3 // speed of flight at the ground [m/s], and its growth with height [1/s]
 const SPEED_PER_HEIGHT = 0.5
 /** Speed of walking [m/s]. */
 const WALKING_SPEED = 3
@@ -47,18 +36,19 @@ const quaternion = new Quaternion()
 /**
  * Moves a camera by keys, mouse and touch: flight, and walks on the ground.
  *
- * A drag looks, WASD and QE fly at a speed that grows with height, Shift is faster, the wheel sets the speed, F walks and
- * flies again, Space jumps. One finger looks, two move. The camera has no parent but the scene; whatever else moves it
- * may do so between two updates.
+ * A drag looks, WASD and QE fly at a speed that grows with height, Shift is faster, the wheel sets the speed, F walks, Space
+ * jumps. One finger looks, two move. The camera has no parent but the scene; others may move it between updates.
  */
 export class Explorer {
+  /** Times at which drags look. */
+  readonly drags: 'always' | 'walking'
+
   private readonly camera: PerspectiveCamera
   private readonly input: ExplorerInput
   private readonly groundAt: (position: Vector3) => number
   private readonly upAt: (position: Vector3, target: Vector3) => Vector3
   private readonly heightAt: (position: Vector3) => number
   private readonly pole: Vector3
-  private readonly drags: 'always' | 'walking'
   private readonly axes = new LocalAxes()
   private readonly velocity = new Vector3()
   private flight?: Flight
@@ -72,7 +62,12 @@ export class Explorer {
     this.heightAt = options.heightAt ?? (position => position.y)
     this.pole = options.pole ?? new Vector3(0, 0, -1)
     this.drags = options.drags ?? 'always'
-    this.isWalking = false
+    this.shareDrags()
+  }
+
+  /** True on the way of {@link flyTo}. */
+  get isFlying(): boolean {
+    return this.flight !== undefined
   }
 
   get isWalking(): boolean {
@@ -84,7 +79,7 @@ export class Explorer {
       this.stop()
       this.walk = value ? new Walk() : undefined
     }
-    this.input.isLooking = value || this.drags === 'always'
+    this.shareDrags()
   }
 
   /** Position, direction and way of moving, of which a link is made. Set, it ends a flight. */
@@ -139,6 +134,7 @@ export class Explorer {
     const to = this.endOf(view.position, this.axes.rotation(angles, quaternion))
     await new Promise<void>(resolve => {
       this.flight = new Flight(from, to, seconds, resolve)
+      this.shareDrags()
     })
   }
 
@@ -151,6 +147,11 @@ export class Explorer {
     this.velocity.set(0, 0, 0)
     this.flight?.end()
     this.flight = undefined
+    this.shareDrags()
+  }
+
+  private shareDrags(): void {
+    this.input.isLooking = this.drags === 'always' || this.isWalking || this.isFlying
   }
 
   private endOf(position: Vector3, rotation: Quaternion) {

@@ -80,7 +80,7 @@ export function marchClouds(
         entry.assign(position.max(1))
       })
     }).Else(() => {
-      const pair = nextSteps(state, quality, position, segment.end)
+      const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
       const { length } = pair
       const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
       const middle = sampleAt(position.add(length))

@@ -8,7 +8,8 @@ import { FAR_AWAY } from './layerBoundaries'
 // The step policy of the march, and nothing else: a pair of samples goes half a step and one and a half
 // steps ahead. Through clear air steps are as long as there is likely no cloud; a pair that lands in one goes
 // back, and then steps are parts of the mean free path. It may depend on the distance, the segment between
-// two layer boundaries, the quality, noise, and what the pair before found; never on what is seen of the light.
+// two layer boundaries, the quality, noise, what the pair before found, and the transmittance up to it; never
+// on the light.
 
 /**
  * Least number of steps through a layer that is thinner than a few samples are wide. Fewer: grain in far
@@ -27,6 +28,12 @@ const CLEAR_GROWTH = 4
  * are ragged (*Inside a cloud*).
  */
 const LOOK_BACK = 1.6
+
+/**
+ * Steps in clouds of which nothing more is seen, over those at their edges, less 1. Greater: faster, and the
+ * insides of thin clouds get coarse (*Cirrus*).
+ */
+const HIDDEN_GROWTH = 3
 
 /** State of the step policy. */
 export interface StepState {
@@ -98,19 +105,25 @@ export function enterSteps(
 const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float =>
   quality.depthStep.div(density.max(1e-6)).max(quality.shortestStep).min(longest)
 
-/** The next two steps: they grow with the distance, and end at the end of the segment. */
+/**
+ * The next two steps: they grow with the distance and with what hides them, and end at the end of the segment.
+ *
+ * @param transmittance - Share of the light from there that reaches the camera, in [0, 1].
+ */
 export function nextSteps(
   { isFine, finest, longest, likely, part }: StepState,
   quality: QualityUniforms,
   position: Float,
-  end: Float
+  end: Float,
+  transmittance: Float
 ): StepPair {
   const growing = position.mul(quality.stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
   const least = fine.max(growing.mul(CLEAR_GROWTH)).min(longest).toConst() as Float
   const clear = likely.mul(CAUTION).clamp(least, longest)
   const left = end.sub(position).mul(0.5)
-  const whole = isFine.select(fine, clear) as Float
+  const hidden = transmittance.oneMinus().mul(HIDDEN_GROWTH).add(1)
+  const whole = isFine.select(fine.mul(hidden).min(longest), clear) as Float
   const length = whole.mul(part.max(0.1)).min(left).max(0.01).toConst() as Float
   part.assign(1)
   return { length, fine }

@@ -1,0 +1,15 @@
+import type { Vector3 } from 'three'
+
+/** Ground and axes of the world that an {@link Explorer} moves in. */
+export interface ExplorerOptions {
+  /** Height of the ground below a place, along up, above the datum; NaN where none is known [m]. Default 0. */
+  groundAt?: (position: Vector3) => number
+  /** Unit vector up at a place. Default +Y. */
+  upAt?: (position: Vector3, target: Vector3) => Vector3
+  /** Height of a place above the datum [m]. Default its y. */
+  heightAt?: (position: Vector3) => number
+  /** Direction that north leans to, unit vector. Default −Z. */
+  pole?: Vector3
+  /** Times at which drags look: 'walking' leaves them to other controls otherwise. Default 'always'. */
+  drags?: 'always' | 'walking'
+}

@@ -1,0 +1,103 @@
+import { cloudQualities } from '@welkin/clouds'
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+import { createValley, VIEWS } from './valley.scene'
+import type { ValleyArgs } from './valley.scene'
+import { weathers } from './valley/weather'
+
+const code = `${storyCode('valleyAir.ts', 'sky and light')}
+
+${storyCode('valleyAir.ts', 'everything')}`
+
+const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
+
+const meta: Meta<ValleyArgs> = {
+  title: 'Valley, all day',
+  render: mount(createValley, code, ({ quality }) => quality),
+  argTypes: {
+    view: {
+      name: 'Place',
+      control: {
+        type: 'select',
+        labels: Object.fromEntries(Object.entries(VIEWS).map(([key, { label }]) => [key, label]))
+      },
+      options: Object.keys(VIEWS)
+    },
+    weather: {
+      name: 'Weather',
+      control: 'select',
+      options: Object.keys(weathers),
+      description: 'One becomes another in ten seconds'
+    },
+    hour: {
+      name: 'Hour [h]',
+      control: { type: 'range', min: 0, max: 23.9, step: 0.1 },
+      description: 'Solar time; the clock goes on from here'
+    },
+    dayLength: {
+      name: 'A day takes [s]',
+      control: { type: 'range', min: 30, max: 7200, step: 10 },
+      description: 'On the clock'
+    },
+    paused: { name: 'Paused', control: 'boolean' },
+    season: {
+      name: 'Season [part of a year]',
+      control: { type: 'range', min: 0, max: 0.99, step: 0.01 },
+      description:
+        '0 the equinox of March 2026, 0.25 the solstice of June; the moon is as of the date'
+    },
+    latitude: { name: 'Latitude [°]', control: { type: 'range', min: -66, max: 66, step: 1 } },
+    quality: { name: 'Quality', control: 'select', options: Object.keys(cloudQualities) },
+    clouds: part('Clouds'),
+    shafts: part('Light shafts'),
+    mist: part('Mist'),
+    nightSky: part('Moon, stars and airglow'),
+    trees: part('Trees'),
+    village: part('Village'),
+    water: part('Lake'),
+    bloom: part('Bloom'),
+    ...rendererArgTypes,
+    path: { table: { disable: true } }
+  },
+  args: {
+    view: 'village',
+    weather: 'fair',
+    hour: 9,
+    dayLength: 600,
+    paused: false,
+    season: 0.2,
+    latitude: 46,
+    quality: 'medium',
+    clouds: true,
+    shafts: true,
+    mist: true,
+    nightSky: true,
+    trees: true,
+    village: true,
+    water: true,
+    bloom: true,
+    forceWebGL: false,
+    path: 'post',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<ValleyArgs>
+
+/** A day in a valley: sun, moon and stars, clouds and their shadows, mist, water and a village. */
+export const Day: Story = { name: 'A day', tags: ['screenshot'] }
+
+/** Mist over the lake before the sun is over the mountains. */
+export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope', dayLength: 1800 } }
+
+/** The sun sets among broken clouds. */
+export const Evening: Story = {
+  args: { hour: 18.8, weather: 'broken', view: 'shore', dayLength: 1800 }
+}
+
+/** The village's windows are lit; the moon and the stars are. */
+export const Night: Story = { args: { hour: 22.5, season: 0.225, dayLength: 1800 } }

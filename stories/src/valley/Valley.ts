@@ -1,0 +1,219 @@
+import {
+  airglow,
+  DayCycle,
+  heightFog,
+  milkyWay,
+  moon,
+  skyEnvironment,
+  stars
+} from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
+import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
+import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
+import { PerspectiveCamera, Scene } from 'three'
+import { bloom } from 'three/addons/tsl/display/BloomNode.js'
+import { RenderPipeline } from 'three/webgpu'
+import type { MeshPhysicalNodeMaterial, Node, WebGPURenderer } from 'three/webgpu'
+import { createWater } from '../environment/water'
+import { valleyAir } from '../valleyAir'
+import { createForest, createGrove } from './forest'
+import { createGround, groundHeight, LAKE } from './ground'
+import { createVillage } from './village'
+import { valleyLayers, WeatherBlend, type WeatherName } from './weather'
+
+/** Parts of the valley that can be switched on and off while it runs. */
+export interface ValleyFeatures {
+  clouds: boolean
+  shafts: boolean
+  mist: boolean
+  nightSky: boolean
+  trees: boolean
+  village: boolean
+  water: boolean
+  bloom: boolean
+}
+
+/** State of the valley. */
+export interface ValleyState extends ValleyFeatures {
+  weather: WeatherName
+  /** [degrees] */
+  latitude: number
+  /** Part of the year since the equinox of March. */
+  season: number
+  /** Solar time at which it begins [h]. */
+  hour: number
+  /** Length of a day on the clock [s]. */
+  dayLength: number
+  paused: boolean
+  quality: CloudQualityName | CloudQuality
+}
+
+/** Trees that stand one by one, by quality. */
+const TREES: Readonly<Record<CloudQualityName, number>> = {
+  low: 1500,
+  medium: 5000,
+  high: 10_000,
+  ultra: 18_000
+}
+
+/** Elevations of the sun between which lamps are lit [degrees]. */
+const LAMPS = [3, -2] as const
+
+/** Strength of the glow around what is bright. */
+const GLOW = 0.02
+
+/** A valley in the mountains with all that Welkin has, at any hour and in any weather. */
+export class Valley {
+  readonly scene = new Scene()
+  readonly camera = new PerspectiveCamera(60, 16 / 9, 0.5, 120_000)
+  readonly atmosphere: Atmosphere
+  readonly cycle: DayCycle
+  readonly exposure
+  readonly pipeline: RenderPipeline
+  readonly #state: ValleyState
+  readonly #weather: WeatherBlend
+  readonly #layers = new CloudLayers(valleyLayers)
+  readonly #mist = heightFog({ base: 6, falloff: 28, density: 0 })
+  readonly #moon = moon()
+  readonly #glows = [milkyWay(), stars(), airglow()] as const
+  readonly #ground = createGround()
+  readonly #trees
+  readonly #village = createVillage()
+  readonly #water = createWater(2400)
+  readonly #node
+  readonly #shafts
+  readonly #environment
+  readonly #plain: Node
+  readonly #glowing: Node
+  readonly #dispose: (() => void)[] = []
+  #turbidity = NaN
+
+  constructor(renderer: WebGPURenderer, state: ValleyState) {
+    this.#state = { ...state }
+    this.#weather = new WeatherBlend(state.weather)
+    const quality = typeof state.quality === 'string' ? state.quality : 'low'
+    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 8))]
+    const { scene, camera } = this
+    camera.position.set(300, groundHeight(300, 520) + 13, 520)
+    camera.lookAt(330, 75, -1500)
+
+    const layers = this.#layers
+    const { quality: cloudQuality } = state
+    const sky = [...this.#glows, this.#moon] as const
+    const air = valleyAir(scene, camera, layers, cloudQuality, sky)
+    const { atmosphere, clouds: node, shafts, exposure } = air
+    this.atmosphere = atmosphere
+    atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
+    atmosphere.add(this.#mist)
+    scene.add(this.#ground, ...this.#trees, this.#village.object, this.#water.mesh)
+    this.#water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
+    this.#water.setSlope(0.0006)
+
+    this.#node = node
+    this.#shafts = shafts
+    this.exposure = exposure
+    const overlay = cloudEnvironment(node)
+    this.#environment = skyEnvironment(atmosphere, { overlay })
+    const { material } = this.#water.mesh as unknown as { material: MeshPhysicalNodeMaterial }
+    material.envNode = this.#environment as never
+    this.#plain = exposure
+    const halo = bloom(exposure, GLOW, 0.7, 0)
+    this.#glowing = (exposure as unknown as { add(other: unknown): Node }).add(halo)
+    this.pipeline = new RenderPipeline(renderer)
+    this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
+    this.cycle.time = Date.UTC(2026, 5, 21, 12)
+    this.cycle.season = state.season
+    this.cycle.hour = state.hour
+    this.#dispose.push(
+      () => this.pipeline.dispose(),
+      ...[halo, exposure, overlay, this.#environment, node, shafts].map(
+        each => () => each.dispose()
+      ),
+      () => air.dispose(),
+      () => atmosphere.dispose()
+    )
+    this.set(state, true)
+  }
+
+  /** Height of the ground below a place, or of the lake [m]. */
+  groundAt({ x, z }: { x: number; z: number }): number {
+    return Math.max(groundHeight(x, z), LAKE.height)
+  }
+
+  /** Follows its settings: nothing but bloom is compiled anew. */
+  set(changes: Partial<ValleyState>, atOnce = false): void {
+    const before = { ...this.#state }
+    Object.assign(this.#state, changes)
+    const { weather, latitude, season, hour, dayLength, paused, quality } = this.#state
+    const { nightSky, trees, village, water, shafts } = this.#state
+    this.#weather.set(weather, atOnce)
+    this.#weather.apply(this.#layers, this.#state.clouds)
+    this.cycle.rate = 86_400 / dayLength
+    this.cycle.paused = paused
+    this.cycle.latitude = latitude
+    // The clock goes on from where these were set.
+    if (season !== before.season) this.cycle.season = season
+    if (hour !== before.hour) this.cycle.hour = hour
+    this.#node.quality = quality
+    this.#shafts.strength = shafts ? 1 : 0
+    for (const layer of this.#glows) layer.intensity = nightSky ? 1 : 0
+    this.#moon.strength = nightSky ? 1 : 0
+    for (const each of this.#trees) each.visible = trees
+    this.#village.object.visible = village
+    this.#water.mesh.visible = water
+    this.#applyWeather()
+    const output = this.#state.bloom ? this.#glowing : this.#plain
+    if (this.pipeline.outputNode === output) return
+    this.pipeline.outputNode = output
+    this.pipeline.needsUpdate = true
+  }
+
+  #applyWeather(): void {
+    const { turbidity, mist } = this.#weather.current
+    this.#weather.apply(this.#layers, this.#state.clouds)
+    this.#mist.density = this.#state.mist ? mist : 0
+    // In steps: the tables are made anew for each.
+    const stepped = Math.round(turbidity * 4) / 4
+    if (stepped !== this.#turbidity) this.atmosphere.parameters.set({ turbidity: stepped })
+    this.#turbidity = stepped
+  }
+
+  /** Draws the next frame. */
+  render(deltaSeconds: number): void {
+    if (this.#weather.update(deltaSeconds)) this.#applyWeather()
+    this.camera.updateMatrixWorld()
+    this.cycle.update(deltaSeconds)
+    const { sunElevation, luminanceScale } = this.#evening
+    const [from, to] = LAMPS
+    const share = Math.min(Math.max((from - sunElevation) / (from - to), 0), 1)
+    this.#village.light(share, luminanceScale)
+    this.pipeline.render()
+  }
+
+  get #evening(): { sunElevation: number; luminanceScale: number } {
+    const { sunDirection, luminanceScale } = this.atmosphere
+    return { sunElevation: (Math.asin(sunDirection.y) * 180) / Math.PI, luminanceScale }
+  }
+
+  /** Time of the water's waves and the clouds' drift [s]. */
+  set time(seconds: number) {
+    this.#water.setTime(seconds)
+    this.#node.time = seconds
+  }
+
+  /** Makes all that the first frame needs. */
+  async bake(renderer: WebGPURenderer): Promise<void> {
+    await this.#node.bake(renderer)
+  }
+
+  dispose(): void {
+    for (const dispose of this.#dispose) dispose()
+    for (const each of this.#trees) {
+      each.geometry.dispose()
+      each.dispose()
+    }
+    this.#ground.geometry.dispose()
+    this.#village.dispose()
+    this.#water.dispose()
+  }
+}

@@ -1,0 +1,141 @@
+import { BufferAttribute, Mesh, PlaneGeometry } from 'three'
+import { createNoiseTexture } from '../globe/detailNoise'
+import {
+  attribute,
+  float,
+  mix,
+  normalWorld,
+  positionWorld,
+  smoothstep,
+  texture,
+  vec3
+} from 'three/tsl'
+import { MeshStandardNodeMaterial } from 'three/webgpu'
+import type { Node } from 'three/webgpu'
+import { ridges, smoothNoise } from './noise'
+
+/** Half width of the land [m]. */
+const EXTENT = 45_000
+/** Quads along a side. */
+const QUADS = 640
+/** Radius of the planet, away from which the land bends [m]. */
+const RADIUS = 6_371_000
+
+/** Middle of the lake, its half axes and the height of its water [m]. */
+export const LAKE = { x: 150, z: -1750, halfWidth: 520, halfLength: 1500, height: 0 } as const
+/** Middle of the village [m]. */
+export const VILLAGE = { x: 420, z: 230 } as const
+
+const clamp = (t: number): number => Math.min(Math.max(t, 0), 1)
+const smooth = (from: number, to: number, t: number): number => {
+  const s = clamp((t - from) / (to - from))
+  return s * s * (3 - 2 * s)
+}
+
+/** Middle of the valley across it, at a place along it [m]. */
+const valleyAt = (z: number): number =>
+  500 * Math.sin(z / 3100 + 0.4) + 220 * Math.sin(z / 1270 + 1.1)
+
+/** 0 at the middle of the lake, 1 at its shore. */
+const lakeDistance = (x: number, z: number): number => {
+  const bend = 130 * Math.sin(z / 420)
+  return Math.hypot((x - LAKE.x - bend) / LAKE.halfWidth, (z - LAKE.z) / LAKE.halfLength)
+}
+
+/** Height of the land above the water of the lake, on a plane [m]: a valley between mountains. */
+function flatHeight(x: number, z: number): number {
+  const across = Math.abs(x - valleyAt(z))
+  // It ends in the north and opens in the south.
+  const wall = Math.max(across, 0.8 * (-z - 5200))
+  const width = 640 + 190 * Math.sin(z / 1700)
+  const rise = clamp((wall - width) / 3400)
+  const knolls = 14 * smoothNoise(x / 260, z / 260) + 3 * smoothNoise(x / 55, z / 55)
+  const floor = 7 + 0.012 * Math.max(wall - 250, 0) + knolls * smooth(120, 700, wall)
+  const height = floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200))
+  const basin = smooth(1.25, 0.8, lakeDistance(x, z))
+  return height + (-14 - height) * basin * smooth(150, 50, height)
+}
+
+/** Height of the ground, with the bend of the planet [m]. */
+export const groundHeight = (x: number, z: number): number =>
+  flatHeight(x, z) - (x * x + z * z) / (2 * RADIUS)
+
+/** Share of forest at a place, in [0, 1]: on slopes up to the tree line. */
+export function forestAt(x: number, z: number): number {
+  const height = flatHeight(x, z)
+  const slope = Math.hypot(
+    flatHeight(x + 12, z) - flatHeight(x - 12, z),
+    flatHeight(x, z + 12) - flatHeight(x, z - 12)
+  )
+  const patches = smoothNoise(x / 420, z / 420) + 0.5 * smoothNoise(x / 110, z / 110)
+  const line = smooth(1250, 1000, height + 140 * smoothNoise(x / 300, z / 300))
+  const foot = smooth(9, 34, height + 22 * patches)
+  const village = smooth(150, 260, Math.hypot(x - VILLAGE.x, z - VILLAGE.z))
+  return line * foot * smooth(32, 18, slope) * smooth(-0.35, 0.1, patches) * village
+}
+
+/** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
+function groundMaterial(): MeshStandardNodeMaterial {
+  const material = new MeshStandardNodeMaterial({ roughness: 1 })
+  const place = positionWorld.xz
+  const picture = createNoiseTexture()
+  material.addEventListener('dispose', () => picture.dispose())
+  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple.
+  const noise = (period: number): Node<'float'> =>
+    texture(picture, place.div(period)).r.sub(0.5).mul(2)
+  const broad = noise(1310).toVar()
+  const fine = noise(71).add(noise(7.3)).add(noise(1.9).mul(0.7)).toVar()
+  const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
+  const slope = normalWorld.y.oneMinus().add(fine.mul(0.025)).toVar()
+  const [forest, field] = [
+    attribute<'vec2'>('cover', 'vec2').x,
+    attribute<'vec2'>('cover', 'vec2').y
+  ]
+  const meadow = mix(vec3(0.06, 0.095, 0.025), vec3(0.13, 0.13, 0.045), broad.mul(0.6).add(0.5))
+  const crops = mix(meadow, vec3(0.19, 0.16, 0.06), field)
+  const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
+  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
+  const alpine = mix(
+    vec3(0.095, 0.1, 0.045),
+    rock,
+    smoothstep(1050, 1700, height.add(broad.mul(150)))
+  )
+  const lit = float(0.95).add(fine.mul(0.3))
+  let color: Node<'vec3'> = mix(crops, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
+  color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
+  color = mix(color, trees, forest)
+  color = mix(color.mul(lit), rock.mul(lit), smoothstep(0.27, 0.42, slope))
+  const snow = smoothstep(1350, 1750, height.add(broad.mul(170)).add(fine.mul(40)))
+  color = mix(color, vec3(0.82, 0.84, 0.87), snow.mul(smoothstep(0.5, 0.3, slope)))
+  material.colorNode = color
+  return material
+}
+
+/** The valley and its mountains, finer about the middle. */
+export function createGround(): Mesh {
+  const geometry = new PlaneGeometry(2, 2, QUADS, QUADS).rotateX(-Math.PI / 2)
+  const positions = geometry.attributes.position as BufferAttribute
+  const cover = new Float32Array(2 * positions.count)
+  const stretch = (t: number): number => EXTENT * (0.045 * t + 0.955 * t ** 3)
+  for (let i = 0; i < positions.count; i++) {
+    const x = stretch(positions.getX(i))
+    const z = stretch(positions.getZ(i))
+    positions.setXYZ(i, x, groundHeight(x, z), z)
+    cover[2 * i] = forestAt(x, z)
+    cover[2 * i + 1] = fieldAt(x, z)
+  }
+  geometry.setAttribute('cover', new BufferAttribute(cover, 2))
+  geometry.computeVertexNormals()
+  const mesh = new Mesh(geometry, groundMaterial())
+  mesh.castShadow = mesh.receiveShadow = true
+  mesh.frustumCulled = false
+  return mesh
+}
+
+/** 1 on fields of the valley's floor, in strips of random sizes. */
+function fieldAt(x: number, z: number): number {
+  const strip = Math.floor(x / 70 + 0.3 * Math.sin(z / 300))
+  const row = Math.floor(z / 160 + 0.7 * strip)
+  const isField = Math.abs(Math.sin(127.1 * strip + 311.7 * row)) > 0.62
+  return isField ? smooth(40, 20, flatHeight(x, z)) * smooth(4, 8, flatHeight(x, z)) : 0
+}

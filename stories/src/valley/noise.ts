@@ -1,0 +1,48 @@
+/** Pseudo-random direction of a lattice point: a gradient. */
+function gradient(column: number, row: number, x: number, y: number): number {
+  let bits = Math.imul(column, 0x27d4eb2d) ^ Math.imul(row, 0x165667b1)
+  bits = Math.imul(bits ^ (bits >>> 15), 0x2c1b3c6d)
+  bits ^= bits >>> 12
+  const angle = ((bits >>> 0) / 4294967296) * 2 * Math.PI
+  return Math.cos(angle) * x + Math.sin(angle) * y
+}
+
+const fade = (t: number): number => t * t * t * (t * (6 * t - 15) + 10)
+const mix = (a: number, b: number, t: number): number => a + (b - a) * t
+
+/** Gradient noise with unit cells, about in [−0.7, 0.7]. */
+export function smoothNoise(x: number, y: number): number {
+  const [column, row] = [Math.floor(x), Math.floor(y)]
+  const [u, v] = [x - column, y - row]
+  const across = fade(u)
+  const near = mix(gradient(column, row, u, v), gradient(column + 1, row, u - 1, v), across)
+  const far = mix(
+    gradient(column, row + 1, u, v - 1),
+    gradient(column + 1, row + 1, u - 1, v - 1),
+    across
+  )
+  return mix(near, far, fade(v))
+}
+
+/**
+ * Mountains of unit width, in [0, 1]: ridges whose finer ones stand on the coarser.
+ *
+ * @see Musgrave 1993, "Methods for realistic landscape imaging" §2.3.2, ridged multifractal
+ */
+export function ridges(x: number, y: number): number {
+  const u = x + 0.22 * smoothNoise(1.7 * x + 5, 1.7 * y)
+  const v = y + 0.22 * smoothNoise(1.7 * x, 1.7 * y + 9)
+  let sum = 0
+  let weight = 1
+  let amplitude = 0.5
+  let scale = 1
+  for (let octave = 0; octave < 8; octave++) {
+    const ridge =
+      (1 - Math.abs(1.4 * smoothNoise(u * scale + 17 * octave, v * scale - 9 * octave))) ** 2
+    sum += amplitude * weight * ridge
+    weight = Math.min(Math.max(1.6 * ridge * weight, 0), 1)
+    amplitude *= 0.5
+    scale *= 2.03
+  }
+  return Math.min(sum, 1)
+}

@@ -1,0 +1,147 @@
+import {
+  BoxGeometry,
+  BufferGeometry,
+  Color,
+  ConeGeometry,
+  Float32BufferAttribute,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  MeshStandardMaterial,
+  PointLight,
+  Quaternion,
+  Vector3
+} from 'three'
+import {
+  float,
+  fract,
+  hash,
+  instanceIndex,
+  normalLocal,
+  positionLocal,
+  step,
+  uniform,
+  vec3
+} from 'three/tsl'
+import { MeshStandardNodeMaterial } from 'three/webgpu'
+import { randomSequence } from '../random'
+import { groundHeight, VILLAGE } from './ground'
+
+const HOUSES = 46
+/** Luminance of a lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
+const WINDOW = 1.5
+const LAMP = 40
+
+/** A gabled roof over the unit square, of unit height. */
+function roof(): BufferGeometry {
+  const [a, b, c, d, e, f] = [
+    [-0.56, 0, -0.56],
+    [0.56, 0, -0.56],
+    [0.56, 0, 0.56],
+    [-0.56, 0, 0.56],
+    [0, 1, -0.56],
+    [0, 1, 0.56]
+  ]
+  const faces = [a, d, f, a, f, e, b, e, f, b, f, c, d, c, f, a, e, b]
+  const geometry = new BufferGeometry()
+  geometry.setAttribute('position', new Float32BufferAttribute(faces.flat(), 3))
+  geometry.computeVertexNormals()
+  return geometry
+}
+
+/** A village whose lamps and windows light up at night. */
+export interface Village {
+  readonly object: Group
+  /**
+   * Lights of the evening.
+   *
+   * @param share - Part of them that are lit, in [0, 1].
+   * @param luminanceScale - The atmosphere's.
+   */
+  light(share: number, luminanceScale: number): void
+  dispose(): void
+}
+
+/** Houses about a church by the lake. */
+export function createVillage(): Village {
+  const random = randomSequence(5)
+  const lit = uniform(0)
+  const luminance = uniform(0)
+  const walls = new MeshStandardNodeMaterial({ roughness: 0.9 })
+  // Windows in two rows on each wall, lit one by one.
+  const cell = vec3(positionLocal.x.mul(5), positionLocal.y.mul(2), positionLocal.z.mul(5))
+  const inCell = fract(cell)
+  const along = normalLocal.x.abs().greaterThan(0.5).select(inCell.z, inCell.x)
+  const isWindow = step(0.3, along)
+    .mul(step(along, 0.7))
+    .mul(step(0.35, inCell.y))
+    .mul(step(inCell.y, 0.8))
+    .mul(step(normalLocal.y.abs(), 0.5))
+  const number = cell
+    .floor()
+    .dot(vec3(1, 7, 13))
+    .add(float(instanceIndex).mul(101))
+    .add(500)
+  const isLit = step(hash(number), lit.mul(0.55))
+  walls.emissiveNode = vec3(1, 0.62, 0.28).mul(isWindow.mul(isLit).mul(luminance))
+  const tiles = new MeshStandardMaterial({ color: '#5b3a2e', roughness: 0.95 })
+  const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
+  const roofs = new InstancedMesh(roof(), tiles, HOUSES)
+  const matrix = new Matrix4()
+  const turn = new Quaternion()
+  const color = new Color()
+  for (let i = 0; i < HOUSES; i++) {
+    const angle = 2.4 * i
+    const distance = 24 + 20 * Math.sqrt(i) + 12 * random()
+    const x = VILLAGE.x + distance * Math.cos(angle)
+    const z = VILLAGE.z + 1.2 * distance * Math.sin(angle)
+    const [width, depth, height] = [8 + 4 * random(), 9 + 5 * random(), 5 + 2 * random()]
+    turn.setFromAxisAngle(new Vector3(0, 1, 0), 0.5 * Math.floor(4 * random()) + 0.2 * random())
+    const base = Math.min(groundHeight(x, z), groundHeight(x + 5, z), groundHeight(x, z + 5)) - 0.5
+    bodies.setMatrixAt(
+      i,
+      matrix.compose(new Vector3(x, base, z), turn, new Vector3(width, height, depth))
+    )
+    roofs.setMatrixAt(
+      i,
+      matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth))
+    )
+    bodies.setColorAt(i, color.setHSL(0.09, 0.12 * random(), 0.5 + 0.22 * random()))
+    roofs.setColorAt(i, color.setScalar(0.6 + 0.6 * random()))
+  }
+  const { x, z } = VILLAGE
+  const base = groundHeight(x, z) - 0.5
+  const plaster = new MeshStandardMaterial({ color: '#cfc8ba', roughness: 0.9 })
+  const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
+  const spire = new Mesh(
+    new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),
+    tiles
+  )
+  const nave = new Mesh(new BoxGeometry(11, 9, 22).translate(0, 4.5, 14), plaster)
+  const naveRoof = new Mesh(roof().scale(11, 6, 22).translate(0, 9, 14), tiles)
+  const church = new Group().add(tower, spire, nave, naveRoof)
+  church.position.set(x, base, z)
+  const lamp = new PointLight('#ffb46b', 0, 220)
+  lamp.position.set(x + 12, base + 9, z - 10)
+  const object = new Group().add(bodies, roofs, church, lamp)
+  object.traverse(child => {
+    child.castShadow = child.receiveShadow = child instanceof Mesh
+  })
+  bodies.frustumCulled = roofs.frustumCulled = false
+  return {
+    object,
+    light(share, luminanceScale) {
+      lit.value = share
+      luminance.value = WINDOW * luminanceScale
+      lamp.intensity = share * LAMP * luminanceScale
+    },
+    dispose() {
+      object.traverse(child => {
+        if (child instanceof Mesh) child.geometry.dispose()
+        if (child instanceof InstancedMesh) child.dispose()
+      })
+      for (const material of [walls, tiles, plaster]) material.dispose()
+    }
+  }
+}

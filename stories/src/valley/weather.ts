@@ -1,0 +1,101 @@
+import type { CloudLayers } from '@welkin/clouds'
+
+/** A weather of the valley: numbers that all blend. */
+export interface Weather {
+  /** Shares of the sky that cumulus, deck and cirrus cover. */
+  readonly cumulus: number
+  readonly deck: number
+  readonly cirrus: number
+  /** Aerosol of the air over that of clear air. */
+  readonly turbidity: number
+  /** Extinction of the mist over the lake [1/m]. */
+  readonly mist: number
+}
+
+export const weathers = {
+  fair: { cumulus: 0.3, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0 },
+  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0 },
+  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0 },
+  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.018 },
+  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 3.5, mist: 0.0004 }
+} satisfies Record<string, Weather>
+
+export type WeatherName = keyof typeof weathers
+
+/** Layers that `WeatherBlend` sets: cumulus, a deck over them, cirrus. */
+export const valleyLayers = [
+  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
+  {
+    baseAltitude: 2700,
+    topAltitude: 3400,
+    coverage: 0,
+    density: 0.04,
+    profileExponent: 1.2,
+    edgeSoftness: 0.3,
+    weatherWeights: [0, 1, 0, 0] as [number, number, number, number],
+    wind: { east: 10, north: 4 }
+  },
+  {
+    baseAltitude: 8500,
+    topAltitude: 9600,
+    coverage: 0,
+    density: 0.003,
+    profileExponent: 1,
+    shapeAmount: 0.75,
+    detailAmount: 0.5,
+    edgeSoftness: 1,
+    turbulence: 1.5,
+    shear: 2,
+    densityGrowth: 0,
+    weatherWeights: [0, 0, 0, 1] as [number, number, number, number],
+    wind: { east: 26, north: -8 },
+    shadow: false
+  }
+]
+
+/** Time in which one weather becomes another [s]. */
+const BLEND_SECONDS = 10
+
+/** Blends from one weather to the next while the scene runs. */
+export class WeatherBlend {
+  #from: Weather
+  #to: Weather
+  #share = 1
+  #isNew = true
+
+  constructor(name: WeatherName) {
+    this.#from = this.#to = weathers[name]
+  }
+
+  /** Goes to a weather over some seconds, or at once. */
+  set(name: WeatherName, atOnce: boolean): void {
+    if (weathers[name] === this.#to) return
+    this.#from = this.current
+    this.#to = weathers[name]
+    this.#share = atOnce ? 1 : 0
+    this.#isNew = true
+  }
+
+  get current(): Weather {
+    const s = this.#share * this.#share * (3 - 2 * this.#share)
+    const keys = Object.keys(this.#to) as (keyof Weather)[]
+    const blend = keys.map(key => [key, this.#from[key] * (1 - s) + this.#to[key] * s])
+    return Object.fromEntries(blend) as Weather
+  }
+
+  /** @returns True if the weather has changed. */
+  update(seconds: number): boolean {
+    if (this.#share === 1 && !this.#isNew) return false
+    this.#isNew = false
+    this.#share = Math.min(this.#share + seconds / BLEND_SECONDS, 1)
+    return true
+  }
+
+  /** @param hasClouds - False for a sky without any. */
+  apply(layers: CloudLayers, hasClouds: boolean): void {
+    const { cumulus, deck, cirrus } = this.current
+    for (const [i, coverage] of [cumulus, deck, cirrus].entries()) {
+      layers.at(i).set({ coverage: hasClouds ? coverage : 0 })
+    }
+  }
+}

@@ -1,0 +1,83 @@
+import {
+  aerialPerspective,
+  Atmosphere,
+  autoExposure,
+  lightShafts,
+  MoonDirectionalLight,
+  NightLightProbe,
+  SkyLightProbe,
+  standardEarthParameters,
+  sunFlare,
+  SunDirectionalLight
+} from '@welkin/atmosphere'
+import type {
+  Airglow,
+  AutoExposureNode,
+  LightShafts,
+  MilkyWay,
+  Moon,
+  Stars
+} from '@welkin/atmosphere'
+import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
+import type { PerspectiveCamera, Scene } from 'three'
+import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
+import { pass } from 'three/tsl'
+
+/** Sky, light, clouds and shadows of a scene, exposed. */
+export interface ValleyAir {
+  readonly atmosphere: Atmosphere
+  readonly clouds: CloudsNode
+  readonly shafts: LightShafts
+  /** The finished picture. */
+  readonly exposure: AutoExposureNode
+  /** Frees the lights and their shadows. */
+  dispose(): void
+}
+
+/** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */
+export function valleyAir(
+  scene: Scene,
+  camera: PerspectiveCamera,
+  layers: CloudLayers,
+  quality: CloudQualityName | CloudQuality,
+  [galaxy, starlight, glow, luna]: readonly [MilkyWay, Stars, Airglow, Moon]
+): ValleyAir {
+  // #region sky and light
+  const atmosphere = new Atmosphere({ parameters: standardEarthParameters() })
+  atmosphere.add(galaxy, starlight, luna, glow, sunFlare()) // far before near
+  const sun = new SunDirectionalLight(atmosphere, 6000) // 6 km from its target: over the mountains
+  const sky = new SkyLightProbe(atmosphere)
+  const moonlight = new MoonDirectionalLight(atmosphere, luna, 6000)
+  const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
+  const night = new NightLightProbe(atmosphere)
+  scene.add(sun, sun.target, sky, moonlight, moonlight.target, moonlitSky, night)
+  // #endregion
+  sun.castShadow = true
+  sun.shadow.mapSize.setScalar(2048)
+  sun.shadow.normalBias = 0.4
+
+  // #region everything
+  const cascades = new CSMShadowNode(sun, { cascades: 3, maxFar: 9000, lightMargin: 4000 })
+  const scenePass = pass(scene, camera, { samples: 0 })
+  const depth = scenePass.getTextureNode('depth')
+  const shafts = lightShafts(atmosphere, camera, sun)
+  const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
+  const node = clouds(air, depth, camera, atmosphere, layers, { quality })
+  Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
+  cloudSkyLight(sky, node)
+  cloudSkyLight(night, node)
+  shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
+  const exposure = autoExposure(node, atmosphere) // as bright as what the camera sees
+  // #endregion
+  return {
+    atmosphere,
+    clouds: node,
+    shafts,
+    exposure,
+    dispose() {
+      for (const light of [sun, sky, moonlight, moonlitSky, night]) light.dispose()
+      cascades.dispose()
+    }
+  }
+}
