@@ -48,9 +48,15 @@ class Stage {
     this.look(20)
   }
 
-  /** @param azimuth - Of the sun, 0 before the camera [°]. */
+  /** @param azimuth - Azimuth of the sun, 0 before the camera [°]. */
   look(azimuth: number): void {
     this.atmosphere.setSunAngles(15, azimuth)
+  }
+
+  /** Pipeline of a recipe, by its index. */
+  prepare(index: number, renderer: WebGPURenderer) {
+    const { scene, camera, atmosphere } = this
+    return recipes[index]({ renderer, scene, camera, atmosphere })
   }
 
   /** Turns the camera and moves the ball, for velocities. */
@@ -84,11 +90,11 @@ gpuTest(
     const renderer = await t.createRenderer(size)
     const stage = new Stage()
     expectTrue(recipes.length === names.length, `${recipes.length} recipes, ${names.length} names`)
-    const plain = recipes[0]({ renderer, ...stage })
+    const plain = stage.prepare(0, renderer)
     plain.scenePass.contextNode = null
     const without = await stage.draw(renderer, plain.pipeline, true)
     for (const [i, name] of names.entries()) {
-      const { pipeline } = recipes[i]({ renderer, ...stage })
+      const { pipeline } = stage.prepare(i, renderer)
       const drawn = await stage.draw(renderer, pipeline, true)
       expectLight(drawn, name)
       const lit = drawn.data.filter((value, k) => k % 4 < 3 && value > 1e-3).length
@@ -122,7 +128,7 @@ gpuTest(
     const dimming = async (light: 'sun' | 'sky'): Promise<number[]> => {
       stage.sun.visible = light === 'sun'
       stage.sky.visible = light === 'sky'
-      const { scenePass } = recipes[0]({ renderer, ...stage })
+      const { scenePass } = stage.prepare(0, renderer)
       const occluded = new RenderPipeline(renderer)
       occluded.outputNode = scenePass
       const after = await stage.draw(renderer, occluded, false)
