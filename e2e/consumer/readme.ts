@@ -28,7 +28,7 @@ const fiberDocument = 'packages/atmosphere/README.md'
 const given = `import type { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
 import type { CloudLayers, CloudsNode } from '@welkin/clouds'
 import type { PerspectiveCamera, Scene } from 'three'
-import type { Node, PassNode, RenderPipeline, WebGPURenderer } from 'three/webgpu'
+import type { Node, PassNode, RenderPipeline, TextureNode, WebGPURenderer } from 'three/webgpu'
 
 declare global {
   const renderer: WebGPURenderer
@@ -40,8 +40,9 @@ declare global {
   const layers: CloudLayers
   const cloudsNode: CloudsNode
   const scenePass: PassNode
-  const depth: Node
+  const depth: TextureNode
   const air: Node
+  const picture: TextureNode
   const pipeline: RenderPipeline
 }
 `

@@ -12,6 +12,7 @@ import { serveStatic } from '../harness/serve'
 import type { Backend } from '../harness/backend'
 import { replaceModules } from '../harness/replaceModules'
 import { filterSamplesPlugin } from './filterSamples'
+import { recipesPlugin } from './recipes'
 import type { TestListing, TestOutcome } from './page/main'
 
 const { values, positionals } = parseArgs({
@@ -81,7 +82,8 @@ async function runSuite(
 const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${suite}.gpu.ts`)]))
 const bundle = await bundlePage(join(folder, 'page'), files, [
   replaceModules(),
-  filterSamplesPlugin()
+  filterSamplesPlugin(),
+  recipesPlugin()
 ])
 const server = await serveStatic([{ path: '/', folder: bundle }])
 const seconds: [suite: string, seconds: number][] = []
