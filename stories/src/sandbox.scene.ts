@@ -144,6 +144,7 @@ export async function createSandbox(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
