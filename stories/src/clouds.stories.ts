@@ -159,7 +159,7 @@ export const Storm: Story = {
 export const Cirrus: Story = {
   name: 'Cirrus at dusk',
   args: { ...sky('cirrus'), heading: 290, pitch: 12, hour: 24.6, exposure: 2 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The cloud cover of a real day, from 400 km; fly down to the ground. */

@@ -60,7 +60,7 @@ export default meta
 type Story = StoryObj<DayArgs>
 
 /** A day and a night in a minute. */
-export const Minute: Story = { name: 'In a minute', tags: ['screenshot', 'webgpu-only'] }
+export const Minute: Story = { name: 'In a minute' }
 
 /** Half an hour after sunset. */
 export const Dusk: Story = {

@@ -99,6 +99,5 @@ export const Opposite: Story = {
 
 /** Moonlight through the gaps of a deck. */
 export const Moonlight: Story = {
-  args: { view: 'moon', turbidity: 4, elevation: 25, azimuth: 40, exposure: 0.5 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { view: 'moon', turbidity: 4, elevation: 25, azimuth: 40, exposure: 0.5 }
 }
