@@ -17,12 +17,19 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   Scene,
-  SphereGeometry,
-  Timer
+  SphereGeometry
 } from 'three'
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
-import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import {
+  createRenderer,
+  disposeMeshes,
+  drawSettled,
+  EXPOSURE_FRAMES,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface DayArgs extends RendererArgs {
@@ -50,7 +57,6 @@ export async function createDay(
   camera.position.set(-14, 2.5, 0)
   camera.lookAt(0, 6.35, 0)
   const explorer = args.frame ? undefined : new Explorer(camera, canvas)
-  const timer = new Timer()
   const current = { ...args }
 
   const material = new MeshStandardMaterial({ color: '#8f8a7c', roughness: 0.95 })
@@ -110,14 +116,11 @@ export async function createDay(
   cycle.hour = current.hour
   apply(current)
 
-  let last: number | undefined
+  const elapsed = frameClock(args.frame)
   const draw = (): void => {
-    const now = performance.now()
-    const delta = current.frame || last === undefined ? 0 : (now - last) / 1000
-    last = now
+    const deltaSeconds = elapsed()
+    explorer?.update(deltaSeconds)
     camera.updateMatrixWorld()
-    // Hidden pages get no frames: time goes on from where it was.
-    const deltaSeconds = Math.min(delta, 0.1)
     // #region each frame
     cycle.update(deltaSeconds) // moves sun, moon and stars, and exposure with them
     // #endregion
@@ -133,20 +136,10 @@ export async function createDay(
       return ready
     },
     progress: 1,
-    render() {
-      explorer?.update(timer.update().getDelta())
-      draw()
-    },
+    render: draw,
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = (async () => {
-        // From daylight's scale half floats take three pictures to a night's.
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES + 3; i++) {
-          await new Promise(resolve => requestAnimationFrame(resolve))
-          draw()
-          await exposure.settle()
-        }
-      })()
+      if (current.frame) ready = drawSettled(WARM_UP_FRAMES + EXPOSURE_FRAMES, draw, () => exposure)
     },
     update(changes) {
       apply(changes)
@@ -156,8 +149,7 @@ export async function createDay(
       for (const light of [moonlight, moonlitSky, night]) light.dispose()
       exposure.dispose()
       air.dispose()
-      for (const { geometry } of meshes) geometry.dispose()
-      material.dispose()
+      disposeMeshes(meshes)
       void renderer.dispose()
     }
   }

@@ -7,14 +7,19 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   Scene,
-  SphereGeometry,
-  Timer
+  SphereGeometry
 } from 'three'
-import type { Material } from 'three'
 import { Air } from './air'
 import { createWater } from './environment/water'
 import { Explorer } from './moving/Explorer'
-import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import {
+  createRenderer,
+  exposureOf,
+  disposeMeshes,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface EnvironmentArgs extends RendererArgs {
@@ -79,7 +84,7 @@ export async function createEnvironment(
   camera.position.set(-1.5, 2.6, 12)
   camera.lookAt(0, 1.5, 0)
   const explorer = args.frame ? undefined : new Explorer(camera, canvas)
-  const timer = new Timer()
+  const elapsed = frameClock(args.frame)
 
   const current = { ...args }
   const air = new Air(renderer, scene, camera, args.path)
@@ -126,7 +131,7 @@ export async function createEnvironment(
     },
     progress: 1,
     render() {
-      explorer?.update(timer.update().getDelta())
+      explorer?.update(elapsed())
       if (!current.frame) {
         water.setTime((performance.now() - start) / 1000)
       }
@@ -145,10 +150,7 @@ export async function createEnvironment(
       environment.dispose()
       air.dispose()
       water.dispose()
-      for (const { geometry, material } of meshes) {
-        geometry.dispose()
-        ;(material as Material).dispose()
-      }
+      disposeMeshes(meshes)
       void renderer.dispose()
     }
   }

@@ -7,13 +7,18 @@ import {
   PerspectiveCamera,
   Scene,
   SphereGeometry,
-  TorusKnotGeometry,
-  Timer
+  TorusKnotGeometry
 } from 'three'
-import type { Material } from 'three'
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
-import { applyTime, createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import {
+  applyTime,
+  createRenderer,
+  disposeMeshes,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
 export interface PlainArgs extends RendererArgs, TimeArgs {
@@ -94,7 +99,7 @@ export async function createPlain(
   camera.position.set(3.5, 3, 11.5)
   camera.lookAt(0.2, 1.5, -1)
   const explorer = args.frame ? undefined : new Explorer(camera, canvas)
-  const timer = new Timer()
+  const elapsed = frameClock(args.frame)
   const meshes = populate(scene)
 
   const current = { ...args }
@@ -129,7 +134,7 @@ export async function createPlain(
     },
     progress: 1,
     render() {
-      explorer?.update(timer.update().getDelta())
+      explorer?.update(elapsed())
       air.render()
     },
     resize(width, height, pixelRatio) {
@@ -143,10 +148,7 @@ export async function createPlain(
     dispose() {
       explorer?.dispose()
       air.dispose()
-      for (const { geometry, material } of meshes) {
-        geometry.dispose()
-        ;(material as Material).dispose()
-      }
+      disposeMeshes(meshes)
       void renderer.dispose()
     }
   }

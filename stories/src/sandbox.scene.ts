@@ -8,8 +8,17 @@ import { EARTH, presets } from './sandbox/presets'
 import type { PresetName } from './sandbox/presets'
 import { SandboxSky } from './sandbox/SandboxSky'
 import type { LightsArgs } from './sandbox/SandboxSky'
-import { createThings, disposeMeshes } from './sandbox/things'
-import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import { overlayOn } from './overlay'
+import { createThings } from './sandbox/things'
+import {
+  createRenderer,
+  disposeMeshes,
+  drawSettled,
+  EXPOSURE_FRAMES,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface SandboxArgs extends RendererArgs, AirArgs, LightsArgs {
@@ -24,9 +33,6 @@ export interface SandboxArgs extends RendererArgs, AirArgs, LightsArgs {
   pitch: number
 }
 
-/** Frames in which exposure settles, from daylight's to a night's. */
-const EXPOSURE_FRAMES = 3
-
 /** All parameters of air, sun and moon under sliders, over a planet of any size. */
 export async function createSandbox(
   canvas: HTMLCanvasElement,
@@ -40,7 +46,7 @@ export async function createSandbox(
   const things = createThings()
   scene.add(ground, ...things)
   const current = { ...args }
-  const note = noteOver(canvas)
+  const note = overlayOn(canvas)
   let onArgs: SceneHandle<SandboxArgs>['onArgs']
   let sky: SandboxSky | undefined
   /** Parameters on show, as text. */
@@ -116,27 +122,18 @@ export async function createSandbox(
         messages.push(error instanceof Error ? error.message : String(error))
       }
     }
-    note.show(messages)
+    note.textContent = messages.join('\n')
+    note.hidden = messages.length === 0
   }
   apply()
 
-  let last: number | undefined
+  const elapsed = frameClock(args.frame)
   const draw = (): void => {
-    const now = performance.now()
-    const seconds = current.frame || last === undefined ? 0 : (now - last) / 1000
-    last = now
+    const seconds = elapsed()
     explorer?.update(seconds)
     camera.updateMatrixWorld()
-    if (!current.frame) sky?.exposure.adapt(Math.min(seconds, 0.1))
+    if (!current.frame) sky?.exposure.adapt(seconds)
     sky?.render()
-  }
-
-  const settle = async (): Promise<void> => {
-    for (let i = 0; current.frame && i < WARM_UP_FRAMES + EXPOSURE_FRAMES; i++) {
-      await new Promise(resolve => requestAnimationFrame(resolve))
-      draw()
-      await sky?.exposure.settle()
-    }
   }
 
   let ready: Promise<void> = Promise.resolve()
@@ -152,7 +149,8 @@ export async function createSandbox(
     render: draw,
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = settle()
+      const frames = WARM_UP_FRAMES + EXPOSURE_FRAMES
+      if (current.frame) ready = drawSettled(frames, draw, () => sky?.exposure)
     },
     update(changes) {
       const { height, heading, pitch } = current
@@ -167,26 +165,10 @@ export async function createSandbox(
     },
     dispose() {
       explorer?.dispose()
-      note.dispose()
+      note.remove()
       sky?.dispose()
       disposeMeshes([ground, ...things])
       void renderer.dispose()
     }
-  }
-}
-
-/** Overlay with messages, in a corner over a canvas. */
-function noteOver(canvas: HTMLCanvasElement) {
-  const element = document.createElement('div')
-  element.setAttribute('role', 'status')
-  element.style.cssText = `position: absolute; right: 12px; top: 12px; max-width: 45%; padding: 6px 10px;
-    border-radius: 6px; background: rgb(5 7 10 / 70%); white-space: pre-line; pointer-events: none`
-  canvas.parentElement?.append(element)
-  return {
-    show(messages: readonly string[]) {
-      element.textContent = messages.join('\n')
-      element.hidden = messages.length === 0
-    },
-    dispose: () => element.remove()
   }
 }

@@ -1,5 +1,6 @@
-import { AgXToneMapping } from 'three'
-import type { Camera, PerspectiveCamera, Scene } from 'three'
+import type { AutoExposureNode } from '@welkin/atmosphere'
+import { AgXToneMapping, InstancedMesh } from 'three'
+import type { Camera, Mesh, PerspectiveCamera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
 import type { Air, AirPath } from './air'
 import type { Explorer } from './moving/Explorer'
@@ -54,6 +55,55 @@ export type CreateScene<Args extends RendererArgs> = (
  * in a `pass()` one frame later still.
  */
 export const WARM_UP_FRAMES = 3
+
+/** Frames in which exposure settles: from daylight's scale half floats take three pictures to a night's. */
+export const EXPOSURE_FRAMES = 3
+
+/** Longest time between two frames that counts: hidden pages get none, and time goes on from where it was [s]. */
+const LONGEST_FRAME = 0.1
+
+/**
+ * Clock of a scene.
+ *
+ * @param isStill - True for a single frame, in which no time passes.
+ * @returns Seconds since the call before; 0 for the first.
+ */
+export function frameClock(isStill: boolean): () => number {
+  let last: number | undefined
+  return () => {
+    const now = performance.now()
+    const seconds = isStill || last === undefined ? 0 : (now - last) / 1000
+    last = now
+    return Math.min(seconds, LONGEST_FRAME)
+  }
+}
+
+/**
+ * Draws the frames of a still, each exposed as the one before asks for.
+ *
+ * @param draw - Draws one.
+ * @param exposure - Exposure that all of them settle.
+ */
+export async function drawSettled(
+  frames: number,
+  draw: () => void,
+  exposure: () => Pick<AutoExposureNode, 'settle'> | undefined
+): Promise<void> {
+  for (let i = 0; i < frames; i++) {
+    await new Promise(resolve => requestAnimationFrame(resolve))
+    draw()
+    await exposure()?.settle()
+  }
+}
+
+/** Frees meshes with their geometries and materials. */
+export function disposeMeshes(meshes: readonly Mesh[]): void {
+  for (const mesh of meshes) {
+    mesh.geometry.dispose()
+    for (const material of [mesh.material].flat()) material.dispose()
+    if (mesh instanceof InstancedMesh) mesh.dispose()
+  }
+}
 
 /** @param trackTimestamp - True to keep the GPU's time. */
 export async function createRenderer(

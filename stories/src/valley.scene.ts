@@ -2,7 +2,8 @@ import { cloudQualities } from '@welkin/clouds'
 import type { CloudQualityName } from '@welkin/clouds'
 import { Vector3 } from 'three'
 import { Explorer } from './moving/Explorer'
-import { createRenderer, fitToCanvas } from './scene'
+import { EYE_HEIGHT } from './moving/Walk'
+import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
@@ -29,7 +30,7 @@ export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
 /** A still marches every pixel of the clouds in every frame, coarsely. */
 const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 6 }
 
-/** Time of the clouds' drift in a still [s]. */
+/** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100
 
 const stateOf = (args: ValleyArgs): ValleyState => ({
@@ -55,7 +56,7 @@ export async function createValley(
 
   const goTo = (view: ValleyView, seconds: number): void => {
     const position = new Vector3(...view.position)
-    position.y = Math.max(position.y, valley.groundAt(position) + 1.7)
+    position.y = Math.max(position.y, valley.groundAt(position) + EYE_HEIGHT)
     const direction = new Vector3(...view.target).sub(position).normalize()
     if (explorer !== undefined && seconds > 0) {
       void explorer.flyTo({ position, direction }, seconds)
@@ -66,28 +67,22 @@ export async function createValley(
   }
   goTo(VIEWS[current.view], 0)
 
-  const start = performance.now()
-  let last: number | undefined
+  const elapsed = frameClock(args.frame)
+  let time = STILL_TIME
   const draw = (): void => {
-    const now = performance.now()
-    // Hidden pages get no frames: time goes on from where it was.
-    const delta = current.frame || last === undefined ? 0 : Math.min((now - last) / 1000, 0.1)
-    last = now
+    const start = performance.now()
+    const delta = elapsed()
     explorer?.update(delta)
-    valley.time = current.frame ? STILL_TIME : STILL_TIME + (now - start) / 1000
+    valley.time = time += delta
     valley.render(delta)
-    const spent = performance.now() - now
+    const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
     readout?.update(renderer, camera, ground, valley.cycle.hour, spent)
   }
 
   let ready: Promise<void> = Promise.resolve()
-  const warmUp = async (): Promise<void> => {
-    for (let i = 0; current.frame && i < STILL.frames; i++) {
-      await new Promise(resolve => requestAnimationFrame(resolve))
-      draw()
-      await valley.exposure.settle()
-    }
+  const warmUp = (): void => {
+    if (current.frame) ready = drawSettled(STILL.frames, draw, () => valley.exposure)
   }
   return {
     renderer,
@@ -101,14 +96,14 @@ export async function createValley(
     render: draw,
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = warmUp()
+      warmUp()
     },
     update(changes) {
       const before = current.view
       Object.assign(current, changes)
       valley.set(stateOf(current), current.frame)
       if (current.view !== before) goTo(VIEWS[current.view], 4)
-      if (current.frame) ready = warmUp()
+      warmUp()
     },
     dispose() {
       explorer?.dispose()

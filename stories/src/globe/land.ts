@@ -1,12 +1,12 @@
 import { GlobeControls } from '3d-tiles-renderer'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
-import { Group, PerspectiveCamera, Scene, Timer, Vector3 } from 'three'
+import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
 import type { DataTexture } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Air } from '../air'
 import { Explorer } from '../moving/Explorer'
 import { EYE_HEIGHT } from '../moving/Walk'
-import { createRenderer, fitToCanvas, WARM_UP_FRAMES } from '../scene'
+import { createRenderer, fitToCanvas, frameClock, WARM_UP_FRAMES } from '../scene'
 import type { RendererArgs, SceneHandle } from '../scene'
 import { createNoiseTexture } from './detailNoise'
 import { createEarthSurface } from './earthSurface'
@@ -96,7 +96,7 @@ export async function createLand<Args extends RendererArgs>(
         pole: new Vector3(0, 0, 1),
         drags: 'walking'
       })
-  const timer = new Timer()
+  const elapsed = frameClock(args.frame)
 
   const current = { ...args }
   const up = new Vector3()
@@ -173,7 +173,7 @@ export async function createLand<Args extends RendererArgs>(
     },
     render() {
       if (explorer !== undefined) {
-        explorer.update(timer.update().getDelta())
+        explorer.update(elapsed())
         controls.enabled = isLoaded && !explorer.isWalking && !explorer.isFlying
         controls.update()
       }

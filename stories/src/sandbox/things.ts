@@ -23,10 +23,3 @@ export function createThings(): Mesh[] {
   for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
   return meshes
 }
-
-export function disposeMeshes(meshes: readonly Mesh[]): void {
-  for (const { geometry, material } of meshes) {
-    geometry.dispose()
-    for (const each of [material].flat()) each.dispose()
-  }
-}

@@ -10,11 +10,12 @@ import {
 import type { Atmosphere } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
-import { PerspectiveCamera, Scene } from 'three'
+import { MathUtils, PerspectiveCamera, Scene } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { RenderPipeline } from 'three/webgpu'
 import type { MeshPhysicalNodeMaterial, Node, WebGPURenderer } from 'three/webgpu'
 import { createWater } from '../environment/water'
+import { disposeMeshes } from '../scene'
 import { valleyAir } from '../valleyAir'
 import { createForest, createGrove } from './forest'
 import { createGround, groundHeight, LAKE } from './ground'
@@ -103,13 +104,8 @@ export class Valley {
     this.#ground = createGround(QUADS[quality])
     this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 8))]
     const { scene, camera } = this
-    camera.position.set(300, groundHeight(300, 520) + 13, 520)
-    camera.lookAt(330, 75, -1500)
-
-    const layers = this.#layers
-    const { quality: cloudQuality } = state
     const sky = [...this.#glows, this.#moon] as const
-    const air = valleyAir(scene, camera, layers, cloudQuality, sky)
+    const air = valleyAir(scene, camera, this.#layers, state.quality, sky)
     const { atmosphere, clouds: node, shafts, exposure } = air
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
@@ -156,7 +152,6 @@ export class Valley {
     const { weather, latitude, season, hour, dayLength, paused, quality } = this.#state
     const { nightSky, trees, village, water, shafts } = this.#state
     this.#weather.set(weather, atOnce)
-    this.#weather.apply(this.#layers, this.#state.clouds)
     this.cycle.rate = 86_400 / dayLength
     this.cycle.paused = paused
     this.cycle.latitude = latitude
@@ -192,16 +187,12 @@ export class Valley {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
     this.camera.updateMatrixWorld()
     this.cycle.update(deltaSeconds)
-    const { sunElevation, luminanceScale } = this.#evening
+    const { sunDirection, luminanceScale } = this.atmosphere
     const [from, to] = LAMPS
-    const share = Math.min(Math.max((from - sunElevation) / (from - to), 0), 1)
+    const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
+    const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
     this.#village.light(share, luminanceScale)
     this.pipeline.render()
-  }
-
-  get #evening(): { sunElevation: number; luminanceScale: number } {
-    const { sunDirection, luminanceScale } = this.atmosphere
-    return { sunElevation: (Math.asin(sunDirection.y) * 180) / Math.PI, luminanceScale }
   }
 
   /** Time of the water's waves and the clouds' drift [s]. */
@@ -217,11 +208,7 @@ export class Valley {
 
   dispose(): void {
     for (const dispose of this.#dispose) dispose()
-    for (const each of this.#trees) {
-      each.geometry.dispose()
-      each.dispose()
-    }
-    this.#ground.geometry.dispose()
+    disposeMeshes([this.#ground, ...this.#trees])
     this.#village.dispose()
     this.#water.dispose()
   }

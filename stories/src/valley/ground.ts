@@ -1,4 +1,4 @@
-import { BufferAttribute, Mesh, PlaneGeometry } from 'three'
+import { BufferAttribute, MathUtils, Mesh, PlaneGeometry } from 'three'
 import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
@@ -24,11 +24,9 @@ export const LAKE = { x: 150, z: -1750, halfWidth: 520, halfLength: 1500, height
 /** Middle of the village [m]. */
 export const VILLAGE = { x: 420, z: 230 } as const
 
-const clamp = (t: number): number => Math.min(Math.max(t, 0), 1)
-const smooth = (from: number, to: number, t: number): number => {
-  const s = clamp((t - from) / (to - from))
-  return s * s * (3 - 2 * s)
-}
+/** Smooth step, which may fall: `from` is where it is 0. */
+const smooth = (from: number, to: number, t: number): number =>
+  MathUtils.smoothstep((t - from) / (to - from), 0, 1)
 
 /** Middle of the valley across it, at a place along it [m]. */
 const valleyAt = (z: number): number =>
@@ -46,7 +44,7 @@ function flatHeight(x: number, z: number): number {
   // It ends in the north and opens in the south.
   const wall = Math.max(across, 0.8 * (-z - 5200))
   const width = 640 + 190 * Math.sin(z / 1700)
-  const rise = clamp((wall - width) / 3400)
+  const rise = MathUtils.clamp((wall - width) / 3400, 0, 1)
   const knolls = 14 * smoothNoise(x / 260, z / 260) + 3 * smoothNoise(x / 55, z / 55)
   const floor = 7 + 0.012 * Math.max(wall - 250, 0) + knolls * smooth(120, 700, wall)
   const height = floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200))

@@ -1,3 +1,5 @@
+import { MathUtils } from 'three'
+
 /** Pseudo-random direction of a lattice point: a gradient. */
 function gradient(column: number, row: number, x: number, y: number): number {
   let bits = Math.imul(column, 0x27d4eb2d) ^ Math.imul(row, 0x165667b1)
@@ -7,21 +9,20 @@ function gradient(column: number, row: number, x: number, y: number): number {
   return Math.cos(angle) * x + Math.sin(angle) * y
 }
 
-const fade = (t: number): number => t * t * t * (t * (6 * t - 15) + 10)
-const mix = (a: number, b: number, t: number): number => a + (b - a) * t
+const { clamp, lerp, smootherstep } = MathUtils
 
 /** Gradient noise with unit cells, about in [−0.7, 0.7]. */
 export function smoothNoise(x: number, y: number): number {
   const [column, row] = [Math.floor(x), Math.floor(y)]
   const [u, v] = [x - column, y - row]
-  const across = fade(u)
-  const near = mix(gradient(column, row, u, v), gradient(column + 1, row, u - 1, v), across)
-  const far = mix(
+  const across = smootherstep(u, 0, 1)
+  const near = lerp(gradient(column, row, u, v), gradient(column + 1, row, u - 1, v), across)
+  const far = lerp(
     gradient(column, row + 1, u, v - 1),
     gradient(column + 1, row + 1, u - 1, v - 1),
     across
   )
-  return mix(near, far, fade(v))
+  return lerp(near, far, smootherstep(v, 0, 1))
 }
 
 /**
@@ -40,7 +41,7 @@ export function ridges(x: number, y: number): number {
     const ridge =
       (1 - Math.abs(1.4 * smoothNoise(u * scale + 17 * octave, v * scale - 9 * octave))) ** 2
     sum += amplitude * weight * ridge
-    weight = Math.min(Math.max(1.6 * ridge * weight, 0), 1)
+    weight = clamp(1.6 * ridge * weight, 0, 1)
     amplitude *= 0.5
     scale *= 2.03
   }

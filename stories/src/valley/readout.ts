@@ -1,13 +1,14 @@
 import type { PerspectiveCamera } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { TimestampQuery } from 'three'
+import { overlayOn } from '../overlay'
 
 /** Time between two readings [ms]. */
 const PERIOD = 500
 
 /** Position, hour and times of a frame in a corner of the canvas. */
 export class Readout {
-  readonly #element = document.createElement('div')
+  readonly #element: HTMLElement
   #frames = 0
   #cpu = 0
   #since = performance.now()
@@ -15,11 +16,10 @@ export class Readout {
   #gpu: number | null = null
 
   constructor(canvas: HTMLCanvasElement) {
-    this.#element.style.cssText =
-      'position:absolute;right:12px;bottom:12px;padding:6px 10px;border-radius:6px;' +
-      'background:rgb(5 7 10 / 60%);white-space:pre;text-align:right;pointer-events:none;' +
-      'font-variant-numeric:tabular-nums'
-    canvas.parentElement?.append(this.#element)
+    this.#element = overlayOn(canvas)
+    // It changes twice a second: nothing to be read out.
+    this.#element.role = 'none'
+    Object.assign(this.#element.style, { textAlign: 'right', fontVariantNumeric: 'tabular-nums' })
   }
 
   /**

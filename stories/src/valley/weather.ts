@@ -1,3 +1,4 @@
+import { cloudPreset } from '@welkin/clouds'
 import type { CloudLayers } from '@welkin/clouds'
 
 /** A weather of the valley: numbers that all blend. */
@@ -35,22 +36,7 @@ export const valleyLayers = [
     weatherWeights: [0, 1, 0, 0] as [number, number, number, number],
     wind: { east: 10, north: 4 }
   },
-  {
-    baseAltitude: 8500,
-    topAltitude: 9600,
-    coverage: 0,
-    density: 0.003,
-    profileExponent: 1,
-    shapeAmount: 0.75,
-    detailAmount: 0.5,
-    edgeSoftness: 1,
-    turbulence: 1.5,
-    shear: 2,
-    densityGrowth: 0,
-    weatherWeights: [0, 0, 0, 1] as [number, number, number, number],
-    wind: { east: 26, north: -8 },
-    shadow: false
-  }
+  { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
 /** Time in which one weather becomes another [s]. */
@@ -61,7 +47,6 @@ export class WeatherBlend {
   #from: Weather
   #to: Weather
   #share = 1
-  #isNew = true
 
   constructor(name: WeatherName) {
     this.#from = this.#to = weathers[name]
@@ -73,7 +58,6 @@ export class WeatherBlend {
     this.#from = this.current
     this.#to = weathers[name]
     this.#share = atOnce ? 1 : 0
-    this.#isNew = true
   }
 
   get current(): Weather {
@@ -85,8 +69,7 @@ export class WeatherBlend {
 
   /** @returns True if the weather has changed. */
   update(seconds: number): boolean {
-    if (this.#share === 1 && !this.#isNew) return false
-    this.#isNew = false
+    if (this.#share === 1) return false
     this.#share = Math.min(this.#share + seconds / BLEND_SECONDS, 1)
     return true
   }
