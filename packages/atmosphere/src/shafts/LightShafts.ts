@@ -91,8 +91,6 @@ export class LightShafts implements ShadowedShafts {
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
   readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
-  /** Pixels of a picture from one that is marched to the next. */
-  spacing = 2
   /** Grows whenever something is added or removed. */
   version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -227,6 +225,11 @@ export class LightShafts implements ShadowedShafts {
     return this.#isActive
   }
 
+  /** Pixels of a picture from one that is marched to the next. */
+  get spacing(): number {
+    return qualities[this.#quality].spacing
+  }
+
   upTo(depthNode: Node, foreground?: ForegroundLayer): ScreenShadows {
     const screen = new ScreenShafts(this, depthNode, foreground)
     this.#screens.add(screen)
@@ -260,8 +263,7 @@ export class LightShafts implements ShadowedShafts {
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
-    const { rows, spacing, groups, samples } = qualities[this.#quality]
-    this.spacing = spacing
+    const { rows, groups, samples } = qualities[this.#quality]
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`

@@ -20,7 +20,7 @@ import { DepthRays } from '../view/DepthRays'
 
 /**
  * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
- * silhouettes; smaller: the march's pixels show on slopes (*City in haze*).
+ * silhouettes; smaller: the march's pixels show on slopes (*Towers in haze*).
  */
 const SAME_DEPTH = 0.35
 const OTHER_DEPTH = 0.8
@@ -35,7 +35,7 @@ const MOST = 6e4
 const FAR = 1e10
 const PLANET = 1e9
 
-/** Part of the light from behind a foreground layer that is not worth samples. */
+/** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const OPAQUE = 0.01
 
 const _size = new Vector2()
@@ -98,7 +98,7 @@ export class ScreenShafts implements ScreenShadows {
   readonly #density = number(1)
   /** Texel of the target in texture coordinates. */
   readonly #texelSize = vector2()
-  /** Longest mean free path of light in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge*). */
+  /** Longest mean free path in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge at sunrise*). */
   readonly #freePath = number(1)
   readonly #texels: TextureNode
   #pass: FragmentPass | null = null

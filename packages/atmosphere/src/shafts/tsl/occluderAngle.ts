@@ -121,25 +121,25 @@ export function occluderAngle(
     const { offset, distance } = lightRayAt(frame, texel)
     const nearest = float(NOTHING).toVar()
     // The first map is the finest: what a ray of light meets in it counts.
-    const search = (from: Vec3, depthAt: typeof mixedDepth): void => {
+    const search = (from: Vec3, depthAt: typeof mixedDepth, isFinestOnly: boolean): void => {
       const isSought = bool(true).toVar() as Bool & { assign(value: Bool | boolean): void }
       for (const map of maps) {
         If(isSought, () => {
           seekOccluder(map, from, storage, depthAt, position => {
             nearest.assign(position)
-            isSought.assign(depthAt === mixedDepth ? position.equal(NOTHING) : false)
+            isSought.assign(isFinestOnly ? false : position.equal(NOTHING))
           })
         })
       }
     }
-    search(offset, mixedDepth)
+    search(offset, mixedDepth, false)
     loop('probe', PROBES, probe => {
       If(nearest.equal(NOTHING), () => {
         const side = (positive: number): Float =>
           probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
         // A row is a quarter as high as a column is wide.
         const shift = vec2(side(0), side(2).mul(0.25)).mul(WIDENING).div(frame.columns)
-        search(lightRayAt(frame, texel.add(shift).toConst()).offset, nearestDepth)
+        search(lightRayAt(frame, texel.add(shift).toConst()).offset, nearestDepth, true)
       })
     })
     return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
