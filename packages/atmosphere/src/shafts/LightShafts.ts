@@ -10,7 +10,7 @@ import { number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
-import type { LayerRay } from '../view/SkyLayer'
+import type { LayerRay, ShadowedMedium, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
@@ -18,7 +18,7 @@ import { ScreenShafts } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered } from './tsl/lostLight'
-import type { ShadowedAir } from './tsl/shadowsAlong'
+import type { MediaRay, ShadowedAir } from './tsl/shadowsAlong'
 import { distanceOf, without } from './tsl/without'
 
 /**
@@ -136,10 +136,7 @@ export class LightShafts implements ShadowedShafts {
       get shadows() {
         return [...shadows.values()]
       },
-      mediaOn: ray =>
-        atmosphere.layers.flatMap(
-          layer => layer.shadowed?.(ray, this.source === atmosphere.sun) ?? []
-        ),
+      mediaOn: ray => this.#mediaOn(ray, atmosphere.layers),
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
     }
     this.set(options)
@@ -308,8 +305,17 @@ export class LightShafts implements ShadowedShafts {
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
       const jitter = staggered(screenCoordinate.xy.floor())
-      return lostLight(lit, this.shadowedAir, ray, this.steps, jitter)
+      // What comes later dims what is left.
+      const { layers } = this.atmosphere
+      const before = layers.slice(0, layers.indexOf(this))
+      const mediaOn = (to: MediaRay): ShadowedMedium[] => this.#mediaOn(to, before)
+      return lostLight(lit, { ...this.shadowedAir, mediaOn }, ray, this.steps, jitter)
     })
+  }
+
+  #mediaOn(ray: MediaRay, layers: readonly SkyLayer[]): ShadowedMedium[] {
+    const isSun = this.source === this.atmosphere.sun
+    return layers.flatMap(layer => layer.shadowed?.(ray, isSun) ?? [])
   }
 
   /** Frees its textures. It can be used again. What was added stays, and is not its own. */
