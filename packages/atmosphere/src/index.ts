@@ -28,6 +28,8 @@ export type { LayerRay, PointRay, ShadowedMedium, SkyLayer, SkyRay } from './vie
 export { SunDirectionalLight } from './lights/SunDirectionalLight'
 export { SkyLightProbe } from './lights/SkyLightProbe'
 export type { SkyLitPlane } from './lights/SkyLightProbe'
+export { SurfaceLightingNode, surfaceLighting } from './lights/SurfaceLightingNode'
+export type { SurfaceLightingOptions } from './lights/SurfaceLightingNode'
 export { moonIlluminanceAt, skyIlluminanceAt, sunIlluminanceAt } from './queries/illuminance'
 export type { IlluminanceOptions, SkyIlluminanceOptions } from './queries/illuminance'
 export type { CloudedPoint, CloudedSky } from './queries/CloudedSky'
