@@ -56,12 +56,13 @@ function likeness(a: Picture, b: Picture): number {
   return -10 * Math.log10(sum / colors.length)
 }
 
-/** All steps for each pixel, by the scene's materials. */
-async function exact(
+/** Shafts by the scene's materials: of a quality, or by all steps for each pixel. */
+async function byMaterials(
   renderer: WebGPURenderer,
-  { shafts, atmosphere, scene, camera }: Stage
+  { shafts, atmosphere, scene, camera }: Stage,
+  quality: LightShaftsQuality = 'reference'
 ): Promise<Picture> {
-  shafts.set({ quality: 'reference' })
+  shafts.set({ quality })
   atmosphere.add(shafts)
   await nextFrame()
   await drawForward(renderer, scene, camera, atmosphere)
@@ -87,7 +88,7 @@ gpuTest(
     city(set)
     for (const angle of [0.3, -0.9]) {
       turnTo(set, angle)
-      const expected = await exact(renderer, set)
+      const expected = await byMaterials(renderer, set)
       shafts.enabled = false
       await set.draw()
       const lit = await set.draw()
@@ -106,6 +107,9 @@ gpuTest(
         const turning = likeness(expected, await set.draw())
         t.note(`${quality}: ${still.toFixed(1)} dB, turning ${turning.toFixed(1)} dB`)
         expectTrue(Math.min(still, turning) >= goal, `${quality} shafts`)
+        const forward = likeness(expected, await byMaterials(renderer, set, quality))
+        t.note(`materials ${forward.toFixed(1)} dB`)
+        expectTrue(forward >= 40, `${quality} shafts of materials`)
       }
     }
     set.dispose()
@@ -131,7 +135,7 @@ gpuTest(
     camera.fov /= 2
     camera.updateProjectionMatrix()
     atmosphere.add(distanceFog({ density: 1 / 3000 }), heightFog({ density: 0.003, falloff: 80 }))
-    const expected = await exact(renderer, set)
+    const expected = await byMaterials(renderer, set)
     shafts.enabled = false
     const lit = likeness(expected, await set.draw())
     shafts.enabled = true
@@ -141,6 +145,9 @@ gpuTest(
       const still = likeness(expected, await set.draw())
       t.note(`${quality}: ${still.toFixed(1)} dB`)
       expectTrue(still >= goal, `${quality} shafts in fog`)
+      const forward = likeness(expected, await byMaterials(renderer, set, quality))
+      t.note(`materials ${forward.toFixed(1)} dB`)
+      expectTrue(forward >= 36, `${quality} shafts of materials in fog`)
     }
     set.dispose()
   },

@@ -14,7 +14,8 @@ export { SkyBackgroundNode, skyBackground } from './sky/SkyBackgroundNode'
 export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './sky/AerialPerspectiveFogNode'
 export { AerialPerspectiveNode, aerialPerspective } from './sky/AerialPerspectiveNode'
 export { LightShafts, lightShafts } from './shafts/LightShafts'
-export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
+export type { LightShaftsOptions } from './shafts/LightShafts'
+export type { LightShaftsQuality } from './shafts/quality'
 export type {
   AirOccluder,
   AirPoint,

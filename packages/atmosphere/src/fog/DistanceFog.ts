@@ -29,6 +29,7 @@ export interface DistanceFogOptions {
  * ```
  */
 export class DistanceFog implements SkyLayer {
+  readonly leavesSky = true
   #value = 1e-4
   #fade: readonly [number, number] = [5000, 15_000]
   #version = 0

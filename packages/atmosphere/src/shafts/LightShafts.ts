@@ -10,32 +10,18 @@ import { number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
-import type { LayerRay, ShadowedMedium, SkyLayer } from '../view/SkyLayer'
+import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
 import { ScreenShafts } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
+import { qualities, qualityNames, type LightShaftsQuality } from './quality'
+import { ShaftVolume } from './ShaftVolume'
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered } from './tsl/lostLight'
-import type { MediaRay, ShadowedAir } from './tsl/shadowsAlong'
+import type { ShadowedAir } from './tsl/shadowsAlong'
 import { distanceOf, without } from './tsl/without'
-
-/**
- * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
- * samples along a view ray; samples in each.
- */
-const qualities = {
-  low: { rows: 512, spacing: 4, groups: 3, samples: 2 },
-  medium: { rows: 768, spacing: 4, groups: 4, samples: 3 },
-  high: { rows: 1024, spacing: 3, groups: 4, samples: 4 },
-  reference: { rows: 2048, spacing: 1, groups: 64, samples: 8 }
-} as const
-
-/** Fineness of the march of light shafts. */
-export type LightShaftsQuality = keyof typeof qualities
-
-const names = Object.keys(qualities) as LightShaftsQuality[]
 
 /** Options of {@link LightShafts}. */
 export interface LightShaftsOptions {
@@ -61,7 +47,7 @@ const _axes = new Matrix4()
  * ```
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
- * are added to the atmosphere: `atmosphere.add(shafts)`. Then each pixel marches, of every material.
+ * are added to the atmosphere: `atmosphere.add(shafts)`. They read a volume of some 213 × 120 rays in 16 slices.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. The light scattered once is
@@ -70,7 +56,7 @@ const _axes = new Matrix4()
  *
  * Clouds and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`. They need no shadow map of the light.
  *
- * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
+ * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 9 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
  *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
@@ -89,6 +75,7 @@ export class LightShafts implements ShadowedShafts {
   /** Samples on a view ray. */
   readonly steps = { groups: number(), samples: number() }
   readonly #map = new SunPolarMap()
+  readonly #volume: ShaftVolume
   readonly shadowedAir: ShadowedAir
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
@@ -127,6 +114,7 @@ export class LightShafts implements ShadowedShafts {
     this.light = light
     this.source = (light as { source?: LightSource }).source ?? atmosphere.sun
     this.view = viewNodes(atmosphere, camera, this.source)
+    this.#volume = new ShaftVolume(camera)
     const shadows = this.#shadows
     const { map, frame, maximumRho } = this.#map
     this.shadowedAir = {
@@ -136,7 +124,8 @@ export class LightShafts implements ShadowedShafts {
       get shadows() {
         return [...shadows.values()]
       },
-      mediaOn: ray => this.#mediaOn(ray, atmosphere.layers),
+      mediaOn: ray =>
+        this.#media.flatMap(layer => layer.shadowed?.(ray, this.source === atmosphere.sun) ?? []),
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
     }
     this.set(options)
@@ -188,7 +177,7 @@ export class LightShafts implements ShadowedShafts {
   #compileAnew(): this {
     this.#version++
     // A layer that comes again has materials compiled anew.
-    if (this.atmosphere.layers.includes(this)) this.atmosphere.remove(this).add(this)
+    if (this.#isLayer) this.atmosphere.remove(this).add(this)
     return this
   }
 
@@ -202,14 +191,16 @@ export class LightShafts implements ShadowedShafts {
     this.#setStrength = value
   }
 
-  /** Fineness of the march; `'reference'` is for comparisons. Nothing is compiled when it changes. */
+  /** Fineness of the march. Nothing is compiled when it changes, but for materials and `'reference'`, which has each pixel march. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }
 
   set quality(value: LightShaftsQuality) {
-    checkChoice('LightShafts', 'quality', value, names)
+    checkChoice('LightShafts', 'quality', value, qualityNames)
+    const wasMarched = this.#isMarched
     this.#quality = value
+    if (this.#isMarched !== wasMarched && this.#isLayer) this.#compileAnew()
   }
 
   /** False for air without shadows, at no cost. Nothing is compiled when it changes. */
@@ -256,7 +247,11 @@ export class LightShafts implements ShadowedShafts {
   /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
     const isPost = [...this.#screens].some(({ foreground }) => foreground === undefined)
-    return !isPost && this.atmosphere.layers.includes(this)
+    return !isPost && this.#isLayer
+  }
+
+  get #isLayer(): boolean {
+    return this.atmosphere.layers.includes(this)
   }
 
   /** Called before it is added. @throws If it is another atmosphere's. */
@@ -283,6 +278,18 @@ export class LightShafts implements ShadowedShafts {
     if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups
     steps.samples.value = samples
+    this.#drawVolume(renderer, view)
+  }
+
+  /** Draws what materials read. */
+  #drawVolume(renderer: Renderer, view: AtmosphereView | undefined): void {
+    if (!this.#isLayer || this.#isMarched) return
+    this.#volume.resize(renderer, qualities[this.#quality])
+    if (!this.#isActive || view === undefined) return
+    this.view.update(view)
+    for (const layer of this.#media) if (layer.shadowed) layer.update?.(view)
+    const mapped = this.#shadows.size > 0 ? Infinity : this.#map.maximumRho.value
+    this.#volume.draw(renderer, this.view, this.shadowedAir, this.version, mapped)
   }
 
   #updateShadows(view: AtmosphereView, renderer: Renderer): void {
@@ -301,27 +308,33 @@ export class LightShafts implements ShadowedShafts {
 
   medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
+    const isOther = to.distance === undefined && this.#media.some(({ leavesSky }) => leavesSky)
     return without(air, this.strengthNow, lit, () => {
+      if (!this.#isMarched && !isOther) return this.#volume.lostTo(distanceOf(to))
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
-      const jitter = staggered(screenCoordinate.xy.floor())
-      // What comes later dims what is left.
-      const { layers } = this.atmosphere
-      const before = layers.slice(0, layers.indexOf(this))
-      const mediaOn = (to: MediaRay): ShadowedMedium[] => this.#mediaOn(to, before)
-      return lostLight(lit, { ...this.shadowedAir, mediaOn }, ray, this.steps, jitter)
+      const pixel = screenCoordinate.xy.floor()
+      return lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel))
     })
   }
 
-  #mediaOn(ray: MediaRay, layers: readonly SkyLayer[]): ShadowedMedium[] {
-    const isSun = this.source === this.atmosphere.sun
-    return layers.flatMap(layer => layer.shadowed?.(ray, isSun) ?? [])
+  /** Layers with shafts in their media: not what comes later, which dims what is left. */
+  get #media(): SkyLayer[] {
+    const { layers } = this.atmosphere
+    return layers.slice(0, this.#isLayer ? layers.indexOf(this) : layers.length)
+  }
+
+  /** True if each fragment marches: rays of orthographic cameras do not meet in the camera. */
+  get #isMarched(): boolean {
+    const { isOrthographicCamera } = this.camera as Partial<OrthographicCamera>
+    return this.#quality === 'reference' || isOrthographicCamera === true
   }
 
   /** Frees its textures. It can be used again. What was added stays, and is not its own. */
   dispose(): void {
     this.#isActive = false
     this.#map.dispose()
+    this.#volume.dispose()
     for (const screen of this.#screens) screen.free()
   }
 }

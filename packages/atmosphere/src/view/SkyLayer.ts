@@ -102,6 +102,8 @@ export interface SkyLayer {
   inScatter?(ray: PointRay, without: Vec4): Vec4
   /** Medium along a ray, in front of the sky too, given what air and layers before are. */
   medium?(ray: LayerRay, air: MediumSegment): MediumSegment
+  /** True if its medium is not in front of the sky. */
+  readonly leavesSky?: boolean
   /** Extinction of its medium at the camera, as of the last {@link update} [1/m]. */
   readonly extinction?: number
   /**

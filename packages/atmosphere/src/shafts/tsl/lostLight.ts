@@ -132,7 +132,7 @@ export function lostLight(
 }
 
 /** Light scattered once that a ray gains at a distance in the air, for unit irradiance [1/(m sr)]. */
-function scatteredOnce(
+export function scatteredOnce(
   { uniforms, transmittance }: Air,
   airAt: (inAir: Float) => LitPoint,
   cosViewLight: Float

@@ -1,0 +1,224 @@
+import { RGFormat, Vector2 } from 'three'
+import type { Camera, RenderTarget } from 'three'
+import {
+  Fn,
+  If,
+  float,
+  int,
+  outputStruct,
+  property,
+  screenUV,
+  texture,
+  uv,
+  vec2,
+  vec4
+} from 'three/tsl'
+import type { Renderer, TextureNode } from 'three/webgpu'
+import { FragmentPass, tableTarget, type Outputs } from '../tables/FragmentPass'
+import { rowAndColumn } from '../tables/tsl/texels'
+import { RADIANCE_SCALE } from '../tables/tableSizes'
+import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import { number, vector2 } from '../uniforms'
+import { DepthRays } from '../view/DepthRays'
+import type { ViewNodes } from '../view/ViewNodes'
+import { lostInSlice, type Slice } from './tsl/lostInSlice'
+import { staggered } from './tsl/lostLight'
+import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
+import { FAR } from './tsl/without'
+
+/** Slices of a ray, in as many tiles. Fewer: light before surfaces in shadow is blurred with that behind. */
+const SLICES = 16
+const TILE_COLUMNS = 4
+
+/** Distance of the last slice over the first one's length. */
+const REACH = 1000
+
+/** Farthest shafts that materials tell apart [m]; times how far shadow maps reach to the sides, where there are maps alone. */
+const AIR_REACH = 150_000
+const MAP_REACH = 4
+
+/** Greatest light that targets keep: half floats hold a little more. */
+const MOST = 6e4
+
+const _size = new Vector2()
+
+/** Fineness of a {@link ShaftVolume}. */
+export interface VolumeQuality {
+  /** Rays along the longer edge of the picture. */
+  readonly rays: number
+  /** Look-ups of the shadow in each slice of a ray. */
+  readonly looks: number
+}
+
+/**
+ * Light that shadows keep from a grid of view rays, up to any distance: what materials read that draw the air
+ * themselves, transparent ones too. Each ray is cut into slices at distances that are the same for all, and sums of
+ * their light are kept. Within a slice light is lost between the first dark place and the last one, so that what lies behind a
+ * surface is not taken from the air before it.
+ */
+export class ShaftVolume {
+  /** Light that slices lose; where in them dark air begins and ends. */
+  readonly #slices: RenderTarget
+  /** Light that rays lose up to the end of each slice, in the middle of four rays. */
+  readonly #sums: RenderTarget
+  readonly #textures: readonly [TextureNode, TextureNode, TextureNode]
+  readonly #rays: DepthRays
+  /** Number of rays in each direction, with one beyond each edge of the picture. */
+  readonly #grid = vector2()
+  /** Size of the picture, in steps from ray to ray. */
+  readonly #size = vector2()
+  readonly #looks = number(1)
+  /** Distances of slices: where they begin, and those of the first, grow by e per `growth` [m]. */
+  readonly #start = number()
+  readonly #first = number(1)
+  readonly #growth = Math.log1p(REACH) / (SLICES - 1)
+  #passes: readonly FragmentPass[] = []
+  /** Version of the shafts that the passes are of. */
+  #compiled = -1
+
+  constructor(camera: Camera) {
+    this.#rays = new DepthRays(float(0.5), camera)
+    this.#slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
+    this.#slices.textures[1].format = RGFormat
+    this.#sums = tableTarget('Welkin.LightShafts', 1, 1)
+    const [light, dark] = this.#slices.textures
+    this.#textures = [texture(light), texture(dark), texture(this.#sums.texture)]
+  }
+
+  /** Sizes its targets: before anything is drawn with them in a frame. */
+  resize(renderer: Renderer, { rays, looks }: VolumeQuality): void {
+    const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
+    const step = Math.max(Math.max(width, height) / rays, 1)
+    this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)
+    this.#grid.value.copy(this.#size.value).ceil().addScalar(2)
+    const { x, y } = this.#grid.value
+    for (const target of [this.#slices, this.#sums])
+      target.setSize(TILE_COLUMNS * x, (SLICES / TILE_COLUMNS) * y)
+    this.#looks.value = looks
+  }
+
+  /**
+   * Draws it, for a view whose uniforms are set.
+   *
+   * @param version - Grows whenever `shadowedAir` changes.
+   * @param mapped - Greatest ρ of shadow maps; infinite where there are other shadows [m].
+   */
+  draw(
+    renderer: Renderer,
+    view: ViewNodes,
+    shadowedAir: ShadowedAir,
+    version: number,
+    mapped: number
+  ): void {
+    const { topRadius, bottomRadius } = view.atmosphere.parameters
+    const height = view.height.value
+    this.#start.value = Math.max(height - (topRadius - bottomRadius), 0)
+    const most = AIR_REACH + 2 * Math.max(height, 0)
+    this.#first.value = Math.min(MAP_REACH * mapped, most) / REACH
+    if (this.#compiled !== version) {
+      for (const pass of this.#passes) pass.dispose()
+      this.#passes = [this.#march(view, shadowedAir), this.#sum()].map(
+        output => new FragmentPass('Welkin.LightShafts', output)
+      )
+      this.#compiled = version
+    }
+    this.#passes[0].render(renderer, this.#slices)
+    this.#passes[1].render(renderer, this.#sums)
+  }
+
+  /** Distance at which a slice begins [m]. */
+  #distanceTo(slice: Float): Float {
+    const grown = slice.mul(this.#growth).exp().sub(1)
+    return grown.mul(this.#first).add(this.#start).toConst() as Float
+  }
+
+  /** Slice and place in it of a texel. */
+  #texel(): { slice: Float; place: Vec2 } {
+    const tiles = vec2(TILE_COLUMNS, SLICES / TILE_COLUMNS)
+    const texel = uv().mul(this.#grid.mul(tiles)).floor().toConst() as unknown as Vec2
+    const tile = texel.div(this.#grid).add(1e-4).floor().toConst() as Vec2
+    const slice = tile.y.mul(TILE_COLUMNS).add(tile.x).toConst() as Float
+    return { slice, place: texel.sub(tile.mul(this.#grid)).toConst() as Vec2 }
+  }
+
+  /** Reads a texture in the tile of a slice. */
+  #read(source: TextureNode, slice: Float, place: Vec2): Vec4 {
+    const { row, column } = rowAndColumn(slice, TILE_COLUMNS)
+    const at = vec2(column, row).mul(this.#grid).add(place)
+    const tiles = vec2(TILE_COLUMNS, SLICES / TILE_COLUMNS)
+    return sampleLevel0(source, at.div(this.#grid.mul(tiles))).toConst()
+  }
+
+  #march(view: ViewNodes, shadowedAir: ShadowedAir): Outputs {
+    const light = property('vec4') as unknown as Vec4
+    const edges = property('vec4') as unknown as Vec4
+    const assign = Fn(({ renderer }): Vec4 => {
+      const { slice, place } = this.#texel()
+      const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number as Float))
+      const isLast = slice.greaterThan(SLICES - 1.5)
+      const part: Slice = { from, to: isLast.select(FAR, next).toConst() as Float }
+      const ray = this.#rayAt(renderer, view, place.sub(0.5).div(this.#size) as Vec2)
+      const jitter = staggered(place)
+      const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, this.#looks, jitter)
+      light.assign(lost.mul(RADIANCE_SCALE).clamp(-MOST, MOST))
+      const inSlice = dark.sub(from).div(next.sub(from)).clamp()
+      edges.assign(vec4(inSlice, 0, 0))
+      return vec4(0)
+    })
+    return { color: assign(), output: outputStruct(light, edges) }
+  }
+
+  #rayAt(renderer: Renderer, view: ViewNodes, at: Vec2): ShaftRay {
+    const position = this.#rays.position(renderer, at, float(0.5))
+    const direction = view.toMapped(position).normalize().toConst()
+    const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
+    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+    return { direction, cosView, cosViewLight, distance: float(FAR) }
+  }
+
+  #sum(): Vec4 {
+    return Fn((): Vec4 => {
+      const { slice, place } = this.#texel()
+      const sum = vec4(0).toVar()
+      // Between four rays, which have samples in all places of their steps.
+      loop('slice', int(slice).add(1), index => {
+        sum.addAssign(this.#read(this.#textures[0], float(index), place.add(1) as Vec2))
+      })
+      return sum.clamp(-MOST, MOST)
+    })()
+  }
+
+  /**
+   * Light that a fragment loses, for unit irradiance of the source [1/sr].
+   *
+   * @param distance - Distance to it [m].
+   */
+  lostTo(distance: Float): Vec4 {
+    const [, dark, sums] = this.#textures
+    const place = (screenUV as unknown as Vec2).mul(this.#size).toConst() as Vec2
+    const ahead = distance.sub(this.#start).max(0).div(this.#first).add(1).log()
+    const slice = ahead
+      .div(this.#growth)
+      .floor()
+      .clamp(0, SLICES - 1)
+      .toConst() as Float
+    const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number as Float))
+    const inSlice = distance.sub(from).div(next.sub(from)).toConst()
+    const edges = this.#read(dark, slice, place.add(1) as Vec2)
+    const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
+    const centre = place.add(0.5).toConst() as Vec2
+    const after = this.#read(sums, slice, centre)
+    const before = vec4(0).toVar()
+    If(slice.greaterThan(0.5), () => {
+      before.assign(this.#read(sums, slice.sub(1) as Float, centre))
+    })
+    return before.add(after.sub(before).mul(part)).div(RADIANCE_SCALE)
+  }
+
+  /** Frees its textures. It can be used again. */
+  dispose(): void {
+    for (const owned of [...this.#passes, this.#slices, this.#sums]) owned.dispose()
+    this.#passes = []
+    this.#compiled = -1
+  }
+}

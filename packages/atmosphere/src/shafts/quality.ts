@@ -1,0 +1,16 @@
+/**
+ * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
+ * samples along a view ray; samples in each. Of materials rays along the longer edge of the picture, and samples in each slice.
+ */
+export const qualities = {
+  low: { rows: 512, spacing: 4, groups: 3, samples: 2, rays: 160, looks: 2 },
+  medium: { rows: 768, spacing: 4, groups: 4, samples: 3, rays: 192, looks: 3 },
+  high: { rows: 1024, spacing: 3, groups: 4, samples: 4, rays: 213, looks: 4 },
+  reference: { rows: 2048, spacing: 1, groups: 64, samples: 8, rays: 1, looks: 1 }
+} as const
+
+/** Fineness of the march of light shafts. */
+export type LightShaftsQuality = keyof typeof qualities
+
+/** Names of all qualities. */
+export const qualityNames = Object.keys(qualities) as LightShaftsQuality[]
