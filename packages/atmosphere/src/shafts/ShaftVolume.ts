@@ -129,7 +129,7 @@ export class ShaftVolume {
   /** Distance at which a slice begins [m]. */
   #distanceTo(slice: Float): Float {
     const grown = slice.mul(this.#growth).exp().sub(1)
-    return grown.mul(this.#first).add(this.#start).toConst() as Float
+    return grown.mul(this.#first).add(this.#start).toConst()
   }
 
   /** Slice and place in it of a texel. */
@@ -138,7 +138,7 @@ export class ShaftVolume {
     const texel = uv().mul(this.#grid.mul(tiles)).floor().toConst() as unknown as Vec2
     const tile = texel.div(this.#grid).add(1e-4).floor().toConst() as Vec2
     const slice = tile.y.mul(TILE_COLUMNS).add(tile.x).toConst() as Float
-    return { slice, place: texel.sub(tile.mul(this.#grid)).toConst() as Vec2 }
+    return { slice, place: texel.sub(tile.mul(this.#grid)).toConst() }
   }
 
   /** Reads a texture in the tile of a slice. */
@@ -154,10 +154,10 @@ export class ShaftVolume {
     const edges = property('vec4') as unknown as Vec4
     const assign = Fn(({ renderer }): Vec4 => {
       const { slice, place } = this.#texel()
-      const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number as Float))
+      const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
-      const part: Slice = { from, to: isLast.select(FAR, next).toConst() as Float }
-      const ray = this.#rayAt(renderer, view, place.sub(0.5).div(this.#size) as Vec2)
+      const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
+      const ray = this.#rayAt(renderer, view, place.sub(0.5).div(this.#size))
       const jitter = staggered(place)
       const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, this.#looks, jitter)
       light.assign(lost.mul(RADIANCE_SCALE).clamp(-MOST, MOST))
@@ -182,7 +182,7 @@ export class ShaftVolume {
       const sum = vec4(0).toVar()
       // Between four rays, which have samples in all places of their steps.
       loop('slice', int(slice).add(1), index => {
-        sum.addAssign(this.#read(this.#textures[0], float(index), place.add(1) as Vec2))
+        sum.addAssign(this.#read(this.#textures[0], float(index), place.add(1)))
       })
       return sum.clamp(-MOST, MOST)
     })()
@@ -202,15 +202,15 @@ export class ShaftVolume {
       .floor()
       .clamp(0, SLICES - 1)
       .toConst() as Float
-    const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number as Float))
+    const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
     const inSlice = distance.sub(from).div(next.sub(from)).toConst()
-    const edges = this.#read(dark, slice, place.add(1) as Vec2)
+    const edges = this.#read(dark, slice, place.add(1))
     const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
     const centre = place.add(0.5).toConst() as Vec2
     const after = this.#read(sums, slice, centre)
     const before = vec4(0).toVar()
     If(slice.greaterThan(0.5), () => {
-      before.assign(this.#read(sums, slice.sub(1) as Float, centre))
+      before.assign(this.#read(sums, slice.sub(1), centre))
     })
     return before.add(after.sub(before).mul(part)).div(RADIANCE_SCALE)
   }
