@@ -1,6 +1,5 @@
 import {
   BoxGeometry,
-  BufferGeometry,
   CircleGeometry,
   ConeGeometry,
   CylinderGeometry,
@@ -11,6 +10,7 @@ import {
   PointLight,
   SphereGeometry
 } from 'three'
+import type { BufferGeometry } from 'three'
 import { GLTFExporter } from 'three/addons/exporters/GLTFExporter.js'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
@@ -109,7 +109,7 @@ export async function squareURL(): Promise<string> {
   const { lamps, ...parts } = partsOf()
   const square = new Group()
   for (const name of Object.keys(parts) as (keyof typeof parts)[]) {
-    const mesh = new Mesh(mergeGeometries(parts[name])!, materials[name])
+    const mesh = new Mesh(mergeGeometries(parts[name]), materials[name])
     mesh.name = name
     square.add(mesh)
   }
