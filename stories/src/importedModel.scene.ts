@@ -72,7 +72,8 @@ export async function createImportedModel(
     explorer?.update(elapsed())
     camera.updateMatrixWorld()
     // #region lamps
-    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // each frame
+    const exposure = exposureFor(atmosphere, camera, { floor: 10 }) // lux of the lamps
+    atmosphere.luminanceScale = 1e-4 * exposure // each frame
     const isDark = atmosphere.sunDirection.y < lampsBelow
     const scale = isDark ? atmosphere.luminanceScale : 0 // lamps follow the exposure
     for (const { light, candela } of lamps) light.intensity = candela * scale

@@ -25,8 +25,8 @@ const meta: Meta<ImportedModelArgs> = {
   },
   args: {
     day: Date.UTC(2026, 5, 21),
-    hour: 10.35,
-    exposure: 0,
+    hour: 10.55,
+    exposure: -1,
     lampsBelow: 0.03,
     forceWebGL: false,
     path: 'forward',
@@ -38,7 +38,7 @@ export default meta
 
 type Story = StoryObj<ImportedModelArgs>
 
-/** Twenty minutes after sunset the lamps outshine the sky. */
+/** Half an hour after sunset the lamps outshine the sky. */
 export const Dusk: Story = { tags: ['screenshot'] }
 
 export const Afternoon: Story = { args: { hour: 7 } }

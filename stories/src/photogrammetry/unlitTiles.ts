@@ -8,7 +8,7 @@ import { Mesh, MeshBasicMaterial } from 'three'
 import type { Material, MeshStandardMaterial, Object3D } from 'three'
 import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js'
 
-/** Where tiles come from. */
+/** Server of tiles. */
 export interface TileSource {
   /** A tileset, `ion:` and the number of an asset of Cesium's, or empty for Google's tiles. */
   readonly url: string
