@@ -147,7 +147,7 @@ gpuTest(
       expectTrue(still >= goal, `${quality} shafts in fog`)
       const forward = likeness(expected, await byMaterials(renderer, set, quality))
       t.note(`materials ${forward.toFixed(1)} dB`)
-      expectTrue(forward >= 36, `${quality} shafts of materials in fog`)
+      expectTrue(forward >= 35, `${quality} shafts of materials in fog`)
     }
     set.dispose()
   },

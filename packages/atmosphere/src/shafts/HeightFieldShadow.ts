@@ -83,7 +83,7 @@ class SweptShadow implements AirShadow {
     if (this.#passes.length === 0) {
       const first = Fn(() => vec4(heightAt(uv() as unknown as Vec2).clamp(-MOST, MOST), 0, 0, 0))()
       this.#passes = [first, this.#sweep(0), this.#sweep(1)].map(
-        output => new FragmentPass('Welkin.HeightFieldShadow', output as Vec4)
+        output => new FragmentPass('Welkin.HeightFieldShadow', output)
       )
     }
     // As many sweeps as end in the first target.
@@ -119,7 +119,7 @@ class SweptShadow implements AirShadow {
       const inside = step(0, place.xy).mul(step(place.xy, vec2(1))) as unknown as Vec2
       const dark = sampleLevel0(this.#shadow, place.xy).r as Float
       const lit = place.z.sub(dark).div(this.#blur).add(1).clamp()
-      return inside.x.mul(inside.y).lessThan(0.5).select(1, lit).toConst() as Float
+      return inside.x.mul(inside.y).lessThan(0.5).select(1, lit).toConst()
     }
   }
 
