@@ -47,7 +47,7 @@ const _axes = new Matrix4()
  * ```
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
- * are added to the atmosphere: `atmosphere.add(shafts)`. They read a volume of some 213 × 120 rays in 16 slices.
+ * are added to the atmosphere: `atmosphere.add(shafts)`. They read a volume of some 176 × 99 rays in 24 slices.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. The light scattered once is

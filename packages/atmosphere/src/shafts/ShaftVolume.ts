@@ -27,7 +27,7 @@ import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { FAR } from './tsl/without'
 
 /** Slices of a ray, in as many tiles. Fewer: light before surfaces in shadow is blurred with that behind. */
-const SLICES = 16
+const SLICES = 24
 const TILE_COLUMNS = 4
 
 /** Distance of the last slice over the first one's length. */
