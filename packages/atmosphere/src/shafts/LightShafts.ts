@@ -1,12 +1,11 @@
 import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
-import { float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
+import { float, screenCoordinate, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import type { Float, Vec4 } from '../tsl-types'
-import { number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
@@ -18,6 +17,7 @@ import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './sha
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { ShadowedAir } from './tsl/shadowsAlong'
+import { matrix4, number } from '../uniforms'
 
 /**
  * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
@@ -90,7 +90,7 @@ export class LightShafts implements ShadowedShafts {
   readonly shadowedAir: ShadowedAir
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
-  readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
+  readonly #toWorld = matrix4()
   /** Grows whenever something is added or removed. */
   version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */

@@ -110,6 +110,7 @@ export class CloudsNode extends AtmosphereNode {
     layers: CloudLayers,
     options: CloudsOptions = {}
   ) {
+    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     super(atmosphere, camera)
     checkOptions('CloudsNode', options, 'worldMap', 'noise', 'light', ...SETTINGS)
     const { worldMap, noise, light, ...settings } = options
@@ -117,7 +118,6 @@ export class CloudsNode extends AtmosphereNode {
     if (!isDepth(depthNode)) {
       fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
     }
-    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     if (light !== undefined && !(light instanceof CloudLightTable)) {
       fail('CloudsNode', 'light must be a CloudLightTable', light)
     }
