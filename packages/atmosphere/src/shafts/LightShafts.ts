@@ -70,8 +70,9 @@ const _axes = new Matrix4()
  *
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
- * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
- *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
+ * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
+ *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
+ *   GPU Pro 5, part II, §2.3
  */
 export class LightShafts implements ShadowedShafts {
   /** Shared, not owned. */
