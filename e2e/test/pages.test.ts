@@ -136,10 +136,11 @@ describe('numbers that pages take from the code', () => {
     const parameters = { ...layer, ...new CloudLightTable().phase, wind: `${wind.east} east` }
     const cells = [...tableBelow(clouds, '## Layers'), ...tableBelow(clouds, '## Droplets')]
     const defaults = Object.fromEntries(cells.map(row => [row[0], row.at(-2)!.replace('−', '-')]))
-    for (const [name, value] of Object.entries(parameters)) {
-      const text = Array.isArray(value) ? value.join(', ') : `${value}`
-      expect(defaults[`\`${name}\``], name).toBe(text)
-    }
+    const texts = Object.entries(parameters).map(([name, value]) => [
+      `\`${name}\``,
+      Array.isArray(value) ? value.join(', ') : `${value}`
+    ])
+    expect(defaults).toMatchObject(Object.fromEntries(texts))
   })
 
   it('has the blocks of the qualities', () => {
