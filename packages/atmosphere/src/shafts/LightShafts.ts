@@ -47,7 +47,7 @@ const _axes = new Matrix4()
  * ```
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
- * are added to the atmosphere: `atmosphere.add(shafts)`. They read a volume of some 176 × 99 rays in 24 slices.
+ * are added to the atmosphere: `atmosphere.add(shafts)`. They read a volume of some 160 × 90 rays in 24 slices.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. The light scattered once is
@@ -56,7 +56,7 @@ const _axes = new Matrix4()
  *
  * Clouds and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`. They need no shadow map of the light.
  *
- * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 9 MB for materials.
+ * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 10 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",

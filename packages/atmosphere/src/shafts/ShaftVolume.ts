@@ -42,6 +42,19 @@ const MOST = 6e4
 
 const _size = new Vector2()
 
+/** A shader of two attachments. */
+function lightAndEdges(body: (renderer: Renderer) => { light: Vec4; edges: Vec4 }): Outputs {
+  const first = property('vec4') as unknown as Vec4
+  const second = property('vec4') as unknown as Vec4
+  const assign = Fn(({ renderer }): Vec4 => {
+    const { light, edges } = body(renderer)
+    first.assign(light.clamp(-MOST, MOST))
+    second.assign(edges)
+    return vec4(0)
+  })
+  return { color: assign(), output: outputStruct(first, second) }
+}
+
 /** Fineness of a {@link ShaftVolume}. */
 export interface VolumeQuality {
   /** Rays along the longer edge of the picture. */
@@ -59,9 +72,10 @@ export interface VolumeQuality {
 export class ShaftVolume {
   /** Light that slices lose; where in them dark air begins and ends. */
   readonly #slices: RenderTarget
-  /** Light that rays lose up to the end of each slice, in the middle of four rays. */
+  /** Light that rays lose up to the end of each slice, and edges of the dark in it, in the middle of four rays. */
   readonly #sums: RenderTarget
-  readonly #textures: readonly [TextureNode, TextureNode, TextureNode]
+  /** Textures of both: light, and edges of the dark. */
+  readonly #textures: readonly (readonly TextureNode[])[]
   readonly #rays: DepthRays
   /** Number of rays in each direction, with one beyond each edge of the picture. */
   readonly #grid = vector2()
@@ -79,10 +93,11 @@ export class ShaftVolume {
   constructor(camera: Camera) {
     this.#rays = new DepthRays(float(0.5), camera)
     this.#slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
-    this.#slices.textures[1].format = RGFormat
-    this.#sums = tableTarget('Welkin.LightShafts', 1, 1)
-    const [light, dark] = this.#slices.textures
-    this.#textures = [texture(light), texture(dark), texture(this.#sums.texture)]
+    this.#sums = tableTarget('Welkin.LightShafts', 1, 1, 2)
+    this.#textures = [this.#slices, this.#sums].map(({ textures }) => {
+      textures[1].format = RGFormat
+      return textures.map(each => texture(each))
+    })
   }
 
   /** Sizes its targets: before anything is drawn with them in a frame. */
@@ -150,9 +165,7 @@ export class ShaftVolume {
   }
 
   #march(view: ViewNodes, shadowedAir: ShadowedAir): Outputs {
-    const light = property('vec4') as unknown as Vec4
-    const edges = property('vec4') as unknown as Vec4
-    const assign = Fn(({ renderer }): Vec4 => {
+    return lightAndEdges(renderer => {
       const { slice, place } = this.#texel()
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
@@ -160,12 +173,9 @@ export class ShaftVolume {
       const ray = this.#rayAt(renderer, view, place.sub(0.5).div(this.#size))
       const jitter = staggered(place)
       const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, this.#looks, jitter)
-      light.assign(lost.mul(RADIANCE_SCALE).clamp(-MOST, MOST))
-      const inSlice = dark.sub(from).div(next.sub(from)).clamp()
-      edges.assign(vec4(inSlice, 0, 0))
-      return vec4(0)
+      const edges = dark.sub(from).div(next.sub(from)).clamp()
+      return { light: lost.mul(RADIANCE_SCALE), edges: vec4(edges, 0, 0) }
     })
-    return { color: assign(), output: outputStruct(light, edges) }
   }
 
   #rayAt(renderer: Renderer, view: ViewNodes, at: Vec2): ShaftRay {
@@ -176,16 +186,17 @@ export class ShaftVolume {
     return { direction, cosView, cosViewLight, distance: float(FAR) }
   }
 
-  #sum(): Vec4 {
-    return Fn((): Vec4 => {
+  #sum(): Outputs {
+    const [light, edges] = this.#textures[0]
+    return lightAndEdges(() => {
       const { slice, place } = this.#texel()
       const sum = vec4(0).toVar()
       // Between four rays, which have samples in all places of their steps.
       loop('slice', int(slice).add(1), index => {
-        sum.addAssign(this.#read(this.#textures[0], float(index), place.add(1)))
+        sum.addAssign(this.#read(light, float(index), place.add(1)))
       })
-      return sum.clamp(-MOST, MOST)
-    })()
+      return { light: sum, edges: this.#read(edges, slice, place.add(1)) }
+    })
   }
 
   /**
@@ -194,7 +205,7 @@ export class ShaftVolume {
    * @param distance - Distance to it [m].
    */
   lostTo(distance: Float): Vec4 {
-    const [, dark, sums] = this.#textures
+    const [sums, dark] = this.#textures[1]
     const place = (screenUV as unknown as Vec2).mul(this.#size).toConst() as Vec2
     const ahead = distance.sub(this.#start).max(0).div(this.#first).add(1).log()
     const slice = ahead
@@ -204,9 +215,9 @@ export class ShaftVolume {
       .toConst() as Float
     const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
     const inSlice = distance.sub(from).div(next.sub(from)).toConst()
-    const edges = this.#read(dark, slice, place.add(1))
-    const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
     const centre = place.add(0.5).toConst() as Vec2
+    const edges = this.#read(dark, slice, centre)
+    const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
     const after = this.#read(sums, slice, centre)
     const before = vec4(0).toVar()
     If(slice.greaterThan(0.5), () => {

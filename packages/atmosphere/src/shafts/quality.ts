@@ -4,8 +4,8 @@
  */
 export const qualities = {
   low: { rows: 512, spacing: 4, groups: 3, samples: 2, rays: 128, looks: 3 },
-  medium: { rows: 768, spacing: 4, groups: 4, samples: 3, rays: 160, looks: 3 },
-  high: { rows: 1024, spacing: 3, groups: 4, samples: 4, rays: 176, looks: 4 },
+  medium: { rows: 768, spacing: 4, groups: 4, samples: 3, rays: 144, looks: 3 },
+  high: { rows: 1024, spacing: 3, groups: 4, samples: 4, rays: 160, looks: 4 },
   reference: { rows: 2048, spacing: 1, groups: 64, samples: 8, rays: 1, looks: 1 }
 } as const
 
