@@ -186,7 +186,7 @@ gpuTest(
     const all = lit.data.reduce((sum, value) => sum + value, 0)
     expectTrue(shadows > 2e-4 * all, 'the tower casts a shadow')
     // By marching, and by the volume.
-    for (const quality of ['reference', 'high'] as const) {
+    for (const quality of ['reference', 'medium'] as const) {
       shafts.set({ quality })
       tower.position.x = -300
       await forward()

@@ -47,7 +47,8 @@ const _axes = new Matrix4()
  * ```
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
- * are added to the atmosphere: `atmosphere.add(shafts)`. They read a volume of some 160 × 90 rays in 24 slices.
+ * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment marches, or
+ * at `'medium'` and `'low'` quality reads a volume of some 144 × 81 rays in 24 slices.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. The light scattered once is
@@ -56,7 +57,7 @@ const _axes = new Matrix4()
  *
  * Clouds and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`. They need no shadow map of the light.
  *
- * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 10 MB for materials.
+ * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 9 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -192,7 +193,7 @@ export class LightShafts implements ShadowedShafts {
     this.#setStrength = value
   }
 
-  /** Fineness of the march. Nothing is compiled when it changes, but for materials and `'reference'`, which has each pixel march. */
+  /** Fineness of the march. Nothing is compiled when it changes, but for materials between `'medium'` and `'high'`. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }
@@ -328,7 +329,7 @@ export class LightShafts implements ShadowedShafts {
   /** True if each fragment marches: rays of orthographic cameras do not meet in the camera. */
   get #isMarched(): boolean {
     const { isOrthographicCamera } = this.camera as Partial<OrthographicCamera>
-    return this.#quality === 'reference' || isOrthographicCamera === true
+    return qualities[this.#quality].rays === 0 || isOrthographicCamera === true
   }
 
   /** Frees its textures. It can be used again. What was added stays, and is not its own. */
