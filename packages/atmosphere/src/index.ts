@@ -18,6 +18,8 @@ export { AirStyle, airStyle } from './sky/AirStyle'
 export type { AirStyleOptions } from './sky/AirStyle'
 export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
+export { HeightFieldShadow, heightFieldShadow } from './shafts/HeightFieldShadow'
+export type { HeightField, HeightFieldShadowOptions } from './shafts/HeightFieldShadow'
 export type {
   AirOccluder,
   AirPoint,
