@@ -14,8 +14,8 @@ export const strengthForm = {
    * Added to the strength for the shape amount s and coverage c: s (a + b c) + d c³² [–]. It makes a layer
    * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
    */
-  offset: -0.53,
-  coverageOffset: 0.93,
+  offset: -0.23,
+  coverageOffset: 0.74,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
@@ -72,7 +72,7 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.95,
-  fine: 0.81,
+  fine: 1,
   detail: 0.3,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
@@ -83,13 +83,19 @@ export const billowForm = {
    */
   fineFrom: 0.3,
   fineOver: 0.5,
+  /**
+   * Strength of columns over which all their billows grow weaker, and the factor they end at [–]: only the top
+   * of a strong column is an edge, and it is a round head. Factor 1: tops torn to shreds (*Cumulus*).
+   */
+  middle: [0.3, 1.6],
+  atTops: 0.6,
   /** Height in the layer below which detail makes wisps, not billows, in [0, 1] (*Cumulus*). */
   wispHeight: 0.1,
   /**
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
    * shape], and heights in the layer over which it sets in, in [0, 1]. 0: columns like cookies (*Cumulus*).
    */
-  bend: 0.065,
+  bend: 0.045,
   bendHeight: 0.2
 } as const
 
@@ -101,8 +107,8 @@ export const densityForm = {
   /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
   softerBase: 4,
   /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
-  edgeDensity: 0.88,
-  core: 1
+  edgeDensity: 0.92,
+  core: 0.8
 } as const
 
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */

@@ -73,6 +73,10 @@ export function densityOf(
   return clamp(strength / edgeAt(layer, height), 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
 }
 
+/** Factor of the billows of a column of a strength: `topBillows` of density/tsl/billows.ts. */
+export const topBillows = (column: number): number =>
+  1 + (billowForm.atTops - 1) * smoothstep(billowForm.middle, column)
+
 /** Share of cloudy columns that are seen at a height from afar: `seenShare` of density/tsl/unresolved.ts. */
 export function seenShare(layer: CloudLayerParameters, height: number): number {
   const { tops, hiddenBelow, hiddenByAnvil, leastSeen } = columnForm
@@ -105,10 +109,11 @@ function columnAt(
   let inside = 0
   for (let i = 0; i < COLUMNS; i++) {
     const column = least + ((i + 0.5) / COLUMNS) * strongest
+    const rough = amount * topBillows(column)
     const mean = meanOverHeights(height => {
       const body = column - neededStrength(layer, height)
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
-        const strength = body + amount * deviation
+        const strength = body + rough * deviation
         return part + weight * densityOf(layer, strength, strength, height)
       }, 0)
       return here * densityAtHeight(layer, height)

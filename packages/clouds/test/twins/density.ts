@@ -18,7 +18,8 @@ import {
   edgeAt,
   meanColumn,
   neededStrength,
-  seenShare
+  seenShare,
+  topBillows
 } from '../../src/layers/meanColumn'
 import { windAxis } from '../../src/layers/wind'
 import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
@@ -305,10 +306,11 @@ export function sampleLayer(
   const ofFine = shapeAmount * billowForm.fine * growing(billowForm.fineGrowth)
   const sign = Math.min(height / billowForm.wispHeight - 1, 1)
   const lost = smoothstep(...strengthForm.billowLevels, level)
-  const body =
-    columnStrength(layer, weather, lost) - neededStrength(layer, height) + ofCoarse * coarse
+  const unbillowed = columnStrength(layer, weather, lost)
+  const rough = topBillows(unbillowed)
+  const body = unbillowed - neededStrength(layer, height) + ofCoarse * coarse * rough
   const share = clamp(1 + (body - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
-  let strength = body + ofFine * share * fine
+  let strength = body + ofFine * share * fine * rough
   const ofDetail =
     shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share
   const most = 2.5 * Math.abs(ofDetail)

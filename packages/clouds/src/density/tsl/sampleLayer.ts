@@ -1,7 +1,7 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
-import { billows, detail, fineShare, MOST_DETAIL } from './billows'
+import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
@@ -70,12 +70,15 @@ function bodyAt(
     'where unresolved'
   )
   const amount = billowStrength(layer, height)
-  const body = columnStrength(layer, weather, background.coverage, resolution)
+  const column = columnStrength(layer, weather, background.coverage, resolution)
+  const rough = topBillows(column)
+  const body = column
     .sub(neededStrength(layer, height))
-    .add(shape.coarse.mul(amount.coarse))
+    .add(shape.coarse.mul(amount.coarse).mul(rough))
     .toConst() as Float
   const share = fineShare(body)
-  const strength = body.add(shape.fine.mul(amount.fine).mul(share)).toConst() as Float
+  const fine = shape.fine.mul(amount.fine).mul(rough)
+  const strength = body.add(fine.mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
   return { sample, height, weather, body, strength, detailStrength }
 }
