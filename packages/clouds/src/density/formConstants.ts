@@ -14,14 +14,14 @@ export const strengthForm = {
    * Added to the strength for the shape amount s and coverage c: s (a + b c) + d c³² [–]. It makes a layer
    * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
    */
-  offset: -0.23,
-  coverageOffset: 0.74,
+  offset: -0.13,
+  coverageOffset: 0.55,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
    * fraction at which it is 0 (*Cockpit*).
    */
-  smoothOffset: 0.77,
+  smoothOffset: 0.7,
   smoothUntil: 0.78,
   /**
    * Levels of detail over which billows are lost in the mean [octaves]: the offset goes with them. Wrong:
@@ -32,7 +32,7 @@ export const strengthForm = {
    * Levels of detail over which single clouds are lost in the mean [octaves]. It says how much variance
    * blurred weather has left: wrong, and cover changes with the distance (*World clouds*).
    */
-  fadeLevels: 5,
+  fadeLevels: 5.4,
   /** Least variance of blurred weather that is made up for [–]. Smaller: grain far away (*World clouds*). */
   leastVariance: 0.05,
   /**
@@ -54,7 +54,7 @@ export const heightForm = {
   inversion: 0.68,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.6,
+  grown: 0.64,
   /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
@@ -72,7 +72,7 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.95,
-  fine: 1,
+  fine: 1.1,
   detail: 0.3,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
@@ -108,7 +108,13 @@ export const densityForm = {
   softerBase: 4,
   /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
   edgeDensity: 0.92,
-  core: 0.8
+  core: 0.7,
+  /**
+   * Factor of the density of what only billows make cloud, and the strength of columns without them over which
+   * it rises to 1 [–]: decaying bits are thin. Factor 1: confetti about clouds (*Cumulus*).
+   */
+  crumb: 0.2,
+  crumbFrom: [-0.9, -0.1]
 } as const
 
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */

@@ -77,6 +77,10 @@ export function densityOf(
 export const topBillows = (column: number): number =>
   1 + (billowForm.atTops - 1) * smoothstep(billowForm.middle, column)
 
+/** Factor of the density of a strength without billows: `crumbDensity` of density/tsl/density.ts. */
+export const crumbDensity = (smooth: number): number =>
+  densityForm.crumb + (1 - densityForm.crumb) * smoothstep(densityForm.crumbFrom, smooth)
+
 /** Share of cloudy columns that are seen at a height from afar: `seenShare` of density/tsl/unresolved.ts. */
 export function seenShare(layer: CloudLayerParameters, height: number): number {
   const { tops, hiddenBelow, hiddenByAnvil, leastSeen } = columnForm
@@ -114,7 +118,8 @@ function columnAt(
       const body = column - neededStrength(layer, height)
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
         const strength = body + rough * deviation
-        return part + weight * densityOf(layer, strength, strength, height)
+        const density = densityOf(layer, strength, strength, height)
+        return part + weight * density * crumbDensity(body)
       }, 0)
       return here * densityAtHeight(layer, height)
     })

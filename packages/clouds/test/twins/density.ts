@@ -13,6 +13,7 @@ import {
   weatherScales
 } from '../../src/layers/layerUniforms'
 import {
+  crumbDensity,
   densityAtHeight,
   densityOf,
   edgeAt,
@@ -308,7 +309,8 @@ export function sampleLayer(
   const lost = smoothstep(...strengthForm.billowLevels, level)
   const unbillowed = columnStrength(layer, weather, lost)
   const rough = topBillows(unbillowed)
-  const body = unbillowed - neededStrength(layer, height) + ofCoarse * coarse * rough
+  const smooth = unbillowed - neededStrength(layer, height)
+  const body = smooth + ofCoarse * coarse * rough
   const share = clamp(1 + (body - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
   let strength = body + ofFine * share * fine * rough
   const ofDetail =
@@ -319,7 +321,7 @@ export function sampleLayer(
   }
 
   const atHeight = densityAtHeight(layer, height)
-  const near = atHeight * densityOf(layer, strength, body, height)
+  const near = atHeight * densityOf(layer, strength, body, height) * crumbDensity(smooth)
   const { unresolvedFraction, filteredCoverage } = weather
   if (unresolvedFraction === 0 || filteredCoverage === 0) {
     return { extinction: density * near, strength }

@@ -1,3 +1,4 @@
+import { smoothstep } from 'three/tsl'
 import { densityForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
@@ -23,4 +24,17 @@ export const densityOf = (strength: Float, body: Float, edge: Float): Float => {
   const { edgeDensity, core } = densityForm
   const inside = body.div(core).clamp(0, 1).sqrt()
   return strength.div(edge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst()
+}
+
+/**
+ * Factor of the density at a place: bits of cloud that only billows make are mixed with clear air.
+ *
+ * @param smooth - Strength without billows, less what the height needs [–].
+ */
+export const crumbDensity = (smooth: Float): Float => {
+  const { crumb, crumbFrom } = densityForm
+  return smoothstep(...crumbFrom, smooth)
+    .mul(1 - crumb)
+    .add(crumb)
+    .toConst() as Float
 }

@@ -2,7 +2,7 @@ import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
-import { densityOf, edgeAt } from './density'
+import { crumbDensity, densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
@@ -42,7 +42,8 @@ interface Body {
   readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
-  /** Strength with coarse billows, and with fine ones, too. */
+  /** Strength without billows, with coarse ones, and with fine ones, too. */
+  readonly smooth: Float
   readonly body: Float
   readonly strength: Float
   /** Strength of detail, per deviation of its noise [–]. */
@@ -72,15 +73,13 @@ function bodyAt(
   const amount = billowStrength(layer, height)
   const column = columnStrength(layer, weather, background.coverage, resolution)
   const rough = topBillows(column)
-  const body = column
-    .sub(neededStrength(layer, height))
-    .add(shape.coarse.mul(amount.coarse).mul(rough))
-    .toConst() as Float
+  const smooth = column.sub(neededStrength(layer, height)).toConst() as Float
+  const body = smooth.add(shape.coarse.mul(amount.coarse).mul(rough)).toConst() as Float
   const share = fineShare(body)
   const fine = shape.fine.mul(amount.fine).mul(rough)
   const strength = body.add(fine.mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  return { sample, height, weather, body, strength, detailStrength }
+  return { sample, height, weather, smooth, body, strength, detailStrength }
 }
 
 /**
@@ -117,7 +116,8 @@ export function sampleLayerAt(
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      density.assign(densityOf(whole, body.body, edge).mul(densityAtHeight(layer, height)))
+      const full = densityAtHeight(layer, height).mul(crumbDensity(body.smooth))
+      density.assign(densityOf(whole, body.body, edge).mul(full))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
       const cosine = direction?.dot(sample.up).toConst() as Float | undefined
