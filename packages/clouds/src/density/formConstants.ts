@@ -54,7 +54,7 @@ export const heightForm = {
   inversion: 0.68,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.64,
+  grown: 0.73,
   /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
@@ -72,7 +72,7 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.95,
-  fine: 1.1,
+  fine: 1.2,
   detail: 0.3,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
@@ -111,10 +111,12 @@ export const densityForm = {
   core: 0.7,
   /**
    * Factor of the density of what only billows make cloud, and the strength of columns without them over which
-   * it rises to 1 [–]: decaying bits are thin. Factor 1: confetti about clouds (*Cumulus*).
+   * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about
+   * clouds; greater share: thin tops (*Cumulus*).
    */
   crumb: 0.2,
-  crumbFrom: [-0.9, -0.1]
+  crumbFrom: [-0.9, -0.1],
+  crumbHeight: 0.5
 } as const
 
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */

@@ -77,9 +77,11 @@ export function densityOf(
 export const topBillows = (column: number): number =>
   1 + (billowForm.atTops - 1) * smoothstep(billowForm.middle, column)
 
-/** Factor of the density of a strength without billows: `crumbDensity` of density/tsl/density.ts. */
-export const crumbDensity = (smooth: number): number =>
-  densityForm.crumb + (1 - densityForm.crumb) * smoothstep(densityForm.crumbFrom, smooth)
+/** Factor of the density of bits that only billows make: `crumbDensity` of density/tsl/density.ts. */
+export function crumbDensity(column: number, needed: number): number {
+  const { crumb, crumbFrom, crumbHeight } = densityForm
+  return crumb + (1 - crumb) * smoothstep(crumbFrom, column - crumbHeight * needed)
+}
 
 /** Share of cloudy columns that are seen at a height from afar: `seenShare` of density/tsl/unresolved.ts. */
 export function seenShare(layer: CloudLayerParameters, height: number): number {
@@ -115,11 +117,12 @@ function columnAt(
     const column = least + ((i + 0.5) / COLUMNS) * strongest
     const rough = amount * topBillows(column)
     const mean = meanOverHeights(height => {
-      const body = column - neededStrength(layer, height)
+      const needed = neededStrength(layer, height)
+      const body = column - needed
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
         const strength = body + rough * deviation
         const density = densityOf(layer, strength, strength, height)
-        return part + weight * density * crumbDensity(body)
+        return part + weight * density * crumbDensity(column, needed)
       }, 0)
       return here * densityAtHeight(layer, height)
     })

@@ -309,8 +309,8 @@ export function sampleLayer(
   const lost = smoothstep(...strengthForm.billowLevels, level)
   const unbillowed = columnStrength(layer, weather, lost)
   const rough = topBillows(unbillowed)
-  const smooth = unbillowed - neededStrength(layer, height)
-  const body = smooth + ofCoarse * coarse * rough
+  const needed = neededStrength(layer, height)
+  const body = unbillowed - needed + ofCoarse * coarse * rough
   const share = clamp(1 + (body - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
   let strength = body + ofFine * share * fine * rough
   const ofDetail =
@@ -321,7 +321,8 @@ export function sampleLayer(
   }
 
   const atHeight = densityAtHeight(layer, height)
-  const near = atHeight * densityOf(layer, strength, body, height) * crumbDensity(smooth)
+  const near =
+    atHeight * densityOf(layer, strength, body, height) * crumbDensity(unbillowed, needed)
   const { unresolvedFraction, filteredCoverage } = weather
   if (unresolvedFraction === 0 || filteredCoverage === 0) {
     return { extinction: density * near, strength }

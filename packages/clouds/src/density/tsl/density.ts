@@ -29,11 +29,12 @@ export const densityOf = (strength: Float, body: Float, edge: Float): Float => {
 /**
  * Factor of the density at a place: bits of cloud that only billows make are mixed with clear air.
  *
- * @param smooth - Strength without billows, less what the height needs [–].
+ * @param column - Strength of the column, without billows [–].
+ * @param needed - `neededStrength` at the height [–]: tops of strong columns are no bits.
  */
-export const crumbDensity = (smooth: Float): Float => {
-  const { crumb, crumbFrom } = densityForm
-  return smoothstep(...crumbFrom, smooth)
+export const crumbDensity = (column: Float, needed: Float): Float => {
+  const { crumb, crumbFrom, crumbHeight } = densityForm
+  return smoothstep(...crumbFrom, column.sub(needed.mul(crumbHeight)))
     .mul(1 - crumb)
     .add(crumb)
     .toConst() as Float

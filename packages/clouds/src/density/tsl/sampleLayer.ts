@@ -42,8 +42,9 @@ interface Body {
   readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
-  /** Strength without billows, with coarse ones, and with fine ones, too. */
-  readonly smooth: Float
+  /** `crumbDensity`. */
+  readonly full: Float
+  /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
   /** Strength of detail, per deviation of its noise [–]. */
@@ -73,13 +74,14 @@ function bodyAt(
   const amount = billowStrength(layer, height)
   const column = columnStrength(layer, weather, background.coverage, resolution)
   const rough = topBillows(column)
-  const smooth = column.sub(neededStrength(layer, height)).toConst() as Float
-  const body = smooth.add(shape.coarse.mul(amount.coarse).mul(rough)).toConst() as Float
+  const needed = neededStrength(layer, height).toConst() as Float
+  const body = column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)).toConst() as Float
   const share = fineShare(body)
   const fine = shape.fine.mul(amount.fine).mul(rough)
   const strength = body.add(fine.mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  return { sample, height, weather, smooth, body, strength, detailStrength }
+  const full = crumbDensity(column, needed)
+  return { sample, height, weather, full, body, strength, detailStrength }
 }
 
 /**
@@ -116,7 +118,7 @@ export function sampleLayerAt(
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      const full = densityAtHeight(layer, height).mul(crumbDensity(body.smooth))
+      const full = densityAtHeight(layer, height).mul(body.full)
       density.assign(densityOf(whole, body.body, edge).mul(full))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
