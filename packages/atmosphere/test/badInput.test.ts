@@ -35,7 +35,9 @@ import {
   Stars,
   starsOverlay,
   SunDirectionalLight,
-  sunFlare
+  sunFlare,
+  surfaceLighting,
+  type SurfaceLightingOptions
 } from '@welkin/atmosphere'
 
 const atmosphere = new Atmosphere()
@@ -61,7 +63,7 @@ const zero = new Vector3()
 const wrong = (value: unknown): never => value as never
 
 const source = "must be a LightSource, such as a moon's source, got a Moon"
-const noOptions = 'options must be an object, got null'
+const noOptions = 'options must be an object such as {'
 
 const cases: [message: string, call: () => unknown][] = [
   // A moon is not its light.
@@ -108,7 +110,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => skyIlluminanceAt(atmosphere, zero, zero, { source: wrong(luna) })
   ],
   [
-    'skyIlluminanceAt: options must be an object, got a LightSource',
+    'skyIlluminanceAt: options must be an object such as { source }, got a LightSource',
     () => skyIlluminanceAt(atmosphere, zero, zero, wrong(luna.source))
   ],
   ['exposureFor: atmosphere must be an Atmosphere', () => exposureFor(wrong(undefined), camera)],
@@ -155,6 +157,42 @@ const cases: [message: string, call: () => unknown][] = [
     'AutoExposureNode.adapt: deltaSeconds must be finite and ≥ 0, got NaN',
     () => metered.adapt(NaN)
   ],
+
+  // Lights of unlit surfaces.
+  [
+    'SurfaceLightingNode: colorNode must be a node, got undefined',
+    () => surfaceLighting(wrong(undefined), picture, camera, [])
+  ],
+  [
+    "SurfaceLightingNode: depthNode must be a texture's node, got null",
+    () => surfaceLighting(picture, wrong(null), camera, [])
+  ],
+  [
+    'SurfaceLightingNode: camera must be a Camera',
+    () => surfaceLighting(picture, picture, wrong(atmosphere), [])
+  ],
+  [
+    'SurfaceLightingNode: lights must be an array of Lights',
+    () => surfaceLighting(picture, picture, camera, wrong(atmosphere))
+  ],
+  [
+    'SurfaceLightingNode: lights[0] must be a Light',
+    () => surfaceLighting(picture, picture, camera, [wrong(camera)])
+  ],
+  ...(
+    [
+      [{ strength: 1.5 }, 'strength must be in [0, 1], got 1.5'],
+      [{ albedo: -1 }, 'albedo must be finite and ≥ 0, got -1'],
+      [{ normal: wrong(1) }, 'normal must be a node, got 1'],
+      [{ mask: wrong('x') }, "mask must be a node, got 'x'"]
+    ] satisfies [SurfaceLightingOptions, string][]
+  ).map(
+    ([options, message]) =>
+      [
+        `SurfaceLightingNode: ${message}`,
+        () => surfaceLighting(picture, picture, camera, [], options)
+      ] as [string, () => unknown]
+  ),
 
   // Textures and rotations.
   [
@@ -255,7 +293,7 @@ const cases: [message: string, call: () => unknown][] = [
 
   // One thing for another.
   [
-    'Atmosphere: options must be an object, got an AtmosphereParameters',
+    'Atmosphere: options must be an object such as { parameters }, got an AtmosphereParameters',
     () => new Atmosphere(wrong(marsParameters()))
   ],
   [
@@ -354,8 +392,28 @@ const cases: [message: string, call: () => unknown][] = [
     () => starsOverlay(vec4(1), wrong(camera), camera, atmosphere)
   ],
   [
-    'AerialPerspectiveNode: atmosphere must be an Atmosphere, got a PerspectiveCamera',
+    'AerialPerspectiveNode: camera must be a Camera, got an Atmosphere',
     () => aerialPerspective(vec4(1), vec4(1), wrong(atmosphere), wrong(camera))
+  ],
+  [
+    'AerialPerspectiveNode: atmosphere must be an Atmosphere, got a Scene',
+    () => aerialPerspective(vec4(1), vec4(1), camera, wrong(new Scene()))
+  ],
+  [
+    'AerialPerspectiveNode: showSky must be true or false, got null',
+    () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { showSky: wrong(null) })
+  ],
+  [
+    'AerialPerspectiveNode: shafts must be LightShafts, got a Scene',
+    () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { shafts: wrong(new Scene()) })
+  ],
+  [
+    "SkyBackgroundNode: showSun must be true or false, got 'no'",
+    () => skyBackground(atmosphere, { showSun: wrong('no') })
+  ],
+  [
+    "AerialPerspectiveNode: camera must be a Camera, got 'camera'",
+    () => aerialPerspective(vec4(1), vec4(1), wrong('camera'), atmosphere)
   ],
   [
     'SkyBackgroundNode: atmosphere must be an Atmosphere, got a Scene',
