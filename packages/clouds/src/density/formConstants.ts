@@ -15,13 +15,13 @@ export const strengthForm = {
    * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
    */
   offset: -0.13,
-  coverageOffset: 0.55,
+  coverageOffset: 0.59,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
    * fraction at which it is 0 (*Cockpit*).
    */
-  smoothOffset: 0.7,
+  smoothOffset: 0.77,
   smoothUntil: 0.78,
   /**
    * Levels of detail over which billows are lost in the mean [octaves]: the offset goes with them. Wrong:
@@ -32,7 +32,7 @@ export const strengthForm = {
    * Levels of detail over which single clouds are lost in the mean [octaves]. It says how much variance
    * blurred weather has left: wrong, and cover changes with the distance (*World clouds*).
    */
-  fadeLevels: 5.4,
+  fadeLevels: 6,
   /** Least variance of blurred weather that is made up for [–]. Smaller: grain far away (*World clouds*). */
   leastVariance: 0.05,
   /**
@@ -130,7 +130,7 @@ export const columnForm = {
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
    */
-  tops: 3.7,
+  tops: 3.5,
   /**
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share
    * (*World clouds*).
@@ -142,5 +142,5 @@ export const columnForm = {
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
    * that are dark from afar (*World clouds*).
    */
-  inside: 1.45
+  inside: 1.25
 } as const
