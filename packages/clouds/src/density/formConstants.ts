@@ -108,7 +108,7 @@ export const densityForm = {
   softerBase: 4,
   /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
   edgeDensity: 0.92,
-  core: 0.7,
+  core: 0.66,
   /**
    * Factor of the density of what only billows make cloud, and the strength of columns without them over which
    * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about
@@ -116,7 +116,7 @@ export const densityForm = {
    */
   crumb: 0.2,
   crumbFrom: [-0.9, -0.1],
-  crumbHeight: 0.5
+  crumbHeight: 0.4
 } as const
 
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */
