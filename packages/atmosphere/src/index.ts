@@ -16,6 +16,8 @@ export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './sky/AerialPers
 export { AerialPerspectiveNode, aerialPerspective } from './sky/AerialPerspectiveNode'
 export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
+export { HeightFieldShadow, heightFieldShadow } from './shafts/HeightFieldShadow'
+export type { HeightField, HeightFieldShadowOptions } from './shafts/HeightFieldShadow'
 export type {
   AirOccluder,
   AirPoint,
