@@ -63,7 +63,7 @@ describe('version of a moon', () => {
     expect(counts(() => (luna.direction = null))).toBe(0)
     expect(counts(() => (luna.phase = 0.25))).toBe(1)
     expect(counts(() => (luna.phase = 0.25))).toBe(0)
-    for (const name of ['strength', 'radius', 'distance'] as const) {
+    for (const name of ['strength', 'earthshine', 'radius', 'distance'] as const) {
       expect(counts(() => (luna[name] = 3e8))).toBe(1)
       expect(counts(() => (luna[name] = 3e8))).toBe(0)
     }

@@ -75,12 +75,13 @@ const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
   slot < 3 || slot > 18 ? [x, y, z, w] : []
 
 /** Numbers of all that shapes and lights the clouds. */
-function cloudInputs({ values, night }: CloudField, lightVersion: number): number[] {
+function cloudInputs({ values, night, ambient }: CloudField, lightVersion: number): number[] {
   const { moonDirection, moonIrradiance, skyRadiance } = night
   const light = [moonDirection, moonIrradiance, skyRadiance]
   return [
     ...values.flatMap((vector, i) => formOf(vector, i % LAYER_STRIDE)),
     ...light.flatMap(({ value }) => value.toArray()),
+    ambient.value,
     lightVersion
   ]
 }
