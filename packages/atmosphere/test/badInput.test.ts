@@ -36,7 +36,9 @@ import {
   Stars,
   starsOverlay,
   SunDirectionalLight,
-  sunFlare
+  sunFlare,
+  surfaceLighting,
+  type SurfaceLightingOptions
 } from '@welkin/atmosphere'
 
 const atmosphere = new Atmosphere()
@@ -156,6 +158,42 @@ const cases: [message: string, call: () => unknown][] = [
     'AutoExposureNode.adapt: deltaSeconds must be finite and ≥ 0, got NaN',
     () => metered.adapt(NaN)
   ],
+
+  // Lights of unlit surfaces.
+  [
+    'SurfaceLightingNode: colorNode must be a node, got undefined',
+    () => surfaceLighting(wrong(undefined), picture, camera, [])
+  ],
+  [
+    "SurfaceLightingNode: depthNode must be a texture's node, got null",
+    () => surfaceLighting(picture, wrong(null), camera, [])
+  ],
+  [
+    'SurfaceLightingNode: camera must be a Camera',
+    () => surfaceLighting(picture, picture, wrong(atmosphere), [])
+  ],
+  [
+    'SurfaceLightingNode: lights must be an array of Lights',
+    () => surfaceLighting(picture, picture, camera, wrong(atmosphere))
+  ],
+  [
+    'SurfaceLightingNode: lights[0] must be a Light',
+    () => surfaceLighting(picture, picture, camera, [wrong(camera)])
+  ],
+  ...(
+    [
+      [{ strength: 1.5 }, 'strength must be in [0, 1], got 1.5'],
+      [{ albedo: -1 }, 'albedo must be finite and ≥ 0, got -1'],
+      [{ normal: wrong(1) }, 'normal must be a node, got 1'],
+      [{ mask: wrong('x') }, "mask must be a node, got 'x'"]
+    ] satisfies [SurfaceLightingOptions, string][]
+  ).map(
+    ([options, message]) =>
+      [
+        `SurfaceLightingNode: ${message}`,
+        () => surfaceLighting(picture, picture, camera, [], options)
+      ] as [string, () => unknown]
+  ),
 
   // Textures and rotations.
   [

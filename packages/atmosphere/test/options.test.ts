@@ -29,7 +29,8 @@ import {
   Stars,
   stars,
   sunFlare,
-  sunIlluminanceAt
+  sunIlluminanceAt,
+  surfaceLighting
 } from '@welkin/atmosphere'
 
 const atmosphere = new Atmosphere()
@@ -54,6 +55,10 @@ const cases: [message: string, call: () => unknown][] = [
   [
     "Moon: unknown option 'inerPower', did you mean 'innerPower'?",
     () => moon({ flare: wrong({ inerPower: 3 }) })
+  ],
+  [
+    "SurfaceLightingNode: unknown option 'strenght', did you mean 'strength'?",
+    () => surfaceLighting(picture, picture, camera, [], wrong({ strenght: 1 }))
   ],
   [
     "AtmosphereParameters: unknown option 'tubidity', did you mean 'turbidity'?",

@@ -1,0 +1,163 @@
+import { Atmosphere, SkyLightProbe, SunDirectionalLight, surfaceLighting } from '@welkin/atmosphere'
+import { Ellipsoid } from '@welkin/geo'
+import {
+  BoxGeometry,
+  Color,
+  DataTexture,
+  FloatType,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  PointLight,
+  RedFormat,
+  Scene,
+  SphereGeometry
+} from 'three'
+import { Fn, pass, texture, vec2, vec4 } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { depthNormal } from '../../../packages/atmosphere/src/lights/tsl/depthNormal'
+import { DepthRays } from '../../../packages/atmosphere/src/view/DepthRays'
+import {
+  depthNormal as twin,
+  rayOf,
+  type DepthPicture
+} from '../../../packages/atmosphere/test/twins/lights/depthNormal'
+import { drawToFloat, expectLight, relativeDifferences } from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+
+const size = { width: 128, height: 72 }
+
+gpuTest('depthNormal agrees with its float64 twin', async t => {
+  const camera = new PerspectiveCamera(60, 16 / 9, 1, 100)
+  camera.updateProjectionMatrix()
+  const tangent = Math.tan(Math.PI / 6)
+  /** A roof before a wall: edges between planes, and a step. */
+  const roof: DepthPicture = {
+    width: 16,
+    height: 9,
+    tangent,
+    distanceAt(column, row) {
+      const { x, y } = rayOf(this, column, row)
+      if (row < 4) return 40 / (1 + 0.2 * x)
+      return column < 8 ? 10 / (1 + 0.7 * x + 0.3 * y) : 10 / (1 - 0.4 * x - 0.5 * y)
+    }
+  }
+  const pixels = Array.from({ length: 16 * 9 }, (_, i) => [i % 16, Math.floor(i / 16)])
+  // Standard depth of WebGL and WebGPU alike, in [0, 1].
+  const depths = pixels.map(([x, y]) => (100 / 99) * (1 - 1 / roof.distanceAt(x, y)))
+  const map = new DataTexture(new Float32Array(depths), 16, 9, RedFormat, FloatType)
+  map.needsUpdate = true
+  camera.coordinateSystem = t.backend === 'webgpu' ? 2001 : 2000
+  camera.updateProjectionMatrix()
+  const rays = new DepthRays(texture(map), camera)
+  const results = await t.evaluate(pixels, pixel =>
+    Fn(({ renderer }) => {
+      const at = pixel.xy.add(0.5).div(vec2(16, 9)).toConst()
+      return vec4(depthNormal(renderer, rays, at, vec2(16, 9)), 0)
+    })()
+  )
+  pixels.forEach(([x, y], i) => {
+    const normal = [0, 1, 2].map(k => results[4 * i + k])
+    expectClose(normal, twin(roof, x, y), { absolute: 2e-3 }, `normal of (${x}, ${y})`)
+  })
+  map.dispose()
+})
+
+gpuTest(
+  'surfaceLighting lights unlit materials as a Lambert material is lit, shadows and lamps included',
+  async t => {
+    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
+    renderer.highPrecision = true
+    renderer.shadowMap.enabled = true
+    const atmosphere = new Atmosphere({ frame: 'ecef', date: new Date('2026-06-21T15:30:00Z') })
+    const scene = new Scene()
+    const place = new Group()
+    Ellipsoid.WGS84.eastNorthUpFrame(
+      Ellipsoid.WGS84.geodeticToECEF({ longitude: 0, latitude: 45, height: 20 }),
+      place.matrix
+    )
+    place.matrix.decompose(place.position, place.quaternion, place.scale)
+    scene.add(place)
+    const ground = new Mesh(new PlaneGeometry(400, 400))
+    const box = new Mesh(new BoxGeometry(8, 8, 8))
+    box.position.set(-5, 8, 4)
+    box.rotation.set(0.2, 0.4, 0.7)
+    const ball = new Mesh(new SphereGeometry(4, 96, 64))
+    ball.position.set(7, 4, 4)
+    const meshes = [ground, box, ball]
+    const colors = ['#907050', '#7090b0', '#ffffff'].map(color => new Color(color))
+    for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
+    const sun = new SunDirectionalLight(atmosphere, 60)
+    sun.castShadow = true
+    Object.assign(sun.shadow.camera, { left: -30, right: 30, top: 30, bottom: -30, far: 150 })
+    sun.shadow.normalBias = 0.1
+    const sky = new SkyLightProbe(atmosphere)
+    const lamp = new PointLight('#ff8040', 60)
+    lamp.position.set(2, -8, 3)
+    place.add(...meshes, sun, sun.target, sky, lamp)
+    const camera = new PerspectiveCamera(40, size.width / size.height, 0.5, 2000)
+    place.add(camera)
+    camera.position.set(0, -30, 12)
+    camera.up.set(0, 0, 1)
+    scene.updateMatrixWorld(true)
+    camera.up.transformDirection(place.matrix)
+    camera.lookAt(place.localToWorld(ground.position.clone().set(0, 0, 2)))
+
+    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+    const color = scenePass.getTextureNode()
+    const lighting = surfaceLighting(color, scenePass.getTextureNode('depth'), camera, [
+      sun,
+      sky,
+      lamp
+    ])
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    const draw = async (output: typeof color | typeof lighting): Promise<Picture> => {
+      pipeline.outputNode = output
+      pipeline.needsUpdate = true
+      let picture: Picture | undefined
+      for (let i = 0; i < 3; i++) {
+        await nextFrame()
+        picture = await drawToFloat(renderer, () => pipeline.render())
+      }
+      return picture!
+    }
+    const unlit = colors.map(color => new MeshBasicMaterial({ color }))
+    const lit = colors.map(color => new MeshLambertMaterial({ color }))
+    meshes.forEach((mesh, i) => (mesh.material = unlit[i]))
+    const picture = await draw(color)
+    const relit = await draw(lighting)
+    lighting.strength = 0
+    const untouched = await draw(lighting)
+    lighting.strength = 0.5
+    const half = await draw(lighting)
+    meshes.forEach((mesh, i) => (mesh.material = lit[i]))
+    const reference = await draw(color)
+
+    expectLight(relit, 'lit')
+    expectTrue(
+      untouched.data.every((value, i) => value === picture.data[i]),
+      'strength 0 leaves the picture bit for bit'
+    )
+    const differences = relativeDifferences(relit, reference)
+    const at = (part: number): number => differences[Math.floor(part * differences.length)]
+    t.note(
+      `median ${at(0.5).toExponential(1)}, 95 % ${at(0.95).toFixed(4)}, 99 % ${at(0.99).toFixed(3)}`
+    )
+    expectTrue(at(0.5) < 2e-3, `median difference ${at(0.5)}`)
+    expectTrue(at(0.95) < 0.03, `difference of 95 % ${at(0.95)}`)
+    const i = 4 * (60 * size.width + 64)
+    const middle = (picture.data[i] + relit.data[i]) / 2
+    expectClose(half.data[i], middle, { relative: 1e-3 }, 'half the strength')
+    pipeline.dispose()
+    lighting.dispose()
+    scenePass.dispose()
+    atmosphere.dispose()
+  }
+)
