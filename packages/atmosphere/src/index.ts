@@ -15,6 +15,7 @@ export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './sky/AerialPers
 export { AerialPerspectiveNode, aerialPerspective } from './sky/AerialPerspectiveNode'
 export { AirStyle, airStyle } from './sky/AirStyle'
 export type { AirStyleOptions } from './sky/AirStyle'
+export { SkyVelocityNode, skyVelocity } from './sky/SkyVelocityNode'
 export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
 export type {
@@ -129,4 +130,5 @@ export { checkRange, checkSpectrum, withDefaults } from './check'
 export { checkSource } from './view/LightSource'
 export { checkAtmosphere } from './view/ViewNodes'
 export { checkOwner, checkRenderer } from './view/renderers'
+export { unjitteredProjection } from './view/cpu/unjittered'
 export { nameTexture } from './tables/AtlasTexture'
