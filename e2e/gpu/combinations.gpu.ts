@@ -71,10 +71,9 @@ function check(
     const parts = names.map((name, k) => ({ name, value: singles[k].data[i] }))
     // Rounding is that of the pixel's brightest part: colours mix.
     const first = i - (i % 4)
-    const pixel = [none, drawn, ...singles].flatMap(each => [
-      ...each.data.subarray(first, first + 3)
-    ])
-    const bright = Math.max(...pixel)
+    const bright = Math.max(
+      ...[none, drawn, ...singles].map(({ data }) => Math.max(...data.subarray(first, first + 3)))
+    )
     const range = predict(none.data[i], parts, CHANGE * bright)
     if (range === null) continue
     known++

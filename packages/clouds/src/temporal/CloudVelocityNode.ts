@@ -4,7 +4,7 @@ import { Node } from 'three/webgpu'
 import { checkClouds } from '../check'
 import type { CloudsNode } from '../march/CloudsNode'
 import { viewRayAt } from '../march/tsl/viewRay'
-import type { Int, Mat3, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Mat3, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { unpack } from './tsl/packing'
 
 /** Transmittance below which clouds hide enough of what is behind them for the picture to move with them. */
@@ -53,7 +53,7 @@ export class CloudVelocityNode extends Node<'vec4'> {
         const { x: distance } = unpack(passes.accumulated.distances.sample(at).level(0))
         const { ndc, length } = viewRayAt(passes.viewRays, at)
         // Winds of layers differ by less than a tenth of a pixel in a frame.
-        const origin = frame.originArray.element(int(0) as unknown as Int).xyz
+        const origin = frame.originArray.element(int(0)).xyz
         const before = (frame.raysBefore as unknown as Mat3)
           .mul(ndc)
           .add(origin.mul(length.div(exp2(distance))))

@@ -1,4 +1,4 @@
-import { vec4 } from 'three/tsl'
+import { mix, step, vec4 } from 'three/tsl'
 import type { Float, Vec4 } from '../../tsl-types'
 import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 
@@ -9,7 +9,7 @@ const THIN = 0.03
 function opacity(depth: Vec4): Vec4 {
   const next = (sum: Vec4, n: number): Vec4 => depth.mul(sum).div(-n).add(1)
   const series = depth.mul([4, 3, 2].reduce<Vec4>((sum, n) => next(sum, n), vec4(1)))
-  return depth.lessThan(THIN).select(series, depth.negate().exp().oneMinus()) as Vec4
+  return mix(series, depth.negate().exp().oneMinus(), step(THIN, depth))
 }
 
 /**
@@ -36,5 +36,5 @@ export function denserAir({ depth, radiance }: MediumSegment, strength: Float): 
  */
 export function saturated(radiance: Vec4, luminous: Vec4, saturation: Float): Vec4 {
   const grey = vec4(radiance.dot(luminous)).toConst()
-  return radiance.sub(grey).mul(saturation).add(grey).max(0) as Vec4
+  return radiance.sub(grey).mul(saturation).add(grey).max(0)
 }
