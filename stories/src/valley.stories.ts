@@ -11,7 +11,7 @@ const code = `${storyCode('valleyAir.ts', 'sky and light')}
 
 ${storyCode('valleyAir.ts', 'everything')}
 
-${storyCode('valley/factors.ts', 'factors')}`
+${storyCode('valleyFactors.ts', 'factors')}`
 
 const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
 

@@ -73,7 +73,7 @@ gpuTest('changes nothing at 1, and by 0 and 2 haze and twilight as it says', asy
   for (const k of [0, 1, 2]) {
     const [once, twice] = [grey[k] - black[k], hazyGrey[k] - hazyBlack[k]].map(value => value / 0.5)
     expectTrue(once > 0.1 && once < 0.98, `transmittance ${once}`)
-    expectClose(twice, once ** 2, { absolute: 0.02 }, 'transmittance of twice the haze')
+    expectClose(twice, once ** 2, { absolute: 0.05 }, 'transmittance of twice the haze')
     expectTrue(hazyBlack[k] > 1.1 * black[k], `light of twice the haze ${hazyBlack[k]}`)
   }
   style.set({ haze: 1, twilightSaturation: 2 })
@@ -125,10 +125,13 @@ gpuTest('scales earthshine alone, and a moon without light has none', async t =>
   const none = await light()
   luna.set({ earthshine: 1, strength: 0 })
   const off = await light()
+  atmosphere.remove(luna)
+  const without = await light()
+  luna.dispose()
   t.note(`dark ${once.dark.toPrecision(3)}, lit ${once.lit.toPrecision(3)}`)
   expectTrue(once.lit > 100 * once.dark && once.dark > 4 * none.dark, `${none.dark} without`)
   expectClose(twice.dark - once.dark, once.dark - none.dark, { relative: 0.01 }, 'earthshine')
   expectClose([twice.lit, none.lit], [once.lit, once.lit], { relative: 1e-3 }, 'sunlit side')
-  expectTrue(off.lit <= none.dark, `a moon without light has ${off.lit}`)
+  expectTrue(off.lit <= without.lit, `a moon without light has ${off.lit}`)
   atmosphere.dispose()
 })

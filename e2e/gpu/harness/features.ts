@@ -39,10 +39,10 @@ import type { Picture } from './picture'
 export const featureSize = { width: 32, height: 18 }
 
 /**
- * How a feature acts on what the others draw: adds its light to theirs; dims it and adds its own; or both at once, or
- * neither, so that nothing is known of pixels that another changes too.
+ * Action of a feature on what the others draw: adds its light to theirs; dims it and adds its own; changes it where it changes
+ * the picture; bends it everywhere, so that nothing is known of pixels that others change.
  */
-export type Action = 'adds' | 'dims' | 'changes'
+export type Action = 'adds' | 'dims' | 'changes' | 'bends'
 
 /** Features that may be on together, and how each acts. */
 export const features = {
@@ -54,7 +54,7 @@ export const features = {
   moonlight: 'adds',
   moon: 'changes',
   ground: 'changes',
-  haze: 'changes',
+  haze: 'bends',
   shafts: 'changes',
   heightFog: 'dims',
   distanceFog: 'dims',

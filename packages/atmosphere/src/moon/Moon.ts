@@ -282,7 +282,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (this.#strength > 0) this.#home?.air?.prepare(renderer, view)
+    this.#home?.air?.prepare(renderer, view, this.#strength > 0)
   }
 
   update(view: AtmosphereView): void {

@@ -12,7 +12,7 @@ export interface ValleyFactors {
   ambient: number
 }
 
-/** What the factors act on. */
+/** Parts of the valley that factors act on. */
 export interface FactorTargets {
   readonly shafts: LightShafts
   readonly node: CloudsNode
