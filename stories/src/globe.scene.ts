@@ -1,5 +1,25 @@
+import {
+  airglow,
+  milkyWay,
+  moon,
+  MoonDirectionalLight,
+  NightLightProbe,
+  SkyLightProbe,
+  stars
+} from '@welkin/atmosphere'
+import {
+  cloudPreset,
+  cloudQualities,
+  clouds,
+  cloudShadow,
+  cloudSkyLight,
+  cloudWorldMap
+} from '@welkin/clouds'
+import { shadow } from 'three/tsl'
+import { cloudCover } from './clouds/cloudCover'
 import { createCity } from './globe/city'
-import { createLand } from './globe/land'
+import { GlobeNight } from './globe/GlobeNight'
+import { createLand, type Land } from './globe/land'
 import { PLACES } from './globe/places'
 import type { PlaceName } from './globe/places'
 import { applyTime } from './scene'
@@ -7,29 +27,79 @@ import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
 export interface GlobeArgs extends RendererArgs, TimeArgs {
   place: PlaceName
+  /** The world's clouds, drawn over the finished picture. */
+  clouds: boolean
 }
 
 /** The city is smaller than a pixel from higher up [m]. */
 const CITY_CEILING = 60_000
 
+/** The world's clouds over the land, which has its air as a post effect. */
+async function worldClouds(): Promise<(land: Land) => { dispose(): void }> {
+  const cover = await cloudCover()
+  return ({ camera, air: { atmosphere, post, sun, sky } }) => {
+    if (post === undefined) throw new Error('worldClouds: there must be a post effect')
+    const { color, depth, pipeline } = post
+    const worldMap = cloudWorldMap(cover)
+    const layers = cloudPreset('mixed')
+    const quality = cloudQualities.medium
+    const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
+    pipeline.outputNode = node
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+    cloudSkyLight(sky, node)
+    return {
+      dispose() {
+        node.dispose()
+        cover.dispose()
+      }
+    }
+  }
+}
+
 /** The Earth from a street to 20,000 km: pictures of all of it and terrain of one valley, in tiles, in a world that is ECEF, in metres. */
-export const createGlobe = (
+export async function createGlobe(
   canvas: HTMLCanvasElement,
   args: GlobeArgs
-): Promise<SceneHandle<GlobeArgs>> =>
-  createLand(canvas, args, 50, ({ renderer, scene, air, noise }) => {
+): Promise<SceneHandle<GlobeArgs>> {
+  const addClouds = args.clouds ? await worldClouds() : undefined
+  const drawn: GlobeArgs = addClouds === undefined ? args : { ...args, path: 'post' }
+  const create = (land: Land) => {
+    const { renderer, scene, camera, air, noise, townScale } = land
     const { atmosphere } = air
     // #region globe
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
     // #endregion
     const city = createCity(noise)
     scene.add(city.object)
+    const night = new GlobeNight(atmosphere, () => {
+      // #region globe night
+      const luna = moon()
+      atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
+      const moonlight = new MoonDirectionalLight(atmosphere, luna)
+      const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
+      const dark = new NightLightProbe(atmosphere)
+      scene.add(moonlight, moonlight.target, moonlitSky, dark)
+      // #endregion
+      return [moonlight, moonlitSky, dark]
+    })
+    const sky = addClouds?.(land)
     return {
-      place: ({ place }) => PLACES[place],
-      apply: current => applyTime(renderer, air, current),
-      beforeDraw(altitude) {
+      place: ({ place }: GlobeArgs) => PLACES[place],
+      prepare: () => atmosphere.bake(renderer),
+      apply: (current: GlobeArgs) => applyTime(renderer, air, current),
+      beforeDraw(altitude: number) {
+        night.update(camera)
+        const { luminanceScale } = atmosphere
+        city.scale.value = luminanceScale
+        if (townScale !== undefined) townScale.value = luminanceScale
         city.object.visible = altitude < CITY_CEILING
       },
-      dispose: () => city.dispose()
+      dispose() {
+        sky?.dispose()
+        night.dispose()
+        city.dispose()
+      }
     }
-  })
+  }
+  return createLand(canvas, drawn, 50, create, { hasTowns: true })
+}

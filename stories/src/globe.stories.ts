@@ -8,11 +8,13 @@ import { storyCode } from './storyCode'
 
 const code = `${storyCode('quickStart.ts', 'quick start')}
 
-${storyCode('globe.scene.ts', 'globe')}`
+${storyCode('globe.scene.ts', 'globe')}
+
+${storyCode('globe.scene.ts', 'globe night')}`
 
 const meta: Meta<GlobeArgs> = {
   title: 'Globe',
-  render: mount(createGlobe, code),
+  render: mount(createGlobe, code, ({ clouds }) => String(clouds)),
   argTypes: {
     place: {
       name: 'Camera',
@@ -23,6 +25,11 @@ const meta: Meta<GlobeArgs> = {
         labels: Object.fromEntries(Object.entries(PLACES).map(([name, { label }]) => [name, label]))
       }
     },
+    clouds: {
+      name: 'Clouds',
+      description: "The world's, drawn over the finished picture",
+      control: 'boolean'
+    },
     ...timeArgTypes,
     ...rendererArgTypes
   },
@@ -31,6 +38,7 @@ const meta: Meta<GlobeArgs> = {
     day: Date.UTC(2026, 5, 21),
     hour: 22,
     exposure: 0,
+    clouds: false,
     forceWebGL: false,
     path: 'forward',
     frame: false
@@ -74,3 +82,26 @@ export const Valley: Story = { args: { place: 'valley', hour: 13.5 }, tags: ['sc
 
 /** Early morning along the Jacksboro fault. */
 export const Ridges: Story = { args: { place: 'ridges', hour: 12 } }
+
+/** Lit windows, lanes under lamps, the moon. */
+export const NightStreet: Story = {
+  name: 'By night: street',
+  args: { place: 'street', day: Date.UTC(2026, 6, 29), hour: 12 }
+}
+
+export const NightRooftops: Story = {
+  name: 'By night: 1 km',
+  args: { place: 'rooftops', day: Date.UTC(2026, 6, 29), hour: 12 }
+}
+
+/** Towns, airglow and stars. */
+export const NightOrbit: Story = {
+  name: 'By night: 400 km',
+  args: { place: 'orbit', hour: 15 },
+  tags: ['screenshot']
+}
+
+export const NightGlobe: Story = {
+  name: 'By night: 20,000 km, with clouds',
+  args: { place: 'globe', hour: 15, clouds: true }
+}

@@ -11,8 +11,17 @@ import {
   Vector3
 } from 'three'
 import { Air } from './air'
+import { Explorer } from './moving/Explorer'
 import { randomSequence } from './random'
-import { createRenderer, dateOf, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import {
+  changeOf,
+  createRenderer,
+  dateOf,
+  exposureOf,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface MoonArgs extends RendererArgs {
@@ -88,6 +97,8 @@ export async function createMoon(
   const scene = new Scene()
   const camera = new PerspectiveCamera(40, 1, 0.5, 2 * GROUND_RADIUS)
   camera.position.set(0, 1.8, 0)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const elapsed = frameClock(args.frame)
   const meshes = args.lights === 'none' ? [] : populate(scene)
   const current = { ...args }
   const air = new Air(renderer, scene, camera, args.path)
@@ -115,10 +126,8 @@ export async function createMoon(
   }
 
   const aim = new Vector3()
-  const apply = (): void => {
-    atmosphere.place(current)
-    atmosphere.date = dateOf(current.day, current.hour)
-    luna.phase = current.setPhase ? current.phase : null
+  const isAimedAnew = changeOf()
+  const lookAtTarget = (): void => {
     const { direction } = luna.seenFrom(camera.position)
     aim.copy(current.target === 'moon' ? direction : atmosphere.sunDirection)
     const level = Math.hypot(aim.x, aim.z)
@@ -127,6 +136,14 @@ export async function createMoon(
     const across = Math.cos(elevation)
     aim.set(east * across, Math.sin(elevation), south * across)
     camera.lookAt(aim.add(camera.position))
+  }
+  const apply = (): void => {
+    const { longitude, latitude, day, hour, target, lower } = current
+    atmosphere.place(current)
+    atmosphere.date = dateOf(day, hour)
+    luna.phase = current.setPhase ? current.phase : null
+    // What else changes leaves the view as one has turned it.
+    if (isAimedAnew([longitude, latitude, day, hour, target, lower])) lookAtTarget()
     camera.fov = current.fieldOfView
     camera.updateProjectionMatrix()
     // Not in the tone mapping: half floats hold neither a night's light nor the sun's disc.
@@ -142,11 +159,15 @@ export async function createMoon(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
     progress: 1,
-    render: () => air.render(),
+    render() {
+      explorer?.update(elapsed())
+      air.render()
+    },
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = warmUp()
@@ -157,6 +178,7 @@ export async function createMoon(
       ready = warmUp()
     },
     dispose() {
+      explorer?.dispose()
       moonlight.dispose()
       moonlitSky.dispose()
       air.dispose()

@@ -24,7 +24,15 @@ import {
 } from 'three'
 import { CONSTELLATIONS } from './night/constellations'
 import type { Constellation, ConstellationName } from './night/constellations'
-import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import { Explorer } from './moving/Explorer'
+import {
+  changeOf,
+  createRenderer,
+  exposureOf,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface NightArgs extends RendererArgs {
@@ -51,6 +59,8 @@ export async function createNight(
   const scene = new Scene()
   const camera = new PerspectiveCamera(args.fieldOfView, 1, 0.1, 20_000)
   camera.position.set(0, 2, 0)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const elapsed = frameClock(args.frame)
   const current = { ...args }
 
   const ground = new Mesh(
@@ -89,7 +99,7 @@ export async function createNight(
       const [a, b] = [places[from], places[to]]
       const part = GAP / a.angleTo(b)
       return [a.clone().lerp(b, part), b.clone().lerp(a, part)].flatMap(v =>
-        v.normalize().multiplyScalar(CHART_RADIUS).add(camera.position).toArray()
+        v.normalize().multiplyScalar(CHART_RADIUS).toArray()
       )
     })
     lines.geometry.dispose()
@@ -98,33 +108,41 @@ export async function createNight(
     return places.reduce((sum, v) => sum.add(v), new Vector3()).normalize()
   }
 
+  const isAimedAnew = changeOf()
   const apply = (): void => {
     const chart = CONSTELLATIONS[current.constellation]
     atmosphere.place(chart.place)
     atmosphere.date = new Date(chart.date)
     toWorld.copy(atmosphere.worldToECEF).invert().multiply(eciToECEF(atmosphere.date))
-    const middle = drawChart(chart)
-    camera.lookAt(camera.position.clone().add(middle))
+    if (isAimedAnew([current.constellation])) {
+      const middle = drawChart(chart)
+      camera.lookAt(camera.position.clone().add(middle))
+      house.position.set(middle.x, 0, middle.z).setLength(25).setY(2)
+      house.position.x += 9
+    }
     camera.fov = current.fieldOfView
     camera.updateProjectionMatrix()
-    camera.updateMatrixWorld()
-    house.position.set(middle.x, 0, middle.z).setLength(25).setY(2)
-    house.position.x += 9
     lines.visible = current.chart
-    // #region night exposure
-    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // as the camera moves
-    // #endregion
-    atmosphere.luminanceScale *= exposureOf(current.exposure)
     lines.material.color.set('#3d6f96')
   }
   apply()
 
-  const draw = (): void => renderer.render(scene, camera)
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    camera.updateMatrixWorld()
+    lines.position.copy(camera.position)
+    // #region night exposure
+    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // as the camera moves
+    // #endregion
+    atmosphere.luminanceScale *= exposureOf(current.exposure)
+    renderer.render(scene, camera)
+  }
   let ready: Promise<void> = Promise.resolve()
   return {
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
@@ -141,6 +159,7 @@ export async function createNight(
       apply()
     },
     dispose() {
+      explorer?.dispose()
       atmosphere.dispose()
       night.dispose()
       for (const { geometry, material } of [ground, house, lines]) {

@@ -10,7 +10,15 @@ import {
 import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { earthPictures } from './globe/earthPictures'
-import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import { Explorer } from './moving/Explorer'
+import {
+  changeOf,
+  createRenderer,
+  exposureOf,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface OrbitArgs extends RendererArgs {
@@ -43,7 +51,16 @@ export async function createOrbit(
   scene.backgroundNode = skyBackground(atmosphere)
   // #endregion
 
-  const apply = (): void => {
+  const explorer = args.frame
+    ? undefined
+    : new Explorer(camera, canvas, {
+        upAt: (position, target) => Ellipsoid.WGS84.surfaceNormal(position, target),
+        heightAt: position => Ellipsoid.WGS84.heightAt(position),
+        pole: new Vector3(0, 0, 1)
+      })
+  const elapsed = frameClock(args.frame)
+
+  const moveCamera = (): void => {
     const angle = (current.angle * Math.PI) / 180
     // A circle through the point under the sun, 35° from the equator's direction.
     const start = atmosphere.sunDirection
@@ -58,22 +75,31 @@ export async function createOrbit(
     const dip = Math.acos(Ellipsoid.WGS84.radii.x / (Ellipsoid.WGS84.radii.x + height))
     const target = forward.multiplyScalar(Math.cos(dip)).addScaledVector(up, -Math.sin(dip))
     camera.lookAt(camera.position.clone().addScaledVector(target, 1e6))
-    camera.fov = current.fieldOfView
+  }
+  const isMoved = changeOf()
+  const apply = (): void => {
+    const { altitude, angle, fieldOfView } = current
+    if (isMoved([altitude, angle])) moveCamera()
+    camera.fov = fieldOfView
     camera.updateProjectionMatrix()
+  }
+  apply()
+
+  const draw = (): void => {
+    explorer?.update(elapsed())
     camera.updateMatrixWorld()
     // #region orbit exposure
     atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera) // as the camera moves
     // #endregion
     atmosphere.luminanceScale *= exposureOf(current.exposure)
+    renderer.render(scene, camera)
   }
-  apply()
-
-  const draw = (): void => renderer.render(scene, camera)
   let ready: Promise<void> = Promise.resolve()
   return {
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
@@ -83,7 +109,6 @@ export async function createOrbit(
       fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = (async () => {
         await atmosphere.bake(renderer)
-        apply()
         for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
       })()
     },
@@ -92,6 +117,7 @@ export async function createOrbit(
       apply()
     },
     dispose() {
+      explorer?.dispose()
       atmosphere.dispose()
       for (const picture of Object.values(pictures)) picture.dispose()
       void renderer.dispose()

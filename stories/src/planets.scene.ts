@@ -7,10 +7,11 @@ import {
   titanParameters,
   venusParameters
 } from '@welkin/atmosphere'
-import { PerspectiveCamera, Scene } from 'three'
+import { Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { earthPictures } from './globe/earthPictures'
-import { createRenderer, exposureOf, WARM_UP_FRAMES } from './scene'
+import { Explorer } from './moving/Explorer'
+import { changeOf, createRenderer, exposureOf, frameClock, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export type PlanetName = 'earth' | 'made-up' | 'mars' | 'titan' | 'venus' | 'moon'
@@ -56,6 +57,28 @@ export async function createPlanets(
   let shown: { air: Air; atmosphere: Atmosphere; key: string } | undefined
   let ready: Promise<void> = Promise.resolve()
 
+  const toWorld = new Matrix4()
+  const place = new Vector3()
+  /** A position in the planet's own axes [m]. */
+  const onPlanet = (position: Vector3): Vector3 => {
+    const { atmosphere } = shown ?? {}
+    return place.copy(position).applyMatrix4(atmosphere?.worldToECEF ?? toWorld.identity())
+  }
+  const explorer = args.frame
+    ? undefined
+    : new Explorer(camera, canvas, {
+        upAt(position, target) {
+          if (shown === undefined) return target.set(0, 1, 0)
+          const { ellipsoid, worldToECEF } = shown.atmosphere
+          ellipsoid.surfaceNormal(onPlanet(position), target)
+          return target.transformDirection(toWorld.copy(worldToECEF).invert())
+        },
+        heightAt(position) {
+          return shown?.atmosphere.ellipsoid.heightAt(onPlanet(position)) ?? position.y
+        }
+      })
+  const elapsed = frameClock(args.frame)
+
   const show = async (): Promise<void> => {
     const { planet, dust } = current
     // #region planets
@@ -85,14 +108,22 @@ export async function createPlanets(
 
   const keyOf = ({ planet, dust }: PlanetsArgs): string => `${planet} ${dust}`
 
+  const isMoved = changeOf()
+  const moveCamera = (): void => {
+    const { height, pitch, longitude, latitude } = current
+    if (!isMoved([height, pitch, longitude, latitude])) return
+    camera.position.set(0, height, 0)
+    camera.rotation.set((pitch * Math.PI) / 180, 0, 0)
+  }
+  // Before a link has its say.
+  moveCamera()
+
   const apply = (): void => {
     if (shown === undefined) return
     const { atmosphere } = shown
-    const radians = Math.PI / 180
+    moveCamera()
     atmosphere.place({ longitude: current.longitude, latitude: current.latitude })
     atmosphere.setSunAngles(current.sunElevation, current.sunAzimuth)
-    camera.position.y = current.height
-    camera.rotation.x = current.pitch * radians
     camera.fov = current.fieldOfView
     camera.aspect = aspect
     camera.updateProjectionMatrix()
@@ -100,7 +131,10 @@ export async function createPlanets(
     renderer.toneMappingExposure = exposureOf(current.exposure) * daylight(atmosphere.parameters)
   }
 
-  const draw = (): void => shown?.air.render()
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    shown?.air.render()
+  }
 
   const load = (): void => {
     ready = (shown?.key === keyOf(current) ? Promise.resolve() : show()).then(() => {
@@ -115,6 +149,7 @@ export async function createPlanets(
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
@@ -131,6 +166,7 @@ export async function createPlanets(
       load()
     },
     dispose() {
+      explorer?.dispose()
       shown?.air.dispose()
       for (const picture of Object.values(pictures)) picture.dispose()
       void renderer.dispose()

@@ -81,6 +81,17 @@ export function frameClock(isStill: boolean): () => number {
   }
 }
 
+/** A function that says whether a value, compared as text, is another than the last time; the first time it is. */
+export function changeOf(): (value: object) => boolean {
+  let last: string | undefined
+  return value => {
+    const text = JSON.stringify(value)
+    const isOther = text !== last
+    last = text
+    return isOther
+  }
+}
+
 /**
  * Draws the frames of a still, each exposed as the one before asks for.
  *

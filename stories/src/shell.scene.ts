@@ -18,9 +18,16 @@ import {
   Vector3
 } from 'three'
 import type { Texture } from 'three'
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { earthPictures } from './globe/earthPictures'
-import { createRenderer, exposureOf, fitToCanvas, WARM_UP_FRAMES } from './scene'
+import { Explorer } from './moving/Explorer'
+import {
+  changeOf,
+  createRenderer,
+  exposureOf,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
 export interface ShellArgs extends RendererArgs {
@@ -43,6 +50,33 @@ const LONGITUDE = -1.6
 
 /** A kilometre in the cockpit's world [world units]. */
 const KILOMETER = 1
+
+/** Radius of the cockpit's Earth [world units]. */
+const EARTH_RADIUS = 6378.137 * KILOMETER
+
+/** Moves over the cockpit's Earth, or among the map's bodies, whose unit is an Earth's radius. */
+function explore(
+  view: ShellArgs['view'],
+  camera: PerspectiveCamera,
+  canvas: HTMLCanvasElement,
+  bodies: readonly Mesh[]
+): Explorer {
+  const metersPerUnit = view === 'map' ? 6378_137 : 1000 / KILOMETER
+  const heightAbove = ({ position, scale }: Mesh, place: Vector3): number =>
+    (place.distanceTo(position) - scale.x) * metersPerUnit
+  if (view === 'map') {
+    // There is no ground to come down to among them, and up is up.
+    const heightAt = (place: Vector3): number =>
+      Math.min(...bodies.map(body => heightAbove(body, place)))
+    return new Explorer(camera, canvas, { metersPerUnit, heightAt, groundAt: () => NaN })
+  }
+  const [earth] = bodies
+  return new Explorer(camera, canvas, {
+    metersPerUnit,
+    upAt: (place, target) => target.copy(place).sub(earth.position).normalize(),
+    heightAt: place => heightAbove(earth, place)
+  })
+}
 
 /** A sphere of radius 1; or what can be seen of it from 400 km over its pole, in faces that are flat to metres. */
 function globeGeometry(view: ShellArgs['view']): SphereGeometry {
@@ -99,12 +133,7 @@ export async function createShell(
       add(airlessParameters(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
       return
     }
-    add(
-      new AtmosphereParameters(),
-      6378.137 * KILOMETER,
-      new Vector3(0, -6378.137 * KILOMETER, 0),
-      '#2b4a2a'
-    )
+    add(new AtmosphereParameters(), EARTH_RADIUS, new Vector3(0, -EARTH_RADIUS, 0), '#2b4a2a')
     const frame = new MeshStandardMaterial({ color: '#1b1d20', roughness: 0.6 })
     for (const [x, y, z, width, height, turn] of [
       [0, -0.5, -0.9, 2.6, 0.35, 0],
@@ -123,44 +152,53 @@ export async function createShell(
   }
   build()
 
-  const controls = new OrbitControls(camera, args.frame || args.view === 'cockpit' ? null : canvas)
+  const explorer = args.frame ? undefined : explore(args.view, camera, canvas, meshes)
+  const elapsed = frameClock(args.frame)
   const current = { ...args }
+  const isMoved = changeOf()
   const apply = (): void => {
     const angle = (current.sun * Math.PI) / 180
     if (args.view === 'map') light.position.set(Math.sin(angle), 0.3, Math.cos(angle))
     else light.position.set(0.4 * Math.cos(angle), Math.sin(angle), -Math.cos(angle))
     if (args.view === 'cockpit') {
       camera.near = 2e-4
-      camera.position.set(0, 1e-3 * current.height * KILOMETER, 0)
-      cockpit.position.copy(camera.position)
+      if (isMoved([current.height])) camera.position.set(0, 1e-3 * current.height * KILOMETER, 0)
       light.position.multiplyScalar(1e4)
     }
     renderer.toneMappingExposure = exposureOf(current.exposure)
     camera.updateProjectionMatrix()
     camera.updateMatrixWorld()
   }
-  if (args.view === 'map') camera.position.set(0, 0.8, 4.2)
-  else camera.rotation.x = -0.04
-  if (args.view === 'map') controls.update()
+  if (args.view === 'map') {
+    camera.position.set(0, 0.8, 4.2)
+    camera.lookAt(0, 0, 0)
+  } else camera.rotation.x = -0.04
   apply()
+
+  const up = new Vector3()
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    cockpit.position.copy(camera.position)
+    up.copy(camera.position).sub(meshes[0].position).normalize()
+    cockpit.quaternion.setFromUnitVectors(cockpit.up, up) // level, as far as one flies
+    renderer.render(scene, camera)
+  }
 
   let ready: Promise<void> = Promise.resolve()
   return {
     renderer,
     scene,
     camera,
+    explorer,
     get ready() {
       return ready
     },
     progress: 1,
-    render() {
-      if (controls.domElement !== null) controls.update()
-      renderer.render(scene, camera)
-    },
+    render: draw,
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
       ready = Promise.resolve().then(() => {
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) renderer.render(scene, camera)
+        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
       })
     },
     update(changes) {
@@ -168,7 +206,7 @@ export async function createShell(
       apply()
     },
     dispose() {
-      if (controls.domElement !== null) controls.dispose()
+      explorer?.dispose()
       for (const shell of shells) shell.dispose()
       for (const { geometry, material } of meshes) {
         geometry.dispose()

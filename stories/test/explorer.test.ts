@@ -91,6 +91,20 @@ describe('flight', () => {
     expect(speed(2, 0, ({ wheel }) => wheel(-300))).toBeCloseTo(2 * slow, 1)
   })
 
+  it('keeps heights, speeds and links in metres in a world of kilometres', () => {
+    const { camera, explorer, press, run } = explore({ metersPerUnit: 1000 }, 1)
+    press('KeyW')
+    run(1)
+    const { z } = camera.position
+    run(1)
+    expect(z - camera.position.z).toBeCloseTo(0.503, 3)
+    expect(explorer.state.y).toBeCloseTo(1000)
+    explorer.state = { x: 2000, y: 50, z: 0, heading: 0, pitch: 0, walking: 1 }
+    expect(camera.position.x).toBeCloseTo(2)
+    run(6)
+    expect(camera.position.y).toBeCloseTo(0.0017)
+  })
+
   it('takes a long frame for a tenth of a second', () => {
     const [hidden, shown] = [explore(), explore()]
     for (const { press, explorer } of [hidden, shown]) {

@@ -1,5 +1,6 @@
-import type { LightShaftsQuality } from '@welkin/atmosphere'
+import { distanceFog, heightFog, type LightShaftsQuality } from '@welkin/atmosphere'
 import { Vector3 } from 'three'
+import type { WebGPURenderer } from 'three/webgpu'
 import { drawForward } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -55,6 +56,22 @@ function likeness(a: Picture, b: Picture): number {
   return -10 * Math.log10(sum / colors.length)
 }
 
+/** All steps for each pixel, by the scene's materials. */
+async function exact(
+  renderer: WebGPURenderer,
+  { shafts, atmosphere, scene, camera }: Stage
+): Promise<Picture> {
+  shafts.set({ quality: 'reference' })
+  atmosphere.add(shafts)
+  await nextFrame()
+  await drawForward(renderer, scene, camera, atmosphere)
+  await nextFrame()
+  const picture = await drawForward(renderer, scene, camera, atmosphere)
+  atmosphere.remove(shafts)
+  scene.backgroundNode = scene.fogNode = null
+  return picture
+}
+
 const goals: [LightShaftsQuality, number][] = [
   ['high', 48],
   ['medium', 46],
@@ -66,23 +83,11 @@ gpuTest(
   async t => {
     const renderer = await t.createRenderer(size)
     const set = stage(renderer, 15)
-    const { shafts, atmosphere, scene, camera } = set
+    const { shafts } = set
     city(set)
-    /** All steps for each pixel, by the scene's materials. */
-    const exact = async (): Promise<Picture> => {
-      shafts.set({ quality: 'reference' })
-      atmosphere.add(shafts)
-      await nextFrame()
-      await drawForward(renderer, scene, camera, atmosphere)
-      await nextFrame()
-      const picture = await drawForward(renderer, scene, camera, atmosphere)
-      atmosphere.remove(shafts)
-      scene.backgroundNode = scene.fogNode = null
-      return picture
-    }
     for (const angle of [0.3, -0.9]) {
       turnTo(set, angle)
-      const expected = await exact()
+      const expected = await exact(renderer, set)
       shafts.enabled = false
       await set.draw()
       const lit = await set.draw()
@@ -106,4 +111,38 @@ gpuTest(
     set.dispose()
   },
   { backends: ['webgpu'], timeoutSeconds: 240 }
+)
+
+/** Fog has more light than clear air to lose. */
+const fogGoals: [LightShaftsQuality, number][] = [
+  ['high', 41],
+  ['medium', 40],
+  ['low', 39]
+]
+
+gpuTest(
+  'draws what 512 steps a pixel do in height and distance fog',
+  async t => {
+    const renderer = await t.createRenderer({ width: size.width / 2, height: size.height / 2 })
+    const set = stage(renderer, 15)
+    const { shafts, atmosphere, camera } = set
+    city(set)
+    turnTo(set, 0.3)
+    camera.fov /= 2
+    camera.updateProjectionMatrix()
+    atmosphere.add(distanceFog({ density: 1 / 3000 }), heightFog({ density: 0.003, falloff: 80 }))
+    const expected = await exact(renderer, set)
+    shafts.enabled = false
+    const lit = likeness(expected, await set.draw())
+    shafts.enabled = true
+    t.note(`without shafts ${lit.toFixed(1)} dB`)
+    for (const [quality, goal] of fogGoals) {
+      shafts.set({ quality })
+      const still = likeness(expected, await set.draw())
+      t.note(`${quality}: ${still.toFixed(1)} dB`)
+      expectTrue(still >= goal, `${quality} shafts in fog`)
+    }
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
 )

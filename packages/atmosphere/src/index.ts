@@ -27,7 +27,7 @@ export type {
 } from './shafts/AirOccluder'
 export type { AirOptions, AirShadows, ScreenShadows, ForegroundLayer } from './view/AirShadows'
 export { LightSource } from './view/LightSource'
-export type { LayerRay, PointRay, SkyLayer, SkyRay } from './view/SkyLayer'
+export type { LayerRay, PointRay, ShadowedMedium, SkyLayer, SkyRay } from './view/SkyLayer'
 export { SunDirectionalLight } from './lights/SunDirectionalLight'
 export { SkyLightProbe } from './lights/SkyLightProbe'
 export type { SkyLitPlane } from './lights/SkyLightProbe'

@@ -15,14 +15,17 @@ import {
   abs,
   color,
   float,
+  floor,
   fract,
   fwidth,
   max,
   mix,
   positionLocal,
+  sin,
   smoothstep,
   step,
   texture,
+  uniform,
   uv,
   vec2,
   vertexColor
@@ -44,7 +47,10 @@ function stripes(x: Node<'float'>, period: number, width: number): Node<'float'>
   return smoothstep(soft, soft.negate(), distance.sub(width / 2))
 }
 
-function facadeMaterial(): MeshStandardNodeMaterial {
+/** Light of a lit window, and of a lane under its lamps [cd/m²]. */
+const LIT = { window: 25, lane: 1.2 }
+
+function facadeMaterial(scale: Node<'float'>): MeshStandardNodeMaterial {
   const cell = uv().div(vec2(2.8, 3.5))
   const inCell = fract(cell)
   const sharp = step(0.16, inCell.x)
@@ -58,10 +64,13 @@ function facadeMaterial(): MeshStandardNodeMaterial {
   const material = new MeshStandardNodeMaterial()
   material.colorNode = mix(vertexColor().rgb, color('#1b2530'), window)
   material.roughnessNode = mix(0.85, 0.12, window)
+  const room = fract(sin(floor(cell).dot(vec2(12.9898, 78.233))).mul(43758.5453))
+  const isLit = mix(step(0.66, room), float(0.33), blur)
+  material.emissiveNode = color('#ffcf95').mul(window.mul(isLit).mul(LIT.window)).mul(scale)
   return material
 }
 
-function streetMaterial(noise: DataTexture): MeshStandardNodeMaterial {
+function streetMaterial(noise: DataTexture, scale: Node<'float'>): MeshStandardNodeMaterial {
   const { x, z } = positionLocal
   const grain = texture(noise, positionLocal.xz.div(6))
     .r.add(texture(noise, positionLocal.xz.div(170)).r)
@@ -88,6 +97,13 @@ function streetMaterial(noise: DataTexture): MeshStandardNodeMaterial {
   material.colorNode = mix(surface, color('#c9c7bd'), lines).mul(grain.mul(0.5).add(0.75))
   material.opacityNode = outside.oneMinus()
   material.roughnessNode = float(0.9)
+  // Pools of light, 26 m apart along the lanes.
+  const pool = (x: Node<'float'>): Node<'float'> =>
+    sin(x.mul((2 * Math.PI) / 26))
+      .mul(0.5)
+      .add(0.5)
+  const lamps = mix(pool(x), pool(z), crossing.oneMinus()).mul(0.8).add(0.2)
+  material.emissiveNode = color('#ffc687').mul(street.mul(lamps).mul(LIT.lane)).mul(scale)
   return material
 }
 
@@ -133,11 +149,14 @@ function plant(
 export interface City {
   /** Position in ECEF [m]. */
   object: Group
+  /** `luminanceScale` of the atmosphere, for lit windows and lanes. */
+  scale: { value: number }
   dispose(): void
 }
 
 /** A made-up district of boxes and streets, for scale: the imagery knows nothing smaller than 20 km. */
 export function createCity(noise: DataTexture): City {
+  const scale = uniform(1e-4)
   const originECEF = Ellipsoid.WGS84.geodeticToECEF({ ...CITY, height: GROUND_HEIGHT })
   const object = new Group()
   const streets = new Group()
@@ -150,13 +169,13 @@ export function createCity(noise: DataTexture): City {
   streets.rotation.y = -PLACES.street.heading * MathUtils.DEG2RAD
 
   const { geometry, trees } = createBuildings()
-  const buildings = new Mesh(geometry, facadeMaterial())
+  const buildings = new Mesh(geometry, facadeMaterial(scale))
   buildings.castShadow = true
   buildings.receiveShadow = true
 
   const ground = new Mesh(
     new PlaneGeometry(CITY_EXTENT * 2.2, CITY_EXTENT * 2.2).rotateX(-Math.PI / 2),
-    streetMaterial(noise)
+    streetMaterial(noise, scale)
   )
   ground.receiveShadow = true
 
@@ -169,6 +188,7 @@ export function createCity(noise: DataTexture): City {
 
   return {
     object,
+    scale,
     dispose() {
       for (const { geometry: shape, material } of meshes) {
         shape.dispose()

@@ -146,10 +146,14 @@ class EarthSurfacePlugin extends GeneratedSurfacePlugin {
   }
 }
 
-/** Gives a tile's vertices coordinates for `groundDetail` that go on, up to whole periods, in its neighbours. */
+/**
+ * Gives a tile's vertices coordinates for `groundDetail` that go on, up to whole periods, in its neighbours, and such of
+ * pictures of the whole globe.
+ */
 function addDetailCoordinates(geometry: PlaneGeometry, [west, south, east, north]: number[]): void {
   const { widthSegments, heightSegments } = geometry.parameters
   const coordinates: number[] = []
+  const places: number[] = []
   const firstX = Math.floor(west * DETAIL_PERIODS)
   const firstY = Math.floor((south * DETAIL_PERIODS) / 2)
   for (let row = 0; row <= heightSegments; row++) {
@@ -157,13 +161,13 @@ function addDetailCoordinates(geometry: PlaneGeometry, [west, south, east, north
       // The outermost rows and columns are the skirt, below the next inner ones.
       const x = (Math.min(Math.max(column, 1), widthSegments - 1) - 1) / (widthSegments - 2)
       const y = 1 - (Math.min(Math.max(row, 1), heightSegments - 1) - 1) / (heightSegments - 2)
-      coordinates.push(
-        (west + (east - west) * x) * DETAIL_PERIODS - firstX,
-        ((south + (north - south) * y) * DETAIL_PERIODS) / 2 - firstY
-      )
+      const place = [west + (east - west) * x, south + (north - south) * y]
+      places.push(...place)
+      coordinates.push(place[0] * DETAIL_PERIODS - firstX, (place[1] * DETAIL_PERIODS) / 2 - firstY)
     }
   }
   geometry.setAttribute('detail', new Float32BufferAttribute(coordinates, 2))
+  geometry.setAttribute('globe', new Float32BufferAttribute(places, 2))
 }
 
 /** Material of the surface, shared by all tiles: a graph for each would cost more than drawing it. */
@@ -190,8 +194,15 @@ export interface EarthSurface {
   dispose(): void
 }
 
-/** @param url - Directory of a TMS with `tilemapresource.xml`. */
-export function createEarthSurface(url: string, noise: DataTexture): EarthSurface {
+/**
+ * @param url - Directory of a TMS with `tilemapresource.xml`.
+ * @param emission - Light that the land gives itself.
+ */
+export function createEarthSurface(
+  url: string,
+  noise: DataTexture,
+  emission?: Node<'vec3'>
+): EarthSurface {
   const tiles = new TilesRenderer()
   tiles.registerPlugin(new EarthSurfacePlugin(new TMSTilesOverlay({ url }) as Imagery))
   tiles.errorTarget = 4
@@ -201,6 +212,7 @@ export function createEarthSurface(url: string, noise: DataTexture): EarthSurfac
     const material = new MeshStandardNodeMaterial({ map: mesh.userData.map as Texture })
     material.colorNode = color
     material.roughnessNode = roughness
+    if (emission !== undefined) material.emissiveNode = emission
     mesh.material = material
   })
   tiles.addEventListener('dispose-model', ({ scene }) => {

@@ -9,6 +9,7 @@ import { EYE_HEIGHT } from '../moving/Walk'
 import { createRenderer, fitToCanvas, frameClock, WARM_UP_FRAMES } from '../scene'
 import type { RendererArgs, SceneHandle } from '../scene'
 import { createNoiseTexture } from './detailNoise'
+import { createCityLights } from './cityLights'
 import { createEarthSurface } from './earthSurface'
 import { groundHeight } from './groundHeight'
 import { loadTiles, tilesProgress } from './loadTiles'
@@ -28,6 +29,8 @@ export interface Land {
   readonly air: Air
   /** Noise for all else that stands on the land. */
   readonly noise: DataTexture
+  /** Scale of the towns' light, where there is some: the atmosphere's `luminanceScale`. */
+  readonly townScale: { value: number } | undefined
 }
 
 /** Additions of a story to the land. */
@@ -53,19 +56,23 @@ const HIGHEST_PITCH = 1.2
  *
  * @param fieldOfView - Vertical [degrees].
  * @param create - Makes what is the story's own.
+ * @param hasTowns - True for towns that give light.
  */
 export async function createLand<Args extends RendererArgs>(
   canvas: HTMLCanvasElement,
   args: Args,
   fieldOfView: number,
-  create: (land: Land) => LandStory<Args>
+  create: (land: Land) => LandStory<Args>,
+  { hasTowns = false }: { hasTowns?: boolean } = {}
 ): Promise<SceneHandle<Args>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const camera = new PerspectiveCamera(fieldOfView, 1, 1, 1e7)
   const noise = createNoiseTexture()
   const data = new URL('world-data/', document.baseURI)
-  const surface = createEarthSurface(new URL('natural-earth/', data).href, noise)
+  const towns = hasTowns ? await createCityLights(new URL('earth/', data).href, noise) : undefined
+  const imagery = new URL('natural-earth/', data).href
+  const surface = createEarthSurface(imagery, noise, towns?.emission)
   const terrain = createTerrain(new URL('terrain/', data).href, noise)
   const tilesets = [surface.tiles, terrain.tiles]
   const ground = new Group()
@@ -74,7 +81,7 @@ export async function createLand<Args extends RendererArgs>(
   for (const tiles of tilesets) tiles.setCamera(camera)
 
   const air = new Air(renderer, scene, camera, args.path)
-  const story = create({ renderer, scene, camera, air, noise })
+  const story = create({ renderer, scene, camera, air, noise, townScale: towns?.scale })
   const { warmUpFrames = WARM_UP_FRAMES } = story
   prepareShadow(air.sun)
 
@@ -196,6 +203,7 @@ export async function createLand<Args extends RendererArgs>(
       controls.dispose()
       story.dispose?.()
       surface.dispose()
+      towns?.dispose()
       terrain.dispose()
       air.dispose()
       noise.dispose()

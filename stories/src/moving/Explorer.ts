@@ -49,6 +49,7 @@ export class Explorer {
   private readonly upAt: (position: Vector3, target: Vector3) => Vector3
   private readonly heightAt: (position: Vector3) => number
   private readonly pole: Vector3
+  private readonly metersPerUnit: number
   private readonly axes = new LocalAxes()
   private readonly velocity = new Vector3()
   private flight?: Flight
@@ -59,7 +60,8 @@ export class Explorer {
     this.input = new ExplorerInput(canvas)
     this.groundAt = options.groundAt ?? (() => 0)
     this.upAt = options.upAt ?? ((_, target) => target.set(0, 1, 0))
-    this.heightAt = options.heightAt ?? (position => position.y)
+    this.metersPerUnit = options.metersPerUnit ?? 1
+    this.heightAt = options.heightAt ?? (position => position.y * this.metersPerUnit)
     this.pole = options.pole ?? new Vector3(0, 0, -1)
     this.drags = options.drags ?? 'always'
     this.shareDrags()
@@ -82,17 +84,17 @@ export class Explorer {
     this.shareDrags()
   }
 
-  /** Position, direction and way of moving, of which a link is made. Set, it ends a flight. */
+  /** Position [m], direction and way of moving, of which a link is made. Set, it ends a flight. */
   get state(): ExplorerState {
     const { heading, pitch } = this.angles()
-    const { x, y, z } = this.camera.position
+    const { x, y, z } = after.copy(this.camera.position).multiplyScalar(this.metersPerUnit)
     const walking = Number(this.isWalking)
     return { x, y, z, heading: heading * DEGREES, pitch: pitch * DEGREES, walking }
   }
 
   set state({ x, y, z, heading, pitch, walking }: ExplorerState) {
     this.stop()
-    this.camera.position.set(x, y, z)
+    this.camera.position.set(x, y, z).divideScalar(this.metersPerUnit)
     this.turnTo({ heading: heading / DEGREES, pitch: pitch / DEGREES })
     this.isWalking = walking !== 0
     this.camera.updateMatrixWorld()
@@ -221,7 +223,7 @@ export class Explorer {
     before.copy(position)
     const eye = this.heightAt(position)
     this.moveBy(seconds)
-    const distance = position.distanceTo(before)
+    const distance = position.distanceTo(before) * this.metersPerUnit
     if (walk.isBlocked(eye, this.groundAt(position), distance)) {
       position.copy(before)
       this.velocity.set(0, 0, 0)
@@ -233,7 +235,7 @@ export class Explorer {
   private moveBy(seconds: number): void {
     const { position, quaternion: rotation } = this.camera
     const up = this.upAt(position, after)
-    position.addScaledVector(this.velocity, seconds)
+    position.addScaledVector(this.velocity, seconds / this.metersPerUnit)
     quaternion.setFromUnitVectors(up, this.upAt(position, axis))
     rotation.premultiply(quaternion)
     this.velocity.applyQuaternion(quaternion)
@@ -244,7 +246,7 @@ export class Explorer {
     const { position } = this.camera
     for (let i = 0; i < 2; i++) {
       this.upAt(position, axis)
-      position.addScaledVector(axis, height - this.heightAt(position))
+      position.addScaledVector(axis, (height - this.heightAt(position)) / this.metersPerUnit)
     }
   }
 }

@@ -6,8 +6,10 @@ export interface ExplorerOptions {
   groundAt?: (position: Vector3) => number
   /** Unit vector up at a place. Default +Y. */
   upAt?: (position: Vector3, target: Vector3) => Vector3
-  /** Height of a place above the datum [m]. Default its y. */
+  /** Height of a place above the datum [m]. Default its y, in a world of metres. */
   heightAt?: (position: Vector3) => number
+  /** Metres of the world's unit, > 0; heights stay in metres. Default 1. */
+  metersPerUnit?: number
   /** Direction that north leans to, unit vector. Default −Z. */
   pole?: Vector3
   /** Times at which drags look: 'walking' leaves them to other controls otherwise. Default 'always'. */

@@ -2,11 +2,14 @@ import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
 import { setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
-import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
+import { densities } from '../air/tsl/medium'
+import { scatteredRadiance } from '../scattering/tsl/scattering'
+import { sourceFunction } from '../scattering/tsl/segment'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { sampleSky } from '../skyVolume/tsl/skyVolume'
 import { viewRay } from '../skyVolume/tsl/viewRay'
-import type { Bool, Float } from '../tsl-types'
+import type { Bool, Float, Vec4 } from '../tsl-types'
 
 /** Options of {@link DistanceFog}. */
 export interface DistanceFogOptions {
@@ -68,6 +71,11 @@ export class DistanceFog implements SkyLayer {
     this.#value = value
   }
 
+  /** Reciprocal of the distance at which e⁻¹ of the light is left, for the camera of the last {@link update} [1/m]. */
+  get extinction(): number {
+    return this.#density.value
+  }
+
   /** See {@link SkyLayer.version}. */
   get version(): number {
     return this.#version
@@ -79,42 +87,77 @@ export class DistanceFog implements SkyLayer {
     this.#density.value = this.density * (1 - x * x * (3 - 2 * x))
   }
 
-  medium({ view, cosView, cosViewLight, distance }: LayerRay, air: MediumSegment): MediumSegment {
+  medium(ray: LayerRay, air: MediumSegment): MediumSegment {
+    const { distance } = ray
     if (distance === undefined) return air
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const { uniforms } = view.air
-      const { viewpoint, source } = view
-      // The same azimuth, raised to just above the horizon if the ray is lower.
-      const cosRaised = cosView
-        .max(viewpoint.cosHorizon.add(HORIZON_MARGIN))
-        .min(1)
-        .toConst() as Float
-      const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
-      const scale = sine(cosRaised).div(sine(cosView).max(1e-4))
-      const cosRaisedLight = cosRaised
-        .mul(viewpoint.cosLight)
-        .add(cosViewLight.sub(cosView.mul(viewpoint.cosLight)).mul(scale))
-        .clamp(-1, 1)
-        .toConst() as Float
-      const isGround = float(0).greaterThan(1) as Bool
-      const sky = sampleSky(
-        uniforms,
-        view.volume,
-        viewpoint,
-        viewRay(viewpoint, cosRaised, isGround),
-        cosRaisedLight
-      )
-      const color = sky.mul(source.irradiance)
-      const root = distance.mul(this.#density)
-      const fog = root.mul(root).min(80).toConst()
+      const color = raisedSky(ray).light.mul(ray.view.source.irradiance)
+      const fog = this.#depth(distance)
       const through = fog.negate().exp().toConst()
       light.assign(air.radiance.mul(through).add(color.mul(through.oneMinus())))
       depth.addAssign(fog)
     })
     return { depth: depth, radiance: light }
   }
+
+  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
+    if (!isSun) return null
+    const { light, cosView, cosViewLight } = raisedSky(ray)
+    // The sky's light is scattered once in about the part that it is at the camera.
+    const { air, height, viewpoint } = ray.view
+    const altitude = height.clamp(0, air.uniforms.thickness) as Float
+    const here = { altitude, cosView, cosLight: viewpoint.cosLight, cosViewLight }
+    const density = densities(air.uniforms, altitude)
+    const [direct, diffuse] = [true, false].map(direct => {
+      const parts = sourceFunction(air, here, float(0), density, { direct, diffuse: !direct })
+      return scatteredRadiance(air.uniforms, parts, cosViewLight).toConst()
+    })
+    const part = direct.div(direct.add(diffuse).max(1e-30)).toConst()
+    // The sky has no such fog.
+    const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
+    const through = isSky.select(1, this.#depth(ray.distance).negate().exp()).toConst() as Float
+    const added = light.mul(through.oneMinus()).toConst()
+    const inverse = this.#density.max(1e-12).reciprocal().toConst()
+    return {
+      front: float(0),
+      transmittance: through,
+      once: added.mul(part).toConst(),
+      often: added.mul(part.oneMinus()).toConst(),
+      distanceAt(share) {
+        const depth = share.mul(through.oneMinus()).oneMinus().log().negate()
+        return depth.max(0).sqrt().mul(inverse).min(ray.distance).toConst()
+      }
+    }
+  }
+
+  /** Optical depth up to a distance [m]. */
+  #depth(distance: Float): Float {
+    const root = distance.mul(this.#density)
+    return root.mul(root).min(80).toConst()
+  }
+}
+
+/** Light of the sky at a ray's azimuth, just above the horizon if the ray is lower, for unit irradiance [1/sr]. */
+function raisedSky({ view, cosView: below, cosViewLight: belowLight }: LayerRay): {
+  light: Vec4
+  cosView: Float
+  cosViewLight: Float
+} {
+  const { viewpoint, volume } = view
+  const cosView = below.max(viewpoint.cosHorizon.add(HORIZON_MARGIN)).min(1).toConst() as Float
+  const sine = (cosine: Float): Float => cosine.mul(cosine).oneMinus().max(0).sqrt()
+  const scale = sine(cosView).div(sine(below).max(1e-4))
+  const cosViewLight = cosView
+    .mul(viewpoint.cosLight)
+    .add(belowLight.sub(below.mul(viewpoint.cosLight)).mul(scale))
+    .clamp(-1, 1)
+    .toConst() as Float
+  const isGround = float(0).greaterThan(1) as Bool
+  const ray = viewRay(viewpoint, cosView, isGround)
+  const light = sampleSky(view.air.uniforms, volume, viewpoint, ray, cosViewLight)
+  return { light, cosView, cosViewLight }
 }
 
 /** Sine of an angle above the horizon, about a pixel. */

@@ -6,14 +6,14 @@ import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
 import { checkSources, type LightSource } from '../view/LightSource'
-import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { diffuseMoments } from '../diffuseLight/tsl/diffuseLight'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from '../diffuseLight/tsl/moments'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { radianceBetween, volumeSegment } from '../skyVolume/tsl/skyVolume'
 import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../tsl-types'
 
@@ -97,6 +97,11 @@ export class HeightFog implements SkyLayer {
     return this.#options.sources
   }
 
+  /** Extinction at the camera of the last {@link update} [1/m]. */
+  get extinction(): number {
+    return this.#density.value * Math.exp(Math.min(-this.#height.value / this.#falloff.value, 20))
+  }
+
   /** See {@link SkyLayer.version}. */
   get version(): number {
     return this.#version
@@ -138,62 +143,103 @@ export class HeightFog implements SkyLayer {
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const { uniforms } = ray.view.air
-      const { viewpoint, source } = ray.view
-      const limits = rayLimits(viewpoint, ray.cosView, ray.hitsGround)
-      const distance = ray.distance ?? limits.length
-      const radius = uniforms.bottomRadius.add(ray.view.height).toConst() as Float
-      const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
-      const fog = fogDepth(layer, this.#height, radius, ray.cosView, distance)
-      const through = exp(fog.depth.negate()).toConst()
-
-      // Point behind half of the fog's visible depth, as if altitude changed linearly along the ray.
-      const visible = fog.depth.min(1).mul(0.5)
-      const near = fog.start.min(MAX_ALTITUDE).toConst()
-      const here = this.#density.mul(near.negate().exp()).max(1e-30).toConst()
-      const growth = visible.mul(fog.fall).div(here).clamp(-0.99, 1e20).toConst()
-      const isLevel = growth.abs().lessThan(1e-3)
-      const factor = isLevel.select(growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
-      const inFog = visible.div(here).mul(factor).toConst()
-      const above = fog.start.sub(near).div(fog.fall.max(1e-7))
-      const middleDistance = inFog.add(above).clamp(0, distance).toConst() as Float
-      const middle = near.sub(fog.fall.mul(inFog)).clamp(-20, MAX_ALTITUDE).toConst() as Float
-
+      const { source, viewpoint } = ray.view
+      const { cosViewLight } = ray
+      const fog = this.#along(ray)
       // The light of the air in front of that point stays; fog dims the rest.
-      const { volume } = ray.view
-      const { cosView, cosViewLight } = ray
-      const ahead = sampleVolume(
-        uniforms,
-        volume,
-        viewpoint,
-        cosView,
-        cosViewLight,
-        limits,
-        middleDistance
-      )
-      const front = ahead.radiance.mul(source.irradiance).min(air.radiance).toConst()
-      const sample = { ray, radius, middle }
-      let inScatter = this.#light(sample, viewpoint.cosLight, cosViewLight).mul(source.irradiance)
+      const { uniforms } = ray.view.air
+      const ahead = radianceBetween(uniforms, ray.view.volume, viewpoint, fog.segment, cosViewLight)
+      const front = ahead.mul(source.irradiance).min(air.radiance).toConst()
+      const lightOf = (cosLight: Float, cosViewLight: Float): Vec4 => {
+        const { once, often } = this.#light(ray, fog.middle, cosLight, cosViewLight)
+        return once.add(often)
+      }
+      let inScatter = lightOf(viewpoint.cosLight, cosViewLight).mul(source.irradiance)
       for (const { directionMapped, irradiance } of this.#lights) {
         const cosLight = ray.view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
         const cosViewLight = ray.direction.dot(directionMapped).clamp(-1, 1).toConst() as Float
-        inScatter = inScatter.add(this.#light(sample, cosLight, cosViewLight).mul(irradiance))
+        inScatter = inScatter.add(lightOf(cosLight, cosViewLight).mul(irradiance))
       }
-      inScatter = inScatter
-        .mul(this.#albedo)
-        .mul(through.oneMinus())
-        .mul(ahead.depth.negate().exp())
-      light.assign(air.radiance.sub(front).mul(through).add(front).add(inScatter))
+      const { through } = fog
+      const behind = air.radiance.sub(front).mul(through)
+      light.assign(behind.add(front).add(inScatter.mul(fog.seen)))
       depth.addAssign(fog.depth)
     })
     return { depth: depth, radiance: light }
   }
 
-  /** Light of a source that fog scatters to the camera, as if all of it were at one point [1/sr]. */
-  #light({ ray, radius, middle }: FogSample, cosLight: Float, cosViewLight: Float): Vec4 {
-    const { view, cosView } = ray
+  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
+    if (!isSun && !this.sources.includes(ray.view.source)) return null
+    const { viewpoint } = ray.view
+    const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
+    const all = rayLimits(viewpoint, ray.cosView).length
+    const distance = isSky.select(all, ray.distance).toConst() as Float
+    const fog = this.#along({ ...ray, distance })
+    const { once, often } = this.#light(ray, fog.middle, viewpoint.cosLight, ray.cosViewLight)
+    const { through, depthAt } = fog
+    return {
+      front: fog.middleDistance,
+      transmittance: through,
+      once: once.mul(fog.seen).toConst(),
+      often: often.mul(fog.seen).toConst(),
+      distanceAt: part => depthAt(part.mul(through.oneMinus()).oneMinus().log().negate())
+    }
+  }
+
+  /** Fog along a ray, and the point that stands for all of it. */
+  #along(ray: LayerRay) {
+    const { air, height, volume, viewpoint } = ray.view
+    const limits = rayLimits(viewpoint, ray.cosView, ray.hitsGround)
+    const distance = ray.distance ?? limits.length
+    const radius = air.uniforms.bottomRadius.add(height).toConst() as Float
+    const layer = { density: this.#density as Float, falloff: this.#falloff as Float }
+    const { depth, start, fall } = fogDepth(layer, this.#height, radius, ray.cosView, distance)
+    const through = exp(depth.negate()).toConst() as Float
+    const near = start.min(MAX_ALTITUDE).toConst()
+    const here = this.#density.mul(near.negate().exp()).max(1e-30).toConst()
+    const above = start.sub(near).div(fall.max(1e-7)).toConst()
+
+    // Distance in the fog to an optical depth, as if altitude changed linearly along the ray.
+    const inFogAt = (visible: Float): Float => {
+      const growth = visible.mul(fall).div(here).clamp(-0.99, 1e20).toConst()
+      const isLevel = growth.abs().lessThan(1e-3)
+      const factor = isLevel.select(growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
+      return visible.div(here).mul(factor).toConst()
+    }
+    const distanceTo = (inFog: Float): Float => inFog.add(above).clamp(0, distance).toConst()
+    // Point behind half of the fog's visible depth.
+    const inFog = inFogAt(depth.min(1).mul(0.5))
+    const middleDistance = distanceTo(inFog)
+    const middle = near.sub(fall.mul(inFog)).clamp(-20, MAX_ALTITUDE).toConst() as Float
+    const segment = volumeSegment(volume, viewpoint, ray.cosView, limits, middleDistance)
+    return {
+      depth,
+      through,
+      /** Altitude of the point above the base, in falloff heights. */
+      middle,
+      middleDistance,
+      segment,
+      /** Part of the point's light that is seen. */
+      seen: this.#albedo.mul(through.oneMinus()).mul(segment.depth.negate().exp()),
+      /** Distance to an optical depth of the fog [m]. */
+      depthAt: (visible: Float): Float => distanceTo(inFogAt(visible))
+    }
+  }
+
+  /**
+   * Light of a source that fog scatters to the camera, as if all of it were at one point [1/sr]: once, and more often.
+   *
+   * @param middle - Altitude of the point above the base, in falloff heights.
+   */
+  #light(
+    { view, cosView }: LayerRay,
+    middle: Float,
+    cosLight: Float,
+    cosViewLight: Float
+  ): { once: Vec4; often: Vec4 } {
     const { air } = view
     const { uniforms } = air
+    const radius = uniforms.bottomRadius.add(view.height)
     const rise = middle.mul(this.#falloff).sub(this.#height)
     const altitude = view.height.add(rise).clamp(0, uniforms.thickness).toConst() as Float
     // Similarity: forward-scattered light counts as not scattered.
@@ -206,14 +252,15 @@ export class HeightFog implements SkyLayer {
       above.mul(slant).negate().exp()
     )
     const often = multipleScattering(above, total, cosSlant)
-    const sun = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).mul(
-      once.add(often)
-    )
+    const light = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).toConst()
     const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
     const basis = momentBasis(cosView, cosLight, cosViewLight)
     const asymmetry = vec4(this.#asymmetry)
     const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry))
-    return sun.add(sky.max(0).div(RADIANCE_SCALE))
+    return {
+      once: light.mul(once),
+      often: light.mul(often).add(sky.max(0).div(RADIANCE_SCALE))
+    }
   }
 }
 
@@ -223,15 +270,6 @@ interface FogLight {
   /** Direction to the source, mapped space, unit length. */
   directionMapped: UniformNode<'vec3', Vector3>
   irradiance: UniformNode<'vec4', Vector4>
-}
-
-/** Point that stands for all fog on a view ray. */
-interface FogSample {
-  ray: LayerRay
-  /** Planet's centre to the camera [m]. */
-  radius: Float
-  /** Altitude above the base, in falloff heights. */
-  middle: Float
 }
 
 const DEFAULTS: Required<HeightFogOptions> = {

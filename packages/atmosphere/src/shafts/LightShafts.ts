@@ -1,23 +1,25 @@
 import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
-import { float, renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
+import { renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
-import type { Float, Vec4 } from '../tsl-types'
+import type { Float } from '../tsl-types'
 import { number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
-import type { LayerRay, PointRay, SkyRay } from '../view/SkyLayer'
+import type { LayerRay, ShadowedMedium, SkyLayer } from '../view/SkyLayer'
+import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
-import { ScreenShafts, without } from './ScreenShafts'
+import { ScreenShafts } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { SunPolarMap } from './SunPolarMap'
 import { lostLight, staggered } from './tsl/lostLight'
-import type { ShadowedAir } from './tsl/shadowsAlong'
+import type { MediaRay, ShadowedAir } from './tsl/shadowsAlong'
+import { distanceOf, without } from './tsl/without'
 
 /**
  * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
@@ -91,8 +93,7 @@ export class LightShafts implements ShadowedShafts {
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
   readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
-  /** Grows whenever something is added or removed. */
-  version = 0
+  #version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
   readonly strengthNow = number()
   readonly #screens = new Set<ScreenShafts>()
@@ -135,6 +136,7 @@ export class LightShafts implements ShadowedShafts {
       get shadows() {
         return [...shadows.values()]
       },
+      mediaOn: ray => this.#mediaOn(ray, atmosphere.layers),
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
     }
     this.set(options)
@@ -184,7 +186,7 @@ export class LightShafts implements ShadowedShafts {
   }
 
   #compileAnew(): this {
-    this.version++
+    this.#version++
     // A layer that comes again has materials compiled anew.
     if (this.atmosphere.layers.includes(this)) this.atmosphere.remove(this).add(this)
     return this
@@ -218,6 +220,11 @@ export class LightShafts implements ShadowedShafts {
   set enabled(value: boolean) {
     checkBoolean('LightShafts', 'enabled', value)
     this.#enabled = value
+  }
+
+  /** Grows whenever something is added or removed, here or in the sky. */
+  get version(): number {
+    return this.#version + this.atmosphere.layersVersion
   }
 
   /** True if there are shadows to be drawn, as of the last {@link prepare} for the camera. */
@@ -292,22 +299,23 @@ export class LightShafts implements ShadowedShafts {
     this.strengthNow.value = this.isActive && camera === this.camera ? this.#setStrength : 0
   }
 
-  glow(ray: SkyRay, light: Vec4): Vec4 {
-    return this.#subtract(ray, light, float(1e10))
-  }
-
-  inScatter(ray: PointRay, light: Vec4): Vec4 {
-    return this.#subtract(ray, light, ray.distance)
-  }
-
-  #subtract({ view, direction, cosView }: LayerRay, light: Vec4, distance: Float): Vec4 {
+  medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
-    return without(light, this.strengthNow, lit, () => {
+    return without(air, this.strengthNow, lit, () => {
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
-      const ray = { direction, cosView, cosViewLight, distance }
+      const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
       const jitter = staggered(screenCoordinate.xy.floor())
-      return lostLight(lit, this.shadowedAir, ray, this.steps, jitter)
+      // What comes later dims what is left.
+      const { layers } = this.atmosphere
+      const before = layers.slice(0, layers.indexOf(this))
+      const mediaOn = (to: MediaRay): ShadowedMedium[] => this.#mediaOn(to, before)
+      return lostLight(lit, { ...this.shadowedAir, mediaOn }, ray, this.steps, jitter)
     })
+  }
+
+  #mediaOn(ray: MediaRay, layers: readonly SkyLayer[]): ShadowedMedium[] {
+    const isSun = this.source === this.atmosphere.sun
+    return layers.flatMap(layer => layer.shadowed?.(ray, isSun) ?? [])
   }
 
   /** Frees its textures. It can be used again. What was added stays, and is not its own. */

@@ -6,16 +6,25 @@ import { linearSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { sampleVolume } from '../skyVolume/tsl/skyVolume'
+import { sampleVolume, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import {
+  loop,
+  sampleLevel0,
+  type Bool,
+  type Float,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { PointRay, SkyRay } from '../view/SkyLayer'
+import type { LayerRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
 import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
+import { distanceOf, FAR, without } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
 
 /**
@@ -28,31 +37,14 @@ const OTHER_DEPTH = 0.8
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
 
-/** Greatest light that the target keeps: half floats hold a little more. */
+/** Greatest light that the target keeps: half floats hold a little more; and scale of light in it. */
 const MOST = 6e4
-
-/** Distances that stand for the sky and for the planet where it was not drawn [m]. */
-const FAR = 1e10
-const PLANET = 1e9
+const LIGHT_SCALE = RADIANCE_SCALE / 8
 
 /** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const OPAQUE = 0.01
 
 const _size = new Vector2()
-
-/** Light less what {@link lostLight} gives, and no less than none, where shafts are on. */
-export function without(
-  light: Vec4,
-  strength: Float,
-  { source }: ViewNodes,
-  lost: () => Vec4
-): Vec4 {
-  const left = light.toVar()
-  If(strength.greaterThan(0), () => {
-    left.subAssign(lost().mul(source.irradiance).mul(strength).min(left))
-  })
-  return left
-}
 
 /** Light shafts of a camera, as far as a picture of it asks them. */
 export interface CameraShafts {
@@ -129,11 +121,17 @@ export class ScreenShafts implements ScreenShadows {
     this.target.setSize(2 * x, y)
     this.#texelSize.value.set(0.5 / x, 1 / y)
     if (!shafts.isActive) return
-    const { parameters } = view.atmosphere
-    const here = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
-    this.#freePath.value = 1 / Math.max(Math.min(...here), 1e-12)
-    // What is drawn here and now reads the view.
+    // What is drawn here and now reads the view, and media in it.
     shafts.view.update(view)
+    const { parameters, layers } = shafts.view.atmosphere
+    const air = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
+    let here = Math.max(Math.min(...air), 1e-12)
+    for (const layer of layers) {
+      if (!layer.shadowed) continue
+      layer.update?.(view)
+      here += layer.extinction ?? 0
+    }
+    this.#freePath.value = 1 / here
     if (this.#compiled !== shafts.version) this.#pass?.dispose()
     if (this.#compiled !== shafts.version || this.#pass === null) {
       this.#pass = new FragmentPass('Welkin.LightShafts', this.#draw())
@@ -149,25 +147,18 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = shafts.isForward ? 1 : 0
   }
 
-  glow({ direction, cosView, hitsGround }: SkyRay, light: Vec4): Vec4 {
-    const distance = hitsGround.select(PLANET, FAR).toConst() as Float
-    return this.#subtract(light, { direction, cosView, distance })
-  }
-
-  inScatter(ray: PointRay, light: Vec4): Vec4 {
-    return this.#subtract(light, ray)
+  medium({ direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
+    if (this.#isElsewhere) return air
+    const { view } = this.#shafts
+    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+    return without(air, this.#strength, view, () =>
+      this.#lostTo({ direction, cosView, cosViewLight, distance: distanceOf(to) })
+    )
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
   get #isElsewhere(): boolean {
     return this.foreground === undefined && this.#shafts.hasForeground
-  }
-
-  #subtract(light: Vec4, ray: Pick<ShaftRay, 'direction' | 'cosView' | 'distance'>): Vec4 {
-    if (this.#isElsewhere) return light
-    const { view } = this.#shafts
-    const cosViewLight = ray.direction.dot(view.lightDirection).toConst() as Float
-    return without(light, this.#strength, view, () => this.#lostTo({ ...ray, cosViewLight }))
   }
 
   dim(color: Vec3): Vec3 {
@@ -238,7 +229,7 @@ export class ScreenShafts implements ScreenShadows {
     const distance = ray.distance.min(most).toConst() as Float
     const jitter = staggered(pixel)
     const lost = lostLight(view, shadowedAir, { ...ray, distance, seenFrom }, steps, jitter)
-    return lost.mul(RADIANCE_SCALE).div(this.#growth(ray.distance)).clamp(-MOST, MOST)
+    return lost.mul(LIGHT_SCALE).div(this.#growth(ray.distance)).clamp(-MOST, MOST)
   }
 
   /**
@@ -258,13 +249,14 @@ export class ScreenShafts implements ScreenShadows {
     const direction = offset.div(length).toConst()
     const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
     const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
-    const background = cosView.lessThan(view.viewpoint.cosHorizon).select(PLANET, FAR)
-    const distance = isSky.select(background, length).toConst() as Float
+    const hitsGround = cosView.lessThan(view.viewpoint.cosHorizon) as Bool
+    const distance = isSky.select(distanceOf({ hitsGround }), length).toConst() as Float
     return { direction, cosView, cosViewLight, distance }
   }
 
   /** Light of the air on a ray without shadows, in the mean over wavelengths, as the target keeps light. */
-  #litAir({ cosView, cosViewLight, distance }: ShaftRay): Float {
+  #litAir(ray: ShaftRay): Float {
+    const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
     const { uniforms } = air
@@ -272,8 +264,11 @@ export class ScreenShafts implements ScreenShadows {
     const { radiance } = sampleVolume(uniforms, volume, viewpoint, ...at)
     const scale = this.#growth(distance)
       .reciprocal()
-      .mul(RADIANCE_SCALE / 4)
-    return radiance.dot(vec4(scale)).clamp(1e-4, MOST).toConst()
+      .mul(LIGHT_SCALE / 4)
+    const light = this.#shafts.shadowedAir
+      .mediaOn({ view: this.#shafts.view, ...ray })
+      .reduce((sum, medium) => sum.mul(medium.transmittance).add(medium.once), radiance)
+    return light.dot(vec4(scale)).clamp(1e-5, MOST).toConst()
   }
 
   /** Place in the picture of the pixel that is marched for one of the target. */
@@ -331,7 +326,7 @@ export class ScreenShafts implements ScreenShadows {
       })
       lost.divAssign(weights)
     })
-    return lost.mul(this.#growth(ray.distance)).div(RADIANCE_SCALE)
+    return lost.mul(this.#growth(ray.distance)).div(LIGHT_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */

@@ -22,10 +22,10 @@ export interface ScreenShadows extends SkyLayer {
 }
 
 /**
- * Shadows in the air, as `lightShafts` makes them: what they take from the light of an atmosphere is drawn by
- * the nodes that they are given to, after all layers' light and before their media.
+ * Shadows in the air, as `lightShafts` makes them: what they take from the light of an atmosphere and of its media is
+ * drawn by the nodes that they are given to, after all layers.
  */
-export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'glow' | 'inScatter'> {
+export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'medium'> {
   /**
    * Layer for a post effect, computed once for its pixels and not by every material.
    *

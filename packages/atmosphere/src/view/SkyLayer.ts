@@ -35,6 +35,21 @@ export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' 
   readonly hitsGround?: Bool
 }
 
+/** Distance from which on shadows take a ray for one into the sky, or to the planet that is drawn with it [m]. */
+export const SKY_DISTANCE = 1e9
+
+/** A layer's medium on a view ray, as far as shadows fall into it; light is for unit irradiance of their source [1/sr]. */
+export interface ShadowedMedium {
+  /** Distance before which the air's light is in front of the medium [m], and the part of the rest that passes it. */
+  readonly front: Float
+  readonly transmittance: Float
+  /** Light that it adds: scattered once, and more often. */
+  readonly once: Vec4
+  readonly often: Vec4
+  /** Distance before which it has a part of its light, given in [0, 1] [m]. */
+  distanceAt(part: Float): Float
+}
+
 /** View ray to a point, with the part of the sky volumes up to it. */
 export interface PointRay extends LayerRay {
   readonly distance: Float
@@ -87,6 +102,14 @@ export interface SkyLayer {
   inScatter?(ray: PointRay, without: Vec4): Vec4
   /** Medium along a ray, in front of the sky too, given what air and layers before are. */
   medium?(ray: LayerRay, air: MediumSegment): MediumSegment
+  /** Extinction of its medium at the camera, as of the last {@link update} [1/m]. */
+  readonly extinction?: number
+  /**
+   * Its medium as shadows see it, in the light of the source of `ray.view`; null if that does not light it.
+   *
+   * @param ray - View ray, to {@link SKY_DISTANCE} or farther for the sky.
+   */
+  shadowed?(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null
   /** Frees GPU memory. */
   dispose?(): void
 }

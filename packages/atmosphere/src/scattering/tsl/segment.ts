@@ -27,7 +27,7 @@ export interface LightParts {
 }
 
 /** Source function at a point of a ray: light scattered into it per metre. */
-function source(
+export function sourceFunction(
   air: Air,
   ray: Ray,
   distance: Float,
@@ -112,8 +112,8 @@ export function scatterSegment(
       .exp()
       .mul(half)
       .toConst()
-  const near = source(air, ray, first.distance, first.density, lights)
-  const far = source(air, ray, second.distance, second.density, lights)
+  const near = sourceFunction(air, ray, first.distance, first.density, lights)
+  const far = sourceFunction(air, ray, second.distance, second.density, lights)
   const toNear = attenuation(DEPTH_TO_NODE_1)
   const toFar = attenuation(DEPTH_TO_NODE_2)
   return {

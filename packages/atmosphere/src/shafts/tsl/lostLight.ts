@@ -8,6 +8,7 @@ import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
+import { dimmedBy, lostInMedia } from './lostInMedia'
 import { polarRay } from './polarMap'
 import { shadowsAlong, type ShadowedAir, type ShaftRay } from './shadowsAlong'
 import { warpedSteps, type WarpedSteps } from './warpedSteps'
@@ -48,7 +49,7 @@ interface March {
 /**
  * Single scattering that shadows keep from a view ray, for unit irradiance of the source [1/sr]:
  * ∫ σ_s p(ν) T_light T_view (1 − V) over the ray, where V is the part of the light that occluders let through. Besides
- * {@link lostDiffuse}, if there are occluders that dim diffuse light.
+ * {@link lostDiffuse}, if there are occluders that dim diffuse light, and {@link lostInMedia} such as fog.
  *
  * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the look-ups
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
@@ -81,11 +82,19 @@ export function lostLight(
     const airAt = litRay(view, ray, limits, cosView)
     const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
     const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
+    const media = shadowedAir.mediaOn({ ...shaftRay, view })
+    const past = dimmedBy(media)
+    const once = scatteredOnce(air, airAt, cosViewLight)
     const march: March = {
       steps,
       darkAt: (position, isMapped) => darkAt(fromEye(steps.distance(position)), isMapped),
-      scatteredAt: scatteredOnce(air, airAt, cosViewLight),
+      scatteredAt: inAir => past(once(inAir), fromEye(inAir)),
       jitter
+    }
+    if (media.length > 0) {
+      const shadows = { darkAt: (far: Float) => darkAt(far, far.lessThan(mapped)), missingAt }
+      const places = { count: groups.mul(samples).toConst() as Float, jitter }
+      lost.addAssign(lostInMedia(media, shadows, places))
     }
     const marchStretch = (name: string, stretch: Stretch): void => {
       const perGroup = stretch.width.div(stretch.groups).toConst()
@@ -115,7 +124,7 @@ export function lostLight(
       cosViewLight,
       samples: places,
       jitter,
-      missingAt: (inAir: Float) => missingAt(fromEye(inAir))
+      missingAt: (inAir: Float) => past(missingAt(fromEye(inAir)), fromEye(inAir))
     }
     lost.addAssign(lostDiffuse(air, diffuse))
   })

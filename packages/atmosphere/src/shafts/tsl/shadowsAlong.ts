@@ -1,9 +1,13 @@
 import { If, float } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
+import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPoint, AirShadow } from '../AirOccluder'
 import { isDark, type PolarFrame, type PolarRay } from './polarMap'
+
+/** A view ray through media. */
+export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
 
 /** Shadows in the air, as shaders read them: the sun-polar shadow map, and what reaches beyond it. */
 export interface ShadowedAir {
@@ -13,6 +17,8 @@ export interface ShadowedAir {
   readonly maximumRho: Float
   /** Shadows of clouds and the like. */
   readonly shadows: readonly Pick<AirShadow, 'transmittance' | 'diffuse'>[]
+  /** Media that a ray passes, besides the air, from far layers to near ones. */
+  readonly mediaOn: (ray: MediaRay) => readonly ShadowedMedium[]
   /** World position of a displacement from the camera in the mapped space [m]. */
   readonly toWorld: (offset: Vec3) => Vec3
 }
@@ -30,18 +36,22 @@ export interface ShaftRay {
   readonly seenFrom?: (distance: Float) => Float
 }
 
-/** Shadows on a view ray, by the distance from the camera: the part of the light that the picture loses there. */
+/** Shadows on a view ray, by the distance from the camera. */
+export interface Shadows {
+  /** Part of the light scattered once that the picture loses. */
+  darkAt: (distance: Float, isMapped: Bool | boolean) => Float
+  /** Part of the light scattered more than once; null if none is missing. */
+  missingAt: ((distance: Float) => Vec4) | null
+}
+
+/** Shadows on a view ray. */
 export function shadowsAlong(
   view: ViewUniforms,
   { map, frame, shadows, toWorld }: ShadowedAir,
   { direction, seenFrom }: ShaftRay,
   polar: PolarRay,
   jitter: Float
-): {
-  darkAt: (distance: Float, isMapped: boolean) => Float
-  /** Part of the light scattered more than once; null if none is missing. */
-  missingAt: ((distance: Float) => Vec4) | null
-} {
+): Shadows {
   const placeAt = (distance: Float): AirPoint => {
     const offset = direction.mul(distance).toConst() as Vec3
     return { view, offset, distance, jitter, positionWorld: () => toWorld(offset) }
@@ -55,8 +65,9 @@ export function shadowsAlong(
   }
   return {
     darkAt(distance, isMapped) {
-      const inMap = isMapped ? isDark(map, frame, polar, distance).select(1, 0) : float(0)
-      const dark = inMap.toVar()
+      const inMap = isMapped === false ? null : isDark(map, frame, polar, distance)
+      const isIn = typeof isMapped === 'boolean' ? inMap : inMap!.and(isMapped)
+      const dark = (isIn?.select(1, 0) ?? float(0)).toVar() as Float
       if (passing.length > 0) {
         If(dark.lessThan(1), () => {
           const place = placeAt(distance)

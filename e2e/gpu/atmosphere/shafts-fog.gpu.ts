@@ -1,0 +1,91 @@
+import { distanceFog, heightFog, lightTransmittance } from '@welkin/atmosphere'
+import { float } from 'three/tsl'
+import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
+import * as twin from '../../../packages/atmosphere/test/twins/fog/heightFog'
+import { drawForward } from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import { addBox, expectSame, parameters, stage, stageSize as size } from '../harness/shaft-stage'
+
+gpuTest('leaves fog without casters the same to the last bit', async t => {
+  const renderer = await t.createRenderer(size)
+  const [plain, shafted] = [null, {}].map(options => stage(renderer, 20, options))
+  for (const { atmosphere } of [plain, shafted])
+    atmosphere.add(distanceFog({ density: 1 / 4000 }), heightFog({ density: 0.002 }))
+  expectSame(await shafted.draw(), await plain.draw(), 'no casters')
+  plain.dispose()
+  shafted.dispose()
+})
+
+gpuTest('takes what height fog scatters once from its light where all is dark', async t => {
+  const renderer = await t.createRenderer(size)
+  const elevation = 12
+  const set = stage(renderer, elevation, { quality: 'reference' })
+  const { scene, camera, draw, shafts, atmosphere } = set
+  const [density, falloff, asymmetry, distance] = [0.004, 300, 0.75, 400]
+  atmosphere.add(heightFog({ density, falloff, asymmetry }))
+  shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
+  addBox(scene, [0, 0, -distance - 50], [2000, 400, 100])
+  camera.fov = 1
+  camera.updateProjectionMatrix()
+  const dark = await draw()
+  shafts.enabled = false
+  const lit = await draw()
+
+  const air = parameters()
+  const sun = (elevation * Math.PI) / 180
+  const radius = air.bottomRadius + 2
+  const ray = { radius, cosView: 0, cosLight: Math.sin(sun), cosViewLight: Math.cos(sun) }
+  const layer = { density, falloff, base: 0 }
+  const depth = twin.fogDepth(layer, radius, 0, air.bottomRadius, distance)
+  const through = Math.exp(-depth)
+  // The fog stands at half of its visible depth, and hides the air behind.
+  const middle = (0.5 * Math.min(depth, 1)) / (density * Math.exp(-2 / falloff))
+  const [before, all] = [middle, distance].map(far => inScatter(air, null, ray, far))
+  const chord = 1 + asymmetry ** 2 - 2 * asymmetry * ray.cosViewLight
+  const phase = (1 - asymmetry ** 2) / (4 * Math.PI * chord ** 1.5)
+  const above = (density * falloff * (1 - asymmetry) * Math.exp(-2 / falloff)) / Math.sin(sun)
+  const sunlight = lightTransmittance(air, radius, ray.cosLight)
+  for (let k = 0; k < 3; k++) {
+    const fog = phase * Math.exp(-above) * sunlight[k] * (1 - through)
+    const expected = fog + before[k] + through * (all[k] - before[k])
+    const [x, y] = [size.width / 2, size.height / 2]
+    const irradiance = shafts.source.irradiance.value.getComponent(k)
+    const lost = (lit.at(x, y)[k] - dark.at(x, y)[k]) / irradiance
+    t.note(`${(100 * (lost / expected - 1)).toFixed(2)} %`)
+    expectClose(lost, expected, { relative: 0.01 }, `channel ${k}`)
+    expectTrue(dark.at(x, y)[k] > 0.1 * lit.at(x, y)[k], 'light scattered more often stays')
+  }
+  set.dispose()
+})
+
+gpuTest(
+  'has materials draw shafts in fog as the post effect does',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15, { quality: 'reference' })
+    const { scene, camera, shafts, atmosphere } = set
+    atmosphere.add(distanceFog({ density: 1 / 4000 }), heightFog({ density: 0.001, falloff: 200 }))
+    addBox(scene, [-100, 200, -600], [500, 500, 60])
+    shafts.enabled = false
+    const lit = await set.draw()
+    shafts.enabled = true
+    await set.draw()
+    const post = await set.draw()
+    atmosphere.add(shafts)
+    const draw = async () => {
+      await nextFrame()
+      return drawForward(renderer, scene, camera, atmosphere)
+    }
+    await draw()
+    const forward = await draw()
+    const [error, shadow] = [forward, lit].map(picture =>
+      picture.data.reduce((sum, value, i) => sum + Math.abs(value - post.data[i]), 0)
+    )
+    t.note(`${(error / shadow).toFixed(4)} of the lost light apart`)
+    expectTrue(error < 0.05 * shadow, 'forward')
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)

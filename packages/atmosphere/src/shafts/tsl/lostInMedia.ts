@@ -1,0 +1,41 @@
+import { If, float, int, vec4 } from 'three/tsl'
+import { loop, type Float, type Vec4 } from '../../tsl-types'
+import type { ShadowedMedium } from '../../view/SkyLayer'
+import type { Shadows } from './shadowsAlong'
+
+/** Light of the air from a distance [m], as media such as fog leave it. */
+export const dimmedBy =
+  (media: readonly ShadowedMedium[]) =>
+  (light: Vec4, distance: Float): Vec4 =>
+    media.reduce<Vec4>(
+      (left, { front, transmittance }) =>
+        left.mul(distance.lessThan(front).select(1, transmittance)),
+      light
+    )
+
+/**
+ * Light that media in the air lose, such as fog, for unit irradiance of the source [1/sr]: of light scattered once the dark
+ * part of samples that each stand for as much of it, and what is missing of the diffuse light in the middle.
+ *
+ * @param media - Media on a view ray, of which each dims those before.
+ * @param places - Number of samples, and their place in their steps, in (0, 1).
+ */
+export function lostInMedia(
+  media: readonly ShadowedMedium[],
+  { darkAt, missingAt }: { darkAt: (distance: Float) => Float } & Pick<Shadows, 'missingAt'>,
+  { count, jitter }: { count: Float; jitter: Float }
+): Vec4 {
+  const lost = vec4(0).toVar()
+  for (const medium of media) {
+    const { transmittance, once, often } = medium
+    If(transmittance.lessThan(1), () => {
+      const dark = float(0).toVar()
+      loop('medium', int(count), index => {
+        dark.addAssign(darkAt(medium.distanceAt(float(index).add(jitter).div(count))))
+      })
+      lost.assign(lost.mul(transmittance).add(once.mul(dark.div(count))))
+      if (missingAt) lost.addAssign(often.mul(missingAt(medium.distanceAt(float(0.5)))))
+    })
+  }
+  return lost
+}

@@ -1,0 +1,40 @@
+import { TextureLoader } from 'three'
+import type { DataTexture, Texture } from 'three'
+import { attribute, float, max, smoothstep, texture, uniform, vec3 } from 'three/tsl'
+import type { Node, UniformNode } from 'three/webgpu'
+
+/** Luminance of the brightest cities as a whole, seen from above [cd/m²]. */
+const BRIGHTEST = 0.4
+
+/** Towns by night: emission of the land, in the unit of an atmosphere's nodes. */
+export interface CityLights {
+  /** `luminanceScale` of the atmosphere. */
+  readonly scale: UniformNode<'float', number>
+  readonly emission: Node<'vec3'>
+  dispose(): void
+}
+
+/**
+ * Lights of the world's towns: a picture of it says how many there are, noise where they stand in each of its texels,
+ * down to a lane.
+ *
+ * Needs the attributes `globe`, coordinates in the picture, and `detail`, periods of the noise.
+ *
+ * @param url - Directory of the picture.
+ */
+export async function createCityLights(url: string, noise: DataTexture): Promise<CityLights> {
+  const picture: Texture = await new TextureLoader().loadAsync(`${url}earth-night.jpg`)
+  picture.anisotropy = 8
+  const scale = uniform(1e-4)
+  const seen = texture(picture, attribute<'vec2'>('globe', 'vec2'))
+  // The picture's seas and deserts are blue.
+  const towns = smoothstep(0.08, 0.9, max(seen.r.sub(seen.b.mul(0.6)), 0))
+  const detail = attribute<'vec2'>('detail', 'vec2')
+  // Mipmaps level out to a half what is too fine to see: then the factor is 1.
+  const clumps = (periods: number, contrast: number): Node<'float'> =>
+    texture(noise, detail.mul(periods)).r.sub(0.5).mul(contrast).add(1).clamp(0, 5)
+  const lanes = clumps(9, 6).mul(clumps(83, 9)).mul(clumps(611, 12))
+  const color = vec3(1, 0.72, 0.4)
+  const emission = color.mul(towns.mul(lanes).mul(float(BRIGHTEST))).mul(scale)
+  return { scale, emission, dispose: () => picture.dispose() }
+}

@@ -1,0 +1,115 @@
+import { exposureFor } from '@welkin/atmosphere'
+import { Mesh, PerspectiveCamera, PointLight, Scene } from 'three'
+import type { MeshStandardMaterial } from 'three'
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
+import { Air } from './air'
+import { squareURL } from './importedModel/square'
+import { Explorer } from './moving/Explorer'
+import { EYE_HEIGHT } from './moving/Walk'
+import {
+  createRenderer,
+  dateOf,
+  disposeMeshes,
+  exposureOf,
+  fitToCanvas,
+  frameClock,
+  WARM_UP_FRAMES
+} from './scene'
+import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
+
+export interface ImportedModelArgs extends RendererArgs, TimeArgs {
+  /** Sine of the sun's elevation under which lamps are lit. */
+  lampsBelow: number
+}
+
+/** A model from a glTF file under the sky. */
+export async function createImportedModel(
+  canvas: HTMLCanvasElement,
+  args: ImportedModelArgs
+): Promise<SceneHandle<ImportedModelArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(55, 1, 0.1, 20_000)
+  camera.position.set(3, EYE_HEIGHT, 17)
+  camera.lookAt(0, 5, -8)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const elapsed = frameClock(args.frame)
+  const air = new Air(renderer, scene, camera, args.path)
+  const { atmosphere } = air
+  const url = await squareURL()
+  // #region model
+  const { scene: model } = await new GLTFLoader().loadAsync(url)
+  scene.add(model)
+  const meshes: Mesh[] = []
+  const lamps: { light: PointLight; candela: number }[] = [] // of KHR_lights_punctual
+  model.traverse(part => {
+    if (part instanceof Mesh) meshes.push(part)
+    if (part instanceof PointLight) lamps.push({ light: part, candela: part.intensity })
+  })
+  for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
+  // #endregion
+  URL.revokeObjectURL(url)
+  const glowing = meshes.flatMap(({ name, material }) =>
+    name === 'lamp' || name === 'window' ? (material as MeshStandardMaterial) : []
+  )
+  /** Luminance of lit windows and lamps [cd/m²]. */
+  const luminances = glowing.map(({ name }) => (name === 'lamp' ? 2000 : 60))
+  const { shadow } = air.sun
+  air.sun.distance = 80
+  shadow.mapSize.setScalar(2048)
+  shadow.camera.left = shadow.camera.bottom = -35
+  shadow.camera.right = shadow.camera.top = 35
+  shadow.camera.far = 200
+  shadow.normalBias = 0.04
+
+  const current = { ...args }
+  const apply = (): void => {
+    atmosphere.date = dateOf(current.day, current.hour)
+    renderer.toneMappingExposure = exposureOf(current.exposure)
+  }
+  const draw = (): void => {
+    const { lampsBelow } = current
+    explorer?.update(elapsed())
+    camera.updateMatrixWorld()
+    // #region lamps
+    const exposure = exposureFor(atmosphere, camera, { floor: 10 }) // lux of the lamps
+    atmosphere.luminanceScale = 1e-4 * exposure // each frame
+    const isDark = atmosphere.sunDirection.y < lampsBelow
+    const scale = isDark ? atmosphere.luminanceScale : 0 // lamps follow the exposure
+    for (const { light, candela } of lamps) light.intensity = candela * scale
+    glowing.forEach((material, i) => (material.emissiveIntensity = luminances[i] * scale))
+    // #endregion
+    air.render()
+  }
+  apply()
+
+  let ready: Promise<void> = Promise.resolve()
+  return {
+    renderer,
+    scene,
+    camera,
+    explorer,
+    get ready() {
+      return ready
+    },
+    progress: 1,
+    render: draw,
+    resize(width, height, pixelRatio) {
+      fitToCanvas(renderer, camera, width, height, pixelRatio)
+      ready = Promise.resolve().then(() => {
+        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
+      })
+    },
+    update(changes) {
+      Object.assign(current, changes)
+      apply()
+    },
+    dispose() {
+      explorer?.dispose()
+      air.dispose()
+      disposeMeshes(meshes)
+      for (const { light } of lamps) light.dispose()
+      void renderer.dispose()
+    }
+  }
+}

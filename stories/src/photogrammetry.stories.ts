@@ -1,0 +1,71 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { createPhotogrammetry } from './photogrammetry.scene'
+import type { PhotogrammetryArgs } from './photogrammetry.scene'
+import { SIGHTS } from './photogrammetry/places'
+import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const meta: Meta<PhotogrammetryArgs> = {
+  title: 'Photogrammetry tiles',
+  render: mount(createPhotogrammetry, storyCode('photogrammetry.scene.ts', 'photogrammetry')),
+  argTypes: {
+    url: {
+      name: 'Tileset',
+      description:
+        "URL of a tileset, or ion:NUMBER of one of Cesium's; empty with a key for Google's",
+      control: 'text'
+    },
+    key: { name: 'Key', description: 'Key or token that goes with it', control: 'text' },
+    place: {
+      name: 'Place',
+      options: Object.keys(SIGHTS),
+      control: {
+        type: 'select',
+        labels: Object.fromEntries(Object.entries(SIGHTS).map(([name, { label }]) => [name, label]))
+      }
+    },
+    strength: {
+      name: 'Light',
+      description: "Share of Welkin's light; 0 leaves the photographs as they are",
+      control: { type: 'range', min: 0, max: 1, step: 0.01 }
+    },
+    albedo: {
+      name: "White's albedo",
+      description: 'Photographs are brighter than what they show',
+      control: { type: 'range', min: 0.1, max: 1.5, step: 0.01 }
+    },
+    ...timeArgTypes,
+    ...rendererArgTypes,
+    path: { table: { disable: true } }
+  },
+  args: {
+    url: '',
+    key: '',
+    place: 'local',
+    strength: 1,
+    albedo: 0.8,
+    day: Date.UTC(2026, 5, 21),
+    hour: 23.4,
+    exposure: 0.5,
+    forceWebGL: false,
+    path: 'post',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<PhotogrammetryArgs>
+
+/** An evening's light and shadows on local tiles, which have neither. */
+export const Local: Story = { tags: ['screenshot'] }
+
+/** The photographs as they are, in today's air. */
+export const Untouched: Story = { args: { strength: 0 } }
+
+export const Manhattan: Story = { args: { place: 'manhattan', hour: 22.5 } }
+
+export const Fuji: Story = { args: { place: 'fuji', hour: 20.5 } }
+
+export const London: Story = { args: { place: 'london', hour: 18.5 } }
