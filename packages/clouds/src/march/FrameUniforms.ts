@@ -1,6 +1,5 @@
 import { Matrix4, Vector3, Vector4 } from 'three'
 import type { PerspectiveCamera } from 'three'
-import { unjitteredProjection } from '@welkin/atmosphere'
 import type { AtmosphereView } from '@welkin/atmosphere'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
 import { CloudLayers } from '../layers/CloudLayers'
@@ -87,7 +86,7 @@ function cloudInputs({ values, night, ambient }: CloudField, lightVersion: numbe
   ]
 }
 
-const _unjittered = new Matrix4()
+const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
 const _position = new Vector3()
@@ -95,6 +94,9 @@ const _origin = new Vector4()
 
 /** Uniforms that change from frame to frame: sizes, jitter, and where the last frame's pixels were. */
 export class FrameUniforms {
+  /** Projection of a camera: without jitter, where `cloudVelocity` gives TRAA the clouds' velocities. */
+  projectionOf = (camera: PerspectiveCamera, target: Matrix4): Matrix4 =>
+    target.copy(camera.projectionMatrix)
   /** Size of the picture [pixels]. */
   readonly size = vector2()
   /** Size of what is marched in a frame [pixels]. */
@@ -165,7 +167,7 @@ export class FrameUniforms {
   ): void {
     if (this.block.value !== block) this.reset()
     this.#setJitter(block, usesHistory)
-    const projection = unjitteredProjection(camera, _unjittered)
+    const projection = this.projectionOf(camera, _projection)
     this.projectionInverse.value.copy(projection).invert()
     this.near.value = camera.near
     this.far.value = camera.far

@@ -1,3 +1,4 @@
+import { unjitteredProjection } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { Fn, If, exp2, int, uv, vec2, vec4 } from 'three/tsl'
 import { Node } from 'three/webgpu'
@@ -12,7 +13,8 @@ const OPAQUE = 0.5
 
 /**
  * Velocities of a picture with clouds in it: theirs where they hide most of what is behind them, by their distance and
- * their wind, and the given ones elsewhere.
+ * their wind, and the given ones elsewhere. From then on the clouds take their camera without TRAA's jitter, which their
+ * history would take for a turn.
  *
  * ```ts
  * scenePass.setMRT(mrt({ output, velocity }))
@@ -40,6 +42,7 @@ export class CloudVelocityNode extends Node<'vec4'> {
     checkClouds('CloudVelocityNode', clouds)
     this.velocityNode = velocityNode
     this.clouds = clouds
+    clouds.passes.frame.projectionOf = unjitteredProjection
   }
 
   override setup(): Node {
