@@ -55,4 +55,4 @@ export const Dusk: Story = {
 }
 
 /** The air over the finished picture, as a post effect. */
-export const Post: Story = { args: { path: 'post' }, tags: ['screenshot'] }
+export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }
