@@ -65,17 +65,18 @@ function predict(
   return [base + (acts('dims') ? Math.min(added, 0) : added), base + Math.max(added, 0)]
 }
 
-/** Fails where a picture is not what its parts say. @returns Part of its numbers that they say anything of. */
+/** Compares a picture with its parts: the share of numbers that they say anything of, and the first that is wrong. */
 function check(
   { names, hour }: Combination,
   drawn: Picture,
   none: Picture,
   singles: readonly Picture[]
-): number {
+): { known: number; wrong: string | undefined } {
   const label = `${names.join(' + ')} ${hour.name}`
   expectLight(drawn, label)
   const tolerance = names.includes('clouds') ? CLOUD_TOLERANCE : TOLERANCE
   let known = 0
+  let wrong: string | undefined
   for (let i = 0; i < drawn.data.length; i++) {
     if (i % 4 === 3) continue
     const parts = names.map((name, k) => ({ name, value: singles[k].data[i] }))
@@ -91,12 +92,12 @@ function check(
     const [least, most] = range
     const value = drawn.data[i]
     const [x, y] = [(first >> 2) % featureSize.width, Math.floor((first >> 2) / featureSize.width)]
-    expectTrue(
-      value >= least - error && value <= most + error,
-      `${label}: channel ${i % 4} of (${x}, ${y}) is ${value}, not in [${least}, ${most}]; without ${none.data[i]}, alone ${parts.map(part => part.value).join(', ')}`
-    )
+    if (value >= least - error && value <= most + error) continue
+    const alone = parts.map(part => part.value.toPrecision(4)).join(', ')
+    const found = `${value.toPrecision(4)}, not in [${least.toPrecision(4)}, ${most.toPrecision(4)}]`
+    wrong ??= `${label}: channel ${i % 4} of (${x}, ${y}) is ${found}; without ${none.data[i].toPrecision(4)}, alone ${alone}`
   }
-  return known / (0.75 * drawn.data.length)
+  return { known: known / (0.75 * drawn.data.length), wrong }
 }
 
 gpuTest(
@@ -126,15 +127,19 @@ gpuTest(
       }
     }
     let known = 0
+    const wrong: string[] = []
     for (const each of own) {
       const singles = []
       for (const name of each.names) singles.push(await draw([name], each.hour))
       const none = await draw([], each.hour)
-      known += check(each, await draw(each.names, each.hour), none, singles) / own.length
+      const found = check(each, await draw(each.names, each.hour), none, singles)
+      known += found.known / own.length
+      if (found.wrong !== undefined) wrong.push(found.wrong)
     }
     const most = Math.max(...shaders.map(({ textures }) => textures))
     t.note(`seed ${SEED}, ${own.length} sets, ${(100 * known).toFixed(0)} % of all numbers known`)
     t.note(`${shaders.length} shaders, at most ${most} textures`)
+    expectTrue(wrong.length === 0, wrong.join('\n'))
     expectTrue(known > 0.4, `parts say something of ${(100 * known).toFixed(0)} % only`)
     expectTrue(most <= LIMIT, `a shader samples ${most} textures`)
     stage.dispose()
