@@ -1,7 +1,6 @@
 import { expectLight, random } from './harness/atmosphere'
 import { expectTrue } from './harness/expect'
 import {
-  type Action,
   featureNames,
   features,
   featureSize,
@@ -56,13 +55,16 @@ function predict(
   const added = changing
     .filter(({ name }) => features[name] === 'adds')
     .reduce((sum, { value }) => sum + value - none, 0)
-  const acts = (action: Action): boolean => parts.some(({ name }) => features[name] === action)
-  if (others.length > 1 || (added !== 0 && acts('bends'))) return null
+  const bends = parts.some(({ name }) => features[name] === 'bends')
+  const isAlone = changing.every(({ name }) => features[name] === 'bends')
+  if (others.length > 1 || (bends && !isAlone)) return null
   const base = others.length === 1 ? others[0].value : none
-  if (added === 0) return [base, base]
-  if (others.some(({ name }) => features[name] === 'changes')) return null
-  // In the dark a fog shows nothing of its own, and dims all the same.
-  return [base + (acts('dims') ? Math.min(added, 0) : added), base + Math.max(added, 0)]
+  const dims = parts.filter(({ name }) => features[name] === 'dims')
+  if (added !== 0 && others.some(({ name }) => features[name] === 'changes')) return null
+  if (dims.length === 0) return [base + added, base + added]
+  // In the dark a fog shows nothing of its own, and dims the others all the same.
+  const isDimmed = dims.some(({ name }) => changing.every(each => each.name !== name))
+  return [isDimmed ? Math.min(none, base) : base, Math.max(isDimmed ? none : base, base) + added]
 }
 
 /** Compares a picture with its parts: the share of numbers that they say anything of, and the first that is wrong. */
