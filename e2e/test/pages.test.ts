@@ -1,4 +1,4 @@
-import { cloudQualities } from '@welkin/clouds'
+import { CloudLayer, cloudQualities } from '@welkin/clouds'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
 import { dirname, resolve } from 'node:path'
 import { fileURLToPath } from 'node:url'
@@ -119,6 +119,28 @@ describe('numbers that pages take from the code', () => {
   it('has the stars of the catalogue', () => {
     const stated = /has ([\d,]+) stars/.exec(read('packages/atmosphere/README.md'))?.[1]
     expect(stated).toBe(brightStars().length.toLocaleString('en'))
+  })
+
+  it('has the qualities as they are', () => {
+    const rows = tableBelow(clouds, '## Quality and cost').filter(([name]) => /^`\w+`$/.test(name))
+    const stated = Object.fromEntries(rows.map(([name, ...cells]) => [name, cells.slice(0, 4)]))
+    const { low, medium, high, ultra } = cloudQualities
+    for (const name of Object.keys(high) as (keyof typeof high)[]) {
+      const values = [low, medium, high, ultra].map(quality => `${quality[name]}`)
+      expect(stated[`\`${name}\``]).toEqual(values)
+    }
+  })
+
+  it('has the defaults of layers and of the phase function', () => {
+    const { wind, ...layer } = new CloudLayer().parameters
+    const parameters = { ...layer, ...new CloudLightTable().phase, wind: `${wind.east} east` }
+    const cells = [...tableBelow(clouds, '## Layers'), ...tableBelow(clouds, '## Droplets')]
+    const defaults = Object.fromEntries(cells.map(row => [row[0], row.at(-2)!.replace('−', '-')]))
+    const texts = Object.entries(parameters).map(([name, value]) => [
+      `\`${name}\``,
+      Array.isArray(value) ? value.join(', ') : `${value}`
+    ])
+    expect(defaults).toMatchObject(Object.fromEntries(texts))
   })
 
   it('has the blocks of the qualities', () => {

@@ -60,9 +60,7 @@ gpuTest('is the same sky as the background, inside and outside the air', async t
     for (const [distance, pitch, fov] of [...VIEWS, FAR_VIEW]) {
       const camera = cameraAt(distance, RADIUS, pitch, fov)
       const scene = new Scene()
-      const background = skyBackground(atmosphere)
-      background.showSun = false
-      scene.backgroundNode = background
+      scene.backgroundNode = skyBackground(atmosphere, { showSun: false })
       const expected = await drawForward(renderer, scene, camera, atmosphere)
       const shell = new AtmosphereShell(parameters, RADIUS, { sun: atmosphere })
       const alone = new Scene().add(shell)

@@ -17,6 +17,7 @@ import { AtmosphereTables, checkTables } from './tables/AtmosphereTables'
 import { AtmosphereView } from './view/AtmosphereView'
 import { checkCamera } from './check'
 import { LightSource } from './view/LightSource'
+import { getOrMake } from './view/getOrMake'
 import { checkLayer, type SkyLayer } from './view/SkyLayer'
 import { checkRenderer } from './view/renderers'
 import { ScenePlanet, type AtmosphereFrame } from './ScenePlanet'
@@ -177,13 +178,9 @@ export class Atmosphere extends ScenePlanet {
     // Its room was left to others if it was disposed of.
     this.tables.addSource(this)
     this.tables.update(renderer, this)
-    let views = this.#views.get(source)
-    if (views === undefined) this.#views.set(source, (views = new WeakMap()))
-    let view = views.get(camera)
-    if (view === undefined) {
-      checkCamera('Atmosphere.update', camera)
-      views.set(camera, (view = new AtmosphereView(this, camera, source)))
-    }
+    checkCamera('Atmosphere.update', camera)
+    const views = getOrMake(this.#views, source, () => new WeakMap())
+    const view = getOrMake(views, camera, () => new AtmosphereView(this, camera, source))
     view.update(renderer)
     return view
   }

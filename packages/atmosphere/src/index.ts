@@ -11,6 +11,7 @@ export type {
   Spectrum
 } from './parameters/AtmosphereParameters'
 export { SkyBackgroundNode, skyBackground } from './sky/SkyBackgroundNode'
+export type { SkyBackgroundOptions } from './sky/SkyBackgroundNode'
 export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './sky/AerialPerspectiveFogNode'
 export { AerialPerspectiveNode, aerialPerspective } from './sky/AerialPerspectiveNode'
 export { AirStyle, airStyle } from './sky/AirStyle'
@@ -87,7 +88,8 @@ export type { DistanceFogOptions } from './fog/DistanceFog'
 // For shaders of one's own; `AtmosphereNode` has an example.
 export { AtmosphereNode } from './view/AtmosphereNode'
 export type { AtmosphereView } from './view/AtmosphereView'
-export { FragmentPass, tableTarget } from './tables/FragmentPass'
+export { FragmentPass, outputs, tableTarget } from './tables/FragmentPass'
+export type { Outputs } from './tables/FragmentPass'
 export type { Table, Texels } from './tables/TableAtlas'
 export { viewNodes } from './view/ViewNodes'
 export type { AtmosphereUniforms } from './air/AtmosphereUniforms'

@@ -64,7 +64,7 @@ const zero = new Vector3()
 const wrong = (value: unknown): never => value as never
 
 const source = "must be a LightSource, such as a moon's source, got a Moon"
-const noOptions = 'options must be an object, got null'
+const noOptions = 'options must be an object such as {'
 
 const cases: [message: string, call: () => unknown][] = [
   // A moon is not its light.
@@ -111,7 +111,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => skyIlluminanceAt(atmosphere, zero, zero, { source: wrong(luna) })
   ],
   [
-    'skyIlluminanceAt: options must be an object, got a LightSource',
+    'skyIlluminanceAt: options must be an object such as { source }, got a LightSource',
     () => skyIlluminanceAt(atmosphere, zero, zero, wrong(luna.source))
   ],
   ['exposureFor: atmosphere must be an Atmosphere', () => exposureFor(wrong(undefined), camera)],
@@ -300,7 +300,7 @@ const cases: [message: string, call: () => unknown][] = [
 
   // One thing for another.
   [
-    'Atmosphere: options must be an object, got an AtmosphereParameters',
+    'Atmosphere: options must be an object such as { parameters }, got an AtmosphereParameters',
     () => new Atmosphere(wrong(marsParameters()))
   ],
   [
@@ -399,8 +399,28 @@ const cases: [message: string, call: () => unknown][] = [
     () => starsOverlay(vec4(1), wrong(camera), camera, atmosphere)
   ],
   [
-    'AerialPerspectiveNode: atmosphere must be an Atmosphere, got a PerspectiveCamera',
+    'AerialPerspectiveNode: camera must be a Camera, got an Atmosphere',
     () => aerialPerspective(vec4(1), vec4(1), wrong(atmosphere), wrong(camera))
+  ],
+  [
+    'AerialPerspectiveNode: atmosphere must be an Atmosphere, got a Scene',
+    () => aerialPerspective(vec4(1), vec4(1), camera, wrong(new Scene()))
+  ],
+  [
+    'AerialPerspectiveNode: showSky must be true or false, got null',
+    () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { showSky: wrong(null) })
+  ],
+  [
+    'AerialPerspectiveNode: shafts must be LightShafts, got a Scene',
+    () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { shafts: wrong(new Scene()) })
+  ],
+  [
+    "SkyBackgroundNode: showSun must be true or false, got 'no'",
+    () => skyBackground(atmosphere, { showSun: wrong('no') })
+  ],
+  [
+    "AerialPerspectiveNode: camera must be a Camera, got 'camera'",
+    () => aerialPerspective(vec4(1), vec4(1), wrong('camera'), atmosphere)
   ],
   [
     'SkyBackgroundNode: atmosphere must be an Atmosphere, got a Scene',

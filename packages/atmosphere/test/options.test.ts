@@ -2,6 +2,7 @@ import { PerspectiveCamera, Texture, Vector3 } from 'three'
 import { texture } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
+  aerialPerspective,
   airglow,
   airlessParameters,
   airStyle,
@@ -21,6 +22,7 @@ import {
   moonIlluminanceAt,
   planetGround,
   proceduralStars,
+  skyBackground,
   skyEnvironment,
   skyIlluminanceAt,
   skyLuminanceAt,
@@ -43,7 +45,7 @@ const parameters = new AtmosphereParameters()
 /** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
 
-const noOptions = 'options must be an object, got null'
+const noOptions = 'options must be an object such as {'
 
 const cases: [message: string, call: () => unknown][] = [
   // No such option.
@@ -100,6 +102,13 @@ const cases: [message: string, call: () => unknown][] = [
       ['MilkyWay', 'orientaton', 'orientation', o => milkyWay(o)],
       ['Airglow', 'luminence', 'luminance', o => airglow(o)],
       ['Moon', 'fase', 'phase', o => moon(o)],
+      ['SkyBackgroundNode', 'showsun', 'showSun', o => skyBackground(atmosphere, o)],
+      [
+        'AerialPerspectiveNode',
+        'showSki',
+        'showSky',
+        o => aerialPerspective(picture, picture, camera, atmosphere, o)
+      ],
       ['SkyEnvironmentNode', 'sise', 'size', o => skyEnvironment(atmosphere, o)],
       ['ImageEnvironmentNode', 'difuse', 'diffuse', o => imageEnvironment(new Texture(), o)],
       ['AtmosphereShell', 'modle', 'model', o => new AtmosphereShell(parameters, 1, o)]
@@ -129,6 +138,7 @@ const cases: [message: string, call: () => unknown][] = [
   [`DistanceFog: ${noOptions}`, () => distanceFog(wrong(null))],
   [`PlanetGround: ${noOptions}`, () => planetGround(wrong(null))],
   [`Stars: ${noOptions}`, () => new Stars(wrong(null))],
+  [`Stars: ${noOptions}`, () => stars(wrong(null))],
   [`MilkyWay: ${noOptions}`, () => milkyWay(wrong(null))],
   [`Airglow: ${noOptions}`, () => airglow(wrong(null))],
   [`Moon: ${noOptions}`, () => moon(wrong(null))],

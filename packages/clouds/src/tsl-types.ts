@@ -3,8 +3,6 @@ import {
   floatBitsToInt,
   intBitsToFloat,
   Loop as threeLoop,
-  outputStruct,
-  property,
   renderGroup,
   uniformArray as threeUniformArray
 } from 'three/tsl'
@@ -67,19 +65,4 @@ export const fromBits = (bits: Bits): Vec4 => intBitsToFloat(bits) as unknown as
 /** A texture node that is read at an explicit level, wherever the control flow is. */
 export interface LevelTexture<UV> extends Node {
   sample(uv: UV): { level(level: Float | number): Vec4 }
-}
-
-/** A shader with several outputs: `color` assigns the properties that `output` is a struct of. */
-export interface Outputs {
-  color: Vec4
-  output: Node
-}
-
-/** Several outputs from a function that assigns them. */
-export function outputs<T extends Vec4[]>(
-  count: T['length'],
-  assign: (outputs: T) => Vec4
-): Outputs {
-  const all = Array.from({ length: count }, () => property('vec4') as unknown as Vec4)
-  return { color: assign(all as T), output: outputStruct(...all) }
 }

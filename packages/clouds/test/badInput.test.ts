@@ -134,10 +134,28 @@ const cases: [message: string, call: () => unknown][] = [
     "cloudPreset: name must be 'fairWeather', 'congestus', 'stratocumulus', 'overcast', 'cumulonimbus', 'altocumulus', 'cirrus' or 'mixed', got 'fair'",
     () => cloudPreset(wrong('fair'))
   ],
-  ['CloudLayer: options must be an object, got a CloudLayer', () => new CloudLayer(wrong(layer))],
+  ['CloudLayer: options must be an object such as {', () => new CloudLayer(wrong(layer))],
   [
     'CloudShadowNode: clouds must be a CloudsNode, got an Atmosphere',
     () => cloudShadow(wrong(atmosphere))
+  ],
+  [
+    'CloudShadowNode: shadowNode must be a node or null, got a Mesh',
+    () => cloudShadow(node, wrong(new Mesh()))
+  ],
+  ['CloudLayers: layers must be an array, got a CloudLayer', () => new CloudLayers(wrong(layer))],
+  [
+    'CloudLayers.copy: other must be CloudLayers, got a CloudLayer',
+    () => new CloudLayers().copy(wrong(layer))
+  ],
+  ["cloudPreset: count must be 0 to 4, got '3'", () => cloudPreset('mixed', wrong('3'))],
+  [
+    'cloudLayersFromMETAR: count must be 0 to 4, got 5',
+    () => cloudLayersFromMETAR('LFPG 221200Z CAVOK', { count: 5 })
+  ],
+  [
+    "CloudsNode: camera must be a PerspectiveCamera, got 'camera'",
+    () => clouds(vec4(0), float(1), wrong('camera'), atmosphere, cloudPreset('mixed'))
   ],
   [
     'CloudAirShadow: clouds must be a CloudsNode, got an Atmosphere',

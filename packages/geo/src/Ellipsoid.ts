@@ -96,15 +96,15 @@ export class Ellipsoid {
     const { longitude, latitude, height = 0 } = geodetic
     const { x, y, z } = this.radii
     const cosLatitude = Math.cos(latitude * degrees)
-    const nx = cosLatitude * Math.cos(longitude * degrees)
-    const ny = cosLatitude * Math.sin(longitude * degrees)
-    const nz = Math.sin(latitude * degrees)
-    const support = Math.hypot(x * nx, y * ny, z * nz)
-    return target.set(
-      ((x * x) / support + height) * nx,
-      ((y * y) / support + height) * ny,
-      ((z * z) / support + height) * nz
+    const normal = scratchNormal.set(
+      cosLatitude * Math.cos(longitude * degrees),
+      cosLatitude * Math.sin(longitude * degrees),
+      Math.sin(latitude * degrees)
     )
+    const support = this.support(normal)
+    return target
+      .set((x * x) / support + height, (y * y) / support + height, (z * z) / support + height)
+      .multiply(normal)
   }
 
   /**
@@ -117,9 +117,8 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   ecefToGeodetic(positionECEF: Vector3, target: Geodetic = new Geodetic()): Geodetic {
-    checkVector('Ellipsoid.ecefToGeodetic', 'positionECEF', positionECEF)
+    const normal = this.normal('ecefToGeodetic', positionECEF)
     const { x, y, z } = positionECEF
-    const normal = footPointNormal(positionECEF, this.radii, scratchNormal)
     return target.set(
       Math.atan2(normal.y, normal.x) / degrees,
       Math.atan2(normal.z, Math.hypot(normal.x, normal.y)) / degrees,
@@ -144,9 +143,8 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   footPoint(positionECEF: Vector3, target: Vector3 = new Vector3()): Vector3 {
-    checkVector('Ellipsoid.footPoint', 'positionECEF', positionECEF)
+    const normal = this.normal('footPoint', positionECEF)
     const { x, y, z } = this.radii
-    const normal = footPointNormal(positionECEF, this.radii, scratchNormal)
     return target
       .set(x * x, y * y, z * z)
       .multiply(normal)
@@ -160,8 +158,7 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   surfaceNormal(positionECEF: Vector3, target: Vector3 = new Vector3()): Vector3 {
-    checkVector('Ellipsoid.surfaceNormal', 'positionECEF', positionECEF)
-    return footPointNormal(positionECEF, this.radii, target)
+    return this.normal('surfaceNormal', positionECEF, target)
   }
 
   /**
@@ -173,7 +170,7 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   eastNorthUpFrame(positionECEF: Vector3, target: Matrix4 = new Matrix4()): Matrix4 {
-    this.basis('Ellipsoid.eastNorthUpFrame', positionECEF)
+    this.basis('eastNorthUpFrame', positionECEF)
     return target.makeBasis(scratchEast, scratchNorth, scratchNormal).setPosition(positionECEF)
   }
 
@@ -186,7 +183,7 @@ export class Ellipsoid {
    * @throws Error if a component is not finite.
    */
   localYUpFrame(positionECEF: Vector3, target: Matrix4 = new Matrix4()): Matrix4 {
-    this.basis('Ellipsoid.localYUpFrame', positionECEF)
+    this.basis('localYUpFrame', positionECEF)
     return target
       .makeBasis(scratchEast, scratchNormal, scratchNorth.negate())
       .setPosition(positionECEF)
@@ -301,12 +298,18 @@ export class Ellipsoid {
   osculatingSphere(positionECEF: Vector3, radius?: number, target: Sphere = new Sphere()): Sphere {
     const foot = this.footPoint(positionECEF, scratchOrigin)
     const { x, y, z } = this.radii
-    const weight = (foot.x / x / x) ** 2 + (foot.y / y / y) ** 2 + (foot.z / z / z) ** 2
-    const value = radius ?? x * y * z * weight
+    // Gaussian curvature is h⁴/(x y z)², h the support.
+    const value = radius ?? (x * y * z) / this.support(scratchNormal) ** 2
     checkPositive('Ellipsoid.osculatingSphere', 'radius', value)
     target.center.copy(foot).addScaledVector(scratchNormal, -value)
     target.radius = value
     return target
+  }
+
+  /** Geodetic up at a position that a method was given, which it checks. */
+  private normal(method: string, positionECEF: Vector3, target = scratchNormal): Vector3 {
+    checkVector(`Ellipsoid.${method}`, 'positionECEF', positionECEF)
+    return footPointNormal(positionECEF, this.radii, target)
   }
 
   /** The support function: distance from the centre to the tangent plane of a normal [m]. */
@@ -316,9 +319,8 @@ export class Ellipsoid {
   }
 
   /** Leaves east, north and up in the scratch vectors. */
-  private basis(where: string, positionECEF: Vector3): void {
-    checkVector(where, 'positionECEF', positionECEF)
-    const up = footPointNormal(positionECEF, this.radii, scratchNormal)
+  private basis(method: string, positionECEF: Vector3): void {
+    const up = this.normal(method, positionECEF)
     const horizontal = Math.hypot(up.x, up.y)
     if (horizontal > 0) scratchEast.set(-up.y / horizontal, up.x / horizontal, 0)
     else scratchEast.set(0, 1, 0)

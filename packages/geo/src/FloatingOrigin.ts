@@ -38,8 +38,8 @@ export interface FloatingOriginEventMap {
 export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
   /** World units to ECEF in metres; kept up to date by rebasing. */
   readonly worldToECEF: Matrix4
-  private readonly roots: readonly Object3D[]
-  private readonly camera: Object3D
+  readonly #roots: readonly Object3D[]
+  readonly #camera: Object3D
   #threshold = 10_000
 
   /**
@@ -56,17 +56,17 @@ export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
     checkOptions('FloatingOrigin', options, 'worldToECEF', 'threshold')
     const { worldToECEF = new Matrix4(), threshold = 10_000 } = options
     this.threshold = threshold
-    this.roots = Array.isArray(roots) ? [...roots] : [roots as Object3D]
-    for (const root of this.roots) {
+    this.#roots = Array.isArray(roots) ? [...roots] : [roots as Object3D]
+    for (const root of this.#roots) {
       if (!root?.isObject3D) {
         fail('FloatingOrigin', 'roots must be an Object3D or an array of such', roots)
       }
-      if (this.roots.some(other => other !== root && isInside(root, other))) {
+      if (this.#roots.some(other => other !== root && isInside(root, other))) {
         fail('FloatingOrigin', 'roots must not be inside one another', root)
       }
     }
     if (!camera?.isObject3D) fail('FloatingOrigin', 'camera must be an Object3D', camera)
-    this.camera = camera
+    this.#camera = camera
     checkMatrix('FloatingOrigin', 'worldToECEF', worldToECEF)
     this.worldToECEF = worldToECEF.clone()
   }
@@ -87,8 +87,8 @@ export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
    * @returns True if it did.
    */
   update(): boolean {
-    this.camera.updateWorldMatrix(true, false)
-    const position = new Vector3().setFromMatrixPosition(this.camera.matrixWorld)
+    this.#camera.updateWorldMatrix(true, false)
+    const position = new Vector3().setFromMatrixPosition(this.#camera.matrixWorld)
     if (position.length() <= this.threshold) return false
     this.rebase(position)
     return true
@@ -103,8 +103,8 @@ export class FloatingOrigin extends EventDispatcher<FloatingOriginEventMap> {
   rebase(positionWorld: Vector3): void {
     checkVector('FloatingOrigin.rebase', 'positionWorld', positionWorld)
     const offset = positionWorld.clone().round()
-    for (const root of this.roots) shift(root, offset)
-    if (!this.roots.some(root => isInside(this.camera, root))) shift(this.camera, offset)
+    for (const root of this.#roots) shift(root, offset)
+    if (!this.#roots.some(root => isInside(this.#camera, root))) shift(this.#camera, offset)
     this.worldToECEF.multiply(new Matrix4().makeTranslation(offset))
     this.dispatchEvent({ type: 'rebase', offset })
   }

@@ -116,7 +116,7 @@ export function checkOptions<T extends object>(
   options: T,
   ...names: readonly (keyof T & string)[]
 ): T {
-  if (!isPlain(options)) fail(where, 'options must be an object', options)
+  if (!isPlain(options)) fail(where, `options must be an object such as { ${names[0]} }`, options)
   for (const name of Object.keys(options)) {
     if (!(names as readonly string[]).includes(name)) failUnknown(where, 'option', name, names)
   }
@@ -192,7 +192,7 @@ const LETTERS = 60
 
 function describe(value: unknown, isPart = false): string {
   if (typeof value === 'string') {
-    return value.length > LETTERS ? `'${value.slice(0, LETTERS)}…'` : `'${value}'`
+    return `'${value.length > LETTERS ? `${value.slice(0, LETTERS)}…` : value}'`
   }
   if (typeof value === 'function') return `the function ${value.name}`
   if (value instanceof Date || typeof value !== 'object' || value === null) return String(value)

@@ -263,7 +263,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => geodesicDestination(wrong({ ...place, heigth: 3 }), 0, 1)
   ],
   [
-    'fitGlobeCamera: options must be an object, got an Ellipsoid',
+    'fitGlobeCamera: options must be an object such as { ellipsoid }, got an Ellipsoid',
     () => fitGlobeCamera(new PerspectiveCamera(), wrong(earth))
   ]
 ]

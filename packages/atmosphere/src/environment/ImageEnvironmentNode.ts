@@ -3,6 +3,7 @@ import { normalWorld, pmremTexture, vec3 } from 'three/tsl'
 import { Node } from 'three/webgpu'
 import type { NodeBuilder } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
+import { getOrMake } from '../view/getOrMake'
 
 /** Options of {@link ImageEnvironmentNode} and `SkyEnvironmentNode`. */
 export interface EnvironmentOptions {
@@ -41,8 +42,7 @@ export class ImageEnvironmentNode extends Node<'vec3'> {
   }
 
   override setup(builder: NodeBuilder): Node {
-    let map = maps.get(this.image)
-    if (map === undefined) maps.set(this.image, (map = pmremTexture(this.image)))
+    const map = getOrMake(maps, this.image, () => pmremTexture(this.image))
     return mirrored(builder, map, this.diffuse)
   }
 }

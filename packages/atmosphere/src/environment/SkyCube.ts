@@ -1,5 +1,5 @@
 import { HalfFloatType, LinearSRGBColorSpace, Matrix3, PerspectiveCamera, Vector3 } from 'three'
-import { Fn, positionWorldDirection, renderGroup, uniform, vec4 } from 'three/tsl'
+import { Fn, positionWorldDirection, vec4 } from 'three/tsl'
 import { CubeRenderTarget, RendererUtils } from 'three/webgpu'
 import type { Node, Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
@@ -11,6 +11,7 @@ import type { SkyOverlay } from './SkyOverlay'
 import { skyColor } from '../sky/tsl/sky'
 import type { Vec3 } from '../tsl-types'
 import { viewNodes, type ViewNodes } from '../view/ViewNodes'
+import { number, vector3 } from '../uniforms'
 
 const FACES = 6
 
@@ -35,7 +36,7 @@ export class SkyCube {
   readonly #view: ViewNodes
   readonly #faces: CubeRenderTarget
   /** Zenith in world space. */
-  readonly #up = uniform(new Vector3()).setGroup(renderGroup)
+  readonly #up = vector3()
   readonly #drawer = new CubeFaces('Welkin.SkyEnvironment')
   readonly #filtered: PrefilteredCube
   #node: Node | null = null
@@ -43,8 +44,8 @@ export class SkyCube {
   #scale = 1
   #completedScale = 1
   /** Factors from the luminance scale of now to that of the cube, and from that of the map to now's. */
-  readonly #toCube = uniform(1).setGroup(renderGroup)
-  readonly #fromMap = uniform(1).setGroup(renderGroup)
+  readonly #toCube = number(1)
+  readonly #fromMap = number(1)
   /** Layers that the shader has. */
   #layers: readonly SkyLayer[] | null = null
   readonly #overlay: SkyOverlay | null

@@ -1,4 +1,4 @@
-import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, float, vec4 } from 'three/tsl'
 import { setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
@@ -10,6 +10,7 @@ import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { sampleSky } from '../skyVolume/tsl/skyVolume'
 import { viewRay } from '../skyVolume/tsl/viewRay'
 import type { Bool, Float, Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
 
 /** Options of {@link DistanceFog}. */
 export interface DistanceFogOptions {
@@ -32,7 +33,7 @@ export class DistanceFog implements SkyLayer {
   #value = 1e-4
   #fade: readonly [number, number] = [5000, 15_000]
   #version = 0
-  readonly #density = uniform(0).setGroup(renderGroup)
+  readonly #density = number()
 
   /** @throws If an option is out of range. */
   constructor(options: DistanceFogOptions = {}) {

@@ -1,5 +1,6 @@
-import { Vector3, Vector4 } from 'three'
-import { If, exp, renderGroup, uniform, vec4 } from 'three/tsl'
+import type { Vector4 } from 'three'
+import { Vector3 } from 'three'
+import { If, exp, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
@@ -16,6 +17,7 @@ import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { radianceBetween, volumeSegment } from '../skyVolume/tsl/skyVolume'
 import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../tsl-types'
+import { number, vector3, vector4 } from '../uniforms'
 
 /** Options of {@link HeightFog}. */
 export interface HeightFogOptions {
@@ -64,7 +66,7 @@ export class HeightFog implements SkyLayer {
   readonly #falloff = number(1)
   readonly #height = number(0)
   readonly #asymmetry = number(0)
-  readonly #albedo = uniform(new Vector4()).setGroup(renderGroup)
+  readonly #albedo = vector4()
   readonly #lights: readonly FogLight[]
   #options: Required<HeightFogOptions>
   #version = 0
@@ -87,8 +89,8 @@ export class HeightFog implements SkyLayer {
     this.#options = checked(DEFAULTS, options)
     this.#lights = this.#options.sources.map(source => ({
       source,
-      directionMapped: uniform(new Vector3()).setGroup(renderGroup),
-      irradiance: uniform(new Vector4()).setGroup(renderGroup)
+      directionMapped: vector3(),
+      irradiance: vector4()
     }))
   }
 
@@ -287,8 +289,6 @@ const MAX_ALTITUDE = 40
 
 const _position = new Vector3()
 const _direction = new Vector3()
-
-const number = (value: number) => uniform(value).setGroup(renderGroup)
 
 /** Checked options; undefined ones stay as they were. */
 function checked(

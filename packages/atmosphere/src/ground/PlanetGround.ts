@@ -1,6 +1,6 @@
-import { Vector4 } from 'three'
+import type { Vector4 } from 'three'
 import type { Texture } from 'three'
-import { If, float, renderGroup, smoothstep, texture, uniform } from 'three/tsl'
+import { If, float, smoothstep, texture } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { fail, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
@@ -20,6 +20,7 @@ import type { GradientSampler } from './tsl/groundTexture'
 import { proceduralGround, type GroundSurface } from './tsl/proceduralGround'
 import { reflectanceColumns, sunWhite } from './cpu/reflectance'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
+import { number, vector4 } from '../uniforms'
 
 /** Options of {@link planetGround}. Textures are shared, not owned. */
 export interface PlanetGroundOptions {
@@ -61,8 +62,7 @@ type Columns = [
   UniformNode<'vec4', Vector4>
 ]
 
-const columnUniforms = (): Columns =>
-  [0, 1, 2].map(() => uniform(new Vector4()).setGroup(renderGroup)) as Columns
+const columnUniforms = (): Columns => [0, 1, 2].map(() => vector4()) as Columns
 
 /** Spectrum of a linear-sRGB colour by the columns of a matrix. */
 function spectrumOfColor([red, green, blue]: Columns, color: Vec3): Vec4 {
@@ -91,10 +91,10 @@ export class PlanetGround implements SkyLayer {
   /** Columns of the matrix from luminance [cd/m²] to radiance over `solarIrradiance` [1/sr]. */
   readonly #radianceColumns = columnUniforms()
   /** Polar over equatorial radius: geodetic latitudes from directions of the mapped sphere. */
-  readonly #flattening = uniform(1).setGroup(renderGroup)
-  readonly #variance = uniform(0).setGroup(renderGroup)
-  readonly #roughness = uniform(0).setGroup(renderGroup)
-  readonly #nightLuminance = uniform(0).setGroup(renderGroup)
+  readonly #flattening = number(1)
+  readonly #variance = number()
+  readonly #roughness = number()
+  readonly #nightLuminance = number()
 
   /** @throws If an option is of the wrong kind or out of its range. */
   constructor(options: PlanetGroundOptions = {}) {

@@ -1,5 +1,5 @@
-import { renderGroup, uniform } from 'three/tsl'
 import { checkNonNegative, checkPositive, setOptions } from '@welkin/geo'
+import { number } from '../uniforms'
 
 /** Halo that an eye or a lens makes around a bright source, in two lobes. */
 export interface FlareOptions {
@@ -18,8 +18,6 @@ const MIN_RADIANCE = 1e-8
 
 const NAMES = ['innerPower', 'innerStrength', 'outerPower', 'outerStrength'] as const
 
-const scalar = () => uniform(0).setGroup(renderGroup)
-
 /** Lobes of a halo: checked properties, kept in shader uniforms. They may be changed at any time. */
 export class Flare {
   declare innerPower: number
@@ -28,12 +26,12 @@ export class Flare {
   declare outerStrength: number
   /** Strengths as shaders read them. */
   readonly uniforms = {
-    innerPower: scalar(),
-    innerStrength: scalar(),
-    outerPower: scalar(),
-    outerStrength: scalar(),
+    innerPower: number(),
+    innerStrength: number(),
+    outerPower: number(),
+    outerStrength: number(),
     /** Cosine of the angle from the source at which the halo ends; above 1 for no halo. */
-    cosMaxAngle: uniform(2).setGroup(renderGroup)
+    cosMaxAngle: number(2)
   }
   readonly #owner: string
 

@@ -1,10 +1,10 @@
-import { renderGroup, uniform } from 'three/tsl'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { visibleDisc } from '../transmittance/cpu/transmittance'
 import { Flare, type FlareOptions } from './Flare'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import { addHalo } from './tsl/halo'
 import type { Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
 
 /**
  * Default lobes, found by looking: standard deviations of 0.7° and 4.7° (1/√power). Larger strengths
@@ -25,7 +25,7 @@ const DEFAULTS = { innerPower: 6000, innerStrength: 0.006, outerPower: 150, oute
  */
 export class SunFlare extends Flare implements SkyLayer {
   /** Fraction of the sun's disc above the horizon. */
-  readonly #visibleFraction = uniform(0).setGroup(renderGroup)
+  readonly #visibleFraction = number()
 
   /** @throws If an option is unknown or out of its range. */
   constructor(options: FlareOptions = {}) {

@@ -1,5 +1,5 @@
-import { Matrix3, Matrix4, Vector3, Vector4 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
+import type { Vector3 } from 'three'
+import { Matrix4 } from 'three'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { Flare } from '../halo/Flare'
@@ -9,15 +9,12 @@ import { earthshine, moonIrradiance } from './cpu/moonIrradiance'
 import { surfacePhaseFactor } from './cpu/moonPhaseLaw'
 import type { MoonGeometry } from './moonGeometry'
 import { CORONA_RADII } from './tsl/moonSky'
+import { matrix3, number, vector3, vector4 } from '../uniforms'
 
 /** Angle that a pixel of the coarsest picture covers [rad]. */
 const MAX_PIXEL_ANGLE = 0.06
 
 const _matrix = new Matrix4()
-
-const vector = () => uniform(new Vector3()).setGroup(renderGroup)
-const spectrum = () => uniform(new Vector4()).setGroup(renderGroup)
-const scalar = (value: number) => uniform(value).setGroup(renderGroup)
 
 /** Cosine of an angle, widened by the largest pixel [rad]. */
 const cosWidened = (angle: number): number => Math.cos(Math.min(angle + MAX_PIXEL_ANGLE, Math.PI))
@@ -42,25 +39,25 @@ export interface MoonState {
 /** The moon's disc and light as shader uniforms. Directions are in the mapped space, of unit length. */
 export class MoonUniforms {
   /** Camera to moon. */
-  readonly directionMapped = vector()
+  readonly directionMapped = vector3()
   /** Moon to sun. */
-  readonly sunDirectionMapped = vector()
+  readonly sunDirectionMapped = vector3()
   /** Mapped space to moon-fixed axes. */
-  readonly mappedToMoonFixed = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly mappedToMoonFixed = matrix3()
   /** [rad] */
-  readonly angularRadius = scalar(0)
+  readonly angularRadius = number(0)
   /** Radiance of sunlit ground, for a Lommel–Seeliger factor of 1 [1/sr]. */
-  readonly sunlit = spectrum()
+  readonly sunlit = vector4()
   /** Radiance of the disc in earthshine [1/sr]. */
-  readonly earthlit = spectrum()
+  readonly earthlit = vector4()
   /** Irradiance by the part of the disc above the horizon, over that of the bare sun: light of the halo. */
-  readonly irradiance = spectrum()
+  readonly irradiance = vector4()
   /** Cosine of the angle from the sun within which an eclipse or the corona can show. */
-  readonly cosNearSun = scalar(1)
+  readonly cosNearSun = number(1)
   /** Cosine of the angle from the moon within which its disc or halo can show. */
-  readonly cosNearMoon = scalar(1)
+  readonly cosNearMoon = number(1)
   /** 0 in totality, when the sun's disc is all covered, else 1. */
-  readonly sunVisibility = scalar(1)
+  readonly sunVisibility = number(1)
 
   update(view: AtmosphereView, moon: MoonState, halo: Flare): void {
     const { parameters, space } = view.atmosphere

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three'
-import { If, renderGroup, uniform } from 'three/tsl'
+import { If } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -9,6 +9,7 @@ import { radianceBetween, sampleSky } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
 import { viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { ViewUniforms } from '../view/ViewUniforms'
+import { number } from '../uniforms'
 
 /** Cosine of the sun's zenith angle above which its light in the air masks the moon's: the horizon. */
 const MAX_COS_SUN = 0
@@ -22,7 +23,7 @@ const _direction = new Vector3()
 /** Moonlit air: in-scatter of moonlight, from sky volumes that are computed while it can be seen. */
 export class MoonlitAir {
   /** 1 while moonlit air can be seen, else 0. */
-  readonly #isVisible = uniform(0).setGroup(renderGroup)
+  readonly #isVisible = number()
   readonly #views = new Map<ViewUniforms, ViewNodes>()
 
   constructor(

@@ -1,5 +1,4 @@
-import { Vector4 } from 'three'
-import { If, float, renderGroup, uniform, vec4 } from 'three/tsl'
+import { If, float, vec4 } from 'three/tsl'
 import { checkNonNegative, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -9,6 +8,7 @@ import { scaleToLuminance } from '../parameters/photometry'
 import { vanRhijnFactors, thinLayerVanRhijnFactor } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
 import type { ViewUniforms } from '../view/ViewUniforms'
+import { number, vector4 } from '../uniforms'
 
 /** Options of {@link Airglow}. */
 export interface AirglowOptions {
@@ -63,15 +63,15 @@ export class Airglow implements SkyLayer {
   #luminance = 1e-4
   #spectrum: Spectrum = GREENISH
   readonly #layer = {
-    altitude: uniform(96_000).setGroup(renderGroup),
-    width: uniform(4000).setGroup(renderGroup)
+    altitude: number(96_000),
+    width: number(4000)
   }
   /** Radiance of the layer seen perpendicularly, over `solarIrradiance` [1/sr]. */
-  readonly #radiance = uniform(new Vector4()).setGroup(renderGroup)
+  readonly #radiance = vector4()
   /** Radiance of the air in the green that masks the layer [1/sr]. */
-  readonly #maskingRadiance = uniform(0).setGroup(renderGroup)
+  readonly #maskingRadiance = number()
   /** 0 where the camera is far below the layer, else 1. */
-  readonly #isClose = uniform(0).setGroup(renderGroup)
+  readonly #isClose = number()
   #intensity = 1
   #version = 0
 

@@ -1,8 +1,9 @@
-import { Matrix3, Matrix4 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
+import type { Matrix3 } from 'three'
+import { Matrix4 } from 'three'
 import { eciToECEF } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { Mat3, Vec3 } from '../tsl-types'
+import { matrix3 } from '../uniforms'
 
 const _matrix = new Matrix4()
 const _scale = new Matrix4()
@@ -14,7 +15,7 @@ export class CelestialFrame {
    * frames are one.
    */
   orientation: Matrix4 | null = null
-  readonly #mappedToAxes = uniform(new Matrix3()).setGroup(renderGroup)
+  readonly #mappedToAxes = matrix3()
   readonly #rotation = new Matrix4()
   #time = NaN
 

@@ -1,6 +1,6 @@
-import { Matrix3, Vector4 } from 'three'
+import { Matrix3 } from 'three'
 import type { Matrix4, RenderTarget } from 'three'
-import { Fn, If, renderGroup, texture, uniform, uv, vec4 } from 'three/tsl'
+import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkNonNegative, setOptions } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -13,6 +13,7 @@ import { starIrradiance } from '../stars/starBrightness'
 import { CELESTIAL_TO_GALACTIC, milkyWayMap } from './tsl/milkyWay'
 import { octahedralPoint } from '../math/tsl/octahedron'
 import { sampleLevel0, type Vec4 } from '../tsl-types'
+import { number, vector4 } from '../uniforms'
 
 /** Options of {@link MilkyWay}. */
 export interface MilkyWayOptions {
@@ -51,9 +52,9 @@ export class MilkyWay implements SkyLayer {
   #intensity = 1
   readonly #frame = new CelestialFrame(new Matrix3().set(...CELESTIAL_TO_GALACTIC))
   readonly #target: RenderTarget = tableTarget('Welkin.MilkyWay', MAP_SIZE, MAP_SIZE)
-  readonly #color = uniform(new Vector4()).setGroup(renderGroup)
+  readonly #color = vector4()
   /** Radiance of the air in the green that masks it [1/sr]. */
-  readonly #maskingRadiance = uniform(0).setGroup(renderGroup)
+  readonly #maskingRadiance = number()
   readonly #map
   #pass: FragmentPass | null = null
   #renderer: Renderer | null = null

@@ -1,5 +1,5 @@
-import { LightProbe, Vector4 } from 'three'
-import { Fn, normalView, renderGroup, uniform, vec4 } from 'three/tsl'
+import { LightProbe } from 'three'
+import { Fn, normalView, vec4 } from 'three/tsl'
 import { AnalyticLightNode, NodeUpdateType } from 'three/webgpu'
 import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import { checkNonNegative } from '@welkin/geo'
@@ -13,6 +13,7 @@ import { coveredPosition } from '../view/tsl/coveredPosition'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
 import { watchScene } from '../view/renderers'
+import { vector4 } from '../uniforms'
 
 /**
  * Light of the night sky on surfaces, so that nights without a moon are dark but not black.
@@ -71,7 +72,7 @@ export class NightLightProbeNode extends AnalyticLightNode<NightLightProbe> {
 
   readonly #view: ViewNodes
   readonly #light: NightLightProbe
-  readonly #irradiance = uniform(new Vector4()).setGroup(renderGroup)
+  readonly #irradiance = vector4()
 
   constructor(light: NightLightProbe) {
     super(light)

@@ -5,7 +5,7 @@ import { AtmosphereParameters, type Spectrum } from './AtmosphereParameters'
 const map = (values: Spectrum, f: (value: number) => number): Spectrum =>
   values.map(f) as unknown as Spectrum
 
-/** Number density of air at 288.15 K and 1013.25 hPa [1/m³]. @see U.S. Standard Atmosphere 1976 */
+/** Number density of air at sea level, p/(k T): 288.15 K and 1013.25 hPa [1/m³]. */
 const MOLECULES_AT_SEA_LEVEL = 2.5469e25
 
 /**

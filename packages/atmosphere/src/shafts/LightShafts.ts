@@ -1,12 +1,12 @@
 import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
-import { renderGroup, screenCoordinate, uniform, vec4 } from 'three/tsl'
+import { screenCoordinate, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera } from '../check'
 import type { Float } from '../tsl-types'
-import { number } from '../uniforms'
+import { matrix4, number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
@@ -72,8 +72,9 @@ const _axes = new Matrix4()
  *
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture.
  *
- * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps" (a map in polar coordinates
- *   about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling"
+ * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
+ *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
+ *   GPU Pro 5, part II, §2.3
  */
 export class LightShafts implements ShadowedShafts {
   /** Shared, not owned. */
@@ -92,7 +93,7 @@ export class LightShafts implements ShadowedShafts {
   readonly shadowedAir: ShadowedAir
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
-  readonly #toWorld = uniform(new Matrix4()).setGroup(renderGroup)
+  readonly #toWorld = matrix4()
   #version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
   readonly strengthNow = number()

@@ -1,12 +1,12 @@
 import { MathUtils, Matrix3, Matrix4, RGFormat, RepeatWrapping, Vector3 } from 'three'
 import type { RenderTarget, DepthTexture } from 'three'
-import { renderGroup, texture, uniform } from 'three/tsl'
+import { texture } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
-import { number, vector2, vector3, vector4 } from '../uniforms'
 import type { SphericalSpace } from '../view/cpu/spherical'
 import type { ShadowMap } from './shadowMaps'
 import { occluderAngle, type DepthStorage, type ShadowMapNodes } from './tsl/occluderAngle'
+import { matrix4, number, vector2, vector3, vector4 } from '../uniforms'
 
 /** Part of the greatest distance up to which columns are even. */
 const EVEN_PART = 1e-3
@@ -82,7 +82,7 @@ export class SunPolarMap {
       this.#sources = maps.map(({ depth }) => ({
         depth: texture(depth) as TextureNode & { value: DepthTexture },
         size: vector2(),
-        matrix: uniform(new Matrix4()).setGroup(renderGroup),
+        matrix: matrix4(),
         bounds: vector4(),
         metersPerDepth: number()
       }))

@@ -2,7 +2,7 @@ import type { Camera, OrthographicCamera } from 'three'
 import { Fn, If, float, isBackgroundDepth, select, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, PassNode } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
-import { checkShafts, type AirOptions, type AirShadows } from '../view/AirShadows'
+import { checkAirOptions, type AirOptions, type AirShadows } from '../view/AirShadows'
 import type { SkyLayer } from '../view/SkyLayer'
 import { DepthRays } from '../view/DepthRays'
 import { PostEffectNode } from '../view/PostEffectNode'
@@ -39,17 +39,17 @@ export class AerialPerspectiveNode extends PostEffectNode {
     return 'AerialPerspectiveNode'
   }
 
-  /** Draws the sky where nothing was drawn. Set it before the first render. */
-  showSky = true
-  /** Draws the sun's disc. Set it before the first render. */
-  showSun = true
+  /** See {@link AirOptions}. */
+  readonly showSky: boolean
+  /** See {@link AirOptions}. */
+  readonly showSun: boolean
   /** Shadows in the air, or null; shared, not owned. */
   readonly shafts: AirShadows | null
   readonly #screenShafts: SkyLayer | undefined
   readonly #rays: DepthRays
   readonly #backdrop = new Backdrop()
 
-  /** @throws If an argument is missing or of the wrong kind, or an option is unknown. */
+  /** @throws If an argument is missing or of the wrong kind, or an option is unknown or of the wrong kind. */
   constructor(
     colorNode: Node,
     depthNode: Node,
@@ -58,10 +58,13 @@ export class AerialPerspectiveNode extends PostEffectNode {
     options: AirOptions = {}
   ) {
     super(colorNode, depthNode, camera, atmosphere)
-    checkShafts('AerialPerspectiveNode', options)
-    this.shafts = options.shafts ?? null
+    checkAirOptions('AerialPerspectiveNode', options)
+    const { shafts = null, showSky = true, showSun = true } = options
+    this.shafts = shafts
+    this.showSky = showSky
+    this.showSun = showSun
     this.#rays = new DepthRays(depthNode, camera)
-    this.#screenShafts = this.shafts?.upTo(depthNode)
+    this.#screenShafts = shafts?.upTo(depthNode)
   }
 
   /** Layers of the sky, and shafts for all pixels at once in place of those that materials have. */

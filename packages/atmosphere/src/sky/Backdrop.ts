@@ -1,6 +1,6 @@
-import { Color, Vector4, type Scene } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
+import { Color, type Scene } from 'three'
 import type { Node, PassNode, Renderer } from 'three/webgpu'
+import { number, vector4 } from '../uniforms'
 
 const _color = new Color()
 
@@ -15,9 +15,9 @@ export function passOf(node: Node): PassNode | null {
 /** Colour of a pass where nothing was drawn, so that the sky can be put in its place. */
 export class Backdrop {
   /** Linear colour as it is in the pass's texture, and alpha. */
-  readonly color = uniform(new Vector4()).setGroup(renderGroup)
+  readonly color = vector4()
   /** 1 where {@link color} is the pass's, 0 where nothing is known of it but that its alpha may be 1. */
-  readonly isKnown = uniform(0).setGroup(renderGroup)
+  readonly isKnown = number()
 
   /** Follows the renderer's clear colour and the scene's background. */
   update(renderer: Renderer, pass: PassNode | null): void {

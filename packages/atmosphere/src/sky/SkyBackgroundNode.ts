@@ -1,4 +1,4 @@
-import { fail } from '@welkin/geo'
+import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import { Fn, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
@@ -6,6 +6,12 @@ import { AtmosphereNode } from '../view/AtmosphereNode'
 import { screenRay } from '../view/tsl/screenRay'
 import { pixelAngle, skyColor } from './tsl/sky'
 import type { Vec3 } from '../tsl-types'
+
+/** Options of {@link SkyBackgroundNode}. */
+export interface SkyBackgroundOptions {
+  /** Draws the sun's disc; by default true. */
+  showSun?: boolean
+}
 
 /**
  * The sky as a scene's background: sky, sun and, below the horizon, the model's Lambertian ground.
@@ -21,8 +27,16 @@ export class SkyBackgroundNode extends AtmosphereNode {
     return 'SkyBackgroundNode'
   }
 
-  /** Draws the sun's disc. Set it before the first render. */
-  showSun = true
+  /** See {@link SkyBackgroundOptions}. */
+  readonly showSun: boolean
+
+  /** @throws If the atmosphere is missing, or an option is unknown or of the wrong kind. */
+  constructor(atmosphere: Atmosphere, options: SkyBackgroundOptions = {}) {
+    super(atmosphere)
+    const { showSun = true } = checkOptions('SkyBackgroundNode', options, 'showSun')
+    checkBoolean('SkyBackgroundNode', 'showSun', showSun)
+    this.showSun = showSun
+  }
 
   /** Asked by three of what is in `scene.background` alone. @throws Always: a node does not belong there. */
   get isCubeTexture(): boolean {
@@ -42,5 +56,7 @@ export class SkyBackgroundNode extends AtmosphereNode {
 }
 
 /** The sky as a scene's background: see {@link SkyBackgroundNode}. */
-export const skyBackground = (atmosphere: Atmosphere): SkyBackgroundNode =>
-  new SkyBackgroundNode(atmosphere)
+export const skyBackground = (
+  atmosphere: Atmosphere,
+  options?: SkyBackgroundOptions
+): SkyBackgroundNode => new SkyBackgroundNode(atmosphere, options)

@@ -138,19 +138,19 @@ export class SkyVolumes {
     this.#volumes.length = 0
     let row = top
     for (let slot = 0; slot < count; slot += ABREAST) {
-      const hasRoom = depths[slot] !== undefined
-      const lightRow = hasRoom ? row : row + DEPTH_ROWS + GAP
+      const depthRow = row
+      if (depths[slot] === undefined) row += DEPTH_ROWS + GAP
       for (let i = 0; i < ABREAST; i++) {
-        const [x, y] = depths[slot + i] ?? [i * (DEPTH_COLUMNS + GAP), row]
+        const depth = depths[slot + i] ?? [i * (DEPTH_COLUMNS + GAP), depthRow]
         this.#volumes.push({
-          light: new Vector2(i * (2 * LIGHT_COLUMNS + GAP), lightRow),
-          depth: new Vector2(x, y),
+          light: new Vector2(i * (2 * LIGHT_COLUMNS + GAP), row),
+          depth: new Vector2(...depth),
           viewpoint: null,
           tablesVersion: -1,
           lastUsed: 0
         })
       }
-      row = lightRow + LIGHT_ROWS + GAP
+      row += LIGHT_ROWS + GAP
     }
     this.atlas.setSize(VOLUMES_WIDTH, row)
     return true

@@ -11,7 +11,8 @@ import { starIlluminance, starIrradiance } from './starBrightness'
 import { starField, type StarTextures } from './tsl/starField'
 import type { Vec4 } from '../tsl-types'
 import { vec4Array } from '../tsl-types'
-import { If, renderGroup, uniform } from 'three/tsl'
+import { If } from 'three/tsl'
+import { number } from '../uniforms'
 
 /** Light of the sky over that of the brightest star from which on no star is drawn. */
 const MASKING_RATIO = 100
@@ -27,6 +28,9 @@ export interface StarsOptions {
   /** Factor on the physical brightness, finite, ≥ 0, default 1. */
   intensity?: number
 }
+
+/** Names of all options. */
+export const STARS_OPTIONS = ['catalogue', 'overlay', 'orientation', 'intensity'] as const
 
 /**
  * Fixed stars: points of light with the brightness of their magnitudes, dimmed and reddened by the air in
@@ -54,12 +58,12 @@ export class Stars implements SkyLayer {
   readonly #palette = vec4Array(Array.from({ length: COLOR_STEPS.count }, () => new Vector4()))
   readonly #textures: StarTextures
   /** Light of the sky in one pixel that masks even the brightest star, over `solarIrradiance`. */
-  readonly #maskingIrradiance = uniform(0).setGroup(renderGroup)
+  readonly #maskingIrradiance = number()
   #paletteKey = ''
 
   /** @throws If a star lacks a finite number, or an option is of the wrong kind. */
   constructor(options: StarsOptions & { catalogue: readonly Star[] }) {
-    checkOptions('Stars', options, 'catalogue', 'overlay', 'orientation', 'intensity')
+    checkOptions('Stars', options, ...STARS_OPTIONS)
     const { catalogue, overlay = false, ...settings } = options
     checkBoolean('Stars', 'overlay', overlay)
     if (!Array.isArray(catalogue)) fail('Stars', 'catalogue must be an array of stars', catalogue)

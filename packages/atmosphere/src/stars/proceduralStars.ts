@@ -12,11 +12,7 @@ export interface ProceduralStarsOptions {
   seed?: number
 }
 
-/**
- * Growth of the number of stars to magnitude m, 10^(0.51 m), in the naked eye's range.
- *
- * @see Allen 1976, Astrophysical Quantities
- */
+/** Growth of the number of stars to magnitude m, 10^(0.51 m): `brightStars()` has 15 to magnitude 1 and 1,608 to 5. */
 const COUNT_EXPONENT = 0.51
 
 /** Magnitudes between the faintest and the brightest star, which is about as bright as Sirius. */

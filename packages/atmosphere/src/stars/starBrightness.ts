@@ -1,10 +1,15 @@
 import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { scaleToLuminance } from '../parameters/photometry'
 
-/** Illuminance by a star of magnitude 0 above the air [lx]. @see Allen 1976, Astrophysical Quantities */
+/**
+ * Illuminance by a star of magnitude 0 above the air [lx].
+ *
+ * @see Schlyter, "Radiometry and photometry in astronomy" (stjarnhimlen.se/comp/radfaq.html), §7, after Allen 1976,
+ *   Astrophysical Quantities
+ */
 export const MAGNITUDE_ZERO_ILLUMINANCE = 2.54e-6
 
-/** Second radiation constant, h c / k [nm K]. @see CODATA 2018 */
+/** Second radiation constant, h c / k [nm K]. @see BIPM 2019, The International System of Units, 9th ed., table 1 */
 const SECOND_RADIATION_CONSTANT = 1.438776877e7
 
 /**

@@ -151,12 +151,14 @@ export class AtmosphereTables {
 
   async #read(renderer: Renderer): Promise<void> {
     const version = this.version
-    const values = await this.diffuseLight.region.read(renderer).catch((error: unknown) => {
-      // Nobody misses what was disposed of or baked anew meanwhile.
-      if (version === this.version) throw error
-    })
-    if (version !== this.version || values === undefined) return
-    this.data = { values }
+    // Nobody misses what was disposed of or baked anew meanwhile.
+    const isWanted = (): boolean => version === this.version
+    try {
+      const values = await this.diffuseLight.region.read(renderer)
+      if (isWanted()) this.data = { values }
+    } catch (error) {
+      if (isWanted()) throw error
+    }
   }
 
   /** Resolves when the tables that were last finished have been read back. */

@@ -1,5 +1,6 @@
 import { HalfFloatType, LinearFilter, NoBlending, RenderTarget } from 'three'
 import type { TextureFilter, NearestFilter } from 'three'
+import { Fn, outputStruct, property, vec4 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, RendererUtils } from 'three/webgpu'
 import type { Node, Renderer } from 'three/webgpu'
 import type { Vec4 } from '../tsl-types'
@@ -31,6 +32,23 @@ export interface Outputs {
   output: Node
 }
 
+/**
+ * A shader with several outputs, for a target with as many textures.
+ *
+ * @param assign - Its body, which assigns all of them.
+ */
+export function outputs<T extends Vec4[]>(
+  count: T['length'],
+  assign: (outputs: T) => void
+): Outputs {
+  const all = Array.from({ length: count }, () => property('vec4') as unknown as Vec4)
+  const body = Fn(() => {
+    assign(all as T)
+    return vec4(0)
+  })
+  return { color: body(), output: outputStruct(...all) }
+}
+
 /** A fragment shader that fills a render target. */
 export class FragmentPass {
   readonly material: NodeMaterial
@@ -38,7 +56,7 @@ export class FragmentPass {
 
   /**
    * @param name - Name of the pass in a graphics debugger.
-   * @param output - Value of a texel, or several of them.
+   * @param output - Value of a texel, or several of them by {@link outputs}.
    */
   constructor(name: string, output: Vec4 | Outputs) {
     this.material = Object.assign(new NodeMaterial(), {

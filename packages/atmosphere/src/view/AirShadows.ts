@@ -1,5 +1,5 @@
 import type { Node } from 'three/webgpu'
-import { checkOptions, fail } from '@welkin/geo'
+import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Float, Vec2, Vec3 } from '../tsl-types'
 import type { SkyLayer } from './SkyLayer'
 
@@ -39,10 +39,20 @@ export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'mediu
 export interface AirOptions {
   /** Shadows in the air; by default none. */
   shafts?: AirShadows
+  /** Draws the sky where nothing was drawn; by default true. */
+  showSky?: boolean
+  /** Draws the sun's disc in that sky; by default true. */
+  showSun?: boolean
 }
 
-/** @throws If an option is unknown, or shafts are none. */
-export function checkShafts(where: string, options: AirOptions): void {
-  const { shafts } = checkOptions(where, options, 'shafts')
-  if (shafts !== undefined && !shafts.upTo) fail(where, 'shafts must be LightShafts', shafts)
+/** @throws If an option is unknown or of the wrong kind. */
+export function checkAirOptions(where: string, options: AirOptions): void {
+  const {
+    shafts,
+    showSky = true,
+    showSun = true
+  } = checkOptions(where, options, 'shafts', 'showSky', 'showSun')
+  if (shafts !== undefined && !shafts?.upTo) fail(where, 'shafts must be LightShafts', shafts)
+  checkBoolean(where, 'showSky', showSky)
+  checkBoolean(where, 'showSun', showSun)
 }

@@ -1,8 +1,8 @@
 import type { Vector3 } from 'three'
 import { Vector4 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
 import { fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
+import { vector4 } from '../uniforms'
 
 /**
  * Source of light in the air: the sun, or the moon. Tables are per unit of irradiance, so one set serves both,
@@ -13,7 +13,7 @@ export class LightSource {
    * Irradiance above the air over `solarIrradiance` at the camera [–], a uniform of four values. 1 for
    * the bare sun.
    */
-  readonly irradiance = uniform(new Vector4(1, 1, 1, 1)).setGroup(renderGroup)
+  readonly irradiance = vector4(new Vector4(1, 1, 1, 1))
 
   /**
    * @param direction - Writes the direction to the source into its target, and answers with it: in world

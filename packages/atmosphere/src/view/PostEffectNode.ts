@@ -19,11 +19,11 @@ export abstract class PostEffectNode extends AtmosphereNode {
 
   /** @throws If an argument is missing or of the wrong kind. */
   constructor(colorNode: Node, depthNode: Node, camera: Camera, atmosphere: Atmosphere) {
-    super(atmosphere, camera)
     const where = (new.target as unknown as { type: string }).type
+    checkCamera(where, camera)
+    super(atmosphere, camera)
     if (!colorNode?.isNode) fail(where, 'colorNode must be a node', colorNode)
     if (!depthNode?.isNode) fail(where, 'depthNode must be a node', depthNode)
-    checkCamera(where, camera)
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera

@@ -4,6 +4,7 @@ import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { AtmosphereView } from './AtmosphereView'
 import type { LightSource } from './LightSource'
+import { getOrMake } from './getOrMake'
 import { ViewUniforms } from './ViewUniforms'
 
 /** An atmosphere as seen from a camera in the light of one source: what shaders of a view share. */
@@ -46,10 +47,6 @@ export function viewNodes(
   camera: Camera | null = null,
   source: LightSource = atmosphere.sun
 ): ViewNodes {
-  const key = camera ?? atmosphere
-  let views = shared.get(source)
-  if (views === undefined) shared.set(source, (views = new WeakMap()))
-  let view = views.get(key)
-  if (view === undefined) views.set(key, (view = new ViewNodes(atmosphere, camera, source)))
-  return view
+  const views = getOrMake(shared, source, () => new WeakMap())
+  return getOrMake(views, camera ?? atmosphere, () => new ViewNodes(atmosphere, camera, source))
 }

@@ -188,7 +188,7 @@ export class CloudEnvironment implements SkyOverlay {
     this.#pass?.render(renderer, this.#target)
   }
 
-  /** Takes clouds, sun and place as they are now, for all strips. */
+  /** Fixes clouds, sun and viewpoint for all strips of a picture. */
   #begin(view: AtmosphereView, field: CloudField): void {
     const { rotations, night, depthScale } = this.clouds.field
     if (!this.#isAsDrawn()) this.#version++
@@ -197,11 +197,11 @@ export class CloudEnvironment implements SkyOverlay {
     field.pixelAngle.value = 2 / this.#target.width
     field.depthScale.value = depthScale.value
     field.night.illuminance = night.illuminance
-    // On a clock that stands still: the rotations are the other field's.
+    // Its clock stands still: rotations are copied from the camera's field.
     field.update(view, 0)
     this.#storedScale = STORED_SCALE * nightGain(view, field.radius.value)
     this.#fromMapped.value.copy(view.viewToMapped).invert()
-    // East is across pole and zenith.
+    // East is the cross product of pole and zenith.
     this.#axes.value.lookAt(view.up, _center, _pole)
   }
 

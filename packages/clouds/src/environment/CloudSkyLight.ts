@@ -8,7 +8,7 @@ import { overcastIrradiance } from './tsl/overcast'
 import type { Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 
-/** Light that clouds give each probe now. */
+/** The cloud light of each probe. */
 const _ofProbe = new WeakMap<SkyLightProbe | NightLightProbe, CloudSkyLight>()
 
 /**
@@ -27,7 +27,7 @@ export class CloudSkyLight {
     if (probe?.overcast === undefined) {
       fail('CloudSkyLight', 'probe must be a SkyLightProbe or NightLightProbe', probe)
     }
-    // The light of clouds that are gone makes room by itself.
+    // One whose clouds were disposed of is replaced without an error.
     const before = _ofProbe.get(probe)
     if (before?.clouds.isDisposed === true) before.dispose()
     if (probe.overcast !== null) {
@@ -57,7 +57,7 @@ export class CloudSkyLight {
   #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
     const { field, light, isDisposed } = this.clouds
     if (isDisposed) return clear
-    // Between two cameras; a metre more or less is no matter to the weather.
+    // Displacement between two cameras. In float32 it may be a metre off, which the weather does not show.
     const viewpoint = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
     const offset = plane.offset
       .add(viewpoint(plane.view).sub(viewpoint(field.view)))

@@ -24,7 +24,9 @@ export class CloudLayers implements Iterable<CloudLayer> {
    * @throws Error when there is no layer, more than four, or a parameter is out of its range.
    */
   constructor(layers: readonly (CloudLayer | Partial<CloudLayerParameters>)[] = [{}], count = 0) {
-    const length = Math.max(layers?.length, count)
+    if (!Array.isArray(layers)) fail('CloudLayers', 'layers must be an array', layers)
+    checkCount('CloudLayers', count)
+    const length = Math.max(layers.length, count)
     if (!(length >= 1 && length <= CloudLayers.maxLayers)) {
       fail('CloudLayers', `layers must be 1 to ${CloudLayers.maxLayers}`, length)
     }
@@ -41,9 +43,12 @@ export class CloudLayers implements Iterable<CloudLayer> {
   /**
    * Takes the parameters of other layers; what is left over covers nothing then.
    *
-   * @throws Error when there are more of them than here.
+   * @throws Error when they are no layers, or more than here.
    */
   copy(other: CloudLayers): this {
+    if (!(other instanceof CloudLayers)) {
+      fail('CloudLayers.copy', 'other must be CloudLayers', other)
+    }
     const { length } = other
     if (length > this.length) fail('CloudLayers', `layers must be 1 to ${this.length}`, length)
     this.#layers.forEach((layer, i) => layer.set(other.#layers[i]?.parameters ?? clear))
@@ -59,5 +64,12 @@ export class CloudLayers implements Iterable<CloudLayer> {
 
   [Symbol.iterator](): Iterator<CloudLayer> {
     return this.#layers[Symbol.iterator]()
+  }
+}
+
+/** @throws If it is no number of layers. */
+export function checkCount(where: string, count: number): void {
+  if (!(Number.isInteger(count) && count >= 0 && count <= CloudLayers.maxLayers)) {
+    fail(where, `count must be 0 to ${CloudLayers.maxLayers}`, count)
   }
 }

@@ -1,7 +1,7 @@
 import { checkRange } from '@welkin/atmosphere'
 import { checkOptions, fail } from '@welkin/geo'
 import type { CloudLayerParameters, CloudWind } from './CloudLayer'
-import { CloudLayers } from './CloudLayers'
+import { checkCount, CloudLayers } from './CloudLayers'
 import { cloudPreset, type CloudPresetName } from './presets'
 
 /** Options of {@link cloudLayersFromMETAR}. */
@@ -142,6 +142,7 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
 export function cloudLayersFromMETAR(report: string, options: METAROptions = {}): CloudLayers {
   checkOptions(WHERE, options, 'stationElevation', 'count')
   const { stationElevation = 0, count = 1 } = options
+  checkCount(WHERE, count)
   checkRange(WHERE, 'stationElevation', stationElevation, -500, 9000)
   if (typeof report !== 'string') fail(WHERE, 'report must be a string', report)
   const groups: Group[] = []

@@ -1,6 +1,6 @@
 import type { CloudLayerParameters } from './CloudLayer'
 import { named } from '../check'
-import { CloudLayers } from './CloudLayers'
+import { checkCount, CloudLayers } from './CloudLayers'
 
 type Layers = readonly Partial<CloudLayerParameters>[]
 
@@ -126,8 +126,9 @@ export const cloudPresetNames = Object.keys(presets) as readonly CloudPresetName
  * - `mixed`: cumulus, altocumulus and cirrus above each other
  *
  * @param count - Least number of layers, to take other presets by `copy` later.
- * @throws If there is no preset of this name.
+ * @throws If there is no preset of this name, or the count is none.
  */
 export function cloudPreset(name: CloudPresetName, count = 1): CloudLayers {
+  checkCount('cloudPreset', count)
   return new CloudLayers(named('cloudPreset', 'name', presets, name), count)
 }

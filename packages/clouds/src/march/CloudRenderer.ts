@@ -1,7 +1,7 @@
-import { FragmentPass, tableTarget } from '@welkin/atmosphere'
+import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
 import { FloatType, NearestFilter, UnsignedByteType } from 'three'
 import type { RenderTarget, Texture, Vector3 } from 'three'
-import { Fn, If, texture, uv, vec4 } from 'three/tsl'
+import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { WeatherMap } from '../density/WeatherMap'
 import type { ShadingContext } from '../light/tsl/shadingContext'
@@ -15,14 +15,7 @@ import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
 import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type FrameInputs } from './tsl/viewRay'
-import {
-  outputs,
-  type Float,
-  type LevelTexture,
-  type Outputs,
-  type Vec2,
-  type Vec4
-} from '../tsl-types'
+import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
@@ -52,14 +45,16 @@ function marchedTarget(): RenderTarget {
   return target
 }
 
-function texturesOf({ textures }: RenderTarget): CloudTargets {
-  const [light, distances] = textures.map(one => texture(one) as unknown as LevelTexture<Vec2>)
+/** A texture node whose `value` may be another one later. */
+type ChangingTexture = LevelTexture<Vec2> & { value: Texture }
+
+const textureNode = (value: Texture): ChangingTexture =>
+  texture(value) as unknown as ChangingTexture
+
+function texturesOf({ textures }: RenderTarget): Record<keyof CloudTargets, ChangingTexture> {
+  const [light, distances] = textures.map(textureNode)
   return { light, distances }
 }
-
-/** A texture as a node whose `value` may be another one later. */
-const textureNode = (value: Texture): LevelTexture<Vec2> & { value: Texture } =>
-  texture(value) as unknown as LevelTexture<Vec2> & { value: Texture }
 
 /** Pixel of each block that is marched, of a picture with one texel for each block. */
 function marchedPixel({ viewRays }: CloudScene): { at: Vec2; noise: Float } {
@@ -73,44 +68,38 @@ function marchedPixel({ viewRays }: CloudScene): { at: Vec2; noise: Float } {
 /** Marches one pixel of each block: {@link MarchedTargets}. */
 function marchPixels(scene: CloudScene): Outputs {
   const { viewRays } = scene
-  return outputs<[Vec4, Vec4, Vec4]>(3, ([distances, shares, ray]) =>
-    Fn(() => {
-      const { at, noise } = marchedPixel(scene)
-      const viewRay = viewRayAt(viewRays, at)
-      const end = viewRayEnd(viewRays, at, viewRay)
-      const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise })
-      const { points, transmittance, distance, steps } = marched
-      distances.assign(points.distances)
-      shares.assign(points.shares)
-      ray.assign(vec4(encodeDistance(distance), encodeDistance(end), transmittance, steps.div(256)))
-      return vec4(0)
-    })()
-  )
+  return outputs<[Vec4, Vec4, Vec4]>(3, ([distances, shares, ray]) => {
+    const { at, noise } = marchedPixel(scene)
+    const viewRay = viewRayAt(viewRays, at)
+    const end = viewRayEnd(viewRays, at, viewRay)
+    const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise })
+    const { points, transmittance, distance, steps } = marched
+    distances.assign(points.distances)
+    shares.assign(points.shares)
+    ray.assign(vec4(encodeDistance(distance), encodeDistance(end), transmittance, steps.div(256)))
+  })
 }
 
 /** Shades what was marched: light with the air in front of it, and its distances. */
 function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
   const { field, viewRays } = scene
-  return outputs<[Vec4, Vec4]>(2, ([color, distances]) =>
-    Fn(() => {
-      const { at, noise } = marchedPixel(scene)
-      const here = uv() as unknown as Vec2
-      const ray = marched.ray.sample(here).level(0).toConst() as Vec4
-      color.assign(vec4(0, 0, 0, 1))
-      distances.assign(vec4(ray.xy, 0, ray.w))
-      If(ray.z.lessThan(1), () => {
-        const points = {
-          distances: marched.distances.sample(here).level(0).toConst() as Vec4,
-          shares: marched.shares.sample(here).level(0).toConst() as Vec4
-        }
-        const { direction, directionView } = viewRayAt(viewRays, at)
-        const radiance = shadePoints(scene, direction, points, noise)
-        const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
-        color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
-      })
-      return vec4(0)
-    })()
-  )
+  return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
+    const { at, noise } = marchedPixel(scene)
+    const here = uv() as unknown as Vec2
+    const ray = marched.ray.sample(here).level(0).toConst() as Vec4
+    color.assign(vec4(0, 0, 0, 1))
+    distances.assign(vec4(ray.xy, 0, ray.w))
+    If(ray.z.lessThan(1), () => {
+      const points = {
+        distances: marched.distances.sample(here).level(0).toConst() as Vec4,
+        shares: marched.shares.sample(here).level(0).toConst() as Vec4
+      }
+      const { direction, directionView } = viewRayAt(viewRays, at)
+      const radiance = shadePoints(scene, direction, points, noise)
+      const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
+      color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
+    })
+  })
 }
 
 /**
@@ -134,10 +123,7 @@ export class CloudRenderer {
   /** Light and distances of the pixels that this frame has marched. */
   readonly marched = texturesOf(this.#shadedTarget)
   /** Accumulated light and distances of the latest frame: the nodes stay, their textures change. */
-  readonly accumulated = {
-    light: textureNode(this.#accumulatedTargets[0].textures[0]),
-    distances: textureNode(this.#accumulatedTargets[0].textures[1])
-  }
+  readonly accumulated = texturesOf(this.#accumulatedTargets[0])
   /** Index of the accumulated target that was drawn last. */
   #current = 0
 

@@ -112,6 +112,7 @@ export class CloudsNode extends AtmosphereNode {
     layers: CloudLayers,
     options: CloudsOptions = {}
   ) {
+    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     super(atmosphere, camera)
     checkOptions('CloudsNode', options, 'worldMap', 'noise', 'light', ...SETTINGS)
     const { worldMap, noise, light, ...settings } = options
@@ -119,7 +120,6 @@ export class CloudsNode extends AtmosphereNode {
     if (!isDepth(depthNode)) {
       fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
     }
-    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     if (light !== undefined && !(light instanceof CloudLightTable)) {
       fail('CloudsNode', 'light must be a CloudLightTable', light)
     }
@@ -254,9 +254,9 @@ export class CloudsNode extends AtmosphereNode {
     const wasReady = this.isReady
     // Clouds that appear have no history.
     if (field.bake(renderer, this.#noiseSlices) && !wasReady) this.#frame.reset()
-    // Light is there when the clouds are; later it may follow its changes slowly.
+    // The light table is complete when clouds appear; later changes take a step a frame.
     light.update(this.isReady && !light.isReady ? Infinity : 1)
-    // What is drawn here and now reads the view too.
+    // The passes below are drawn now, and read the view's uniforms.
     const view = this.view.update(frame)
     if (view === undefined) return
     const { width, height } = sizeOf(renderer)

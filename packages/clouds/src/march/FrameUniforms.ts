@@ -64,7 +64,7 @@ const LIGHT_CUT = 4
 /** `luminanceScale` by day, up to which light is raised by night [1/(cd/m²)]. */
 const DAYLIGHT_SCALE = 1e-4
 
-/** Greatest square of a move that counts as none, of the camera [m²] and of the sun's direction. */
+/** Squared displacement below which the camera [m²] and the sun's direction count as still. */
 const NO_MOVE = 1e-12
 
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
@@ -74,7 +74,7 @@ const isSame = (values: readonly number[], before: readonly number[]): boolean =
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
   slot < 3 || slot > 18 ? [x, y, z, w] : []
 
-/** Numbers of all that shapes and lights the clouds. */
+/** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
 function cloudInputs({ values, night, ambient }: CloudField, lightVersion: number): number[] {
   const { moonDirection, moonIrradiance, skyRadiance } = night
   const light = [moonDirection, moonIrradiance, skyRadiance]
@@ -129,7 +129,7 @@ export class FrameUniforms {
   readonly maxSamples = number(1)
   /** Half width of the variance clip [standard deviations]. */
   readonly clipDeviations = number(1)
-  /** Stored light per light, and the factor that brings history's light to it. */
+  /** Gain of stored light, and its ratio to the last frame's, by which history is multiplied. */
   readonly gain = number(1)
   readonly gainChange = number(1)
   /** Stored light per luminance of the last frame; 0 before the first. */
@@ -230,7 +230,7 @@ export class FrameUniforms {
    */
   #setReprojection(view: AtmosphereView, field: CloudField): boolean {
     const { elements: e } = this.projectionInverse.value
-    // Two places on a ray are two depths: any between near and far gives its direction.
+    // Any depth between near and far gives the direction of a pixel's ray.
     const [x, y, z] = [0, 1, 2].map(row => 0.5 * e[8 + row] + e[12 + row])
     const rays = this.rays.value.set(e[0], e[4], x, e[1], e[5], y, e[2], e[6], z)
     let isAtRest = true

@@ -23,16 +23,16 @@ export class CascadeState {
   /** The plane's normal over its cosine to the light. */
   readonly normal = new Vector3()
   readonly across = new Vector3()
-  /** Measures the plane's second axis along rays of light. */
+  /** Vector whose dot product with a point is the coordinate along the second axis of where its ray of light meets the plane. */
   readonly measure = new Vector3()
   readonly along = new Vector3()
   /** Coordinates of the middle [m]. */
   readonly center = { u: 0, v: 0 }
   /** Rotations of the layers' noise by the wind. */
   readonly rotations: readonly Quaternion[]
-  /** All else that it was drawn from. */
+  /** Other inputs of its drawing, such as layers' parameters: it is stale when one changes. */
   inputs: readonly unknown[] = []
-  /** Greater than those of what was drawn before. */
+  /** Count of drawings: the cascade with the least was drawn longest ago. */
   order = 0
 
   constructor(atlasTile: number, rotations: readonly Quaternion[]) {
@@ -66,7 +66,7 @@ export class CascadeState {
     this.anchor.copy(anchor)
     this.halfWidth = halfWidth
     this.rotations.forEach((rotation, i) => rotation.copy(rotations[i]))
-    // Level, but leant towards a low light.
+    // The plane is level, but tilted towards a low light.
     _normal.copy(anchor).normalize()
     across.crossVectors(light, _normal)
     if (across.lengthSq() < 1e-12) across.set(_normal.z, _normal.x, _normal.y).cross(_normal)

@@ -5,7 +5,7 @@ import { DISTANCE_STEP, unpack } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
 
-/** Steps of kept distances by which a marched one near them may differ. */
+/** Greatest difference of a marched distance from history's [steps of packed distances]. */
 const NEARBY = 0.6
 
 /** Clouds as light shafts see them: drawn over the air, half opaque. */
@@ -26,13 +26,15 @@ export class CloudForeground implements ForegroundLayer {
     const { accumulated, marched, frame } = this.#clouds.passes
     const read = ({ distances }: CloudTargets, place: Vec2): Vec4 =>
       distances.sample(place).level(0).toConst()
-    const kept = unpack(read(accumulated, at)).x
-    // Those kept have steps, which would show in haze; those of this frame have not, but are of pixels nearby.
+    const accumulatedDistance = unpack(read(accumulated, at)).x
+    // History's distances are bytes, whose steps would show in haze; marched ones are smooth, but of pixels nearby.
     const block = at.mul(frame.size).sub(frame.jitter).sub(0.5).div(frame.block).add(0.5)
-    const fine = read(marched, block.div(frame.marchedSize).toConst()).x
-    const within = NEARBY * DISTANCE_STEP
+    const marchedDistance = read(marched, block.div(frame.marchedSize).toConst()).x
+    const tolerance = NEARBY * DISTANCE_STEP
+    const least = accumulatedDistance.sub(tolerance)
+    const most = accumulatedDistance.add(tolerance)
     return {
-      distance: exp2(fine.clamp(kept.sub(within), kept.add(within))).toConst(),
+      distance: exp2(marchedDistance.clamp(least, most)).toConst(),
       transmittance: accumulated.light.sample(at).level(0).a.toConst()
     }
   }

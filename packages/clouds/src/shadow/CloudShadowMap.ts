@@ -241,11 +241,11 @@ export class CloudShadowMap {
     return Math.max(Math.abs(u), Math.abs(v))
   }
 
-  /** True for a cascade that is of use until it is drawn anew. */
+  /** True if a cascade may be read until it is drawn anew: it is about the camera still, and in nearly the same light. */
   #fits(state: CascadeState, halfWidth: number): boolean {
     return (
       state.halfWidth === halfWidth &&
-      // Until the noise is there, so is no cloud.
+      // Drawn before the noise was ready, it has no clouds.
       state.inputs[0] === this.#inputs[0] &&
       state.light.distanceTo(this.#light) < LIGHT_JUMP &&
       this.#distance(state) < PLACE_JUMP * halfWidth

@@ -3,6 +3,7 @@ import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import { checkSource, viewNodes } from '@welkin/atmosphere'
 import type { LightSource, ViewNodes } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
 import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
@@ -52,7 +53,7 @@ export class CloudShadowNode extends Node<'float'> {
 
   /**
    * @param source - Source of the light that they take; left out, the sun.
-   * @throws If the clouds are missing, or the source is none.
+   * @throws If the clouds are missing, or another argument is of the wrong kind.
    */
   constructor(
     clouds: CloudsNode,
@@ -61,6 +62,9 @@ export class CloudShadowNode extends Node<'float'> {
   ) {
     super('float')
     checkClouds('CloudShadowNode', clouds)
+    if (shadowNode !== null && !shadowNode.isNode) {
+      fail('CloudShadowNode', 'shadowNode must be a node or null', shadowNode)
+    }
     checkSource('CloudShadowNode', 'source', source)
     this.clouds = clouds
     this.shadowNode = shadowNode

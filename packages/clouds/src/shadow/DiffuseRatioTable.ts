@@ -31,7 +31,7 @@ export class DiffuseRatioTable {
     this.#pass = new FragmentPass('Welkin.CloudDiffuse', ratio())
   }
 
-  /** Draws it: layers and air may have changed. */
+  /** Draws the table, each frame: layers and air may have changed. */
   update(renderer: Renderer): void {
     const { target } = this.#shadows
     for (const part of [target.viewport, target.scissor])
@@ -40,11 +40,11 @@ export class DiffuseRatioTable {
     this.#pass.render(renderer, target)
   }
 
-  /** Reads it, wherever the control flow is. */
+  /** Reads the table at an explicit level, so inside of branches, too. */
   sample(altitude: Float, cosLight: Float): Vec4 {
     const { nodes, target, field } = this.#shadows
     const side = cosLight.sign().mul(cosLight.abs().sqrt()).mul(0.5).add(0.5)
-    // Before the first column lies a cascade.
+    // Not before the middle of the first column: bilinear reads would mix in the cascade beside it.
     const column = side
       .max(0.5 / COLUMNS)
       .sub(1)

@@ -78,7 +78,7 @@ describe('CloudLayers', () => {
     expect(() => cloudPreset('cirrus', 2).copy(cloudPreset('mixed'))).toThrow(
       'CloudLayers: layers must be 1 to 2, got 3'
     )
-    expect(() => cloudPreset('cirrus', 5)).toThrow('CloudLayers: layers must be 1 to 4, got 5')
+    expect(() => cloudPreset('cirrus', 5)).toThrow('cloudPreset: count must be 0 to 4, got 5')
     expect(new CloudLayers([{}, {}, {}], 2).length).toBe(3)
   })
 })

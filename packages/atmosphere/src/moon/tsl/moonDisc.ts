@@ -32,7 +32,7 @@ export interface MoonDisc {
  * @param map - `moonGround` by {@link moonMapUV}.
  * @param direction - View direction, mapped space, unit length.
  * @param pixel - Angle that a pixel covers [rad].
- * @see Hapke 2012, §8.6; Buratti, Hillier & Wang 1996, Icarus 124, 490
+ * @see Hapke 2012, §8.6
  */
 export function moonDisc(
   moon: MoonDisc,

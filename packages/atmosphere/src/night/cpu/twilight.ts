@@ -8,8 +8,8 @@ export const NIGHT_ILLUMINANCE = 8.5e-4
  * Fit of log₁₀ of illuminance: upper bound of a range of the sun's elevations [°], and coefficients of
  * the powers of elevation/90°.
  *
- * @see Seidelmann (ed.) 1992, Explanatory Supplement to the Astronomical Almanac, table 9.32.1;
- *   Janiczek & DeYoung 1987, US Naval Observatory Circular 171
+ * @see Seidelmann (ed.) 1992, Explanatory Supplement to the Astronomical Almanac, table 9.32.1,
+ *   after Janiczek & DeYoung 1987, US Naval Observatory Circular 171
  */
 const ALMANAC_RANGES = [
   [90, 3.74, 3.97, -4.07, 1.47],

@@ -1,6 +1,6 @@
-import { Fn, If, float, int, outputStruct, property, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, int, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import type { Outputs } from '../../tables/FragmentPass'
+import { outputs, type Outputs } from '../../tables/FragmentPass'
 import type { Texels } from '../../tables/TableAtlas'
 import {
   DEPTH_SIZE,
@@ -23,24 +23,6 @@ import { rowAndColumn } from '../../tables/tsl/texels'
 const [AZIMUTHS, ELEVATIONS, DISTANCES] = VOLUME_SIZE
 const [TILE_COLUMNS, TILE_ROWS] = VOLUME_TILES
 const [DEPTH_ELEVATIONS, DEPTH_DISTANCES] = DEPTH_SIZE
-
-/** Values for the two attachments of a target. */
-interface Parts {
-  molecular: Vec4
-  aerosol: Vec4
-}
-
-function twoOutputs(body: () => Parts): Outputs {
-  const first = property('vec4') as unknown as Vec4
-  const second = property('vec4') as unknown as Vec4
-  const assign = Fn(() => {
-    const { molecular, aerosol } = body()
-    first.assign(molecular)
-    second.assign(aerosol)
-    return vec4(0)
-  })
-  return { color: assign(), output: outputStruct(first, second) }
-}
 
 /** Light that half floats hold. */
 const MOST_HALF = 65_000
@@ -116,7 +98,7 @@ function atlasPosition(texel: Vec2) {
  * @param atlas - Has the table of {@link bakeDepth} for the same viewpoint.
  */
 export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Outputs {
-  return twoOutputs(() => {
+  return outputs<[Vec4, Vec4]>(2, ([molecular, aerosol]) => {
     const { column, row, slice } = atlasPosition(uv())
     const { cosView, hitsGround, position } = elevationCosine(viewpoint, row, ELEVATIONS)
     const limits = rayLimits(viewpoint, cosView, hitsGround)
@@ -128,17 +110,16 @@ export function bakeSegments(air: Air, viewpoint: Viewpoint, atlas: Texels): Out
     const reached = slice.div(DISTANCES) as Float
     const before = meanExtinction(atlas, viewpoint, { elevation: position, hitsGround }, reached)
     const through = before.mul(start.div(EXTINCTION_SCALE)).negate().exp().toConst()
-    const molecular = vec4(0).toVar()
-    const aerosol = vec4(0).toVar()
+    molecular.assign(vec4(0))
+    aerosol.assign(vec4(0))
     If(slice.lessThan(SKY_TILE), () => {
       const light = scatterSegment(air, ray, start, end, { direct: true, diffuse: true })
       molecular.assign(light.molecular.mul(through))
       aerosol.assign(light.aerosol.mul(through))
     }).ElseIf(hitsGround, () => {
-      const foot = pointAlong(air, ray, limits.length)
-      molecular.assign(groundRadiance(air, foot.cosLight).mul(through).mul(RADIANCE_SCALE))
+      const { cosLight } = pointAlong(air, ray, limits.length)
+      molecular.assign(groundRadiance(air, cosLight).mul(through).mul(RADIANCE_SCALE))
     })
-    return { molecular: molecular, aerosol: aerosol }
   })
 }
 

@@ -27,7 +27,7 @@ export function viewpointScalars(
   const { bottomRadius, topRadius } = parameters
   const thickness = topRadius - bottomRadius
   const h = Math.max(altitude, LOWEST_VIEWPOINT)
-  // From afar squares of distances cancel in shaders: all must be of the radius that these add up.
+  // From afar, squares of distances cancel in shaders: all scalars are of the radius as float32 adds it up.
   const isFar = h > bottomRadius
   const radius = isFar ? Math.fround(bottomRadius + Math.fround(h)) : bottomRadius + h
   const height = isFar ? radius - bottomRadius : h

@@ -5,7 +5,7 @@ export type Matrix = number[][]
 export const dot = (a: readonly number[], b: readonly number[]): number =>
   a.reduce((sum, value, i) => sum + value * b[i], 0)
 
-/** The matrix of this term of row and column, of as many rows and columns as `range` has numbers. */
+/** Square matrix with as many rows as `range` has numbers, of elements `term(row, column)`. */
 export const matrix = (
   range: readonly unknown[],
   term: (row: number, column: number) => number

@@ -28,8 +28,9 @@ export interface CloudSourceNodes extends LeakNodes {
  *
  * Twin: test/twins/cloudLight.ts
  *
- * @see Nakajima & Tanaka 1988, "Algorithms for radiative intensity calculations in moderately thick
- *   atmospheres using a truncation approximation" (TMS)
+ * @see Stamnes, Tsay, Wiscombe & Laszlo 2000, "DISORT, a general-purpose Fortran program for
+ *   discrete-ordinate-method radiative transfer", §3.6 (TMS), after Nakajima & Tanaka 1988, "Algorithms for radiative
+ *   intensity calculations in moderately thick atmospheres using a truncation approximation"
  */
 export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float {
   const { depthToLight, depthThrough, depthToCamera, layered, cosViewLight } = sample

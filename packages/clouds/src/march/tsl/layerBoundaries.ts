@@ -66,7 +66,7 @@ export interface LayersAt {
   layered: Float
   /** Greatest extinction of a layer [1/m]. */
   density: Float
-  /** All of them, and perhaps others between. */
+  /** Range of indices that has all of them, and perhaps others between. */
   range: LayerRange
 }
 

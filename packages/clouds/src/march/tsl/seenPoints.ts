@@ -38,12 +38,13 @@ export interface SeenState {
   readonly transmittance: Variable<Float>
   readonly distances: Variable<Vec4>
   readonly shares: Variable<Vec4>
-  /** Index of the stratum that what comes next belongs to. */
+  /** Index of the stratum that the ray is in. */
   readonly index: Variable<Float>
-  /** Share and sum of distances by share of the cloud that the ray is in, within this stratum; and the most. */
+  /** The present cloud's part of the stratum: its share, and the sum of its distances by share. */
   readonly run: Variable<Vec2>
+  /** Greatest share of a cloud in the stratum so far. */
   readonly most: Variable<Float>
-  /** Distance of the latest cloud [m]. */
+  /** Distance of the last sample that was added [m]. */
   readonly latest: Variable<Float>
   /** Sum of distances by opacity [m]. */
   readonly weightedDistance: Variable<Float>

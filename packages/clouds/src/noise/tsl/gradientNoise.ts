@@ -13,7 +13,7 @@ import {
 import { layout, loop, type Float, type Vec3 } from '../../tsl-types'
 import { ONE, cellOf, digitsOf, fromBits, hashBits, hashCell, wrapped, type UInt } from './cellHash'
 
-/** Weights of a corner along each axis, from those of the corner beyond. */
+/** Weights of a cell's corner along each axis: `fade` where `offset` is 1, 1 − `fade` where it is 0. */
 const cornerWeights = (offset: Vec3, fade: Vec3): Vec3 =>
   offset.mul(fade.mul(2).sub(1)).add(fade.oneMinus())
 

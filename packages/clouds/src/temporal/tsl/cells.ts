@@ -1,14 +1,7 @@
-import { Fn, If, float, uv, vec2, vec4 } from 'three/tsl'
+import { If, float, uv, vec2, vec4 } from 'three/tsl'
+import { outputs, type Outputs } from '@welkin/atmosphere'
 import type { CloudField } from '../../density/CloudField'
-import {
-  outputs,
-  type Bool,
-  type Float,
-  type Int,
-  type Outputs,
-  type Vec2,
-  type Vec4
-} from '../../tsl-types'
+import type { Bool, Float, Int, Vec2, Vec4 } from '../../tsl-types'
 import { forLayers, layerAt } from '../../density/tsl/layer'
 import { viewRayAt, type FrameInputs } from '../../march/tsl/viewRay'
 import { SAME_DISTANCE } from './depthTest'
@@ -77,49 +70,46 @@ export function gatherCells(
   marched: CloudTargets
 ): Outputs {
   const { frame } = viewRays
-  return outputs<[Vec4, Vec4]>(2, ([light, distances]) =>
-    Fn(() => {
-      const corner = uv().mul(frame.marchedSize.add(1)).floor().sub(1).toConst() as unknown as Vec2
-      /** Sums of brightness and transmittance, and of their squares. */
-      const first = vec2(0).toVar() as Vec2
-      const second = vec2(0).toVar() as Vec2
-      /** Sums of weights, and of weighted distances. */
-      const seen = vec2(0).toVar() as Vec2
-      const least = float(1).toVar()
-      /** Farthest cloud; nearest and farthest end. */
-      const farthest = float(0).toVar()
-      const ends = vec2(NEVER, 0).toVar() as Vec2
-      for (const step of CORNERS) {
-        const index = corner.add(vec2(...step)).clamp(vec2(0), frame.marchedSize.sub(1))
-        const at = index.add(0.5).div(frame.marchedSize).toConst() as Vec2
-        const color = marched.light.sample(at).level(0).toConst() as Vec4
-        const apart = marched.distances.sample(at).level(0).toConst() as Vec4
-        const value = vec2(brightness(color), color.w).toConst() as Vec2
-        first.addAssign(value)
-        second.addAssign(value.mul(value))
-        seen.addAssign(vec2(1, apart.x).mul(color.w.oneMinus().add(1e-3)))
-        least.assign(least.min(color.w))
-        farthest.assign(farthest.max(apart.x))
-        ends.assign(vec2(ends.x.min(apart.y), ends.y.max(apart.y)))
-      }
-      const count = CORNERS.length
-      const mean = first.div(count).toConst() as Vec2
-      const deviation = second.div(count).sub(mean.mul(mean)).max(0).sqrt()
-      const distance = seen.y.div(seen.x).toConst() as Float
-      const transmittance = least.greaterThan(CLEAR).select(ALL_CLEAR, mean.y.min(NOT_CLEAR))
-      light.assign(vec4(mean.x, transmittance, deviation))
-      const middle = corner.add(0.5).mul(frame.block).add(frame.jitter).add(0.5).div(frame.size)
-      const { direction } = viewRayAt(viewRays, middle.toConst())
-      const { altitude } = field.view.localCoordinates(direction.mul(distance.exp2()))
-      distances.assign(
-        vec4(
-          distance,
-          ends.x.greaterThan(farthest).select(farthest, NEVER),
-          ends.y.sub(ends.x).lessThan(SAME_DISTANCE).select(ends.x.add(ends.y).mul(0.5), NOTHING),
-          nearestLayer(field, altitude)
-        )
+  return outputs<[Vec4, Vec4]>(2, ([light, distances]) => {
+    const corner = uv().mul(frame.marchedSize.add(1)).floor().sub(1).toConst() as unknown as Vec2
+    /** Sums of brightness and transmittance, and of their squares. */
+    const first = vec2(0).toVar() as Vec2
+    const second = vec2(0).toVar() as Vec2
+    /** Sums of weights, and of weighted distances. */
+    const seen = vec2(0).toVar() as Vec2
+    const least = float(1).toVar()
+    /** Farthest cloud; nearest and farthest end. */
+    const farthest = float(0).toVar()
+    const ends = vec2(NEVER, 0).toVar() as Vec2
+    for (const step of CORNERS) {
+      const index = corner.add(vec2(...step)).clamp(vec2(0), frame.marchedSize.sub(1))
+      const at = index.add(0.5).div(frame.marchedSize).toConst() as Vec2
+      const color = marched.light.sample(at).level(0).toConst() as Vec4
+      const apart = marched.distances.sample(at).level(0).toConst() as Vec4
+      const value = vec2(brightness(color), color.w).toConst() as Vec2
+      first.addAssign(value)
+      second.addAssign(value.mul(value))
+      seen.addAssign(vec2(1, apart.x).mul(color.w.oneMinus().add(1e-3)))
+      least.assign(least.min(color.w))
+      farthest.assign(farthest.max(apart.x))
+      ends.assign(vec2(ends.x.min(apart.y), ends.y.max(apart.y)))
+    }
+    const count = CORNERS.length
+    const mean = first.div(count).toConst() as Vec2
+    const deviation = second.div(count).sub(mean.mul(mean)).max(0).sqrt()
+    const distance = seen.y.div(seen.x).toConst() as Float
+    const transmittance = least.greaterThan(CLEAR).select(ALL_CLEAR, mean.y.min(NOT_CLEAR))
+    light.assign(vec4(mean.x, transmittance, deviation))
+    const middle = corner.add(0.5).mul(frame.block).add(frame.jitter).add(0.5).div(frame.size)
+    const { direction } = viewRayAt(viewRays, middle.toConst())
+    const { altitude } = field.view.localCoordinates(direction.mul(distance.exp2()))
+    distances.assign(
+      vec4(
+        distance,
+        ends.x.greaterThan(farthest).select(farthest, NEVER),
+        ends.y.sub(ends.x).lessThan(SAME_DISTANCE).select(ends.x.add(ends.y).mul(0.5), NOTHING),
+        nearestLayer(field, altitude)
       )
-      return vec4(0)
-    })()
-  )
+    )
+  })
 }

@@ -1,5 +1,6 @@
-import { Fn, If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
-import { outputs, type Float, type Outputs, type Vec2, type Vec4 } from '../../tsl-types'
+import { If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
+import { outputs, type Outputs } from '@welkin/atmosphere'
+import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import { viewRayAt, viewRayEnd, type FrameInputs } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
@@ -80,44 +81,39 @@ export function upscale(
   history: CloudTargets
 ): Outputs {
   const { frame } = viewRays
-  return outputs<[Vec4, Vec4]>(2, ([light, distances]) =>
-    Fn(() => {
-      const pixel = uv().mul(frame.size).floor().toConst() as unknown as Vec2
-      const middle = pixel.add(0.5).div(frame.size).toConst() as Vec2
-      const where = cellPosition(viewRays, pixel)
-      const cellAt = where.corner.add(1.5).div(frame.marchedSize.add(1)).toConst() as Vec2
-      const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
-      const before = vec4(0).toVar() as Vec4
-      If(isClear(cellLight).and(frame.hasHistory.greaterThan(0)), () => {
-        before.assign(unpack(history.distances.sample(middle).level(0)))
+  return outputs<[Vec4, Vec4]>(2, ([light, distances]) => {
+    const pixel = uv().mul(frame.size).floor().toConst() as unknown as Vec2
+    const middle = pixel.add(0.5).div(frame.size).toConst() as Vec2
+    const where = cellPosition(viewRays, pixel)
+    const cellAt = where.corner.add(1.5).div(frame.marchedSize.add(1)).toConst() as Vec2
+    const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
+    const before = vec4(0).toVar() as Vec4
+    If(isClear(cellLight).and(frame.hasHistory.greaterThan(0)), () => {
+      before.assign(unpack(history.distances.sample(middle).level(0)))
+    })
+    // Clear around and clear before: one more sample of nothing.
+    const clearSamples = before.z.sub(frame.block.mul(frame.block).reciprocal())
+    light.assign(vec4(0, 0, 0, 1))
+    distances.assign(pack(float(FARTHEST), before.y, clearSamples.max(frame.maxSamples.negate())))
+    If(before.z.greaterThanEqual(0), () => {
+      const cell: Cell = {
+        light: cellLight,
+        distances: cells.distances.sample(cellAt).level(0).toConst()
+      }
+      const ray = viewRayAt(viewRays, middle)
+      const missesGround = cell.distances.z.greaterThanEqual(FARTHEST)
+      const end = encodeDistance(viewRayEnd(viewRays, middle, ray, missesGround)).toConst() as Float
+      const now = estimate(viewRays, marched, where, cell, end)
+      const result = now.light.toVar() as Vec4
+      const samples = now.weight.toVar()
+      If(frame.hasHistory.greaterThan(0), () => {
+        const origin = frame.originArray.element(cell.distances.w.toInt()).xyz
+        const last = reprojectHistory(viewRays, history, pixel, ray, end, now.distance, origin)
+        accumulate({ light: result, samples }, viewRays, now, last)
       })
-      // Clear around and clear before: one more sample of nothing.
-      const clearSamples = before.z.sub(frame.block.mul(frame.block).reciprocal())
-      light.assign(vec4(0, 0, 0, 1))
-      distances.assign(pack(float(FARTHEST), before.y, clearSamples.max(frame.maxSamples.negate())))
-      If(before.z.greaterThanEqual(0), () => {
-        const cell: Cell = {
-          light: cellLight,
-          distances: cells.distances.sample(cellAt).level(0).toConst()
-        }
-        const ray = viewRayAt(viewRays, middle)
-        const missesGround = cell.distances.z.greaterThanEqual(FARTHEST)
-        const end = encodeDistance(
-          viewRayEnd(viewRays, middle, ray, missesGround)
-        ).toConst() as Float
-        const now = estimate(viewRays, marched, where, cell, end)
-        const result = now.light.toVar() as Vec4
-        const samples = now.weight.toVar()
-        If(frame.hasHistory.greaterThan(0), () => {
-          const origin = frame.originArray.element(cell.distances.w.toInt()).xyz
-          const last = reprojectHistory(viewRays, history, pixel, ray, end, now.distance, origin)
-          accumulate({ light: result, samples }, viewRays, now, last)
-        })
-        const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
-        light.assign(toHalf(result.max(0), interleavedNoise(pixel, frame.noiseShift)))
-        distances.assign(pack(now.distance, end, signed))
-      })
-      return vec4(0)
-    })()
-  )
+      const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
+      light.assign(toHalf(result.max(0), interleavedNoise(pixel, frame.noiseShift)))
+      distances.assign(pack(now.distance, end, signed))
+    })
+  })
 }
