@@ -49,7 +49,7 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
 }
 
 /** A still marches every pixel in every frame, coarsely: a few frames converge. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 4 }
+const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 6 }
 
 const qualityOf = ({ frame, quality }: CloudsArgs): CloudQuality | CloudQualityName =>
   frame ? STILL.quality : quality

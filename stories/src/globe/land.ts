@@ -133,7 +133,8 @@ export async function createLand<Args extends RendererArgs>(
       for (let i = 0; current.frame && !isOver() && i < warmUpFrames; i++) {
         draw()
         // Passes draw their scene once in an animation frame.
-        await new Promise(requestAnimationFrame)
+        const isLast = i >= warmUpFrames - WARM_UP_FRAMES
+        if (isLast) await new Promise(requestAnimationFrame)
       }
       if (!isOver()) isLoaded = true
       // Whoever awaits a load that another has cut short awaits that one.
