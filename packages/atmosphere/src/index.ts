@@ -19,6 +19,8 @@ export type { AirStyleOptions } from './sky/AirStyle'
 export { SkyVelocityNode, skyVelocity } from './sky/SkyVelocityNode'
 export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions, LightShaftsQuality } from './shafts/LightShafts'
+export { HeightFieldShadow, heightFieldShadow } from './shafts/HeightFieldShadow'
+export type { HeightField, HeightFieldShadowOptions } from './shafts/HeightFieldShadow'
 export type {
   AirOccluder,
   AirPoint,
