@@ -173,7 +173,7 @@ export const WorldClouds: Story = {
     heading: 235,
     pitch: -28
   },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Cloud cover of a real day, from 12,000 km. */

@@ -27,8 +27,7 @@ import {
   drawSettled,
   EXPOSURE_FRAMES,
   fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
+  frameClock
 } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -139,7 +138,7 @@ export async function createDay(
     render: draw,
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
-      if (current.frame) ready = drawSettled(WARM_UP_FRAMES + EXPOSURE_FRAMES, draw, () => exposure)
+      if (current.frame) ready = drawSettled(EXPOSURE_FRAMES, draw, () => exposure)
     },
     update(changes) {
       apply(changes)

@@ -64,8 +64,7 @@ export const Minute: Story = { name: 'In a minute' }
 
 /** Half an hour after sunset. */
 export const Dusk: Story = {
-  args: { hour: 19.4, paused: true },
-  tags: ['screenshot', 'webgpu-only']
+  args: { hour: 19.4, paused: true }
 }
 
 /** The moon, full the day before, has risen. */

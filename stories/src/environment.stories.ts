@@ -50,7 +50,7 @@ export default meta
 type Story = StoryObj<EnvironmentArgs>
 
 /** Metals from polished to matt, paint, gold, glass and water. */
-export const Day: Story = { tags: ['screenshot', 'webgpu-only'] }
+export const Day: Story = {}
 
 /** The sun stands low ahead: its glow in the sky, in the water and in the metals. */
 export const Sunset: Story = {

@@ -70,7 +70,7 @@ export const Inside: Story = {
 }
 
 /** Valley by the post effect. */
-export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }
+export const Post: Story = { args: { path: 'post' } }
 
 /** Ridges that stand out of the fog. */
 export const FromAbove: Story = { args: { view: 'high', hour: 14, exposure: 0 } }

@@ -55,26 +55,26 @@ export const Street: Story = { tags: ['screenshot'] }
 export const Rooftops: Story = {
   name: '1 km',
   args: { place: 'rooftops', hour: 6.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const Coast: Story = {
   name: '10 km',
   args: { place: 'coast', hour: 7 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const Orbit: Story = {
   name: '400 km',
   args: { place: 'orbit', hour: 5, exposure: -1 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The terminator crosses the Indian Ocean. */
 export const WholeGlobe: Story = {
   name: '20,000 km',
   args: { place: 'globe', hour: 1, exposure: -1 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Eye height, between ridges of real heights. */
@@ -103,5 +103,5 @@ export const NightOrbit: Story = {
 
 export const NightGlobe: Story = {
   name: 'By night: 20,000 km, with clouds',
-  args: { place: 'globe', hour: 15, clouds: true }
+  args: { place: 'globe', hour: 15, exposure: 1, clouds: true }
 }

@@ -94,7 +94,7 @@ export interface LightShaftsArgs extends RendererArgs {
 }
 
 /** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 6 }
+const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 3 }
 
 /** Time of the clouds' drift: there are gaps in the views then [s]. */
 const TIME = 300

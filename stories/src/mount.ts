@@ -146,7 +146,7 @@ function start<Args extends RendererArgs>(
     handle = created
     handle.onArgs = changes => void showArgs(id, changes)
     window.welkinScene = created as unknown as SceneHandle<never>
-    handle.update(latest)
+    if (latest !== args) handle.update(latest)
     const { explorer } = handle
     if (explorer !== undefined && !args.frame) {
       forgetView = keepView(explorer, isFirst)

@@ -43,10 +43,16 @@ type Story = StoryObj<PlainArgs>
 export const Afternoon: Story = { tags: ['screenshot'] }
 
 /** A quarter of an hour before sunset. */
-export const Sunset: Story = { args: { hour: 9.75, exposure: 2 }, tags: ['screenshot'] }
+export const Sunset: Story = {
+  args: { hour: 9.75, exposure: 2 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** Civil twilight, the sun 5° down: the sky over it is a hundred times as bright as the ground. */
-export const Dusk: Story = { args: { hour: 10.4, exposure: 8 }, tags: ['screenshot'] }
+export const Dusk: Story = {
+  args: { hour: 10.4, exposure: 8 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** The air over the finished picture, as a post effect. */
-export const Post: Story = { args: { path: 'post' }, tags: ['screenshot'] }
+export const Post: Story = { args: { path: 'post' }, tags: ['screenshot', 'webgpu-only'] }

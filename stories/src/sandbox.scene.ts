@@ -16,8 +16,7 @@ import {
   drawSettled,
   EXPOSURE_FRAMES,
   fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
+  frameClock
 } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -149,8 +148,7 @@ export async function createSandbox(
     render: draw,
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
-      const frames = WARM_UP_FRAMES + EXPOSURE_FRAMES
-      if (current.frame) ready = drawSettled(frames, draw, () => sky?.exposure)
+      if (current.frame) ready = drawSettled(EXPOSURE_FRAMES, draw, () => sky?.exposure)
     },
     update(changes) {
       const { height, heading, pitch } = current

@@ -54,9 +54,12 @@ export type CreateScene<Args extends RendererArgs> = (
  * Frames to draw before one counts. three r187 updates the matrices of a shadow after the objects that use them, and
  * in a `pass()` one frame later still.
  */
-export const WARM_UP_FRAMES = 3
+export const WARM_UP_FRAMES = 2
 
-/** Frames in which exposure settles: from daylight's scale half floats take three pictures to a night's. */
+/**
+ * Frames to draw before one counts where the picture sets its exposure: from daylight's scale half floats take three
+ * pictures to a night's.
+ */
 export const EXPOSURE_FRAMES = 3
 
 /** Longest time between two frames that counts: hidden pages get none, and time goes on from where it was [s]. */

@@ -51,7 +51,7 @@ export default meta
 type Story = StoryObj<ShellArgs>
 
 /** Three bodies with air and one without. */
-export const Map: Story = { tags: ['screenshot'] }
+export const Map: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Inside the air: the cockpit is clear, the ground is in haze. */
 export const Cockpit: Story = {

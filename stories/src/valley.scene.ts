@@ -28,7 +28,7 @@ export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
 }
 
 /** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 6 }
+const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 3 }
 
 /** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100

@@ -9,9 +9,19 @@ import { weathers } from './valley/weather'
 
 const code = `${storyCode('valleyAir.ts', 'sky and light')}
 
-${storyCode('valleyAir.ts', 'everything')}`
+${storyCode('valleyAir.ts', 'everything')}
+
+${storyCode('valleyFactors.ts', 'factors')}`
 
 const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
+
+/** Slider of an artistic factor. */
+const factor = (name: string, description: string): object => ({
+  name,
+  description,
+  control: { type: 'range', min: 0, max: 3, step: 0.05 },
+  table: { category: 'Artistic factors' }
+})
 
 const meta: Meta<ValleyArgs> = {
   title: 'Valley, all day',
@@ -58,6 +68,13 @@ const meta: Meta<ValleyArgs> = {
     village: part('Village'),
     water: part('Lake'),
     bloom: part('Bloom'),
+    haze: factor('Haze', 'Of the air between camera and scene'),
+    twilightSaturation: factor('Colour of twilight', 'Saturation; 0 is grey'),
+    shaftStrength: factor('Light shafts', 'Light that shadowed air loses'),
+    starlight: factor('Stars', 'Milky Way included'),
+    airglow: factor('Airglow', "Of the night sky's own light"),
+    earthshine: factor('Earthshine', "On the moon's dark side"),
+    ambient: factor('Ambient of clouds', 'Light of sky and ground on clouds'),
     ...rendererArgTypes,
     path: { table: { disable: true } }
   },
@@ -78,6 +95,13 @@ const meta: Meta<ValleyArgs> = {
     village: true,
     water: true,
     bloom: true,
+    haze: 1,
+    twilightSaturation: 1,
+    shaftStrength: 1,
+    starlight: 1,
+    airglow: 1,
+    earthshine: 1,
+    ambient: 1,
     forceWebGL: false,
     path: 'post',
     frame: false

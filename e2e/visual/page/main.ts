@@ -91,7 +91,6 @@ window.welkinVisual = {
     watch.allow(/^console warning: (?!THREE)/)
     const start = performance.now()
     const view = await create(canvas, args)
-    view.update(args)
     view.resize(innerWidth, innerHeight, 1)
     await view.ready
     view.render()

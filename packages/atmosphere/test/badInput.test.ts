@@ -6,6 +6,7 @@ import {
   aerialPerspectiveFog,
   airglow,
   airlessParameters,
+  airStyle,
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
@@ -30,6 +31,7 @@ import {
   moonIlluminanceAt,
   skyIlluminanceAt,
   skyLuminanceAt,
+  solveDiffuseLight,
   sunIlluminanceAt,
   standardEarthParameters,
   Stars,
@@ -243,6 +245,12 @@ const cases: [message: string, call: () => unknown][] = [
   ['PlanetGround: roughness must be in', () => planetGround({ roughness: wrong(null) })],
   ['NightLightProbe: illuminance must', () => new NightLightProbe(atmosphere, wrong(null))],
   ['Moon: strength must be finite', () => (luna.strength = wrong(null))],
+  ['Moon: earthshine must be finite', () => (luna.earthshine = wrong(null))],
+  ['AirStyle: haze must be finite', () => airStyle({ haze: -1 })],
+  [
+    'AirStyle: twilightSaturation must be finite',
+    () => airStyle({ twilightSaturation: wrong(null) })
+  ],
   ['Moon: phase must be in [0, 1], got []', () => moon({ phase: wrong([]) })],
   ['SunFlare: innerStrength must be', () => sunFlare({ innerStrength: wrong(null) })],
   ['Atmosphere.setSunAngles: elevation must be in', () => atmosphere.setSunAngles(wrong(null), 0)],
@@ -414,6 +422,14 @@ const cases: [message: string, call: () => unknown][] = [
   [
     "AerialPerspectiveNode: camera must be a Camera, got 'camera'",
     () => aerialPerspective(vec4(1), vec4(1), wrong('camera'), atmosphere)
+  ],
+  [
+    'Moon.seenFrom: position must be a Vector3, got a PerspectiveCamera',
+    () => luna.seenFrom(wrong(camera))
+  ],
+  [
+    'solveDiffuseLight: parameters must be AtmosphereParameters, got an Atmosphere',
+    () => solveDiffuseLight(wrong(atmosphere))
   ],
   [
     'SkyBackgroundNode: atmosphere must be an Atmosphere, got a Scene',

@@ -5,6 +5,7 @@ import {
   aerialPerspective,
   airglow,
   airlessParameters,
+  airStyle,
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
@@ -81,6 +82,7 @@ const cases: [message: string, call: () => unknown][] = [
       ['AtmosphereParameters', 'groundAlbdo', 'groundAlbedo', o => parameters.set(o)],
       ['AtmosphereParameters', 'ozon', 'ozone', o => parameters.set(o)],
       ['airlessParameters', 'raduis', 'radius', o => airlessParameters(o)],
+      ['AirStyle', 'hase', 'haze', o => airStyle(o)],
       ['DayCycle', 'rat', 'rate', o => new DayCycle(atmosphere, o)],
       ['DayCycle', 'flor', 'floor', o => new DayCycle(atmosphere, { exposureOptions: o })],
       ['exposureFor', 'source', 'sources', o => exposureFor(atmosphere, camera, o)],
@@ -188,8 +190,9 @@ describe('undefined is the default', () => {
 
   it('of everything else', () => {
     expect(() => new Atmosphere(none('parameters', 'ellipsoid', 'flat'))).not.toThrow()
-    const names = ['direction', 'phase', 'distance', 'radius', 'strength', 'lightsAir', 'mapSize']
-    expect(() => moon(none('flare', ...names))).not.toThrow()
+    const names = ['direction', 'phase', 'distance', 'radius', 'strength', 'earthshine']
+    expect(() => moon(none('flare', 'lightsAir', 'mapSize', ...names))).not.toThrow()
+    expect(airStyle(none('haze', 'twilightSaturation')).haze).toBe(1)
     expect(() => sunFlare(none('innerPower', 'outerStrength'))).not.toThrow()
     const rates = none('date', 'rate', 'daylight', 'holdDay', 'adaptation', 'exposureOptions')
     const { rate, holdDay, exposureOptions } = new DayCycle(atmosphere, rates)

@@ -34,6 +34,7 @@ const layer = layers.at(0)
 
 const cases: [message: string, call: () => unknown][] = [
   // No such option.
+  ['CloudsNode: ambient must be finite and ≥ 0, got -1', () => make({ ambient: -1 })],
   ["CloudsNode: unknown option 'qualty', did you mean 'quality'?", () => make({ qualty: 'low' })],
   [
     "CloudsNode.quality: unknown option 'step', did you mean 'steps'?",

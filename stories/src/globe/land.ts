@@ -48,9 +48,6 @@ export interface LandStory<Args> {
   dispose?(): void
 }
 
-/** Number of frames before a screenshot in which the land is drawn anew. */
-const LAST_FRAMES = 3
-
 /** Direction above the horizontal that drags may turn to [rad]. */
 const HIGHEST_PITCH = 1.2
 
@@ -134,9 +131,10 @@ export async function createLand<Args extends RendererArgs>(
     ready = loadTiles(tilesets, prepare, isOver).then(async () => {
       if (current.frame && !isOver()) await story.prepare?.()
       for (let i = 0; current.frame && !isOver() && i < warmUpFrames; i++) {
-        // Passes draw their scene once in an animation frame: shadows of clouds are there in the last.
-        if (i > 0 && i >= warmUpFrames - LAST_FRAMES) await new Promise(requestAnimationFrame)
         draw()
+        // Passes draw their scene once in an animation frame.
+        const isLast = i >= warmUpFrames - WARM_UP_FRAMES
+        if (isLast) await new Promise(requestAnimationFrame)
       }
       if (!isOver()) isLoaded = true
       // Whoever awaits a load that another has cut short awaits that one.

@@ -1,5 +1,6 @@
 import {
   airglow,
+  airStyle,
   DayCycle,
   heightFog,
   milkyWay,
@@ -18,6 +19,7 @@ import { createWater } from '../environment/water'
 import { disposeMeshes } from '../scene'
 import { valleyAir } from '../valleyAir'
 import { createForest, createGrove } from './forest'
+import { applyFactors, type ValleyFactors } from '../valleyFactors'
 import { createGround, groundHeight, LAKE } from './ground'
 import { createVillage } from './village'
 import { valleyLayers, WeatherBlend, type WeatherName } from './weather'
@@ -35,7 +37,7 @@ export interface ValleyFeatures {
 }
 
 /** State of the valley. */
-export interface ValleyState extends ValleyFeatures {
+export interface ValleyState extends ValleyFeatures, ValleyFactors {
   weather: WeatherName
   /** [degrees] */
   latitude: number
@@ -82,6 +84,7 @@ export class Valley {
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
+  readonly #style = airStyle()
   readonly #mist = heightFog({ base: 6, falloff: 28, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
@@ -109,7 +112,7 @@ export class Valley {
     const { atmosphere, clouds: node, shafts, exposure } = air
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
-    atmosphere.add(this.#mist)
+    atmosphere.add(this.#style, this.#mist)
     scene.add(this.#ground, ...this.#trees, this.#village.object, this.#water.mesh)
     this.#water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
     this.#water.setSlope(0.0006)
@@ -150,7 +153,7 @@ export class Valley {
     const before = { ...this.#state }
     Object.assign(this.#state, changes)
     const { weather, latitude, season, hour, dayLength, paused, quality } = this.#state
-    const { nightSky, trees, village, water, shafts } = this.#state
+    const { nightSky, trees, village, water } = this.#state
     this.#weather.set(weather, atOnce)
     this.cycle.rate = 86_400 / dayLength
     this.cycle.paused = paused
@@ -159,9 +162,9 @@ export class Valley {
     if (season !== before.season) this.cycle.season = season
     if (hour !== before.hour) this.cycle.hour = hour
     this.#node.quality = quality
-    this.#shafts.strength = shafts ? 1 : 0
-    for (const layer of this.#glows) layer.intensity = nightSky ? 1 : 0
-    this.#moon.strength = nightSky ? 1 : 0
+    const targets = { shafts: this.#shafts, node: this.#node, sky: this.#glows, luna: this.#moon }
+    const on = { shafts: Number(this.#state.shafts), nightSky: Number(nightSky) }
+    applyFactors(this.#state, this.#style, targets, on)
     for (const each of this.#trees) each.visible = trees
     this.#village.object.visible = village
     this.#water.mesh.visible = water

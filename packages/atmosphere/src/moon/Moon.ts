@@ -7,6 +7,7 @@ import {
   checkNonNegative,
   checkOptions,
   checkPositive,
+  checkVector,
   fail,
   setOptions
 } from '@welkin/geo'
@@ -16,8 +17,9 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange } from '../check'
 import { eclipsedSunlight } from './cpu/eclipse'
 import { MOON_RADIUS, moonIrradiance } from './cpu/moonIrradiance'
-import { Flare, type FlareOptions } from '../halo/Flare'
+import { Flare } from '../halo/Flare'
 import { LightSource } from '../view/LightSource'
+import type { MoonAppearance, MoonOptions } from './MoonOptions'
 import { moonGeometryFrom, type MoonGeometry } from './moonGeometry'
 import { MoonSurfaceMap } from './MoonSurfaceMap'
 import { MoonlitAir } from './MoonlitAir'
@@ -28,26 +30,6 @@ import { moonSky } from './tsl/moonSky'
 import type { Vec4 } from '../tsl-types'
 import { checkAtmosphere } from '../view/ViewNodes'
 
-/** Options of {@link Moon}. */
-export interface MoonOptions {
-  /** Direction to the moon in world space, any length; null follows the date. */
-  direction?: Vector3 | null
-  /** Phase: 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new; null follows the geometry. */
-  phase?: number | null
-  /** Distance from the observer [m]; null follows the date, or is the mean distance without one. */
-  distance?: number | null
-  /** Radius of the moon [m]. Its light grows with its area. */
-  radius?: number
-  /** Factor on the brightness of the disc and on moonlight, ≥ 0. */
-  strength?: number
-  /** Lights the air: glow of the sky, and haze. Default true. */
-  lightsAir?: boolean
-  /** Halo around the disc; it waxes and wanes with the moon's light. */
-  flare?: FlareOptions
-  /** Width of the map of the moon's ground, a power of two in [16, 8192], default 1024 [texels]. */
-  mapSize?: number
-}
-
 /** Atmosphere that a moon is in, and what the moon made for it. */
 interface Home {
   readonly atmosphere: Atmosphere
@@ -56,21 +38,7 @@ interface Home {
 }
 
 /** Options that may change later. */
-const SETTINGS = ['direction', 'phase', 'distance', 'radius', 'strength'] as const
-
-/** Appearance of the moon for an observer. */
-export interface MoonAppearance {
-  /** Observer to moon, world, unit length. */
-  direction: Vector3
-  /** Observer to the moon's centre [m]. */
-  distance: number
-  /** Angular radius of the disc [rad]. */
-  angularRadius: number
-  /** Angle between sun and observer as seen from the moon: 0 full, π new [rad]. */
-  phaseAngle: number
-  /** Sunlit fraction of the disc, in [0, 1]. */
-  litFraction: number
-}
+const SETTINGS = ['direction', 'phase', 'distance', 'radius', 'strength', 'earthshine'] as const
 
 /**
  * Default halo, found by looking: lobes with standard deviations of 0.5° and 2.6° (1/√power). Larger
@@ -111,6 +79,7 @@ export class Moon implements SkyLayer {
   #distance: number | null = null
   #radius = MOON_RADIUS
   #strength = 1
+  #earthshine = 1
   #version = 0
   /** Direction at the last change of `version`. */
   readonly #versionDirection = new Vector3()
@@ -240,6 +209,17 @@ export class Moon implements SkyLayer {
     this.#strength = value
   }
 
+  /** Artistic factor on earthshine, the glow of the moon's dark side, ≥ 0; at 1 it is physical. */
+  get earthshine(): number {
+    return this.#earthshine
+  }
+
+  set earthshine(value: number) {
+    checkNonNegative('Moon', 'earthshine', value)
+    if (value !== this.#earthshine) this.#version++
+    this.#earthshine = value
+  }
+
   /**
    * Changes some settings.
    *
@@ -255,6 +235,7 @@ export class Moon implements SkyLayer {
    * @param position - Position of the observer, world.
    */
   seenFrom(position: Vector3): MoonAppearance {
+    checkVector('Moon.seenFrom', 'position', position)
     const geometry = this.#geometryFrom(position)
     const { distance, phaseAngle } = geometry
     return {
@@ -303,7 +284,7 @@ export class Moon implements SkyLayer {
 
   prepare(renderer: Renderer, view: AtmosphereView): void {
     this.#surface.prepare(renderer)
-    if (this.#strength > 0) this.#home?.air?.prepare(renderer, view)
+    this.#home?.air?.prepare(renderer, view, this.#strength > 0)
   }
 
   update(view: AtmosphereView): void {
@@ -314,6 +295,7 @@ export class Moon implements SkyLayer {
       angularRadius: this.#angularRadiusOf(geometry),
       radius: this.#radius,
       strength: this.#strength,
+      earthshine: this.#earthshine,
       irradiance: this.#irradiance(geometry)
     }
     this.#uniforms.update(view, state, this.flare)

@@ -30,6 +30,8 @@ export interface MoonState {
   radius: number
   /** Factor on the moon's light. */
   strength: number
+  /** Factor on its earthshine. */
+  earthshine: number
   /** Irradiance at the camera above the air, over that of the bare sun. */
   irradiance: Spectrum
 }
@@ -75,7 +77,7 @@ export class MoonUniforms {
     const shine = earthshine(phaseAngle, distance, parameters.bottomRadius)
     const phaseFactor = surfacePhaseFactor(phaseAngle)
     this.sunlit.value.fromArray(full.map(value => 2 * value * phaseFactor))
-    this.earthlit.value.fromArray(full.map((value, i) => value * shine[i]))
+    this.earthlit.value.fromArray(full.map((value, i) => value * shine[i] * moon.earthshine))
     const cameraRadius = parameters.bottomRadius + Math.max(view.height, 0)
     const visible = visibleDisc(parameters, cameraRadius, view.up.dot(this.directionMapped.value))
     this.irradiance.value.set(...moon.irradiance).multiplyScalar(visible)

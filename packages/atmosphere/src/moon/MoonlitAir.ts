@@ -33,8 +33,9 @@ export class MoonlitAir {
     atmosphere.tables.addSource(source)
   }
 
-  prepare(renderer: Renderer, view: AtmosphereView): void {
-    this.source.lightsAir = this.#canBeSeen(view)
+  /** @param shines - False for a moon without light. */
+  prepare(renderer: Renderer, view: AtmosphereView, shines: boolean): void {
+    this.source.lightsAir = shines && this.#canBeSeen(view)
     if (this.source.lightsAir) this.atmosphere.update(renderer, view.camera, this.source)
   }
 

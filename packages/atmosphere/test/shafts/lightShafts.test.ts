@@ -1,8 +1,14 @@
 import fc from 'fast-check'
-import { DirectionalLight, PerspectiveCamera, PointLight } from 'three'
+import { DirectionalLight, Matrix4, PerspectiveCamera, PointLight, Texture } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
-import { aerialPerspective, Atmosphere, lightShafts, SunDirectionalLight } from '@welkin/atmosphere'
+import {
+  aerialPerspective,
+  Atmosphere,
+  heightFieldShadow,
+  lightShafts,
+  SunDirectionalLight
+} from '@welkin/atmosphere'
 import type { AirOccluder } from '@welkin/atmosphere'
 import type { ScreenShafts } from '../../src/shafts/ScreenShafts'
 import { claimShadow, shadowMapsOf } from '../../src/shafts/shadowMaps'
@@ -71,6 +77,22 @@ describe('bad input to light shafts', () => {
     [
       'LightShafts.add: occluder must not have been added already',
       () => lightShafts(atmosphere, camera, light).add(occluder, occluder)
+    ],
+    [
+      'HeightFieldShadow: heights must be a Texture or a function, got 3',
+      () => heightFieldShadow(wrong(3), new Matrix4())
+    ],
+    [
+      'HeightFieldShadow: matrix must be a Matrix4, got undefined',
+      () => heightFieldShadow(new Texture(), wrong(undefined))
+    ],
+    [
+      'HeightFieldShadow: size must be a power of two in [2, 4096], got 1000',
+      () => heightFieldShadow(new Texture(), new Matrix4(), { size: 1000 })
+    ],
+    [
+      "HeightFieldShadow: unknown option 'sizes', did you mean 'size'?",
+      () => heightFieldShadow(new Texture(), new Matrix4(), wrong({ sizes: 64 }))
     ],
     [
       'LightShafts: atmosphere must be that of its layers, got an Atmosphere',

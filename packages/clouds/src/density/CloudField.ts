@@ -105,6 +105,8 @@ export class CloudField {
   readonly view: ViewNodes
   /** Light of moon and night sky on clouds. */
   readonly night = new NightLight()
+  /** Factor on the light of sky and ground on clouds: see `CloudsNode.ambient`. */
+  readonly ambient = number(1)
   /** Radius of the sphere at altitude 0 [m]. */
   readonly radius = number()
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */

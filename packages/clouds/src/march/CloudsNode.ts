@@ -35,6 +35,8 @@ export interface CloudsOptions {
   time?: number | null
   /** See {@link CloudsNode.nightIlluminance}. */
   nightIlluminance?: number
+  /** See {@link CloudsNode.ambient}; by default 1. */
+  ambient?: number
   /** See {@link CloudsNode.accumulates}; by default true. */
   accumulates?: boolean
   /** Cloud cover of the whole planet: `cloudWorldMap(texture)`. */
@@ -48,7 +50,7 @@ export interface CloudsOptions {
   light?: CloudLightTable
 }
 
-const SETTINGS = ['quality', 'time', 'nightIlluminance', 'accumulates'] as const
+const SETTINGS = ['quality', 'time', 'nightIlluminance', 'ambient', 'accumulates'] as const
 
 /**
  * Volumetric clouds as a post effect: marched along each line of sight to what was drawn, lit by the
@@ -230,6 +232,17 @@ export class CloudsNode extends AtmosphereNode {
   set nightIlluminance(illuminance: number) {
     checkNonNegative('CloudsNode', 'nightIlluminance', illuminance)
     this.field.night.illuminance = illuminance
+  }
+
+  /** Artistic factor on the light of sky and ground on clouds, finite, ≥ 0, default 1. Sun and moon stay as they are. */
+  get ambient(): number {
+    return this.field.ambient.value
+  }
+
+  /** @throws If it is negative or not finite. */
+  set ambient(factor: number) {
+    checkNonNegative('CloudsNode', 'ambient', factor)
+    this.field.ambient.value = factor
   }
 
   override updateBefore(frame: NodeFrame): undefined {

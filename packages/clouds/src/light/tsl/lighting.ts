@@ -79,13 +79,14 @@ export function shade(field: CloudField, { altitude, up }: CloudSample, shares: 
     if (diffuse === null) return { cosine, light: direct }
     const irradiance = horizontalIrradiance(uniforms, diffuse, altitude, cosine)
     const ambient = irradiance.up.mul(shares.y).add(irradiance.down.mul(shares.z))
-    return { cosine, light: direct.add(ambient.div(Math.PI)) }
+    return { cosine, light: direct.add(ambient.mul(field.ambient).div(Math.PI)) }
   }
   const sun = litFrom(view.lightDirection)
   const light = sun.light.mul(view.source.irradiance).toVar() as Vec4
   If(isNight(field, sun.cosine), () => {
     const moonlight = litFrom(night.moonDirection).light.mul(night.moonIrradiance)
-    const sky = night.skyRadiance.mul(uniforms.groundAlbedo.mul(shares.z).add(shares.y))
+    const shine = uniforms.groundAlbedo.mul(shares.z).add(shares.y)
+    const sky = night.skyRadiance.mul(shine).mul(field.ambient)
     light.addAssign(moonlight.add(sky).mul(nightShare(field, sun.cosine)))
   })
   return light

@@ -1,0 +1,125 @@
+import { MathUtils, Vector4 } from 'three'
+import { If, renderGroup, uniform, vec4 } from 'three/tsl'
+import { checkNonNegative, setOptions } from '@welkin/geo'
+import { luminanceOf } from '../parameters/photometry'
+import type { AtmosphereView } from '../view/AtmosphereView'
+import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
+import { denserAir, saturated } from './tsl/airStyle'
+
+/** Options of {@link AirStyle}. */
+export interface AirStyleOptions {
+  /** See {@link AirStyle.haze}; by default 1. */
+  haze?: number
+  /** See {@link AirStyle.twilightSaturation}; by default 1. */
+  twilightSaturation?: number
+}
+
+const SETTINGS = ['haze', 'twilightSaturation'] as const
+
+/** Elevations of the sun between which it is twilight, and beyond which it is none at all [°]. */
+const TWILIGHT = [-12, 2] as const
+const NO_TWILIGHT = [-18, 10] as const
+
+/**
+ * Artistic factors on the air: strength of haze and colour of twilight. At 1, the default, nothing changes, bit for bit.
+ *
+ * ```ts
+ * atmosphere.add(airStyle({ haze: 0.5, twilightSaturation: 1.3 })) // before fogs
+ * ```
+ *
+ * They act on the picture alone, and on environment maps: lights and `skyIlluminanceAt` stay physical. Add it before
+ * fogs, which have densities of their own and are left alone if they come later. The shell has none.
+ */
+export class AirStyle implements SkyLayer {
+  #haze = 1
+  #twilightSaturation = 1
+  #version = 0
+  readonly #strength = uniform(1).setGroup(renderGroup)
+  readonly #saturation = uniform(1).setGroup(renderGroup)
+  readonly #luminous = uniform(new Vector4()).setGroup(renderGroup)
+
+  /** @throws If an option is unknown or out of range. */
+  constructor(options: AirStyleOptions = {}) {
+    this.set(options)
+    this.#version = 0
+  }
+
+  /**
+   * Changes some settings.
+   *
+   * @throws If one is unknown or out of range; then nothing has changed.
+   */
+  set(settings: AirStyleOptions): this {
+    return setOptions('AirStyle', this, settings, ...SETTINGS)
+  }
+
+  /**
+   * Factor on the optical depth of the air between camera and scene, clouds included, finite, ≥ 0: 0 takes haze away, 2
+   * has twice as much. The sky behind stays as it is; `turbidity` of the parameters changes both.
+   */
+  get haze(): number {
+    return this.#haze
+  }
+
+  set haze(value: number) {
+    checkNonNegative('AirStyle', 'haze', value)
+    if (value !== this.#haze) this.#version++
+    this.#haze = value
+  }
+
+  /**
+   * Factor on the saturation of the air's light with the sun near the horizon of the camera, finite, ≥ 0: 0 is grey, of
+   * the same luminance. All of it counts from 2° above to 12° below, none of it above 10° and below 18°.
+   */
+  get twilightSaturation(): number {
+    return this.#twilightSaturation
+  }
+
+  set twilightSaturation(value: number) {
+    checkNonNegative('AirStyle', 'twilightSaturation', value)
+    if (value !== this.#twilightSaturation) this.#version++
+    this.#twilightSaturation = value
+  }
+
+  /** See {@link SkyLayer.version}. */
+  get version(): number {
+    return this.#version
+  }
+
+  update({ atmosphere: { parameters }, up, lightDirection }: AtmosphereView): void {
+    const elevation = MathUtils.radToDeg(Math.asin(MathUtils.clamp(up.dot(lightDirection), -1, 1)))
+    const share =
+      MathUtils.smoothstep(elevation, NO_TWILIGHT[0], TWILIGHT[0]) *
+      (1 - MathUtils.smoothstep(elevation, TWILIGHT[1], NO_TWILIGHT[1]))
+    this.#strength.value = this.#haze
+    this.#saturation.value = 1 + (this.#twilightSaturation - 1) * share
+    const luminous = [0, 1, 2, 3].map(i =>
+      luminanceOf(
+        parameters,
+        [0, 1, 2, 3].map(k => (k === i ? 1 : 0))
+      )
+    )
+    const sum = luminous.reduce((total, value) => total + value, 0) || 1
+    this.#luminous.value.fromArray(luminous.map(value => value / sum))
+  }
+
+  medium({ distance }: LayerRay, air: MediumSegment): MediumSegment {
+    const depth = vec4(air.depth).toVar()
+    const radiance = vec4(air.radiance).toVar()
+    if (distance !== undefined) {
+      If(this.#strength.notEqual(1), () => {
+        const denser = denserAir({ depth, radiance }, this.#strength)
+        radiance.assign(denser.radiance)
+        depth.assign(denser.depth)
+      })
+    }
+    If(this.#saturation.notEqual(1), () => {
+      radiance.assign(saturated(radiance, this.#luminous, this.#saturation))
+    })
+    return { depth, radiance }
+  }
+}
+
+/** Artistic factors on the air: see {@link AirStyle}. */
+export const airStyle = (options?: AirStyleOptions): AirStyle => new AirStyle(options)
