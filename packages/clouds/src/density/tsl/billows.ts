@@ -95,7 +95,7 @@ export const MOST_DETAIL = 2.5
 export const topBillows = (column: Float): Float =>
   smoothstep(...billowForm.middle, column)
     .mix(float(1), billowForm.atTops)
-    .toConst() as Float
+    .toConst()
 
 /** Share of fine billows and detail that a body has, in [0, 1]: dense bodies have them, crumbs do not. */
 export const fineShare = (strength: Float): Float =>

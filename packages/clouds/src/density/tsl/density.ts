@@ -37,5 +37,5 @@ export const crumbDensity = (column: Float, needed: Float): Float => {
   return smoothstep(...crumbFrom, column.sub(needed.mul(crumbHeight)))
     .mul(1 - crumb)
     .add(crumb)
-    .toConst() as Float
+    .toConst()
 }
