@@ -55,7 +55,10 @@ export const heightForm = {
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
-  /** Strength that towers need below an anvil, over its own [–], and heights in which they spread, in [0, 1] (*Storm*). */
+  /**
+   * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
+   * in [0, 1] (*Storm*).
+   */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
   /** Strength that anvils need all over [–]: greater, and a storm covers less than it is asked to (*Storm*). */
