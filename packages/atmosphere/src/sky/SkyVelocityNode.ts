@@ -11,8 +11,8 @@ const _projection = new Matrix4()
 const _view = new Matrix4()
 
 /**
- * Velocities of a picture with a sky: three's where something was drawn, and those of the sky, which is infinitely far,
- * elsewhere, as the camera turns.
+ * Velocities of a picture with a sky: three's where something was drawn, and elsewhere those of the sky, which is infinitely
+ * far and moves as the camera turns.
  *
  * ```ts
  * scenePass.setMRT(mrt({ output, velocity }))
@@ -20,7 +20,8 @@ const _view = new Matrix4()
  * pipeline.outputNode = traa(picture, depth, convertToTexture(motion), camera)
  * ```
  *
- * Without them stars, moon and sun leave trails under `traa`, and do not blur under `motionBlur`. For perspective cameras.
+ * Without them stars, moon and sun leave trails under `traa`, and do not blur under `motionBlur`. For perspective cameras
+ * alone: an orthographic one sees a sky without directions.
  */
 export class SkyVelocityNode extends Node<'vec4'> {
   static get type(): string {
@@ -29,7 +30,7 @@ export class SkyVelocityNode extends Node<'vec4'> {
 
   /** Velocities of what was drawn, as three's `velocity` has them: normalized device coordinates a frame. */
   velocityNode: Node
-  /** Depth, as the renderer writes it. */
+  /** Depth of the picture, as the renderer writes it. */
   depthNode: Node
   readonly camera: Camera
   /** Normalized device coordinates (x, y, 1) to the last frame's clip space (x, y, w), of directions. */

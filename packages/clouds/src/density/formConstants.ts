@@ -55,7 +55,10 @@ export const heightForm = {
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
-  /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
+  /**
+   * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
+   * in [0, 1] (*Storm*).
+   */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
   /** Strength that anvils need all over [–]: greater, and a storm covers less than it is asked to (*Storm*). */
@@ -78,8 +81,8 @@ export const billowForm = {
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
   /**
-   * Strength at which fine billows begin, and over which they set in: bodies have them, crumbs do not. Lower:
-   * crumbs float about clouds (*Cumulus*).
+   * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have
+   * them, crumbs do not. Lower: crumbs float about clouds (*Cumulus*).
    */
   fineFrom: 0.3,
   fineOver: 0.5,
@@ -122,8 +125,9 @@ export const densityForm = {
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */
 export const columnForm = {
   /**
-   * Height over the weather's period, times this: how much clouds hide, looked at aslant, as tall bodies
-   * would. Smaller: far fields of cumulus show the ground between them at the horizon (*Cockpit*).
+   * Factor [–] of a layer's thickness over the weather's period: the product, at most 1, is the share of what
+   * tall bodies hide more of when looked at aslant. Smaller: far fields of cumulus show the ground between
+   * them at the horizon (*Cockpit*).
    */
   slantAspect: 5,
   /**
@@ -132,8 +136,8 @@ export const columnForm = {
    */
   tops: 3.5,
   /**
-   * Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share
-   * (*World clouds*).
+   * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
+   * with one, and the least share (*World clouds*).
    */
   hiddenBelow: 0.4,
   hiddenByAnvil: 0.75,

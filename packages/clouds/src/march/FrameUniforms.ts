@@ -94,7 +94,7 @@ const _origin = new Vector4()
 
 /** Uniforms that change from frame to frame: sizes, jitter, and where the last frame's pixels were. */
 export class FrameUniforms {
-  /** Projection of a camera: without jitter, where `cloudVelocity` gives TRAA the clouds' velocities. */
+  /** Projection that clouds are drawn by: the camera's own; without TRAA's jitter once a `cloudVelocity` was made. */
   projectionOf = (camera: PerspectiveCamera, target: Matrix4): Matrix4 =>
     target.copy(camera.projectionMatrix)
   /** Size of the picture [pixels]. */

@@ -8,13 +8,13 @@ import { viewRayAt } from '../march/tsl/viewRay'
 import type { Mat3, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { unpack } from './tsl/packing'
 
-/** Transmittance below which clouds hide enough of what is behind them for the picture to move with them. */
+/** Transmittance of clouds below which the picture moves with them, not with what is behind them [–]. */
 const OPAQUE = 0.5
 
 /**
  * Velocities of a picture with clouds in it: theirs where they hide most of what is behind them, by their distance and
- * their wind, and the given ones elsewhere. From then on the clouds take their camera without TRAA's jitter, which their
- * history would take for a turn.
+ * their wind, and the given ones elsewhere. From its construction on, the clouds are drawn for their camera without
+ * TRAA's jitter, which their history would take for a turn.
  *
  * ```ts
  * scenePass.setMRT(mrt({ output, velocity }))
