@@ -267,7 +267,7 @@ export class ScreenShafts implements ScreenShadows {
       .mul(LIGHT_SCALE / 4)
     const light = this.#shafts.shadowedAir
       .mediaOn({ view: this.#shafts.view, ...ray })
-      .reduce((sum, medium) => sum.mul(medium.transmittance).add(medium.once), radiance)
+      .reduce((sum, medium) => sum.mul(medium.transmittance).add(medium.singleScattered), radiance)
     return light.dot(vec4(scale)).clamp(1e-5, MOST).toConst()
   }
 

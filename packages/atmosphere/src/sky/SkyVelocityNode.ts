@@ -1,6 +1,6 @@
 import { fail } from '@welkin/geo'
 import { Matrix3, Matrix4 } from 'three'
-import type { Camera } from 'three'
+import type { Camera, OrthographicCamera } from 'three'
 import { Fn, If, isBackgroundDepth, renderGroup, uniform, uv, vec3, vec4 } from 'three/tsl'
 import { Node, NodeUpdateType, type NodeFrame } from 'three/webgpu'
 import { checkCamera } from '../check'
@@ -45,6 +45,8 @@ export class SkyVelocityNode extends Node<'vec4'> {
     if (!velocityNode?.isNode) fail('SkyVelocityNode', 'velocityNode must be a node', velocityNode)
     if (!depthNode?.isNode) fail('SkyVelocityNode', 'depthNode must be a node', depthNode)
     checkCamera('SkyVelocityNode', camera)
+    if ((camera as OrthographicCamera).isOrthographicCamera)
+      fail('SkyVelocityNode', 'camera must be a perspective camera', camera)
     this.velocityNode = velocityNode
     this.depthNode = depthNode
     this.camera = camera

@@ -45,9 +45,9 @@ export interface ShadowedMedium {
   /** Part of the light from farther away that passes the medium, in [0, 1]. */
   readonly transmittance: Float
   /** Light that it adds, scattered once. */
-  readonly once: Vec4
+  readonly singleScattered: Vec4
   /** Light that it adds, scattered more often than once. */
-  readonly often: Vec4
+  readonly multiplyScattered: Vec4
   /** Distance up to which it has added a part of its light, given in [0, 1] [m]. */
   distanceAt(part: Float): Float
 }

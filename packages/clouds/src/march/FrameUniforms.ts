@@ -92,11 +92,14 @@ const _delta = new Vector3()
 const _position = new Vector3()
 const _origin = new Vector4()
 
+/** Projection of a camera, with the jitter that it may have. */
+export const jitteredProjection = (camera: PerspectiveCamera, target: Matrix4): Matrix4 =>
+  target.copy(camera.projectionMatrix)
+
 /** Uniforms that change from frame to frame: sizes, jitter, and where the last frame's pixels were. */
 export class FrameUniforms {
-  /** Projection that clouds are drawn by: the camera's own; without TRAA's jitter once a `cloudVelocity` was made. */
-  projectionOf = (camera: PerspectiveCamera, target: Matrix4): Matrix4 =>
-    target.copy(camera.projectionMatrix)
+  /** Projection that clouds are drawn by: the camera's own; without TRAA's jitter where a `cloudVelocity` is drawn. */
+  projectionOf = jitteredProjection
   /** Size of the picture [pixels]. */
   readonly size = vector2()
   /** Size of what is marched in a frame [pixels]. */

@@ -3,6 +3,7 @@ import { fail } from '@welkin/geo'
 import { Fn, If, exp2, int, uv, vec2, vec4 } from 'three/tsl'
 import { Node } from 'three/webgpu'
 import { checkClouds } from '../check'
+import { jitteredProjection } from '../march/FrameUniforms'
 import type { CloudsNode } from '../march/CloudsNode'
 import { viewRayAt } from '../march/tsl/viewRay'
 import type { Mat3, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -13,8 +14,8 @@ const OPAQUE = 0.5
 
 /**
  * Velocities of a picture with clouds in it: theirs where they hide most of what is behind them, by their distance and
- * their wind, and the given ones elsewhere. From its construction on, the clouds are drawn for their camera without
- * TRAA's jitter, which their history would take for a turn.
+ * their wind, and the given ones elsewhere. From its first draw until it is disposed, the clouds are drawn for their camera
+ * without TRAA's jitter, which their history would take for a turn.
  *
  * ```ts
  * scenePass.setMRT(mrt({ output, velocity }))
@@ -42,12 +43,12 @@ export class CloudVelocityNode extends Node<'vec4'> {
     checkClouds('CloudVelocityNode', clouds)
     this.velocityNode = velocityNode
     this.clouds = clouds
-    clouds.passes.frame.projectionOf = unjitteredProjection
   }
 
   override setup(): Node {
     const { passes } = this.clouds
     const { frame } = passes
+    frame.projectionOf = unjitteredProjection
     return Fn(() => {
       const velocity = vec4(this.velocityNode as Vec4).toVar() as Vec4
       const at = uv() as unknown as Vec2
@@ -55,7 +56,7 @@ export class CloudVelocityNode extends Node<'vec4'> {
       If(transmittance.lessThan(OPAQUE).and(frame.hasHistory.greaterThan(0)), () => {
         const { x: distance } = unpack(passes.accumulated.distances.sample(at).level(0))
         const { ndc, length } = viewRayAt(passes.viewRays, at)
-        // Winds of layers differ by less than a tenth of a pixel in a frame.
+        // The first layer's wind stands for all: others differ by millimetres to half a metre in a frame.
         const origin = frame.originArray.element(int(0)).xyz
         const before = (frame.raysBefore as unknown as Mat3)
           .mul(ndc)
@@ -66,6 +67,12 @@ export class CloudVelocityNode extends Node<'vec4'> {
       })
       return velocity
     })()
+  }
+
+  /** Lets the clouds follow their camera's jitter again; they stay with who made them. */
+  override dispose(): void {
+    this.clouds.passes.frame.projectionOf = jitteredProjection
+    super.dispose()
   }
 }
 

@@ -43,7 +43,7 @@ interface Body {
   readonly height: Float
   readonly weather: CloudWeather
   /** `crumbDensity`. */
-  readonly full: Float
+  readonly crumbFactor: Float
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
@@ -80,8 +80,8 @@ function bodyAt(
   const fine = shape.fine.mul(amount.fine).mul(rough)
   const strength = body.add(fine.mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  const full = crumbDensity(column, needed)
-  return { sample, height, weather, full, body, strength, detailStrength }
+  const crumbFactor = crumbDensity(column, needed)
+  return { sample, height, weather, crumbFactor, body, strength, detailStrength }
 }
 
 /**
@@ -118,7 +118,7 @@ export function sampleLayerAt(
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      const full = densityAtHeight(layer, height).mul(body.full)
+      const full = densityAtHeight(layer, height).mul(body.crumbFactor)
       density.assign(densityOf(whole, body.body, edge).mul(full))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
