@@ -11,6 +11,14 @@ const quantile = (share: number): number => Math.log(share / (1 - share)) / 1.70
 
 const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
 
+const smoothstep = (low: number, high: number, x: number): number => {
+  const t = clamp((x - low) / (high - low), 0, 1)
+  return t * t * (3 - 2 * t)
+}
+
+/** Levels of detail over which blurring takes the variance of single clouds, as measured on the noise [octaves]. */
+const BLUR_LEVELS = [-0.9, 4] as const
+
 /**
  * Shares of the sky that a layer covers in regions of the planet that are equally frequent: the distribution of
  * `filteredCoverageAt` of density/tsl/weather.ts, of weather whose single clouds a footprint blurs.
@@ -25,12 +33,11 @@ export function regionalCoverages(
   const { cloudVariance } = weatherScales(layer.weatherWeights, false, layer.openCells)
   const texel = layerPeriods(layer).weather / NOISE_SIZE.weather
   const level = Math.log2(Math.max(footprint / texel, 1)) - layerForms(layer).coarseness
-  const lost = clamp(level / fadeLevels, 0, 1)
-  const lostVariance = cloudVariance * lost * lost * (3 - 2 * lost)
+  const lostVariance = cloudVariance * smoothstep(0, fadeLevels, level)
   const edges = Math.max(layer.shapeAmount * edgeSoftness, leastEdgeSoftness)
   const width = Math.sqrt(lostVariance + edges * edges)
   const median = quantile(clamp(layer.coverage, 1e-6, 1 - 1e-6))
-  const spread = Math.sqrt(1 - lostVariance)
+  const spread = Math.sqrt(1 - cloudVariance * smoothstep(...BLUR_LEVELS, level))
   return Array.from({ length: REGIONS }, (_, i) => {
     const weather = spread * quantile((i + 0.5) / REGIONS)
     const chance = 1 / (1 + Math.exp((-1.702 * (weather + median)) / width))
