@@ -98,7 +98,7 @@ export const jitteredProjection = (camera: PerspectiveCamera, target: Matrix4): 
 
 /** Uniforms that change from frame to frame: sizes, jitter, and where the last frame's pixels were. */
 export class FrameUniforms {
-  /** Projection that clouds are drawn by: the camera's own; without TRAA's jitter where a `cloudVelocity` is drawn. */
+  /** Projection that clouds are drawn by: the camera's own; without TRAA's jitter while there is a `cloudVelocity`. */
   projectionOf = jitteredProjection
   /** Size of the picture [pixels]. */
   readonly size = vector2()

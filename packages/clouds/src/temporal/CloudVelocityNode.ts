@@ -14,7 +14,7 @@ const OPAQUE = 0.5
 
 /**
  * Velocities of a picture with clouds in it: theirs where they hide most of what is behind them, by their distance and
- * their wind, and the given ones elsewhere. From its first draw until it is disposed, the clouds are drawn for their camera
+ * their wind, and the given ones elsewhere. From its construction until it is disposed, the clouds are drawn for their camera
  * without TRAA's jitter, which their history would take for a turn.
  *
  * ```ts
@@ -43,12 +43,12 @@ export class CloudVelocityNode extends Node<'vec4'> {
     checkClouds('CloudVelocityNode', clouds)
     this.velocityNode = velocityNode
     this.clouds = clouds
+    clouds.passes.frame.projectionOf = unjitteredProjection
   }
 
   override setup(): Node {
     const { passes } = this.clouds
     const { frame } = passes
-    frame.projectionOf = unjitteredProjection
     return Fn(() => {
       const velocity = vec4(this.velocityNode as Vec4).toVar() as Vec4
       const at = uv() as unknown as Vec2
