@@ -63,7 +63,7 @@ class SweptShadow implements AirShadow {
     this.#toField.value.multiplyMatrices(_toField, _axes)
     const { source } = this.#shafts
     const toLight = source.direction(_direction, view.camera.position)
-    toLight.transformDirection(_axes.identity()).applyMatrix3(_linear.setFromMatrix4(_toField))
+    toLight.normalize().applyMatrix3(_linear.setFromMatrix4(_toField))
     // In texels to the sides, and metres up for each.
     const longest = Math.max(Math.abs(toLight.x), Math.abs(toLight.y), 1e-9)
     toLight.divideScalar(longest)

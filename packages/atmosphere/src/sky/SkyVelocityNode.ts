@@ -2,13 +2,14 @@ import { fail } from '@welkin/geo'
 import { Matrix3, Matrix4 } from 'three'
 import type { Camera, OrthographicCamera } from 'three'
 import { Fn, If, isBackgroundDepth, renderGroup, uniform, uv, vec3, vec4 } from 'three/tsl'
-import { Node, NodeUpdateType, type NodeFrame } from 'three/webgpu'
+import { Node, NodeUpdateType } from 'three/webgpu'
 import { checkCamera } from '../check'
 import { unjitteredProjection } from '../view/cpu/unjittered'
 import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../tsl-types'
 
 const _projection = new Matrix4()
 const _view = new Matrix4()
+const _now = new Matrix3()
 
 /**
  * Velocities of a picture with a sky: three's where something was drawn, and elsewhere those of the sky, which is infinitely
@@ -53,17 +54,17 @@ export class SkyVelocityNode extends Node<'vec4'> {
     this.updateBeforeType = NodeUpdateType.FRAME
   }
 
-  override updateBefore(_frame: NodeFrame): undefined {
+  override updateBefore(): undefined {
     const { matrixWorld } = this.camera
     unjitteredProjection(this.camera, _projection)
     // Rows x, y and w: directions have no translation.
     _view.copy(matrixWorld).setPosition(0, 0, 0).invert()
-    const { elements: p } = _projection.clone().multiply(_view)
-    const now = new Matrix3().set(p[0], p[4], p[8], p[1], p[5], p[9], p[3], p[7], p[11])
-    const before = this.#isFirst ? now : this.#previous
-    this.#toPrevious.value.copy(now).invert().premultiply(before)
-    this.#previous.copy(now)
+    const { elements: p } = _projection.multiply(_view)
+    _now.set(p[0], p[4], p[8], p[1], p[5], p[9], p[3], p[7], p[11])
+    if (this.#isFirst) this.#previous.copy(_now)
     this.#isFirst = false
+    this.#toPrevious.value.copy(_now).invert().premultiply(this.#previous)
+    this.#previous.copy(_now)
   }
 
   override setup(): Node {
