@@ -103,5 +103,5 @@ export const NightOrbit: Story = {
 
 export const NightGlobe: Story = {
   name: 'By night: 20,000 km, with clouds',
-  args: { place: 'globe', hour: 15, clouds: true }
+  args: { place: 'globe', hour: 15, exposure: 1, clouds: true }
 }

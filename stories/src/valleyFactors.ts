@@ -20,7 +20,11 @@ export interface FactorTargets {
   readonly luna: Moon
 }
 
-/** @param on - 1 where shafts or the night sky are shown, else 0. */
+/**
+ * Sets the valley's factors.
+ *
+ * @param on - 1 where shafts or the night sky are shown, else 0.
+ */
 export function applyFactors(
   factors: ValleyFactors,
   air: AirStyle,

@@ -40,8 +40,9 @@ function filesUnder(directory: string): string[] {
 /**
  * Serves the stories' local data in development and adds it to a build: no network is needed for either.
  *
- * `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the imagery in the `@cesium/engine` package; `world-data/terrain/` is made here
- * from the heights in `data/`, the first time and whenever they or the script change.
+ * `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the
+ * imagery in the `@cesium/engine` package; `world-data/terrain/` is made here from the heights in `data/`, the first time and
+ * whenever they or the script change.
  */
 export function worldData(): Plugin {
   const directories = new Map<string, string>()

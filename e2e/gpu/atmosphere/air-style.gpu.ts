@@ -30,7 +30,7 @@ gpuTest('makes air denser as float64 does, thin and thick', async t => {
   })
 })
 
-gpuTest('changes nothing at 1, and haze by 0 and 2 as it says', async t => {
+gpuTest('changes nothing at 1, and by 0 and 2 haze and twilight as it says', async t => {
   const renderer = await t.createRenderer(size)
   const atmosphere = new Atmosphere().place({ longitude: 8, latitude: 46 })
   const scene = new Scene()
@@ -80,6 +80,20 @@ gpuTest('changes nothing at 1, and haze by 0 and 2 as it says', async t => {
   }
   style.set({ haze: 1, twilightSaturation: 2 })
   expectTrue(difference(plain[0], await draw()) === 0, 'twilight by day')
+
+  atmosphere.setSunAngles(-2, 0)
+  atmosphere.luminanceScale = 1e-2
+  const skyOf = async (saturation: number): Promise<number[]> => {
+    style.twilightSaturation = saturation
+    return look(await draw())[2].slice(0, 3)
+  }
+  const [none, once, twice] = [await skyOf(0), await skyOf(1), await skyOf(2)]
+  const [a, b, c] = [none, once, twice].map(luminance)
+  expectClose([a, c], [b, b], { relative: 5e-3 }, 'luminance')
+  const chroma = [0, 1, 2].map(k => (twice[k] - none[k]) / (once[k] - none[k]))
+  t.note(`sky at dusk ${once}, grey ${none}`)
+  expectClose(chroma, [2, 2, 2], { relative: 0.02 }, 'distance from grey')
+  expectTrue(Math.abs(once[2] / once[0] - none[2] / none[0]) > 0.2, 'the sky has a colour')
   post.dispose()
   for (const { geometry, material } of things) {
     geometry.dispose()

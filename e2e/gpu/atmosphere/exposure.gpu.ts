@@ -10,10 +10,9 @@ import {
 import { texture } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import {
-  CELLS,
   cellWeights,
   meteredLogLuminance,
-  TAPS
+  meterForm
 } from '../../../packages/atmosphere/src/exposure/cpu/meteredLuminance'
 import { ExposureMeter } from '../../../packages/atmosphere/src/exposure/ExposureMeter'
 import { tonesOf } from '../../harness/tones'
@@ -55,11 +54,11 @@ function pattern(width: number, height: number): { colors: Color[]; picture: Tex
 
 /** Float64 twin of `logLuminance` for all of a picture, four samples a cell, row by row. */
 function logLuminances(colors: readonly Color[], width: number, height: number): number[] {
-  const [columns, rows] = CELLS
+  const [columns, rows] = meterForm.cells
   const sample = (left: number, top: number): number => {
-    const logs = Array.from({ length: TAPS * TAPS }, (_, tap) => {
-      const x = left + ((tap % TAPS) + 0.5) / (2 * TAPS)
-      const y = top + (Math.floor(tap / TAPS) + 0.5) / (2 * TAPS)
+    const logs = Array.from({ length: meterForm.taps * meterForm.taps }, (_, tap) => {
+      const x = left + ((tap % meterForm.taps) + 0.5) / (2 * meterForm.taps)
+      const y = top + (Math.floor(tap / meterForm.taps) + 0.5) / (2 * meterForm.taps)
       const column = Math.floor((x / columns) * width)
       const row = Math.floor((y / rows) * height)
       return Math.log2(Math.min(luminance(colors[row * width + column]), 65_536))
@@ -85,8 +84,9 @@ gpuTest(
       })
     })
     // A read-back comes bottom-up on WebGL 2.
-    const row = (i: number): number => Math.floor(i / 4 / CELLS[0])
-    const flipped = (i: number): number => i + (CELLS[1] - 1 - 2 * row(i)) * 4 * CELLS[0]
+    const row = (i: number): number => Math.floor(i / 4 / meterForm.cells[0])
+    const flipped = (i: number): number =>
+      i + (meterForm.cells[1] - 1 - 2 * row(i)) * 4 * meterForm.cells[0]
     const logs = t.backend === 'webgl' ? read.map((_, i) => read[flipped(i)]) : read
     const expected = logLuminances(colors, width, height)
     // Half floats hold eight stops within 1/256; a place between two pixels may be rounded to either.

@@ -165,7 +165,11 @@ gpuTest(
   { backends: ['webgpu'], timeoutSeconds: 300 }
 )
 
-for (const quality of ['medium', 'high'] as const) {
+// Six frames after a turn new pixels of `medium` have 6 samples of 16, those of `high` 6 of 9: 2.2 and 1.0 %.
+for (const [quality, most] of [
+  ['medium', 0.024],
+  ['high', 0.012]
+] as const) {
   gpuTest(
     `turning by 90° a second leaves no trail, ${quality}`,
     t =>
@@ -185,7 +189,7 @@ for (const quality of ['medium', 'high'] as const) {
           for (let i = 0; i < 6; i++)
             found.push(apart(blockMeans(await sky.draw()), expected) / level)
           t.note(`off by ${found.map(part => (100 * part).toFixed(2)).join(', ')} %`)
-          expectTrue(found[5] < 0.02, `six frames after a turn pictures are off by ${found[5]}`)
+          expectTrue(found[5] < most, `six frames after a turn pictures are off by ${found[5]}`)
           sky.dispose()
         },
         narrow.size

@@ -31,6 +31,7 @@ import {
   moonIlluminanceAt,
   skyIlluminanceAt,
   skyLuminanceAt,
+  solveDiffuseLight,
   sunIlluminanceAt,
   standardEarthParameters,
   Stars,
@@ -421,6 +422,14 @@ const cases: [message: string, call: () => unknown][] = [
   [
     "AerialPerspectiveNode: camera must be a Camera, got 'camera'",
     () => aerialPerspective(vec4(1), vec4(1), wrong('camera'), atmosphere)
+  ],
+  [
+    'Moon.seenFrom: position must be a Vector3, got a PerspectiveCamera',
+    () => luna.seenFrom(wrong(camera))
+  ],
+  [
+    'solveDiffuseLight: parameters must be AtmosphereParameters, got an Atmosphere',
+    () => solveDiffuseLight(wrong(atmosphere))
   ],
   [
     'SkyBackgroundNode: atmosphere must be an Atmosphere, got a Scene',

@@ -8,6 +8,7 @@ export { cloudPreset, cloudPresetNames, type CloudPresetName } from './layers/pr
 export { CloudLightTable } from './light/CloudLightTable'
 export type { CloudPhaseParameters } from './light/cpu/cloudPhase'
 export { CloudsNode, clouds, type CloudsOptions } from './march/CloudsNode'
+export { CloudVelocityNode, cloudVelocity } from './temporal/CloudVelocityNode'
 export { CloudsDebugNode, cloudsDebug, type CloudsDebug } from './march/CloudsDebugNode'
 export { cloudQualities, type CloudQuality, type CloudQualityName } from './march/quality'
 export { CloudAirShadow, cloudAirShadow } from './shadow/CloudAirShadow'

@@ -47,8 +47,10 @@ function stripes(x: Node<'float'>, period: number, width: number): Node<'float'>
   return smoothstep(soft, soft.negate(), distance.sub(width / 2))
 }
 
-/** Light of a lit window, and of a lane under its lamps [cd/m²]. */
-const LIT = { window: 25, lane: 1.2 }
+/** Luminance of a lit window, a lane under its lamps, and a wall beside them [cd/m²]. */
+const LIT = { window: 8, lane: 1.2, wall: 0.8 }
+/** Height in which a wall's light from the street falls to a third [m]. */
+const LAMPLIGHT = 9
 
 function facadeMaterial(scale: Node<'float'>): MeshStandardNodeMaterial {
   const cell = uv().div(vec2(2.8, 3.5))
@@ -66,7 +68,10 @@ function facadeMaterial(scale: Node<'float'>): MeshStandardNodeMaterial {
   material.roughnessNode = mix(0.85, 0.12, window)
   const room = fract(sin(floor(cell).dot(vec2(12.9898, 78.233))).mul(43758.5453))
   const isLit = mix(step(0.66, room), float(0.33), blur)
-  material.emissiveNode = color('#ffcf95').mul(window.mul(isLit).mul(LIT.window)).mul(scale)
+  const rooms = color('#ffcf95').mul(window.mul(isLit).mul(LIT.window))
+  const fromBelow = uv().y.div(-LAMPLIGHT).exp().mul(isWall).mul(LIT.wall)
+  const walls = vertexColor().rgb.mul(color('#ffc687')).mul(window.oneMinus()).mul(fromBelow)
+  material.emissiveNode = rooms.add(walls).mul(scale)
   return material
 }
 

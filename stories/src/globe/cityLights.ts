@@ -4,7 +4,7 @@ import { attribute, float, max, smoothstep, texture, uniform, vec3 } from 'three
 import type { Node, UniformNode } from 'three/webgpu'
 
 /** Luminance of the brightest cities as a whole, seen from above [cd/m²]. */
-const BRIGHTEST = 0.4
+const BRIGHTEST = 2
 
 /** Towns by night: emission of the land, in the unit of an atmosphere's nodes. */
 export interface CityLights {

@@ -18,7 +18,7 @@ export interface TileSource {
 
 /** Google's Photorealistic 3D Tiles. */
 const GOOGLE = 'https://tile.googleapis.com/v1/3dtiles/root.json'
-/** Tiles of other places than this page's have their meshes compressed; the decoder is fetched as they are. */
+/** Decoder of compressed meshes, which tiles of a server have; fetched from the network, as they are. */
 const DRACO = 'https://www.gstatic.com/draco/versioned/decoders/1.5.7/'
 
 /** Tiles with their photographs and no light, which cast shadows. */

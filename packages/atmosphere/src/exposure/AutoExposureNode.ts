@@ -6,7 +6,7 @@ import type { Atmosphere } from '../Atmosphere'
 import { checkRange } from '../check'
 import { checkAtmosphere } from '../view/ViewNodes'
 import { adaptedScale, exposedScale } from './cpu/exposedScale'
-import { cellWeights, DARKEST, meteredLogLuminance } from './cpu/meteredLuminance'
+import { cellWeights, meteredLogLuminance, meterForm } from './cpu/meteredLuminance'
 import { ExposureMeter, type MeterReading } from './ExposureMeter'
 
 /** Options of {@link AutoExposureNode}. */
@@ -257,7 +257,7 @@ export class AutoExposureNode extends Node<'vec4'> {
     if (this.#reading === null) return
     const { logs, scale } = this.#reading
     const { mean, bright } = meteredLogLuminance(logs, this.#weights, this.#percentiles)
-    this.#isBlack = bright <= DARKEST
+    this.#isBlack = bright <= meterForm.darkest
     // By the scale of that picture: there may be another by now.
     this.#luminance = { mean: 2 ** mean / scale, bright: 2 ** bright / scale }
   }

@@ -3,7 +3,7 @@ import { screenCoordinate, texture, uniform, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import type { Vec2 } from '../tsl-types'
-import { CELLS } from './cpu/meteredLuminance'
+import { meterForm } from './cpu/meteredLuminance'
 import { logLuminance } from './tsl/logLuminance'
 
 /** Samples of a picture, and what it was drawn with. */
@@ -66,7 +66,7 @@ export class ExposureMeter {
   }
 
   #draw(renderer: Renderer): void {
-    const [width, height] = CELLS
+    const [width, height] = meterForm.cells
     const extent = vec2(1 / width, 1 / height) as Vec2
     this.#target ??= tableTarget('Welkin.Exposure', width, height, 1, NearestFilter)
     this.#pass ??= new FragmentPass(
@@ -77,7 +77,7 @@ export class ExposureMeter {
   }
 
   async #read(renderer: Renderer): Promise<Float32Array> {
-    const [width, height] = CELLS
+    const [width, height] = meterForm.cells
     const halves = await renderer.readRenderTargetPixelsAsync(this.#target!, 0, 0, width, height)
     return Float32Array.from(halves as Uint16Array, half => DataUtils.fromHalfFloat(half))
   }

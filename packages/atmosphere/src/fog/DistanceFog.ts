@@ -125,8 +125,8 @@ export class DistanceFog implements SkyLayer {
     return {
       front: float(0),
       transmittance: through,
-      once: added.mul(part).toConst(),
-      often: added.mul(part.oneMinus()).toConst(),
+      singleScattered: added.mul(part).toConst(),
+      multiplyScattered: added.mul(part.oneMinus()).toConst(),
       distanceAt(share) {
         const depth = share.mul(through.oneMinus()).oneMinus().log().negate()
         return depth.max(0).sqrt().mul(inverse).min(ray.distance).toConst()

@@ -182,8 +182,8 @@ export class HeightFog implements SkyLayer {
     return {
       front: fog.middleDistance,
       transmittance: through,
-      once: once.mul(fog.seen).toConst(),
-      often: often.mul(fog.seen).toConst(),
+      singleScattered: once.mul(fog.seen).toConst(),
+      multiplyScattered: often.mul(fog.seen).toConst(),
       distanceAt: part => depthAt(part.mul(through.oneMinus()).oneMinus().log().negate())
     }
   }

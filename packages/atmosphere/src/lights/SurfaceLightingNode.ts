@@ -31,8 +31,8 @@ function checkNode(name: string, value: Node | undefined): void {
 }
 
 /**
- * Lights a picture of surfaces that are not lit, such as photogrammetry tiles, whose photographs have light of their own:
- * the picture is taken for their albedo.
+ * Lights a picture of surfaces that are not lit, such as photogrammetry tiles, whose photographs have light of their own.
+ * The picture is taken for their albedo.
  *
  * ```ts
  * const scenePass = pass(scene, camera, { samples: 0 })
@@ -42,12 +42,12 @@ function checkNode(name: string, value: Node | undefined): void {
  * ```
  *
  * The lights are any of three's and Welkin's that stand in the scene of the pass: sun, sky and night probes, moonlight,
- * lamps. They give what a Lambert material would have of them, with their shadow maps and whatever is in the slot of a
- * shadow, such as `cloudShadow`. What is in the scene casts shadows by `castShadow` as ever, unlit materials too.
+ * lamps. They give what a Lambert material would have of them, with their shadow maps and whatever is their
+ * `shadow.shadowNode`, such as a `cloudShadow`. Meshes with `castShadow` cast shadows as ever, unlit ones too.
  *
  * Light is drawn at half-float precision into a texture of the picture's size, by a pass of its own. Put the node before
- * air and clouds. Knows standard, reversed and logarithmic depth, perspective and orthographic cameras; from far away
- * normals need one of the latter two depths. Draw without multisampling.
+ * air and clouds. Knows standard, reversed and logarithmic depth, perspective and orthographic cameras; normals of what
+ * is far away need reversed or logarithmic depth. Draw without multisampling.
  */
 export class SurfaceLightingNode extends Node<'vec4'> {
   static get type(): string {

@@ -7,6 +7,7 @@ import {
   checkNonNegative,
   checkOptions,
   checkPositive,
+  checkVector,
   fail,
   setOptions
 } from '@welkin/geo'
@@ -234,6 +235,7 @@ export class Moon implements SkyLayer {
    * @param position - Position of the observer, world.
    */
   seenFrom(position: Vector3): MoonAppearance {
+    checkVector('Moon.seenFrom', 'position', position)
     const geometry = this.#geometryFrom(position)
     const { distance, phaseAngle } = geometry
     return {

@@ -11,7 +11,7 @@ export interface MoonOptions {
   distance?: number | null
   /** Radius of the moon [m]. Its light grows with its area. */
   radius?: number
-  /** Factor on the brightness of the disc and on moonlight, ≥ 0. */
+  /** Factor on the brightness of the disc and on moonlight, ≥ 0, default 1. At 0 it still eclipses the sun. */
   strength?: number
   /** Artistic factor on earthshine, the glow of its dark side, ≥ 0, default 1. */
   earthshine?: number

@@ -42,8 +42,8 @@ export interface AirShadow {
   /** Sets uniforms, and draws tables, for the camera whose air it is. Called before it is drawn. */
   update?(view: AtmosphereView, renderer: Renderer): void
   /**
-   * Part of the light that arrives at places of a view ray, in [0, 1]: 1 where there is no shadow. Called for each ray;
-   * what it returns, in a loop and in branches.
+   * Part of the light that arrives at places of a view ray, in [0, 1]: 1 where there is no shadow. Called once for each ray;
+   * the function that it returns is called in a loop and in branches.
    */
   transmittance(ray: AirViewRay): (place: AirPoint) => Float
   /**

@@ -14,10 +14,10 @@ export interface HeightFieldShadowOptions {
   size?: number
 }
 
-/** Part of a texel by which the light may turn before the map is drawn anew. */
+/** Part of a texel by which the light may turn, over the field's width, before the map is drawn anew. */
 const TURN = 0.25
 
-/** Most that half floats hold of heights [m]. */
+/** Greatest height that the map keeps, up or down; half floats hold a little more [m]. */
 const MOST = 6e4
 
 const _direction = new Vector3()
@@ -25,7 +25,7 @@ const _axes = new Matrix4()
 const _linear = new Matrix3()
 const _toField = new Matrix4()
 
-/** Heights of an area: a texture of which red is a height [m], or a shader function of its place in [0, 1]². */
+/** Heights of an area: a texture whose red channel is height, or a shader function of the place in [0, 1]² [m]. */
 export type HeightField = Texture | ((at: Vec2) => Float)
 
 /** Shadow of a height field in one light: at each place the height up to which air is dark, swept along the light. */
@@ -63,7 +63,7 @@ class SweptShadow implements AirShadow {
     this.#toField.value.multiplyMatrices(_toField, _axes)
     const { source } = this.#shafts
     const toLight = source.direction(_direction, view.camera.position)
-    toLight.transformDirection(_axes.identity()).applyMatrix3(_linear.setFromMatrix4(_toField))
+    toLight.normalize().applyMatrix3(_linear.setFromMatrix4(_toField))
     // In texels to the sides, and metres up for each.
     const longest = Math.max(Math.abs(toLight.x), Math.abs(toLight.y), 1e-9)
     toLight.divideScalar(longest)
@@ -131,21 +131,25 @@ class SweptShadow implements AirShadow {
 }
 
 /**
- * Shadows that hills cast into the air, however far they reach: for light shafts, where no shadow map of the light is.
+ * Shadows that hills cast into the air, however far they reach: for light shafts beyond the light's shadow maps.
  *
  * ```ts
  * const matrix = new Matrix4().makeBasis(east, north, up).setPosition(corner)
  * shafts.add(heightFieldShadow(heights, matrix)) // before the first render, or set pipeline.needsUpdate
  * ```
  *
- * Heights are swept along the light's azimuth into a map of the height up to which air is dark, which is drawn when the
- * light has turned by a texel's part: log₂ of its size passes. The field is flat: of a large one heights are those above its plane, the
- * planet's curvature taken off. Two textures of 2 MB at the default size, of which air reads one.
+ * Heights are swept along the light's azimuth into a map of the height up to which air is dark, in about log₂ of its size
+ * passes. It is drawn anew when the light has turned by a quarter of a texel. The field is flat: take the planet's
+ * curvature off the heights of a large one. Two textures of 2 MB at the default size, of which air reads one; heights are
+ * kept within ±60 km.
  */
 export class HeightFieldShadow implements AirOccluder {
   /** Heights as a shader function of the place in the field [m]. */
   readonly heightAt: (at: Vec2) => Float
-  /** Places in the field, in [0, 1], and heights [m] to world space: its columns are edges, up, and the corner. */
+  /**
+   * Places in the field, in [0, 1]², and heights [m] to world space [world units]: its columns are the field's two edges,
+   * up by a metre, and the corner at (0, 0). Shared: count `version` up when it changes.
+   */
   readonly matrix: Matrix4
   /** Texels along each edge of its shadow map. */
   readonly size: number

@@ -51,11 +51,12 @@ const _axes = new Matrix4()
  * at `'medium'` and `'low'` quality reads a volume of some 144 × 81 rays in 24 slices.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
- * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. The light scattered once is
- * taken from air in shadow; light scattered more often, which comes from all sides, stays. A scene without
- * shadows is the same, bit for bit, as without shafts, and one whose light casts none costs nothing.
+ * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. Air and fogs in
+ * shadow lose the light that they scatter once; light scattered more often, which comes from all sides, stays. A scene
+ * without shadows is the same, bit for bit, as without shafts, and one whose light casts none costs nothing.
  *
- * Clouds and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`. They need no shadow map of the light.
+ * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
+ * shadow map of the light.
  *
  * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 9 MB for materials.
  *
@@ -98,7 +99,7 @@ export class LightShafts implements ShadowedShafts {
    * @param light - Light whose shadows fall into the air: a `SunDirectionalLight`, a `MoonDirectionalLight`, or a
    *   directional light of one's own, three's `SunLight` too, that shines from the atmosphere's sun. It must cast
    *   shadows for there to be shafts.
-   * @throws If an argument is missing or of the wrong kind, or an option is unknown.
+   * @throws If an argument is missing or of the wrong kind, or an option is unknown or out of range.
    */
   constructor(
     atmosphere: Atmosphere,
@@ -183,7 +184,7 @@ export class LightShafts implements ShadowedShafts {
     return this
   }
 
-  /** Part of the light that air in shadow loses, ≥ 0: 1 is physical, more than all is not taken [–]. */
+  /** Factor on the light that air in shadow loses, finite, ≥ 0: 1 is physical; no air loses more than it has [–]. */
   get strength(): number {
     return this.#setStrength
   }

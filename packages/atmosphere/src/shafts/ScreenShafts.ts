@@ -75,8 +75,8 @@ export interface CameraShafts {
  * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, then taken from those around a
  * pixel that are at its depth.
  *
- * Of a picture with a foreground layer the light before it counts, and the light behind it as far as it passes: so the light
- * is taken from the picture of both, at once.
+ * With a foreground layer, light in front of it counts in full, and light behind it as far as it passes: lost light is then
+ * taken from the picture of both, at once.
  */
 export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
@@ -267,7 +267,7 @@ export class ScreenShafts implements ScreenShadows {
       .mul(LIGHT_SCALE / 4)
     const light = this.#shafts.shadowedAir
       .mediaOn({ view: this.#shafts.view, ...ray })
-      .reduce((sum, medium) => sum.mul(medium.transmittance).add(medium.once), radiance)
+      .reduce((sum, medium) => sum.mul(medium.transmittance).add(medium.singleScattered), radiance)
     return light.dot(vec4(scale)).clamp(1e-5, MOST).toConst()
   }
 

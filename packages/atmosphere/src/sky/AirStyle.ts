@@ -17,7 +17,7 @@ export interface AirStyleOptions {
 
 const SETTINGS = ['haze', 'twilightSaturation'] as const
 
-/** Elevations of the sun between which it is twilight, and beyond which it is none at all [°]. */
+/** Elevations of the sun between which twilight counts in full, and outside of which it counts not at all [°]. */
 const TWILIGHT = [-12, 2] as const
 const NO_TWILIGHT = [-18, 10] as const
 
@@ -29,7 +29,8 @@ const NO_TWILIGHT = [-18, 10] as const
  * ```
  *
  * They act on the picture alone, and on environment maps: lights and `skyIlluminanceAt` stay physical. Add it before
- * fogs, which have densities of their own and are left alone if they come later. The shell has none.
+ * fogs, which have densities of their own and are left alone if they come later. Light shafts take what the air would
+ * lose without it: give them a `strength` to match. An `AtmosphereShell` has no such factors.
  */
 export class AirStyle implements SkyLayer {
   #haze = 1
@@ -55,7 +56,7 @@ export class AirStyle implements SkyLayer {
   }
 
   /**
-   * Factor on the optical depth of the air between camera and scene, clouds included, finite, ≥ 0: 0 takes haze away, 2
+   * Factor on the optical depth of the air in front of the scene and of clouds, finite, ≥ 0 [–]: 0 takes haze away, 2
    * has twice as much. The sky behind stays as it is; `turbidity` of the parameters changes both.
    */
   get haze(): number {
@@ -69,8 +70,8 @@ export class AirStyle implements SkyLayer {
   }
 
   /**
-   * Factor on the saturation of the air's light with the sun near the horizon of the camera, finite, ≥ 0: 0 is grey, of
-   * the same luminance. All of it counts from 2° above to 12° below, none of it above 10° and below 18°.
+   * Factor on the saturation of the air's light while the sun is near the camera's horizon, finite, ≥ 0 [–]: 0 is grey, of
+   * the same luminance. It counts in full with the sun from 2° up to 12° down, and not at all from 10° up or 18° down.
    */
   get twilightSaturation(): number {
     return this.#twilightSaturation

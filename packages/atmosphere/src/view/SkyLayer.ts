@@ -38,15 +38,17 @@ export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' 
 /** Distance from which on shadows take a ray for one into the sky, or to the planet that is drawn with it [m]. */
 export const SKY_DISTANCE = 1e9
 
-/** A layer's medium on a view ray, as far as shadows fall into it; light is for unit irradiance of their source [1/sr]. */
+/** A layer's medium on a view ray, for shadows that fall into it. Light is for unit irradiance of their source [1/sr]. */
 export interface ShadowedMedium {
-  /** Distance before which the air's light is in front of the medium [m], and the part of the rest that passes it. */
+  /** Distance up to which the air's light is in front of the medium [m]. */
   readonly front: Float
+  /** Part of the light from farther away that passes the medium, in [0, 1]. */
   readonly transmittance: Float
-  /** Light that it adds: scattered once, and more often. */
-  readonly once: Vec4
-  readonly often: Vec4
-  /** Distance before which it has a part of its light, given in [0, 1] [m]. */
+  /** Light that it adds, scattered once. */
+  readonly singleScattered: Vec4
+  /** Light that it adds, scattered more often than once. */
+  readonly multiplyScattered: Vec4
+  /** Distance up to which it has added a part of its light, given in [0, 1] [m]. */
   distanceAt(part: Float): Float
 }
 
@@ -110,6 +112,7 @@ export interface SkyLayer {
    * Its medium as shadows see it, in the light of the source of `ray.view`; null if that does not light it.
    *
    * @param ray - View ray, to {@link SKY_DISTANCE} or farther for the sky.
+   * @param isSun - True if that source is the atmosphere's sun.
    */
   shadowed?(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null
   /** Frees GPU memory. */

@@ -6,14 +6,13 @@ import { describe, expect, it } from 'vitest'
 import { Atmosphere, autoExposure, DayCycle, type AutoExposureOptions } from '@welkin/atmosphere'
 import { adaptedScale, exposedScale } from '../../src/exposure/cpu/exposedScale'
 import {
-  CELLS,
   cellWeights,
-  DARKEST,
-  meteredLogLuminance
+  meteredLogLuminance,
+  meterForm
 } from '../../src/exposure/cpu/meteredLuminance'
 import { number, runs } from '../arbitraries'
 
-const COUNT = CELLS[0] * CELLS[1] * 4
+const COUNT = meterForm.cells[0] * meterForm.cells[1] * 4
 const even = cellWeights(0)
 const settings = { compensation: 0, limits: [1e-9, 1e12], darkNights: false } as const
 
@@ -65,8 +64,8 @@ describe('metered luminance', () => {
     expect(mean(samples([0.5, -10], [0.5, 2]))).toBe(2)
     expect(mean(samples([0.5, -8], [0.5, 2]))).toBeCloseTo((2 - 8 * 0.5) / 1.5, 9)
     expect(mean(samples([0.5, -6], [0.5, 2]))).toBeCloseTo(-2, 9)
-    expect(mean(new Float64Array(COUNT).fill(-24))).toBe(DARKEST)
-    expect(mean(new Float64Array(COUNT).fill(NaN))).toBe(DARKEST)
+    expect(mean(new Float64Array(COUNT).fill(-24))).toBe(meterForm.darkest)
+    expect(mean(new Float64Array(COUNT).fill(NaN))).toBe(meterForm.darkest)
   })
 
   it('gives no more weight to the sun than to any pixel', () => {
@@ -78,7 +77,7 @@ describe('metered luminance', () => {
   })
 
   it('counts the middle more than the edges', () => {
-    const [width, height] = CELLS
+    const [width, height] = meterForm.cells
     const inner = Array.from({ length: COUNT }, (_, i) => {
       const x = ((i >> 2) % width) / width
       const y = Math.floor((i >> 2) / width) / height

@@ -12,26 +12,26 @@ import { weatherBackground, type PackedBackground } from './tsl/weatherBackgroun
 const SIZE = 256
 
 /**
- * Distance over the ground from the camera that the map reaches [m], and that within which its texels are about
+ * Greatest distance over the ground from the camera that the map has [m], and that within which its texels are about
  * as wide: 100 m below the camera, 1.1 km at its rim. Wider: clouds shift as one flies towards them (*Cockpit*).
  */
-const REACH = 30_000
+const MAXIMUM_DISTANCE = 30_000
 const EVEN = 12_000
 
-/** Place in the map at the reach, from its middle: ρ / (ρ + EVEN). */
-const RIM = REACH / (REACH + EVEN)
+/** Position of that distance in the map, from its middle: ρ / (ρ + EVEN). */
+const RIM = MAXIMUM_DISTANCE / (MAXIMUM_DISTANCE + EVEN)
 
 /** Texels at each edge that bilinear look-ups must not leave. */
 const MARGIN = 0.5
 
-/** Texture coordinates of a layer's square per place, from its middle. */
-const PER_PLACE = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
+/** Texture coordinates of a layer's tile per unit of position, from its middle. */
+const PER_POSITION = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
 
 /**
  * Weather's background of all layers around a camera's subpoint, drawn anew for each frame: rays that look it up
  * there take one texture read in place of two that wait for each other.
  *
- * Each layer has a square, one above the other. Places are displacements in the plane that touches the sphere at
+ * Each layer has a tile, one above the other. Positions are displacements in the plane that touches the sphere at
  * the subpoint, at ρ / (ρ + EVEN) for a distance ρ from it.
  */
 export class WeatherMap {
@@ -61,9 +61,9 @@ export class WeatherMap {
       const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
       const index = field.layers.length === 1 ? int(0) : at.y.floor().toInt()
       const layer = layerAt(field, index.toConst())
-      const place = vec2(at.x, at.y.fract()).sub(0.5).div(PER_PLACE).toConst() as Vec2
-      const far = place.length().min(0.98).toConst() as Float
-      const flat = place.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
+      const position = vec2(at.x, at.y.fract()).sub(0.5).div(PER_POSITION).toConst() as Vec2
+      const far = position.length().min(0.98).toConst() as Float
+      const flat = position.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
       const square = flat.dot(flat).toConst() as Float
       // What the sphere falls short of the plane.
       const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
@@ -86,8 +86,8 @@ export class WeatherMap {
   }
 
   /**
-   * Background of a layer's weather: from the map, or looked up itself where that does not reach. To be called
-   * inside of a shader function.
+   * Background of a layer's weather: from the map, or by look-ups of noise farther away. To be called inside of a
+   * shader function.
    *
    * @param subpoint - `subpointOffset` of the sample.
    * @param up - Zenith there.
@@ -105,10 +105,10 @@ export class WeatherMap {
     const flat = vec2(subpoint.dot(x), subpoint.dot(y)).toConst() as Vec2
     const distance = flat.length().toConst() as Float
     const found = vec4(0).toVar() as Vec4
-    If(distance.lessThan(REACH), () => {
-      const place = flat.div(distance.add(EVEN)).mul(PER_PLACE).add(0.5)
+    If(distance.lessThan(MAXIMUM_DISTANCE), () => {
+      const inTile = flat.div(distance.add(EVEN)).mul(PER_POSITION).add(0.5)
       const at =
-        layers.length === 1 ? place : vec2(place.x, place.y.add(float(index)).div(layers.length))
+        layers.length === 1 ? inTile : vec2(inTile.x, inTile.y.add(float(index)).div(layers.length))
       found.assign(this.#map.sample(at).level(0))
     }).Else(() => {
       found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint))

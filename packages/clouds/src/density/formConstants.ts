@@ -14,8 +14,8 @@ export const strengthForm = {
    * Added to the strength for the shape amount s and coverage c: s (a + b c) + d c³² [–]. It makes a layer
    * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
    */
-  offset: -0.53,
-  coverageOffset: 0.93,
+  offset: -0.13,
+  coverageOffset: 0.59,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
@@ -32,7 +32,7 @@ export const strengthForm = {
    * Levels of detail over which single clouds are lost in the mean [octaves]. It says how much variance
    * blurred weather has left: wrong, and cover changes with the distance (*World clouds*).
    */
-  fadeLevels: 5,
+  fadeLevels: 6,
   /** Least variance of blurred weather that is made up for [–]. Smaller: grain far away (*World clouds*). */
   leastVariance: 0.05,
   /**
@@ -54,8 +54,11 @@ export const heightForm = {
   inversion: 0.68,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.6,
-  /** Strength that towers need below an anvil [–], and where they begin to spread, in [0, 1] (*Storm*). */
+  grown: 0.73,
+  /**
+   * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
+   * in [0, 1] (*Storm*).
+   */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
   /** Strength that anvils need all over [–]: greater, and a storm covers less than it is asked to (*Storm*). */
@@ -72,24 +75,30 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.95,
-  fine: 0.81,
+  fine: 1.2,
   detail: 0.3,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
   /**
-   * Strength at which fine billows begin, and over which they set in: bodies have them, crumbs do not. Lower:
-   * crumbs float about clouds (*Cumulus*).
+   * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have
+   * them, crumbs do not. Lower: crumbs float about clouds (*Cumulus*).
    */
   fineFrom: 0.3,
   fineOver: 0.5,
+  /**
+   * Strength of columns over which all their billows grow weaker, and the factor they end at [–]: only the top
+   * of a strong column is an edge, and it is a round head. Factor 1: tops torn to shreds (*Cumulus*).
+   */
+  middle: [0.3, 1.6],
+  atTops: 0.6,
   /** Height in the layer below which detail makes wisps, not billows, in [0, 1] (*Cumulus*). */
   wispHeight: 0.1,
   /**
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
    * shape], and heights in the layer over which it sets in, in [0, 1]. 0: columns like cookies (*Cumulus*).
    */
-  bend: 0.065,
+  bend: 0.045,
   bendHeight: 0.2
 } as const
 
@@ -101,25 +110,34 @@ export const densityForm = {
   /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
   softerBase: 4,
   /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
-  edgeDensity: 0.88,
-  core: 1
+  edgeDensity: 0.92,
+  core: 0.66,
+  /**
+   * Factor of the density of what only billows make cloud, and the strength of columns without them over which
+   * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about
+   * clouds; greater share: thin tops (*Cumulus*).
+   */
+  crumb: 0.2,
+  crumbFrom: [-0.9, -0.1],
+  crumbHeight: 0.4
 } as const
 
 /** Clouds that are not seen one by one, as mean columns: tsl/unresolved.ts. */
 export const columnForm = {
   /**
-   * Height over the weather's period, times this: how much clouds hide, looked at aslant, as tall bodies
-   * would. Smaller: far fields of cumulus show the ground between them at the horizon (*Cockpit*).
+   * Factor [–] of a layer's thickness over the weather's period: the product, at most 1, is the share of what
+   * tall bodies hide more of when looked at aslant. Smaller: far fields of cumulus show the ground between
+   * them at the horizon (*Cockpit*).
    */
   slantAspect: 5,
   /**
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
    */
-  tops: 3.7,
+  tops: 3.5,
   /**
-   * Height up to which less and less of clouds is seen towards their bases, in [0, 1], and the least share
-   * (*World clouds*).
+   * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
+   * with one, and the least share (*World clouds*).
    */
   hiddenBelow: 0.4,
   hiddenByAnvil: 0.75,
@@ -128,5 +146,5 @@ export const columnForm = {
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
    * that are dark from afar (*World clouds*).
    */
-  inside: 1.45
+  inside: 1.25
 } as const

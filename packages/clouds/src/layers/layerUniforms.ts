@@ -153,6 +153,12 @@ export function weatherScales(
   }
 }
 
+/**
+ * Levels of detail by which the weather of cumulonimbus is coarser than that of cumulus. Smaller: storms thin out
+ * between 1,000 and 4,000 km (*World clouds*).
+ */
+const CUMULONIMBUS_COARSENESS = 1.15
+
 /** Forms that a layer's kind of weather gives its clouds. */
 export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameters): {
   /** Length over width of the noise that shapes them. */
@@ -166,6 +172,6 @@ export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameter
   return {
     stretch: 1 + (CIRRUS_STRETCH - 1) * fibrous,
     edge: densityForm.crispEdge * densityForm.softEdge ** edgeSoftness,
-    coarseness: shareOf(weatherWeights, 2)
+    coarseness: CUMULONIMBUS_COARSENESS * shareOf(weatherWeights, 2)
   }
 }

@@ -1,3 +1,4 @@
+import { MathUtils } from 'three'
 import type { CloudLayerParameters } from './CloudLayer'
 import {
   billowForm,
@@ -23,13 +24,6 @@ export interface MeanColumn {
   readonly profileMean: number
 }
 
-const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
-
-const smoothstep = ([low, high]: readonly [number, number], x: number): number => {
-  const t = clamp((x - low) / (high - low), 0, 1)
-  return t * t * (3 - 2 * t)
-}
-
 /** Strength that a column needs at a height: `neededStrength` of density/tsl/heightForm.ts. */
 export function neededStrength(
   { profileExponent, anvil }: CloudLayerParameters,
@@ -42,7 +36,8 @@ export function neededStrength(
     inversionStrength * Math.max(height - inversion, 0) ** 2
   const end = Math.max(height - anvilHeights[0], 0) / (1 - anvilHeights[0])
   const spread =
-    (tower * (1 - smoothstep(towerHeights, height)) + needed) * Math.min(8 * height, 1) +
+    (tower * (1 - MathUtils.smoothstep(height, ...towerHeights)) + needed) *
+      Math.min(8 * height, 1) +
     overshoot * end ** 2
   return column + anvil * (spread - column)
 }
@@ -53,8 +48,8 @@ export function densityAtHeight(
   height: number
 ): number {
   const { grown, iceHeights, iceDensity } = heightForm
-  const ice = anvil * smoothstep(iceHeights, height)
-  return clamp(height / grown, 1e-4, 1) ** densityGrowth * (1 + ice * (iceDensity - 1))
+  const ice = anvil * MathUtils.smoothstep(height, ...iceHeights)
+  return MathUtils.clamp(height / grown, 1e-4, 1) ** densityGrowth * (1 + ice * (iceDensity - 1))
 }
 
 /** Strength over which density rises at edges at a height [–]: `edgeAt` of density/tsl/density.ts. */
@@ -69,8 +64,21 @@ export function densityOf(
   height: number
 ): number {
   const { edgeDensity, core } = densityForm
-  const inside = Math.sqrt(clamp(body / core, 0, 1))
-  return clamp(strength / edgeAt(layer, height), 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
+  const inside = Math.sqrt(MathUtils.clamp(body / core, 0, 1))
+  return (
+    MathUtils.clamp(strength / edgeAt(layer, height), 0, 1) *
+    (edgeDensity + (1 - edgeDensity) * inside)
+  )
+}
+
+/** Factor of the billows of a column of a strength: `topBillows` of density/tsl/billows.ts. */
+export const topBillows = (column: number): number =>
+  1 + (billowForm.atTops - 1) * MathUtils.smoothstep(column, ...billowForm.middle)
+
+/** Factor of the density of bits that only billows make: `crumbDensity` of density/tsl/density.ts. */
+export function crumbDensity(column: number, needed: number): number {
+  const { crumb, crumbFrom, crumbHeight } = densityForm
+  return crumb + (1 - crumb) * MathUtils.smoothstep(column - crumbHeight * needed, ...crumbFrom)
 }
 
 /** Share of cloudy columns that are seen at a height from afar: `seenShare` of density/tsl/unresolved.ts. */
@@ -78,7 +86,7 @@ export function seenShare(layer: CloudLayerParameters, height: number): number {
   const { tops, hiddenBelow, hiddenByAnvil, leastSeen } = columnForm
   const hidden = hiddenBelow + layer.anvil * (hiddenByAnvil - hiddenBelow)
   const reached = 1 - neededStrength(layer, height) / strengthForm.strongest
-  return clamp(tops * reached, 0, 1) * clamp(height / hidden, leastSeen, 1)
+  return MathUtils.clamp(tops * reached, 0, 1) * MathUtils.clamp(height / hidden, leastSeen, 1)
 }
 
 const HEIGHTS = 24
@@ -105,11 +113,14 @@ function columnAt(
   let inside = 0
   for (let i = 0; i < COLUMNS; i++) {
     const column = least + ((i + 0.5) / COLUMNS) * strongest
+    const rough = amount * topBillows(column)
     const mean = meanOverHeights(height => {
-      const body = column - neededStrength(layer, height)
+      const needed = neededStrength(layer, height)
+      const body = column - needed
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
-        const strength = body + amount * deviation
-        return part + weight * densityOf(layer, strength, strength, height)
+        const strength = body + rough * deviation
+        const density = densityOf(layer, strength, strength, height)
+        return part + weight * density * crumbDensity(column, needed)
       }, 0)
       return here * densityAtHeight(layer, height)
     })

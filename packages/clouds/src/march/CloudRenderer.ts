@@ -109,6 +109,7 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
  */
 export class CloudRenderer {
   readonly frame: FrameUniforms
+  readonly viewRays: FrameInputs
   readonly #marchedTarget = marchedTarget()
   readonly #shadedTarget = cloudTarget('Shaded')
   readonly #cellsTarget = cloudTarget('Cells')
@@ -131,6 +132,7 @@ export class CloudRenderer {
     this.#weatherMap = new WeatherMap(field)
     const scene = { ...inputs, weatherMap: this.#weatherMap }
     this.frame = viewRays.frame
+    this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.#shade = new FragmentPass(

@@ -86,13 +86,20 @@ function cloudInputs({ values, night, ambient }: CloudField, lightVersion: numbe
   ]
 }
 
+const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
 const _position = new Vector3()
 const _origin = new Vector4()
 
+/** Projection of a camera, with the jitter that it may have. */
+export const jitteredProjection = (camera: PerspectiveCamera, target: Matrix4): Matrix4 =>
+  target.copy(camera.projectionMatrix)
+
 /** Uniforms that change from frame to frame: sizes, jitter, and where the last frame's pixels were. */
 export class FrameUniforms {
+  /** Projection that clouds are drawn by: the camera's own; without TRAA's jitter while there is a `cloudVelocity`. */
+  projectionOf = jitteredProjection
   /** Size of the picture [pixels]. */
   readonly size = vector2()
   /** Size of what is marched in a frame [pixels]. */
@@ -163,7 +170,8 @@ export class FrameUniforms {
   ): void {
     if (this.block.value !== block) this.reset()
     this.#setJitter(block, usesHistory)
-    this.projectionInverse.value.copy(camera.projectionMatrixInverse)
+    const projection = this.projectionOf(camera, _projection)
+    this.projectionInverse.value.copy(projection).invert()
     this.near.value = camera.near
     this.far.value = camera.far
     // An exposure that has adapted to the night raises light as well: both are too much for half floats.
@@ -178,10 +186,10 @@ export class FrameUniforms {
     viewpointMapped(view, _position)
     const isCut = !usesHistory || this.#isCut(view.height, field)
     this.hasHistory.value = isCut ? 0 : 1
-    const isAtRest = this.#setReprojection(camera, view, field)
+    const isAtRest = this.#setReprojection(view, field)
     const frames = ORDERS[block].length
     this.#countForgetting(isCut, frames, view.lightDirection, cloudInputs(field, lightVersion))
-    const matrices = [...view.viewToMapped.elements, ...camera.projectionMatrix.elements]
+    const matrices = [...view.viewToMapped.elements, ...projection.elements]
     const isStill = !isCut && isAtRest && this.#forgetting <= 0 && isSame(matrices, this.#matrices)
     this.maxSamples.value = isStill
       ? STILL_SAMPLES
@@ -189,7 +197,7 @@ export class FrameUniforms {
     this.clipDeviations.value = isStill ? STILL_CLIP : MOVING_CLIP
 
     this.#matrices = matrices
-    this.#projection.copy(camera.projectionMatrix)
+    this.#projection.copy(projection)
     this.#fromMapped.setFromMatrix3(view.viewToMapped).invert()
     this.#camera = (this.#camera ?? new Vector3()).copy(_position)
   }
@@ -223,8 +231,8 @@ export class FrameUniforms {
    *
    * @returns True if neither the camera's place nor the clouds have moved since then.
    */
-  #setReprojection(camera: PerspectiveCamera, view: AtmosphereView, field: CloudField): boolean {
-    const { elements: e } = camera.projectionMatrixInverse
+  #setReprojection(view: AtmosphereView, field: CloudField): boolean {
+    const { elements: e } = this.projectionInverse.value
     // Any depth between near and far gives the direction of a pixel's ray.
     const [x, y, z] = [0, 1, 2].map(row => 0.5 * e[8 + row] + e[12 + row])
     const rays = this.rays.value.set(e[0], e[4], x, e[1], e[5], y, e[2], e[6], z)

@@ -66,7 +66,7 @@ const octaves = (
  * Displacement of billows by curls of half as many cells, in cells of the billows. 0: round balls; greater:
  * torn threads (*Cumulus*).
  */
-const STIR = 0.4
+const STIR = 0.3
 
 /** Two octaves of billows, each displaced by a curl of its own size on top of the one before. */
 const stirredBillows = (cells: number, gain: number): NoiseTerm[] =>
@@ -106,9 +106,9 @@ const cauliflower = (cells: number, amplitude: number): NoiseTerm[] => [
  */
 export const weatherChannels: readonly NoiseChannel[] = [
   {
-    terms: [0, 1, 2].flatMap(i => cauliflower(6 << i, 2 ** (-0.69 * i))),
+    terms: [0, 1, 2].flatMap(i => cauliflower(6 << i, 2 ** -i)),
     encoding: 'uniform',
-    statistics: [3.7136, 0.9254]
+    statistics: [3.243, 0.857]
   },
   {
     // Closed cells.

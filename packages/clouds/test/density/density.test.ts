@@ -152,9 +152,9 @@ describe('shear', () => {
   }
 
   it('makes columns lean downwind by its product with the height', () => {
-    const places = Array.from({ length: 40 }, (_, i) => [400 * i - 8000, 170 * i] as const)
+    const places = Array.from({ length: 80 }, (_, i) => [400 * i - 8000, 170 * i] as const)
     for (const height of [0.5, 0.9]) {
-      for (const shear of [0.5, -1]) {
+      for (const shear of [0.2, -0.5]) {
         const lean = shear * height * 1200
         // Fields of clouds do not lean, and shift single ones a little: the lean is that of most alike columns.
         const apartAt = (share: number): number =>
@@ -263,7 +263,7 @@ describe('layer uniforms', () => {
     const forms = (name: CloudPresetName) => layerForms(cloudPreset(name).at(0).parameters)
     expect(forms('cirrus').stretch).toBeGreaterThan(5)
     expect(forms('cirrus').edge).toBeGreaterThan(5 * forms('fairWeather').edge)
-    expect(forms('cumulonimbus').coarseness).toBe(1)
+    expect(forms('cumulonimbus').coarseness).toBeGreaterThan(1)
     for (const name of ['fairWeather', 'congestus', 'stratocumulus', 'overcast'] as const) {
       expect(forms(name)).toMatchObject({ stretch: 1, coarseness: 0 })
     }

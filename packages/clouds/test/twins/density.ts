@@ -13,12 +13,14 @@ import {
   weatherScales
 } from '../../src/layers/layerUniforms'
 import {
+  crumbDensity,
   densityAtHeight,
   densityOf,
   edgeAt,
   meanColumn,
   neededStrength,
-  seenShare
+  seenShare,
+  topBillows
 } from '../../src/layers/meanColumn'
 import { windAxis } from '../../src/layers/wind'
 import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
@@ -305,10 +307,12 @@ export function sampleLayer(
   const ofFine = shapeAmount * billowForm.fine * growing(billowForm.fineGrowth)
   const sign = Math.min(height / billowForm.wispHeight - 1, 1)
   const lost = smoothstep(...strengthForm.billowLevels, level)
-  const body =
-    columnStrength(layer, weather, lost) - neededStrength(layer, height) + ofCoarse * coarse
+  const unbillowed = columnStrength(layer, weather, lost)
+  const rough = topBillows(unbillowed)
+  const needed = neededStrength(layer, height)
+  const body = unbillowed - needed + ofCoarse * coarse * rough
   const share = clamp(1 + (body - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
-  let strength = body + ofFine * share * fine
+  let strength = body + ofFine * share * fine * rough
   const ofDetail =
     shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share
   const most = 2.5 * Math.abs(ofDetail)
@@ -317,7 +321,8 @@ export function sampleLayer(
   }
 
   const atHeight = densityAtHeight(layer, height)
-  const near = atHeight * densityOf(layer, strength, body, height)
+  const near =
+    atHeight * densityOf(layer, strength, body, height) * crumbDensity(unbillowed, needed)
   const { unresolvedFraction, filteredCoverage } = weather
   if (unresolvedFraction === 0 || filteredCoverage === 0) {
     return { extinction: density * near, strength }

@@ -1,5 +1,9 @@
 import { withDefaults } from '../../check'
-import { spectrumOf, type AtmosphereParameters } from '../../parameters/AtmosphereParameters'
+import {
+  checkParameters,
+  spectrumOf,
+  type AtmosphereParameters
+} from '../../parameters/AtmosphereParameters'
 import { DIFFUSE_SIZE, DIFFUSE_TILES, RADIANCE_SCALE } from '../../tables/tableSizes'
 import { distanceToGround, distanceToTop } from '../../air/cpu/boundary'
 import {
@@ -305,6 +309,7 @@ export function solveDiffuseLight(
   p: AtmosphereParameters,
   quality: Partial<DiffuseLightQuality> = {}
 ): DiffuseLightData {
+  checkParameters('solveDiffuseLight', p)
   const { sun, diffuse, orders } = withDefaults('solveDiffuseLight', STANDARD, quality)
   const gatherer = new Gatherer(p)
   const total = new Float64Array(COLUMNS * ROWS * PER_CELL)

@@ -1,14 +1,14 @@
-/** Cells of a picture that are metered, across and down; each has four samples. */
-export const CELLS = [64, 36] as const
-
-/** Pixels of a sample, across and down. */
-export const TAPS = 4
-
-/** log2 of the luminance that stands for black: the least number of a half float. */
-export const DARKEST = -24
-
-/** log2 of the most that is metered: the greatest number of a half float, rounded up. */
-export const MOST = 16
+/** Form of the meter: what it samples of a picture, and the luminances that it tells apart. */
+export const meterForm = {
+  /** Cells of a picture that are metered, across and down; each has four samples. */
+  cells: [64, 36],
+  /** Pixels of a sample, across and down. */
+  taps: 4,
+  /** log2 of the luminance that stands for black: the least number of a half float. */
+  darkest: -24,
+  /** log2 of the most that is metered: the greatest number of a half float, rounded up. */
+  brightest: 16
+} as const
 
 /** Bins of the histogram per stop. */
 const BINS_PER_STOP = 8
@@ -25,7 +25,7 @@ const CENTER_WIDTH = 0.25
  * @param centerWeight - 0 is even, 1 the Gaussian alone.
  */
 export function cellWeights(centerWeight: number): Float64Array {
-  const [width, height] = CELLS
+  const [width, height] = meterForm.cells
   return Float64Array.from({ length: width * height }, (_, i) => {
     const x = ((i % width) + 0.5) / width - 0.5
     const y = (Math.floor(i / width) + 0.5) / height - 0.5
@@ -44,12 +44,12 @@ interface Histogram {
 }
 
 function histogramOf(logs: ArrayLike<number>, weights: ArrayLike<number>): Histogram {
-  const bins = (MOST - DARKEST) * BINS_PER_STOP + 1
+  const bins = (meterForm.brightest - meterForm.darkest) * BINS_PER_STOP + 1
   const histogram = { weights: new Float64Array(bins), sums: new Float64Array(bins), total: 0 }
   for (let i = 0; i < logs.length; i++) {
-    const log = Math.min(logs[i], MOST)
-    if (!(log > DARKEST)) continue
-    const bin = Math.floor((log - DARKEST) * BINS_PER_STOP)
+    const log = Math.min(logs[i], meterForm.brightest)
+    if (!(log > meterForm.darkest)) continue
+    const bin = Math.floor((log - meterForm.darkest) * BINS_PER_STOP)
     const weight = weights[i >> 2]
     histogram.weights[bin] += weight
     histogram.sums[bin] += weight * log
@@ -61,7 +61,7 @@ function histogramOf(logs: ArrayLike<number>, weights: ArrayLike<number>): Histo
 /** Bin and log2 luminance in which a part of the weight is reached. */
 function percentile({ weights, sums, total }: Histogram, part: number): number {
   let sum = 0
-  let last = DARKEST
+  let last = meterForm.darkest
   for (let bin = 0; bin < weights.length; bin++) {
     if (weights[bin] === 0) continue
     sum += weights[bin]
@@ -75,10 +75,10 @@ function percentile({ weights, sums, total }: Histogram, part: number): number {
  * log2 of the luminance that a picture is exposed for: the mean between two percentiles of the histogram, without
  * what is too dark to be seen beside the bright.
  *
- * @param logs - Four samples a cell, row by row: log2 of luminance in any unit. {@link DARKEST} and less, or not a
+ * @param logs - Four samples a cell, row by row: log2 of luminance in any unit. {@link meterForm.darkest} and less, or not a
  *   number, is black and does not count.
  * @param weights - Weight of each cell.
- * @returns In the samples' unit; {@link DARKEST} if all is black.
+ * @returns In the samples' unit; {@link meterForm.darkest} if all is black.
  */
 export function meteredLogLuminance(
   logs: ArrayLike<number>,
@@ -86,7 +86,7 @@ export function meteredLogLuminance(
   percentiles: readonly [number, number]
 ): { mean: number; bright: number } {
   const histogram = histogramOf(logs, weights)
-  if (histogram.total === 0) return { mean: DARKEST, bright: DARKEST }
+  if (histogram.total === 0) return { mean: meterForm.darkest, bright: meterForm.darkest }
   const [low, high] = percentiles.map(part => part * histogram.total)
   const bright = percentile(histogram, percentiles[1])
   let [below, sum, total] = [0, 0, 0]

@@ -1,7 +1,9 @@
 import { Fn, If, float, floor, int, ivec2, luminance, textureLoad, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { loop, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
-import { DARKEST, MOST, TAPS } from '../cpu/meteredLuminance'
+import { meterForm } from '../cpu/meteredLuminance'
+
+const { taps, darkest, brightest } = meterForm
 
 /**
  * Mean log2 luminance in the four quadrants of a cell of a picture. Of each, 4 × 4 pixels on a lattice count.
@@ -20,21 +22,21 @@ export const logLuminance = (picture: TextureNode, size: Vec2, cell: Vec2, exten
     const quadrants = [0, 1, 2, 3].map(quadrant => {
       const corner = vec2(quadrant % 2, quadrant >> 1).div(2)
       const sum = vec2(0).toVar()
-      loop(`tap${quadrant}`, TAPS * TAPS, (tap: Int) => {
-        const place = vec2(tap.mod(int(TAPS)), tap.div(int(TAPS)))
+      loop(`tap${quadrant}`, taps * taps, (tap: Int) => {
+        const place = vec2(tap.mod(int(taps)), tap.div(int(taps)))
           .add(0.5)
-          .div(2 * TAPS)
+          .div(2 * taps)
         const uv = cell.add(extent.mul(corner.add(place)))
         const texel = ivec2(floor(uv.mul(size)))
         const { rgb } = textureLoad(picture, texel) as unknown as { rgb: Vec3 }
         const value = (luminance(rgb) as unknown as Float).toConst() as Float
         // False for what is not a number.
-        If(value.greaterThan(2 ** DARKEST), () => {
-          sum.addAssign(vec2(value.min(2 ** MOST).log2(), 1))
+        If(value.greaterThan(2 ** darkest), () => {
+          sum.addAssign(vec2(value.min(2 ** brightest).log2(), 1))
         })
       })
       const mean = sum.x.div(sum.y.max(1))
-      return sum.y.greaterThan(0).select(mean, float(DARKEST))
+      return sum.y.greaterThan(0).select(mean, float(darkest))
     })
     return vec4(...(quadrants as [Float, Float, Float, Float]))
   })()

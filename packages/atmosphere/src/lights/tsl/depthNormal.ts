@@ -11,7 +11,7 @@ const OUTSIDE = 1e30
  * Normal of the surface that a picture's depth has at a place, towards the camera, in view space.
  *
  * Differences of positions along both axes, each to the side whose next two pixels are more nearly on one plane with this
- * one: so normals are sharp at edges. Of planes they are exact.
+ * one, so that normals are sharp at edges. Normals of planes are exact.
  *
  * @param rays - Depth and camera of the picture.
  * @param at - Middle of a texel of the depth, as texture coordinates.
@@ -22,7 +22,7 @@ const OUTSIDE = 1e30
 export function depthNormal(renderer: Renderer, rays: DepthRays, at: Vec2, size: Vec2): Vec3 {
   const { isOrthographicCamera } = rays.camera as OrthographicCamera
   const positionAt = (place: Vec2): Vec3 => rays.position(renderer, place, rays.depthAt(place))
-  // Of a plane this changes evenly across a picture.
+  // On a plane this changes evenly across a picture.
   const even = ({ z }: Vec3): Float => (isOrthographicCamera ? z : z.reciprocal())
   const here = positionAt(at)
   const slope = (axis: Vec2): Vec3 => {

@@ -27,7 +27,7 @@ export function lostInMedia(
 ): Vec4 {
   const lost = vec4(0).toVar()
   for (const medium of media) {
-    const { transmittance, once, often } = medium
+    const { transmittance, singleScattered: once, multiplyScattered: often } = medium
     If(transmittance.lessThan(1), () => {
       const dark = float(0).toVar()
       loop('medium', int(count), index => {

@@ -71,8 +71,8 @@ export function lostInSlice(
       // Of fog what the slice adds to the light before it.
       const before = media.length > 0 ? mediaTo(from) : []
       const fog = media.reduce<Vec4>(
-        (light, { once: added, transmittance }, i) =>
-          light.mul(transmittance).add(added.sub(before[i].once).mul(part)),
+        (light, { singleScattered: added, transmittance }, i) =>
+          light.mul(transmittance).add(added.sub(before[i].singleScattered).mul(part)),
         vec4(0)
       )
       if (media.length > 0) lost.addAssign(fog)
@@ -98,7 +98,9 @@ export function lostInSlice(
     }
     lost.addAssign(lostDiffuse(air, diffuse))
     const before = media.length > 0 ? mediaTo(from) : []
-    media.forEach(({ often }, i) => lost.addAssign(often.sub(before[i].often).mul(missing)))
+    media.forEach(({ multiplyScattered: often }, i) =>
+      lost.addAssign(often.sub(before[i].multiplyScattered).mul(missing))
+    )
   })
   return { lost, dark }
 }

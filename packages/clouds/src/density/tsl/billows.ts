@@ -1,4 +1,4 @@
-import { If, log2, vec2 } from 'three/tsl'
+import { If, float, log2, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { billowForm } from '../formConstants'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
@@ -90,6 +90,12 @@ export function detail(
 
 /** Most that detail adds, per its strength [–]. */
 export const MOST_DETAIL = 2.5
+
+/** Factor of the billows of a column of a strength: weaker where only its top is an edge. */
+export const topBillows = (column: Float): Float =>
+  smoothstep(...billowForm.middle, column)
+    .mix(float(1), billowForm.atTops)
+    .toConst()
 
 /** Share of fine billows and detail that a body has, in [0, 1]: dense bodies have them, crumbs do not. */
 export const fineShare = (strength: Float): Float =>

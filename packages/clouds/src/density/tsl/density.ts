@@ -1,3 +1,4 @@
+import { smoothstep } from 'three/tsl'
 import { densityForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
@@ -23,4 +24,18 @@ export const densityOf = (strength: Float, body: Float, edge: Float): Float => {
   const { edgeDensity, core } = densityForm
   const inside = body.div(core).clamp(0, 1).sqrt()
   return strength.div(edge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst()
+}
+
+/**
+ * Factor of the density at a place: bits of cloud that only billows make are mixed with clear air.
+ *
+ * @param column - Strength of the column, without billows [–].
+ * @param needed - `neededStrength` at the height [–]: tops of strong columns are no bits.
+ */
+export const crumbDensity = (column: Float, needed: Float): Float => {
+  const { crumb, crumbFrom, crumbHeight } = densityForm
+  return smoothstep(...crumbFrom, column.sub(needed.mul(crumbHeight)))
+    .mul(1 - crumb)
+    .add(crumb)
+    .toConst()
 }

@@ -1,8 +1,8 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
-import { billows, detail, fineShare, MOST_DETAIL } from './billows'
-import { densityOf, edgeAt } from './density'
+import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
+import { crumbDensity, densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
@@ -42,6 +42,8 @@ interface Body {
   readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
+  /** `crumbDensity`. */
+  readonly crumbFactor: Float
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
@@ -70,14 +72,16 @@ function bodyAt(
     'where unresolved'
   )
   const amount = billowStrength(layer, height)
-  const body = columnStrength(layer, weather, background.coverage, resolution)
-    .sub(neededStrength(layer, height))
-    .add(shape.coarse.mul(amount.coarse))
-    .toConst() as Float
+  const column = columnStrength(layer, weather, background.coverage, resolution)
+  const rough = topBillows(column)
+  const needed = neededStrength(layer, height).toConst() as Float
+  const body = column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)).toConst() as Float
   const share = fineShare(body)
-  const strength = body.add(shape.fine.mul(amount.fine).mul(share)).toConst() as Float
+  const fine = shape.fine.mul(amount.fine).mul(rough)
+  const strength = body.add(fine.mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  return { sample, height, weather, body, strength, detailStrength }
+  const crumbFactor = crumbDensity(column, needed)
+  return { sample, height, weather, crumbFactor, body, strength, detailStrength }
 }
 
 /**
@@ -114,7 +118,8 @@ export function sampleLayerAt(
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      density.assign(densityOf(whole, body.body, edge).mul(densityAtHeight(layer, height)))
+      const full = densityAtHeight(layer, height).mul(body.crumbFactor)
+      density.assign(densityOf(whole, body.body, edge).mul(full))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
       const cosine = direction?.dot(sample.up).toConst() as Float | undefined
