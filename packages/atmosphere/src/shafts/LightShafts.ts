@@ -48,7 +48,7 @@ const _axes = new Matrix4()
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
  * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment marches, or
- * at `'medium'` and `'low'` quality reads a volume of some 144 × 81 rays in 24 slices.
+ * at `'medium'` and `'low'` quality reads a volume of some 160 × 90 rays in 24 slices.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. Air and fogs in
@@ -80,6 +80,7 @@ export class LightShafts implements ShadowedShafts {
   readonly #map = new SunPolarMap()
   readonly #volume: ShaftVolume
   readonly shadowedAir: ShadowedAir
+  readonly #shadowedSky: ShadowedAir
   /** Shadows that were added, by what casts them. */
   readonly #shadows = new Map<AirOccluder, AirShadow>()
   readonly #toWorld = matrix4()
@@ -120,7 +121,7 @@ export class LightShafts implements ShadowedShafts {
     this.#volume = new ShaftVolume(camera)
     const shadows = this.#shadows
     const { map, frame, maximumRho } = this.#map
-    this.shadowedAir = {
+    const shadowedIn = (media: () => SkyLayer[]): ShadowedAir => ({
       map,
       frame,
       maximumRho,
@@ -128,9 +129,15 @@ export class LightShafts implements ShadowedShafts {
         return [...shadows.values()]
       },
       mediaOn: ray =>
-        this.#media.flatMap(layer => layer.shadowed?.(ray, this.source === atmosphere.sun) ?? []),
+        media().flatMap(layer => layer.shadowed?.(ray, this.source === atmosphere.sun) ?? []),
+      get denser() {
+        const factors = media().flatMap(({ airDensity }) => airDensity ?? [])
+        return factors.length > 0 ? factors.reduce((product, factor) => product.mul(factor)) : null
+      },
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
-    }
+    })
+    this.shadowedAir = shadowedIn(() => this.#media)
+    this.#shadowedSky = shadowedIn(() => this.#media.filter(({ leavesSky }) => !leavesSky))
     this.set(options)
     claimShadow(light)
   }
@@ -292,7 +299,9 @@ export class LightShafts implements ShadowedShafts {
     this.view.update(view)
     for (const layer of this.#media) if (layer.shadowed) layer.update?.(view)
     const mapped = this.#shadows.size > 0 ? Infinity : this.#map.maximumRho.value
-    this.#volume.draw(renderer, this.view, this.shadowedAir, this.version, mapped)
+    const { shadowedAir, steps } = this
+    const air = { shadowedAir, shadowedSky: this.#shadowedSky, steps }
+    this.#volume.draw(renderer, this.view, air, this.version, mapped)
   }
 
   #updateShadows(view: AtmosphereView, renderer: Renderer): void {
@@ -311,9 +320,10 @@ export class LightShafts implements ShadowedShafts {
 
   medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
-    const isOther = to.distance === undefined && this.#media.some(({ leavesSky }) => leavesSky)
     return without(air, this.strengthNow, lit, () => {
-      if (!this.#isMarched && !isOther) return this.#volume.lostTo(distanceOf(to))
+      if (!this.#isMarched) {
+        return to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky()
+      }
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
       const pixel = screenCoordinate.xy.floor()

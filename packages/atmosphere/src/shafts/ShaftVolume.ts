@@ -1,4 +1,4 @@
-import { RGFormat, Vector2 } from 'three'
+import { RGFormat, UnsignedByteType, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import {
   Fn,
@@ -22,13 +22,15 @@ import { number, vector2 } from '../uniforms'
 import { DepthRays } from '../view/DepthRays'
 import type { ViewNodes } from '../view/ViewNodes'
 import { lostInSlice, type Slice } from './tsl/lostInSlice'
-import { staggered } from './tsl/lostLight'
+import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { FAR } from './tsl/without'
 
-/** Slices of a ray, in as many tiles. Fewer: light before surfaces in shadow is blurred with that behind. */
+/** Slices of a ray, each in a tile. Fewer: light before surfaces in shadow is blurred with that behind. */
 const SLICES = 24
-const TILE_COLUMNS = 4
+
+/** Tiles in a row, and rows: one tile is left for the sky. */
+const TILE_COLUMNS = 5
 
 /** Distance of the last slice over the first one's length. */
 const REACH = 1000
@@ -63,11 +65,18 @@ export interface VolumeQuality {
   readonly looks: number
 }
 
+/** What casts shadows on rays, and how whole rays are marched. */
+export interface VolumeAir {
+  readonly shadowedAir: ShadowedAir
+  readonly shadowedSky: ShadowedAir
+  readonly steps: ShaftSteps
+}
+
 /**
  * Light that shadows keep from a grid of view rays, up to any distance: what materials read that draw the air
  * themselves, transparent ones too. Each ray is cut into slices at distances that are the same for all, and sums of
  * their light are kept. Within a slice light is lost between the first dark place and the last one, so that what lies behind a
- * surface is not taken from the air before it.
+ * surface is not taken from the air before it. Rays into the sky are marched whole, since some fogs are not in front of it.
  */
 export class ShaftVolume {
   /** Light that slices lose; where in them dark air begins and ends. */
@@ -96,6 +105,7 @@ export class ShaftVolume {
     this.#sums = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.#textures = [this.#slices, this.#sums].map(({ textures }) => {
       textures[1].format = RGFormat
+      textures[1].type = UnsignedByteType
       return textures.map(each => texture(each))
     })
   }
@@ -108,20 +118,21 @@ export class ShaftVolume {
     this.#grid.value.copy(this.#size.value).ceil().addScalar(2)
     const { x, y } = this.#grid.value
     for (const target of [this.#slices, this.#sums])
-      target.setSize(TILE_COLUMNS * x, (SLICES / TILE_COLUMNS) * y)
+      target.setSize(TILE_COLUMNS * x, TILE_COLUMNS * y)
     this.#looks.value = looks
   }
 
   /**
    * Draws it, for a view whose uniforms are set.
    *
-   * @param version - Grows whenever `shadowedAir` changes.
+   * @param shadowedSky - `shadowedAir` in front of the sky.
+   * @param version - Grows whenever these change.
    * @param mapped - Greatest ρ of shadow maps; infinite where there are other shadows [m].
    */
   draw(
     renderer: Renderer,
     view: ViewNodes,
-    shadowedAir: ShadowedAir,
+    { shadowedAir, shadowedSky, steps }: VolumeAir,
     version: number,
     mapped: number
   ): void {
@@ -132,7 +143,7 @@ export class ShaftVolume {
     this.#first.value = Math.min(MAP_REACH * mapped, most) / REACH
     if (this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      this.#passes = [this.#march(view, shadowedAir), this.#sum()].map(
+      this.#passes = [this.#march(view, { shadowedAir, shadowedSky, steps }), this.#sum()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
       )
       this.#compiled = version
@@ -149,8 +160,7 @@ export class ShaftVolume {
 
   /** Slice and place in it of a texel. */
   #texel(): { slice: Float; place: Vec2 } {
-    const tiles = vec2(TILE_COLUMNS, SLICES / TILE_COLUMNS)
-    const texel = uv().mul(this.#grid.mul(tiles)).floor().toConst() as unknown as Vec2
+    const texel = uv().mul(this.#grid.mul(TILE_COLUMNS)).floor().toConst() as unknown as Vec2
     const tile = texel.div(this.#grid).add(1e-4).floor().toConst() as Vec2
     const slice = tile.y.mul(TILE_COLUMNS).add(tile.x).toConst() as Float
     return { slice, place: texel.sub(tile.mul(this.#grid)).toConst() }
@@ -160,11 +170,10 @@ export class ShaftVolume {
   #read(source: TextureNode, slice: Float, place: Vec2): Vec4 {
     const { row, column } = rowAndColumn(slice, TILE_COLUMNS)
     const at = vec2(column, row).mul(this.#grid).add(place)
-    const tiles = vec2(TILE_COLUMNS, SLICES / TILE_COLUMNS)
-    return sampleLevel0(source, at.div(this.#grid.mul(tiles))).toConst()
+    return sampleLevel0(source, at.div(this.#grid.mul(TILE_COLUMNS))).toConst()
   }
 
-  #march(view: ViewNodes, shadowedAir: ShadowedAir): Outputs {
+  #march(view: ViewNodes, { shadowedAir, shadowedSky, steps }: VolumeAir): Outputs {
     return lightAndEdges(renderer => {
       const { slice, place } = this.#texel()
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
@@ -172,9 +181,16 @@ export class ShaftVolume {
       const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
       const ray = this.#rayAt(renderer, view, place.sub(0.5).div(this.#size))
       const jitter = staggered(place)
-      const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, this.#looks, jitter)
-      const edges = dark.sub(from).div(next.sub(from)).clamp()
-      return { light: lost.mul(RADIANCE_SCALE), edges: vec4(edges, 0, 0) }
+      const light = vec4(0).toVar()
+      const edges = vec4(0).toVar()
+      If(slice.lessThan(SLICES - 0.5), () => {
+        const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, this.#looks, jitter)
+        light.assign(lost)
+        edges.xy.assign(dark.sub(from).div(next.sub(from)).clamp())
+      }).Else(() => {
+        light.assign(lostLight(view, shadowedSky, ray, steps, jitter))
+      })
+      return { light: light.mul(RADIANCE_SCALE), edges }
     })
   }
 
@@ -192,11 +208,25 @@ export class ShaftVolume {
       const { slice, place } = this.#texel()
       const sum = vec4(0).toVar()
       // Between four rays, which have samples in all places of their steps.
-      loop('slice', int(slice).add(1), index => {
-        sum.addAssign(this.#read(light, float(index), place.add(1)))
+      const first = slice
+        .greaterThan(SLICES - 0.5)
+        .select(slice, 0)
+        .toConst()
+      loop('slice', int(slice.sub(first)).add(1), index => {
+        sum.addAssign(this.#read(light, first.add(float(index)), place.add(1)))
       })
       return { light: sum, edges: this.#read(edges, slice, place.add(1)) }
     })
+  }
+
+  /** Light that the sky loses at a fragment, for unit irradiance of the source [1/sr]. */
+  lostToSky(): Vec4 {
+    return this.#read(this.#textures[1][0], float(SLICES), this.#centre).div(RADIANCE_SCALE)
+  }
+
+  /** Place of a fragment among the rays. */
+  get #centre(): Vec2 {
+    return (screenUV as unknown as Vec2).mul(this.#size).add(0.5).toConst()
   }
 
   /**
@@ -206,7 +236,6 @@ export class ShaftVolume {
    */
   lostTo(distance: Float): Vec4 {
     const [sums, dark] = this.#textures[1]
-    const place = (screenUV as unknown as Vec2).mul(this.#size).toConst() as Vec2
     const ahead = distance.sub(this.#start).max(0).div(this.#first).add(1).log()
     const slice = ahead
       .div(this.#growth)
@@ -215,7 +244,7 @@ export class ShaftVolume {
       .toConst() as Float
     const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
     const inSlice = distance.sub(from).div(next.sub(from)).toConst()
-    const centre = place.add(0.5).toConst() as Vec2
+    const centre = this.#centre
     const edges = this.#read(dark, slice, centre)
     const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
     const after = this.#read(sums, slice, centre)

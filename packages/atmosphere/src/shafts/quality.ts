@@ -1,10 +1,11 @@
 /**
  * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
- * samples along a view ray; samples in each. Of materials rays along the longer edge of the picture, and samples in each slice; 0 where each fragment marches.
+ * samples along a view ray, and samples in each. In materials: rays along the longer edge of the picture, and samples in each
+ * slice of a ray; no rays where each fragment marches.
  */
 export const qualities = {
-  low: { rows: 512, spacing: 4, groups: 3, samples: 2, rays: 128, looks: 3 },
-  medium: { rows: 768, spacing: 4, groups: 4, samples: 3, rays: 144, looks: 3 },
+  low: { rows: 512, spacing: 4, groups: 3, samples: 2, rays: 128, looks: 2 },
+  medium: { rows: 768, spacing: 4, groups: 4, samples: 3, rays: 160, looks: 3 },
   high: { rows: 1024, spacing: 3, groups: 4, samples: 4, rays: 0, looks: 0 },
   reference: { rows: 2048, spacing: 1, groups: 64, samples: 8, rays: 0, looks: 0 }
 } as const

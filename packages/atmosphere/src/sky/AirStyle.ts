@@ -5,6 +5,7 @@ import { luminanceOf } from '../parameters/photometry'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
+import type { Float } from '../tsl-types'
 import { denserAir, saturated } from './tsl/airStyle'
 
 /** Options of {@link AirStyle}. */
@@ -29,8 +30,8 @@ const NO_TWILIGHT = [-18, 10] as const
  * ```
  *
  * They act on the picture alone, and on environment maps: lights and `skyIlluminanceAt` stay physical. Add it before
- * fogs, which have densities of their own and are left alone if they come later. Light shafts take what the air would
- * lose without it: give them a `strength` to match. An `AtmosphereShell` has no such factors.
+ * fogs, which have densities of their own and are left alone if they come later. Light shafts follow its haze.
+ * An `AtmosphereShell` has no such factors.
  */
 export class AirStyle implements SkyLayer {
   #haze = 1
@@ -81,6 +82,11 @@ export class AirStyle implements SkyLayer {
     checkNonNegative('AirStyle', 'twilightSaturation', value)
     if (value !== this.#twilightSaturation) this.#version++
     this.#twilightSaturation = value
+  }
+
+  /** Haze, as shadows in it read it. */
+  get airDensity(): Float {
+    return this.#strength
   }
 
   /** See {@link SkyLayer.version}. */

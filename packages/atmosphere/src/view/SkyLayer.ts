@@ -102,6 +102,8 @@ export interface SkyLayer {
   below?(ray: SkyRay): { isSeen: Bool; light: (transmittance: Vec4) => Vec4 }
   /** In-scattered light between the viewpoint and a point, given that without this layer. */
   inScatter?(ray: PointRay, without: Vec4): Vec4
+  /** Factor that {@link medium} has on the optical depth of the air before things, if it is one alone: shadows follow it. */
+  readonly airDensity?: Float
   /** Medium along a ray, in front of the sky too, given what air and layers before are. */
   medium?(ray: LayerRay, air: MediumSegment): MediumSegment
   /** True if its medium is not in front of the sky. */

@@ -18,13 +18,15 @@ export interface LitPoint extends ReturnType<typeof pointAlong> {
  * Reads the air along a view ray from the tables of its view.
  *
  * @param ray - View ray from its entry into the air.
+ * @param denser - Factor on the density of the air, as it scatters light to the camera; null is 1.
  * @returns Air at a distance from there [m].
  */
 export function litRay(
   { air, viewpoint, volume }: ViewUniforms,
   ray: Ray,
   limits: RayLimits,
-  cosView: Float
+  cosView: Float,
+  denser: Float | null
 ): (inAir: Float) => LitPoint {
   const { uniforms } = air
   const elevation = viewRay(viewpoint, cosView, limits.hitsGround)
@@ -32,8 +34,15 @@ export function litRay(
     const place = pointAlong(air, ray, inAir)
     const slice = slicePosition(viewpoint, limits, inAir)
     const extinction = meanExtinction(volume, viewpoint, elevation, slice)
-    const through = extinction.mul(inAir.div(EXTINCTION_SCALE)).negate().exp().toConst()
-    const density = densities(uniforms, place.altitude).toConst()
+    const depth = extinction.mul(inAir.div(EXTINCTION_SCALE))
+    const through = depth
+      .mul(denser ?? 1)
+      .negate()
+      .exp()
+      .toConst()
+    const density = densities(uniforms, place.altitude)
+      .mul(denser ?? 1)
+      .toConst()
     return {
       ...place,
       altitude: place.altitude.min(uniforms.thickness),

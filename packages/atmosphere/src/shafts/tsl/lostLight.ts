@@ -5,6 +5,7 @@ import { rayLimits } from '../../skyVolume/tsl/rayLimits'
 import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
+import { SKY_DISTANCE } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
@@ -23,6 +24,9 @@ export interface ShaftSteps {
 
 /** Places at which diffuse light is evaluated, over groups: it changes slowly, and four pixels share theirs. */
 const DIFFUSE_PART = 0.5
+
+/** Fewest look-ups in fog. Fewer: grain before dark fog (`'low'` quality, *Towers in haze*). */
+const LEAST_IN_MEDIA = 8
 
 /** Stretch of a ray that is marched in groups of samples, whatever its length. */
 interface Stretch {
@@ -79,7 +83,9 @@ export function lostLight(
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
     const steps = warpedSteps(air.uniforms, ray, length)
-    const airAt = litRay(view, ray, limits, cosView)
+    const denser =
+      shadowedAir.denser && distance.lessThan(SKY_DISTANCE).select(shadowedAir.denser, 1)
+    const airAt = litRay(view, ray, limits, cosView, denser)
     const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
     const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
     const media = shadowedAir.mediaOn({ ...shaftRay, view })
@@ -93,7 +99,8 @@ export function lostLight(
     }
     if (media.length > 0) {
       const shadows = { darkAt: (far: Float) => darkAt(far, far.lessThan(mapped)), missingAt }
-      const places = { count: groups.mul(samples).toConst() as Float, jitter }
+      const count = groups.mul(samples).max(LEAST_IN_MEDIA).toConst() as Float
+      const places = { count, jitter }
       lost.addAssign(lostInMedia(media, shadows, places))
     }
     const marchStretch = (name: string, stretch: Stretch): void => {
