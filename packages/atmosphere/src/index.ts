@@ -21,6 +21,8 @@ export { LightShafts, lightShafts } from './shafts/LightShafts'
 export type { LightShaftsOptions } from './shafts/LightShafts'
 export { HeightFieldShadow, heightFieldShadow } from './shafts/HeightFieldShadow'
 export type { HeightField, HeightFieldShadowOptions } from './shafts/HeightFieldShadow'
+export { TerrainShadowNode, terrainShadow } from './shafts/TerrainShadowNode'
+export type { TargetedLight } from './shafts/TerrainShadowNode'
 export type { LightShaftsQuality } from './shafts/quality'
 export type {
   AirOccluder,

@@ -6,6 +6,7 @@ import {
   aerialPerspective,
   Atmosphere,
   heightFieldShadow,
+  terrainShadow,
   lightShafts,
   SunDirectionalLight
 } from '@welkin/atmosphere'
@@ -93,6 +94,14 @@ describe('bad input to light shafts', () => {
     [
       "HeightFieldShadow: unknown option 'sizes', did you mean 'size'?",
       () => heightFieldShadow(new Texture(), new Matrix4(), wrong({ sizes: 64 }))
+    ],
+    [
+      'TerrainShadowNode: hills must be a HeightFieldShadow, got 3',
+      () => terrainShadow(wrong(3), light)
+    ],
+    [
+      'TerrainShadowNode: light must be a DirectionalLight, got a PointLight',
+      () => terrainShadow(heightFieldShadow(new Texture(), new Matrix4()), wrong(new PointLight()))
     ],
     [
       'LightShafts: atmosphere must be that of its layers, got an Atmosphere',
