@@ -1,5 +1,6 @@
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
+import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { AirShadows } from '../view/AirShadows'
@@ -62,4 +63,18 @@ export interface AirShadow {
 export interface AirOccluder {
   /** Called when it is added. @throws If it cannot be added to these shafts. */
   castInto(shafts: ShadowedShafts): AirShadow
+}
+
+/** @throws If one of them is no occluder, is there twice, or was added before. */
+export function checkOccluders(
+  where: string,
+  occluders: readonly AirOccluder[],
+  added: ReadonlyMap<AirOccluder, AirShadow>
+): void {
+  occluders.forEach((occluder, i) => {
+    if (typeof occluder?.castInto !== 'function')
+      fail(where, 'occluder must be an AirOccluder, such as cloudAirShadow()', occluder)
+    if (added.has(occluder) || occluders.indexOf(occluder) < i)
+      fail(where, 'occluder must not have been added already', occluder)
+  })
 }

@@ -13,12 +13,18 @@ import type { LightSource } from '../view/LightSource'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
-import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
+import {
+  checkOccluders,
+  type AirOccluder,
+  type AirShadow,
+  type ShadowedShafts
+} from './AirOccluder'
 import { ScreenShafts } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { qualities, qualityNames, type LightShaftsQuality } from './quality'
 import { ShaftVolume } from './ShaftVolume'
 import { SunPolarMap } from './SunPolarMap'
+import { isShadowed, mediaIn } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { ShadowedAir } from './tsl/shadowsAlong'
 import { distanceOf, without } from './tsl/without'
@@ -128,12 +134,7 @@ export class LightShafts implements ShadowedShafts {
       get shadows() {
         return [...shadows.values()]
       },
-      mediaOn: ray =>
-        media().flatMap(layer => layer.shadowed?.(ray, this.source === atmosphere.sun) ?? []),
-      get denser() {
-        const factors = media().flatMap(({ airDensity }) => airDensity ?? [])
-        return factors.length > 0 ? factors.reduce((product, factor) => product.mul(factor)) : null
-      },
+      ...mediaIn(media, () => this.source === atmosphere.sun),
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
     })
     this.shadowedAir = shadowedIn(() => this.#media)
@@ -160,16 +161,7 @@ export class LightShafts implements ShadowedShafts {
    * @throws If something is no occluder, is there already, or is of another atmosphere; then nothing is added.
    */
   add(...occluders: AirOccluder[]): this {
-    occluders.forEach((occluder, i) => {
-      if (typeof occluder?.castInto !== 'function')
-        fail(
-          'LightShafts.add',
-          'occluder must be an AirOccluder, such as cloudAirShadow()',
-          occluder
-        )
-      if (this.#shadows.has(occluder) || occluders.indexOf(occluder) < i)
-        fail('LightShafts.add', 'occluder must not have been added already', occluder)
-    })
+    checkOccluders('LightShafts.add', occluders, this.#shadows)
     const added = occluders.map(occluder => [occluder, occluder.castInto(this)] as const)
     for (const [occluder, shadow] of added) this.#shadows.set(occluder, shadow)
     return this.#compileAnew()
@@ -297,17 +289,14 @@ export class LightShafts implements ShadowedShafts {
     this.#volume.resize(renderer, qualities[this.#quality])
     if (!this.#isActive || view === undefined) return
     this.view.update(view)
-    for (const layer of this.#media) if (layer.shadowed) layer.update?.(view)
+    for (const layer of this.#media) if (isShadowed(layer)) layer.update?.(view)
     const mapped = this.#shadows.size > 0 ? Infinity : this.#map.maximumRho.value
-    const { shadowedAir, steps } = this
-    const air = { shadowedAir, shadowedSky: this.#shadowedSky, steps }
-    this.#volume.draw(renderer, this.view, air, this.version, mapped)
+    this.#volume.draw(renderer, this, this.#shadowedSky, mapped)
   }
 
   #updateShadows(view: AtmosphereView, renderer: Renderer): void {
-    const { matrixWorld } = view.camera
     this.atmosphere.space.displacement(_axes.identity(), _linear)
-    this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(matrixWorld)
+    this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(view.camera.matrixWorld)
     for (const shadow of this.#shadows.values()) {
       shadow.update?.(view, renderer)
       this.#isActive ||= shadow.isCast ?? true

@@ -22,6 +22,7 @@ import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LayerRay } from '../view/SkyLayer'
 import type { ViewNodes } from '../view/ViewNodes'
+import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR, without } from './tsl/without'
@@ -127,7 +128,7 @@ export class ScreenShafts implements ScreenShadows {
     const air = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
     let here = Math.max(Math.min(...air), 1e-12)
     for (const layer of layers) {
-      if (!layer.shadowed) continue
+      if (!isShadowed(layer)) continue
       layer.update?.(view)
       here += layer.extinction ?? 0
     }

@@ -21,8 +21,9 @@ import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-typ
 import { number, vector2 } from '../uniforms'
 import { DepthRays } from '../view/DepthRays'
 import type { ViewNodes } from '../view/ViewNodes'
+import type { CameraShafts } from './ScreenShafts'
 import { lostInSlice, type Slice } from './tsl/lostInSlice'
-import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
+import { lostLight, staggered } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { FAR } from './tsl/without'
 
@@ -57,19 +58,15 @@ function lightAndEdges(body: (renderer: Renderer) => { light: Vec4; edges: Vec4 
   return { color: assign(), output: outputStruct(first, second) }
 }
 
+/** Shafts whose light a volume has; `version` grows whenever its shader changes. */
+type ShaftsInVolume = Pick<CameraShafts, 'view' | 'shadowedAir' | 'steps' | 'version'>
+
 /** Fineness of a {@link ShaftVolume}. */
 export interface VolumeQuality {
   /** Rays along the longer edge of the picture. */
   readonly rays: number
   /** Look-ups of the shadow in each slice of a ray. */
   readonly looks: number
-}
-
-/** What casts shadows on rays, and how whole rays are marched. */
-export interface VolumeAir {
-  readonly shadowedAir: ShadowedAir
-  readonly shadowedSky: ShadowedAir
-  readonly steps: ShaftSteps
 }
 
 /**
@@ -125,17 +122,11 @@ export class ShaftVolume {
   /**
    * Draws it, for a view whose uniforms are set.
    *
-   * @param shadowedSky - `shadowedAir` in front of the sky.
-   * @param version - Grows whenever these change.
+   * @param shadowedSky - Their `shadowedAir` in front of the sky.
    * @param mapped - Greatest ρ of shadow maps; infinite where there are other shadows [m].
    */
-  draw(
-    renderer: Renderer,
-    view: ViewNodes,
-    { shadowedAir, shadowedSky, steps }: VolumeAir,
-    version: number,
-    mapped: number
-  ): void {
+  draw(renderer: Renderer, shafts: ShaftsInVolume, shadowedSky: ShadowedAir, mapped: number): void {
+    const { view, version } = shafts
     const { topRadius, bottomRadius } = view.atmosphere.parameters
     const height = view.height.value
     this.#start.value = Math.max(height - (topRadius - bottomRadius), 0)
@@ -143,7 +134,7 @@ export class ShaftVolume {
     this.#first.value = Math.min(MAP_REACH * mapped, most) / REACH
     if (this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      this.#passes = [this.#march(view, { shadowedAir, shadowedSky, steps }), this.#sum()].map(
+      this.#passes = [this.#march(shafts, shadowedSky), this.#sum()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
       )
       this.#compiled = version
@@ -173,7 +164,7 @@ export class ShaftVolume {
     return sampleLevel0(source, at.div(this.#grid.mul(TILE_COLUMNS))).toConst()
   }
 
-  #march(view: ViewNodes, { shadowedAir, shadowedSky, steps }: VolumeAir): Outputs {
+  #march({ view, shadowedAir, steps }: ShaftsInVolume, shadowedSky: ShadowedAir): Outputs {
     return lightAndEdges(renderer => {
       const { slice, place } = this.#texel()
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))

@@ -1,7 +1,27 @@
 import { If, float, int, vec4 } from 'three/tsl'
 import { loop, type Float, type Vec4 } from '../../tsl-types'
-import type { ShadowedMedium } from '../../view/SkyLayer'
-import type { Shadows } from './shadowsAlong'
+import type { ShadowedMedium, SkyLayer } from '../../view/SkyLayer'
+import type { ShadowedAir, Shadows } from './shadowsAlong'
+
+/**
+ * Media of layers as shadows see them.
+ *
+ * @param isSun - True if the light is the atmosphere's sun.
+ */
+export const mediaIn = (
+  layers: () => readonly SkyLayer[],
+  isSun: () => boolean
+): Pick<ShadowedAir, 'mediaOn' | 'denser'> => ({
+  mediaOn: ray => layers().flatMap(layer => layer.shadowed?.(ray, isSun()) ?? []),
+  denser() {
+    const factors = layers().flatMap(({ airDensity }) => airDensity ?? [])
+    return factors.length > 0 ? factors.reduce((product, factor) => product.mul(factor)) : null
+  }
+})
+
+/** True if shadows in the air follow a layer's uniforms. */
+export const isShadowed = (layer: SkyLayer): boolean =>
+  'shadowed' in layer || layer.airDensity !== undefined
 
 /** Light of the air from a distance [m], as media such as fog leave it. */
 export const dimmedBy =

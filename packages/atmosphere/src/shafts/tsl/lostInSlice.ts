@@ -48,7 +48,7 @@ export function lostInSlice(
     const mapped = shadowedAir.maximumRho.div(polar.sinViewLight).toConst()
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
-    const airAt = litRay(view, ray, limits, cosView, shadowedAir.denser)
+    const airAt = litRay(view, ray, limits, cosView, shadowedAir.denser())
     const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
     const mediaTo = (distance: Float): readonly ShadowedMedium[] =>
       shadowedAir.mediaOn({ ...shaftRay, view, distance })

@@ -83,9 +83,9 @@ export function lostLight(
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
     const steps = warpedSteps(air.uniforms, ray, length)
-    const denser =
-      shadowedAir.denser && distance.lessThan(SKY_DISTANCE).select(shadowedAir.denser, 1)
-    const airAt = litRay(view, ray, limits, cosView, denser)
+    const isSky = distance.greaterThanEqual(SKY_DISTANCE)
+    const denser = shadowedAir.denser()
+    const airAt = litRay(view, ray, limits, cosView, denser && isSky.select(1, denser))
     const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
     const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
     const media = shadowedAir.mediaOn({ ...shaftRay, view })

@@ -20,7 +20,7 @@ export interface ShadowedAir {
   /** Media that a ray passes, besides the air, from far layers to near ones. */
   readonly mediaOn: (ray: MediaRay) => readonly ShadowedMedium[]
   /** Factor on the density of the air before things, not before the sky; null is 1. */
-  readonly denser: Float | null
+  readonly denser: () => Float | null
   /** World position of a displacement from the camera in the mapped space [m]. */
   readonly toWorld: (offset: Vec3) => Vec3
 }
