@@ -1,29 +1,14 @@
 import { cloudQualities } from '@welkin/clouds'
 import type { CloudQualityName } from '@welkin/clouds'
-import { Vector3 } from 'three'
 import { Explorer } from './moving/Explorer'
-import { EYE_HEIGHT } from './moving/Walk'
 import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
-
-/** A view of the valley: position and target of the camera [m]. */
-interface ValleyView {
-  readonly label: string
-  readonly position: readonly [number, number, number]
-  readonly target: readonly [number, number, number]
-}
-
-export const VIEWS = {
-  village: { label: 'Village', position: [300, 34, 520], target: [330, 80, -1500] },
-  shore: { label: 'Shore', position: [120, 2.5, -330], target: [60, 150, -3000] },
-  slope: { label: 'From a slope', position: [1150, 330, 900], target: [-300, 60, -2200] },
-  above: { label: 'Above the clouds', position: [-900, 3100, 5200], target: [0, 1300, -4000] }
-} satisfies Record<string, ValleyView>
+import type { ValleyName } from './valley/views'
 
 export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
-  view: keyof typeof VIEWS
+  view: ValleyName
   quality: CloudQualityName
 }
 
@@ -51,21 +36,14 @@ export async function createValley(
   const explorer = current.frame
     ? undefined
     : new Explorer(camera, canvas, { groundAt: place => valley.groundAt(place) })
-  const readout = current.frame ? undefined : new Readout(canvas)
+  const readout = current.frame ? undefined : new Readout(canvas, renderer)
   await valley.bake(renderer)
 
-  const goTo = (view: ValleyView, seconds: number): void => {
-    const position = new Vector3(...view.position)
-    position.y = Math.max(position.y, valley.groundAt(position) + EYE_HEIGHT)
-    const direction = new Vector3(...view.target).sub(position).normalize()
-    if (explorer !== undefined && seconds > 0) {
-      void explorer.flyTo({ position, direction }, seconds)
-      return
-    }
-    camera.position.copy(position)
-    camera.lookAt(position.add(direction))
+  const goTo = (name: ValleyName, seconds: number): void => {
+    if (explorer === undefined || seconds === 0) valley.lookFrom(name)
+    else void explorer.flyTo(valley.placeOf(name), seconds)
   }
-  goTo(VIEWS[current.view], 0)
+  goTo(current.view, 0)
 
   const elapsed = frameClock(args.frame)
   let time = STILL_TIME
@@ -77,7 +55,7 @@ export async function createValley(
     valley.render(delta)
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
-    readout?.update(renderer, camera, ground, valley.cycle.hour, spent)
+    readout?.update(camera, ground, valley.cycle.hour, spent)
   }
 
   let ready: Promise<void> = Promise.resolve()
@@ -102,7 +80,7 @@ export async function createValley(
       const before = current.view
       Object.assign(current, changes)
       valley.set(stateOf(current), current.frame)
-      if (current.view !== before) goTo(VIEWS[current.view], 4)
+      if (current.view !== before) goTo(current.view, 4)
       warmUp()
     },
     dispose() {
