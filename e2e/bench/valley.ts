@@ -9,7 +9,7 @@ const WARM_UP = 40
 /** Time between two frames [s]. */
 const STEP = 1 / 60
 
-/** What the story *Valley, all day* opens with, everything on. */
+/** State in which the story *Valley, all day* opens, everything on. */
 export const valleyState: ValleyState = {
   weather: 'fair',
   latitude: 46,

@@ -84,7 +84,7 @@ export class HeadlessDevice {
   /**
    * A renderer on a device of its own.
    *
-   * @param parameters - Of the renderer, besides canvas and device.
+   * @param parameters - Parameters of the renderer, besides canvas and device.
    */
   async renderer(
     width: number,

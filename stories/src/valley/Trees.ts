@@ -32,7 +32,7 @@ export class Trees extends Group {
   readonly #sortedAt = new Vector3(Infinity, 0, 0)
 
   /**
-   * @param geometries - From the finest to the coarsest, with vertex colours.
+   * @param geometries - Finest to coarsest, with vertex colours.
    * @param distances - Distances from which each but the first is drawn [m].
    */
   constructor(

@@ -1,6 +1,6 @@
 import type { PassTime } from './PassTimes'
 
-/** What passes draw, by how their names begin; the first that fits counts. */
+/** Features that passes draw, by how the passes' names begin; the first that fits counts. */
 const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Shadow Map', 'shadow maps'],
   ['Welkin.CloudEnvironment', 'mirrored sky'],
