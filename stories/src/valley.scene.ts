@@ -18,6 +18,9 @@ const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 3
 /** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100
 
+/** Time between two showings of the hour in the controls, and so in the address [s]. */
+const SHOW_HOUR = 3
+
 const stateOf = (args: ValleyArgs): ValleyState => ({
   ...args,
   paused: args.paused || args.frame,
@@ -47,12 +50,24 @@ export async function createValley(
 
   const elapsed = frameClock(args.frame)
   let time = STILL_TIME
+  /** Hour that the controls were last given, and the time since that or a change by hand [s]. */
+  let shownHour = current.hour
+  let hourByHand = current.hour
+  let sinceShown = 0
+  const showHour = (delta: number): void => {
+    sinceShown += delta
+    if (current.paused || sinceShown < SHOW_HOUR) return
+    sinceShown = 0
+    shownHour = Math.floor(10 * valley.cycle.hour) / 10
+    handle.onArgs?.({ hour: shownHour })
+  }
   const draw = (): void => {
     const start = performance.now()
     const delta = elapsed()
     explorer?.update(delta)
     valley.time = time += delta
     valley.render(delta)
+    showHour(delta)
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
     readout?.update(camera, ground, valley.cycle.hour, spent)
@@ -62,7 +77,7 @@ export async function createValley(
   const warmUp = (): void => {
     if (current.frame) ready = drawSettled(STILL.frames, draw, () => valley.exposure)
   }
-  return {
+  const handle: SceneHandle<ValleyArgs> = {
     renderer,
     scene,
     camera,
@@ -77,10 +92,15 @@ export async function createValley(
       warmUp()
     },
     update(changes) {
-      const before = current.view
+      const { view, hour } = current
       Object.assign(current, changes)
-      valley.set(stateOf(current), current.frame)
-      if (current.view !== before) goTo(current.view, 4)
+      const isSet = current.hour !== hour && current.hour !== shownHour
+      if (isSet) hourByHand = current.hour
+      // The clock is ahead of an hour that the scene has shown of itself.
+      valley.set({ ...stateOf(current), hour: hourByHand }, current.frame)
+      if (isSet) valley.cycle.hour = current.hour
+      if (isSet || current.hour === hour) sinceShown = 0
+      if (current.view !== view) goTo(current.view, 4)
       warmUp()
     },
     dispose() {
@@ -90,4 +110,5 @@ export async function createValley(
       void renderer.dispose()
     }
   }
+  return handle
 }
