@@ -1,12 +1,25 @@
 import { MathUtils, Vector4 } from 'three'
 import { If, renderGroup, uniform, vec4 } from 'three/tsl'
 import { checkNonNegative, setOptions } from '@welkin/geo'
+import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { luminanceOf } from '../parameters/photometry'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
-import type { Float } from '../tsl-types'
+import type { Float, Vec4 } from '../tsl-types'
 import { denserAir, saturated } from './tsl/airStyle'
+
+/** Luminance of light that is even at the four wavelengths, in parts of the whole [–]. */
+function luminousShares(parameters: AtmosphereParameters): number[] {
+  const luminances = [0, 1, 2, 3].map(i =>
+    luminanceOf(
+      parameters,
+      [0, 1, 2, 3].map(k => (k === i ? 1 : 0))
+    )
+  )
+  const sum = luminances.reduce((total, value) => total + value, 0) || 1
+  return luminances.map(value => value / sum)
+}
 
 /** Options of {@link AirStyle}. */
 export interface AirStyleOptions {
@@ -30,13 +43,16 @@ const NO_TWILIGHT = [-18, 10] as const
  * ```
  *
  * They act on the picture alone, and on environment maps: lights and `skyIlluminanceAt` stay physical. Add it before
- * fogs, which have densities of their own and are left alone if they come later. Light shafts follow its haze.
- * An `AtmosphereShell` has no such factors.
+ * fogs, which have densities of their own and keep them if they come later; `distanceFog` has the sky's colours. Light
+ * shafts follow its haze. An `AtmosphereShell` has no such factors.
  */
 export class AirStyle implements SkyLayer {
   #haze = 1
   #twilightSaturation = 1
   #version = 0
+  /** Parameters that the luminous shares are of, and their version. */
+  #parameters: AtmosphereParameters | null = null
+  #parametersVersion = -1
   readonly #strength = uniform(1).setGroup(renderGroup)
   readonly #saturation = uniform(1).setGroup(renderGroup)
   readonly #luminous = uniform(new Vector4()).setGroup(renderGroup)
@@ -101,14 +117,10 @@ export class AirStyle implements SkyLayer {
       (1 - MathUtils.smoothstep(elevation, TWILIGHT[1], NO_TWILIGHT[1]))
     this.#strength.value = this.#haze
     this.#saturation.value = 1 + (this.#twilightSaturation - 1) * share
-    const luminous = [0, 1, 2, 3].map(i =>
-      luminanceOf(
-        parameters,
-        [0, 1, 2, 3].map(k => (k === i ? 1 : 0))
-      )
-    )
-    const sum = luminous.reduce((total, value) => total + value, 0) || 1
-    this.#luminous.value.fromArray(luminous.map(value => value / sum))
+    if (parameters === this.#parameters && parameters.version === this.#parametersVersion) return
+    this.#parameters = parameters
+    this.#parametersVersion = parameters.version
+    this.#luminous.value.fromArray(luminousShares(parameters))
   }
 
   medium({ distance }: LayerRay, air: MediumSegment): MediumSegment {
@@ -121,10 +133,15 @@ export class AirStyle implements SkyLayer {
         depth.assign(denser.depth)
       })
     }
+    return { depth, radiance: this.skyLight(radiance) }
+  }
+
+  skyLight(light: Vec4): Vec4 {
+    const tinted = vec4(light).toVar()
     If(this.#saturation.notEqual(1), () => {
-      radiance.assign(saturated(radiance, this.#luminous, this.#saturation))
+      tinted.assign(saturated(tinted, this.#luminous, this.#saturation))
     })
-    return { depth, radiance }
+    return tinted
   }
 }
 

@@ -108,6 +108,8 @@ export interface SkyLayer {
   medium?(ray: LayerRay, air: MediumSegment): MediumSegment
   /** True if its medium is not in front of the sky. */
   readonly leavesSky?: boolean
+  /** Light of the sky as the layer shows it, for a medium after it that is drawn in that light: `distanceFog`. */
+  skyLight?(light: Vec4): Vec4
   /** Extinction of its medium at the camera, as of the last {@link update} [1/m]. */
   readonly extinction?: number
   /**
