@@ -28,15 +28,30 @@ interface TerrainView {
 }
 
 export const VIEWS = {
-  meadow: { label: 'Meadow, 2 m', longitude: 1, latitude: 47, height: 2, heading: 0, pitch: 0 },
-  ridge: { label: 'Ridge, 600 m', longitude: 1, latitude: 47, height: 600, heading: 60, pitch: -8 },
+  meadow: {
+    label: 'Meadow, 2 m',
+    longitude: 0.43,
+    latitude: 47.12,
+    height: 2,
+    heading: 150,
+    pitch: 8
+  },
+  shore: {
+    label: 'Shore, 30 m',
+    longitude: 0.94,
+    latitude: 46.12,
+    height: 30,
+    heading: 10,
+    pitch: 5
+  },
+  summit: { label: 'Summit, 2 m', longitude: 1, latitude: 47, height: 2, heading: 250, pitch: -5 },
   range: {
     label: 'Range, 8 km',
     longitude: 1,
-    latitude: 46.7,
+    latitude: 46.2,
     height: 8000,
     heading: 0,
-    pitch: -12
+    pitch: -10
   },
   orbit: {
     label: 'Orbit, 400 km',
@@ -62,10 +77,10 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
 }
 
 /** Place of the world's origin [°]. */
-const ORIGIN = { longitude: 1, latitude: 47 }
+const ORIGIN = { longitude: 0.43, latitude: 47.12 }
 
 /** Cells along a tile's edge in a still: a software renderer draws it. */
-const STILL_RESOLUTION = 32
+const STILL_RESOLUTION = 16
 
 /** A made-up planet from a walker's feet to orbit: one mesh, without a byte of data. */
 export async function createTerrain(

@@ -40,7 +40,7 @@ const DEFAULTS: Required<TerrainOptions> = {
 const CAPACITY = 3000
 
 /** Longest side of a cell of the finest tiles [m]. */
-const FINEST_CELL = 0.25
+const FINEST_CELL = 0.15
 
 /** Least height of the viewer above the ground that distances count from [m]. */
 const LEAST_CLEARANCE = 0.5

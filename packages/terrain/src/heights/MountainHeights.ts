@@ -79,8 +79,8 @@ export class MountainHeights implements HeightSource {
     const land = LAND_HEIGHT * most(CONTINENTS, Infinity, NOISE_BOUND)
     this.lowest = LAND_OFFSET - land - relief * most(RIDGES, Infinity, MEAN_RIDGE)
     this.highest = LAND_OFFSET + land + relief * most(RIDGES, Infinity, 1 - MEAN_RIDGE)
-    this.#reliefNode = uniform(relief).setGroup(renderGroup) as unknown as Float
-    this.#seedNode = uniform(seed).setGroup(renderGroup) as unknown as Float
+    this.#reliefNode = uniform(relief).setGroup(renderGroup)
+    this.#seedNode = uniform(seed).setGroup(renderGroup)
   }
 
   variation(distance: number): number {

@@ -59,6 +59,6 @@ export function terrainMaterial(
   )()
   material.roughnessNode = surface.roughness
   const tilt = gradient.add(gradientAlong(surface.grain, up))
-  material.normalNode = transformNormalToView(up.sub(tilt).normalize() as Vec3)
+  material.normalNode = transformNormalToView(up.sub(tilt).normalize())
   return material
 }

@@ -38,4 +38,4 @@ export const fractalSum = (
       return sum
     },
     layout(name, 'vec4', { reference: 'vec3', offset: 'vec3', shortest: 'float', seed: 'float' })
-  ) as unknown as (reference: Vec3, offset: Vec3, shortest: Float, seed: Float) => Vec4
+  )

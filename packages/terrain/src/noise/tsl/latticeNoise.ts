@@ -84,7 +84,7 @@ export const latticeNoise = /*#__PURE__*/ Fn(
     const sum = vec4(0).toVar('sum')
     for (let i = 0; i < 8; i++) {
       const [x, y, z] = [i & 1, (i >> 1) & 1, i >> 2]
-      const gradient = latticeGradient(origin.add(uvec3(x, y, z)) as UVec3).toConst()
+      const gradient = latticeGradient(origin.add(uvec3(x, y, z))).toConst()
       const value = gradient.dot(part.sub(vec3(x, y, z))).toConst()
       const wx = x === 1 ? blend.x : blend.x.oneMinus()
       const wy = y === 1 ? blend.y : blend.y.oneMinus()

@@ -57,7 +57,7 @@ export function tileVertex(
     .div(1 - start)
     .clamp(0, 1)
 
-  const delta = alongCube(cells.sub(odd.mul(morph)) as Vec2)
+  const delta = alongCube(cells.sub(odd.mul(morph)))
   const foot = fromCenter(delta)
   const offset = tileOffset.xyz.add(foot).toConst('offset')
   // Two cells of the coarsest tile at that distance.
