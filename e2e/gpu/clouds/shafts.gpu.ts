@@ -24,6 +24,7 @@ import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
+import { giveExtinction } from '../harness/given-clouds'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
@@ -166,7 +167,7 @@ for (const [name, extinction, isClear] of decks) {
         new SparseNoise()
       )
       // Above the equator, x is up and z is north.
-      node.field.givenExtinction = offset => extinction(offset.z)
+      giveExtinction(node.field, offset => extinction(offset.z))
       const occluder = castsOnce(node)
       shafts.add(occluder)
       for (const view of [10, 25, 60, 150]) {
@@ -288,7 +289,7 @@ gpuTest(
     const layers = new CloudLayers([deck])
     const node = clouds(air, depth, camera, atmosphere, layers, { quality: coarse, noise, light })
     node.time = 0
-    node.field.givenExtinction = () => float(0.5)
+    giveExtinction(node.field, () => float(0.5))
     const pipeline = new RenderPipeline(renderer)
     pipeline.outputColorTransform = false
     pipeline.outputNode = node
@@ -345,12 +346,13 @@ gpuTest(
     const layers = new CloudLayers([{ ...deck, coverage: 0 }])
     const { node, draw, dispose } = await unseen(renderer, set, layers, new SparseNoise())
     // Stripes, one of them overhead.
-    node.field.givenExtinction = ({ y }) =>
+    giveExtinction(node.field, ({ y }) =>
       y
         .mul(Math.PI / 8000)
         .cos()
         .greaterThan(0)
         .select(0.5, 0)
+    )
     const occluder = castsOnce(node)
     shafts.add(occluder)
     await draw()

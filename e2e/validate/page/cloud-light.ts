@@ -28,6 +28,7 @@ import { CloudShadowMap } from '../../../packages/clouds/src/shadow/CloudShadowM
 import { interleavedNoise } from '../../../packages/clouds/src/temporal/tsl/noisePattern'
 import type { Float, LevelTexture, Vec2, Vec3 } from '../../../packages/clouds/src/tsl-types'
 import { createContext } from '../../gpu/harness/context'
+import { giveExtinction } from '../../gpu/harness/given-clouds'
 import { readPicture } from '../../gpu/harness/picture'
 import type { Backend } from '../../harness/backend'
 
@@ -138,7 +139,7 @@ async function draw(renderer: WebGPURenderer, request: CloudLightRequest): Promi
   const noise = new CloudNoise()
   const view = viewNodes(atmosphere)
   const mapped = new CloudField(atmosphere, layers, view, { noise })
-  mapped.givenExtinction = extinctionFrom(vec3(0))
+  giveExtinction(mapped, extinctionFrom(vec3(0)))
   const shadows = new CloudShadowMap(mapped)
 
   const pixels = blocks * RAYS
@@ -149,7 +150,7 @@ async function draw(renderer: WebGPURenderer, request: CloudLightRequest): Promi
     .sub(1)
   const shift = right.mul(at.x).sub(above.mul(at.y)).mul(halfWidth) as Vec3
   const marched = new CloudField(atmosphere, layers, viewFrom(view, shift), { noise })
-  marched.givenExtinction = extinctionFrom(shift)
+  giveExtinction(marched, extinctionFrom(shift))
   const fields = [mapped, marched]
   const target = new RenderTarget(pixels, pixels, { type: FloatType, depthBuffer: false })
   const pass = new FragmentPass(

@@ -19,7 +19,7 @@ import {
 } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { billowForm } from './formConstants'
-import { vec4Array, type Float, type LevelTexture, type Vec3 } from '../tsl-types'
+import { vec4Array, type LevelTexture, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
 
@@ -138,11 +138,6 @@ export class CloudField {
   #seconds: number | null = null
   /** Share of their coverage that layers have, in [0, 1]: 0 until there is noise. */
   fadeIn = 0
-  /**
-   * Extinction of given clouds at a displacement from the camera, in the mapped space [1/m], in place of
-   * weather and noise; null, the default, for these.
-   */
-  givenExtinction: ((offset: Vec3) => Float) | null = null
   /** Gain of `fadeIn` in a frame. */
   #fadeInStep = 1
 
