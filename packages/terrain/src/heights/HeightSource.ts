@@ -13,7 +13,7 @@ export interface HeightSample {
 export interface SurfacePoint {
   /** Point near the viewer in whole multiples of 256 m, ECEF axes [256 m]. */
   readonly reference: Vec3
-  /** From the reference to the place, ECEF axes [m]. */
+  /** Place relative to the reference, ECEF axes [m]. */
   readonly offset: Vec3
 }
 

@@ -54,7 +54,7 @@ const latticeGradient = /*#__PURE__*/ Fn(
  * cells come out exact in float32 and integers, so that the float64 twin agrees wherever one stands.
  *
  * @param reference - Point near the place, whole multiples of 256 m, ECEF axes [256 m].
- * @param offset - From the reference to the place [m].
+ * @param offset - Place relative to the reference [m].
  * @param inverse - 1 / wavelength, a power of two [1/m].
  * @param seed - Whole number ≥ 0: another one, other noise.
  * @returns Gradient per wavelength (xyz) and value (w): about ±0.6, at most ±1.5.

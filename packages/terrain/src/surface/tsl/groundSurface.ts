@@ -38,7 +38,7 @@ export interface GroundSurface {
 /**
  * Rock, scree, grass, forest, sand, snow and sea, by height, slope, latitude and noise.
  *
- * @param height - Of the ground, that of the sea's floor under water [m].
+ * @param height - Height of the ground, that of the sea's floor under water [m].
  * @param up - Geodetic up, ECEF axes.
  * @param cosSlope - Cosine of the ground's slope.
  * @param shortest - Shortest wavelength to show [m].

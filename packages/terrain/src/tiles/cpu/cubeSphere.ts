@@ -24,7 +24,7 @@ export function faceAxes(face: number): FaceAxes {
  * without poles and antimeridian.
  *
  * @param cube - Point on the cube of half width 1.
- * @param radii - Of the ellipsoid [m].
+ * @param radii - Radii of the ellipsoid [m].
  * @returns ECEF [m].
  */
 export const cubeToEllipsoid = (cube: Vector3, radii: Vector3, target: Vector3): Vector3 =>

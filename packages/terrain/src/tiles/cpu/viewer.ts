@@ -34,7 +34,7 @@ const foot = new Vector3()
 /**
  * Viewer of a camera.
  *
- * @param positionECEF - Of the camera [m].
+ * @param positionECEF - Position of the camera [m].
  * @param clearance - Height above the ground [m], > 0.
  * @param lowest - Lower bound of all ground [m].
  * @param worldToECEF - Rotation and scale of the world, translation ignored.
