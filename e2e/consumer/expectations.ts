@@ -55,20 +55,6 @@ function checkClouds(png: PNG): string[] {
   return wrong
 }
 
-/** Errors in words: a sky that is not blue, ground that is dark, or of one colour. */
-function checkTerrain(png: PNG): string[] {
-  const wrong: string[] = []
-  const [skyRed, , skyBlue] = at(png, 160, 8)
-  if (!(skyBlue > 1.2 * skyRed && skyBlue > 80)) {
-    wrong.push(`the sky is not blue: ${skyRed} ${skyBlue}`)
-  }
-  const tones: number[] = []
-  for (let x = 4; x < png.width; x += 4) tones.push(brightness(at(png, x, 150)))
-  if (Math.min(...tones) < 30) wrong.push(`the ground is dark: ${Math.min(...tones)}`)
-  if (Math.max(...tones) - Math.min(...tones) < 20) wrong.push('the ground is even')
-  return wrong
-}
-
 /** Checks of the frame that a page of the app (`app/PAGE.html`) draws, at 320×180. */
 export interface Expectation {
   /** Faults of a frame, in words. */
@@ -86,7 +72,6 @@ const fibersClock = /THREE\.Clock: This module has been deprecated/
 export const expectations: Record<string, Expectation> = {
   index: { wrongWith: checkQuickStart },
   clouds: { wrongWith: checkClouds },
-  terrain: { wrongWith: checkTerrain },
   fiber: { wrongWith: checkQuickStart, allows: fibersClock },
   fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },
   webpack: { wrongWith: checkQuickStart, backends: ['webgpu'] },
