@@ -226,7 +226,7 @@ export class CloudField {
     const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
     const { weatherWeights, openCells, turbulence } = parameters
     const periods = layerPeriods(parameters)
-    const scales = weatherScales(weatherWeights, this.worldMap !== null, openCells)
+    const scales = weatherScales(weatherWeights, this.worldMap?.coversPlanet === true, openCells)
     const { stretch, edge, coarseness } = layerForms(parameters)
     const column = meanColumnOf(parameters, this.depthScale.value)
     const bend = turbulence * billowForm.bend * periods.shape

@@ -9,6 +9,7 @@ import {
 } from 'three'
 import type { Data3DTexture, PixelFormat } from 'three'
 import { checkOwner, FragmentPass } from '@welkin/atmosphere'
+import { checkOptions, fail } from '@welkin/geo'
 import { Fn, float, texture3D, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { NOISE_SIZE, type NoiseName } from './noiseSizes'
@@ -124,32 +125,87 @@ class NoiseTexture {
 const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3): Float[] =>
   channels.map((channel, i) => channelNoise(channel, first + i, p))
 
+/** Textures of a {@link CloudNoise} in place of its own noise: volumes of any size that repeat without seams. */
+export interface CloudNoiseOptions {
+  /**
+   * Weather of single clouds, RGBA: cumulus, stratocumulus, cumulonimbus and cirrus, as `weatherWeights` mixes them.
+   * Where it is greater, there is cloud sooner. Every value in [0, 1] is as frequent as any other: so a `coverage` of
+   * 0.3 covers 0.3 of the sky.
+   */
+  weather?: Data3DTexture
+  /**
+   * Billows and turbulence, RGBA: coarse billows, four along an edge; fine ones, sixteen; and two components of a curl.
+   * Each is 0.5 + 0.18 z, with a z of mean 0 and standard deviation 1.
+   */
+  shape?: Data3DTexture
+  /** Finest billows, six along an edge, in red: 0.5 + 0.18 z, as in `shape`. */
+  detail?: Data3DTexture
+}
+
+/** Texels of a user's texture in place of a noise. */
+function texelsOf(name: NoiseName, volume: Data3DTexture): (p: Vec3) => Vec4 {
+  const where = 'CloudNoise'
+  if (!volume?.isData3DTexture) fail(where, `${name} must be a Data3DTexture`, volume)
+  if (volume.wrapS !== RepeatWrapping) {
+    fail(where, `${name}.wrapS must be RepeatWrapping`, volume.wrapS)
+  }
+  const node = texture3D(volume) as unknown as LevelTexture<Vec3>
+  return p => node.sample(p).level(0)
+}
+
 /**
  * The noise that clouds are made of: three tileable 3-D textures with levels of detail, drawn on the
  * GPU in fragment passes. About 11 MB.
  *
  * Weather is a volume too, of which the planet's surface is a slice: it has neither seams nor poles,
  * and since the lattice is tilted against the ground, no two tiles of it look alike.
+ *
+ * ```ts
+ * const noise = new CloudNoise({ shape: billows })
+ * clouds(air, depth, camera, atmosphere, layers, { noise })
+ * ```
  */
 export class CloudNoise {
   /** Coarse and fine billows, by `shapeChannels`, and two components of a curl. */
-  readonly shape = new NoiseTexture('shape', RGBAFormat, SLICE_COST.shape, p => {
-    const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)
-    return vec4(coarse, fine, curlNoise(FIRST_CHANNEL.shape + shapeChannels.length, p))
-  })
+  readonly shape: NoiseTexture
   /** Finest billows, by `detailChannel`. */
-  readonly detail = new NoiseTexture('detail', RedFormat, SLICE_COST.detail, p =>
-    vec4(vec3(channelNoise(detailChannel, FIRST_CHANNEL.detail, p)), 1)
-  )
+  readonly detail: NoiseTexture
   /** Weather, by `weatherChannels`. */
-  readonly weather = new NoiseTexture('weather', RGBAFormat, SLICE_COST.weather, p => {
-    const [r, g, b, a] = channelsAt(weatherChannels, FIRST_CHANNEL.weather, p)
-    return vec4(r, g, b, a)
-  })
-  readonly #textures = [this.weather, this.shape, this.detail]
+  readonly weather: NoiseTexture
+  readonly #textures: readonly NoiseTexture[]
   #steps: Generator<number, void, void> | null = null
   #isReady = false
   #renderer: Renderer | null = null
+
+  /**
+   * @param options - Textures to take in place of noise; shared, not owned. They are copied when the noise is drawn:
+   *   after a change, call `dispose`.
+   * @throws If one of them is no volume, or does not repeat.
+   */
+  constructor(options: CloudNoiseOptions = {}) {
+    const own = checkOptions('CloudNoise', options, 'weather', 'shape', 'detail')
+    const make = (name: NoiseName, format: PixelFormat, noise: (p: Vec3) => Vec4): NoiseTexture => {
+      const volume = own[name]
+      return new NoiseTexture(
+        name,
+        format,
+        SLICE_COST[name],
+        volume === undefined ? noise : texelsOf(name, volume)
+      )
+    }
+    this.shape = make('shape', RGBAFormat, p => {
+      const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)
+      return vec4(coarse, fine, curlNoise(FIRST_CHANNEL.shape + shapeChannels.length, p))
+    })
+    this.detail = make('detail', RedFormat, p =>
+      vec4(vec3(channelNoise(detailChannel, FIRST_CHANNEL.detail, p)), 1)
+    )
+    this.weather = make('weather', RGBAFormat, p => {
+      const [r, g, b, a] = channelsAt(weatherChannels, FIRST_CHANNEL.weather, p)
+      return vec4(r, g, b, a)
+    })
+    this.#textures = [this.weather, this.shape, this.detail]
+  }
 
   /** True once all texels are drawn. */
   get isReady(): boolean {
