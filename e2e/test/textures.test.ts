@@ -5,20 +5,25 @@ import {
   aerialPerspective,
   aerialPerspectiveFog,
   airglow,
+  airStyle,
   distanceFog,
+  heightFieldShadow,
   heightFog,
+  lightShafts,
   milkyWay,
   moon,
   planetGround,
   skyEnvironment,
   stars,
-  sunFlare
+  sunFlare,
+  surfaceLighting
 } from '@welkin/atmosphere'
 import type { SkyLayer } from '@welkin/atmosphere'
 import { cloudPreset, clouds, cloudShadow, cloudSkyLight, cloudWorldMap } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import {
   DataTexture,
+  Matrix4,
   Mesh,
   MeshStandardMaterial,
   PerspectiveCamera,
@@ -59,13 +64,9 @@ class World {
   readonly sun = new SunDirectionalLight(this.atmosphere, 50)
   readonly sky = new SkyLightProbe(this.atmosphere)
   readonly #pass = pass(this.scene, this.camera, { samples: 0 })
+  readonly color = this.#pass.getTextureNode()
   readonly depth = this.#pass.getTextureNode('depth')
-  readonly air = aerialPerspective(
-    this.#pass.getTextureNode(),
-    this.depth,
-    this.camera,
-    this.atmosphere
-  )
+  readonly air = aerialPerspective(this.color, this.depth, this.camera, this.atmosphere)
 
   constructor() {
     const ground = new Mesh(new PlaneGeometry(1, 1), this.material)
@@ -142,7 +143,10 @@ it('features of the atmosphere sample as many textures as its README says', asyn
     ['`stars`', () => [stars()]],
     ['`milkyWay`', () => [milkyWay()]],
     ['`planetGround`', () => [planetGround({ surface: picture() })]],
-    ['`sunFlare`', () => [sunFlare(), airglow(), heightFog(), distanceFog(), planetGround()]]
+    [
+      '`sunFlare`',
+      () => [sunFlare(), airglow(), heightFog(), distanceFog(), planetGround(), airStyle()]
+    ]
   ]
   for (const [feature, layers] of rows) {
     const [sky, lit] = await withLayers(layers)
@@ -157,6 +161,26 @@ it('features of the atmosphere sample as many textures as its README says', asyn
     sun.castShadow = true
   })
   expect(['–', `${shadows - inMaterial}`]).toEqual(stated('atmosphere', 'Each shadow map'))
+})
+
+it('light of surfaces and shafts sample as many textures as the README says', async () => {
+  const air = await inPass(world => world.air)
+  const lit = await inPass(({ atmosphere, camera, color, depth, sun, sky }) => {
+    const surfaces = surfaceLighting(color, depth, camera, [sun, sky])
+    return aerialPerspective(surfaces, depth, camera, atmosphere)
+  })
+  expect(`${lit - air}`).toBe(stated('atmosphere', '`surfaceLighting`')[0])
+  const withShafts = (hasHills: boolean): Promise<number> =>
+    inPass(({ atmosphere, camera, color, depth, sun }) => {
+      sun.castShadow = true
+      const shafts = lightShafts(atmosphere, camera, sun)
+      if (hasHills) shafts.add(heightFieldShadow(picture(), new Matrix4()))
+      return aerialPerspective(color, depth, camera, atmosphere, { shafts })
+    })
+  const shaded = await withShafts(false)
+  expect(`${shaded - air}`).toBe(stated('atmosphere', '`lightShafts`')[0])
+  const hills = stated('atmosphere', '`heightFieldShadow`')[0]
+  expect(hills).toContain(`${(await withShafts(true)) - shaded} as post effect`)
 })
 
 it('features of the clouds sample as many textures as their README says', async () => {

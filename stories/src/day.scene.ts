@@ -21,15 +21,9 @@ import {
 } from 'three'
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
-import {
-  createRenderer,
-  disposeMeshes,
-  drawSettled,
-  EXPOSURE_FRAMES,
-  fitToCanvas,
-  frameClock
-} from './scene'
+import { createRenderer, disposeMeshes, drawSettled, EXPOSURE_FRAMES, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface DayArgs extends RendererArgs {
   /** [degrees] */
@@ -95,19 +89,15 @@ export async function createDay(
     shadow.normalBias = 0.03
   }
 
-  const apply = (changes: Partial<DayArgs>): void => {
-    const { dayLength, daylight, paused, frame, latitude, season, hour } = {
-      ...current,
-      ...changes
-    }
+  const apply = (before: DayArgs): void => {
+    const { dayLength, daylight, paused, frame, latitude, season, hour } = current
     cycle.rate = 86_400 / dayLength
     cycle.daylight = daylight
     cycle.paused = paused || frame
     cycle.latitude = latitude
     // The clock goes on from where these were set.
-    if (season !== current.season) cycle.season = season
-    if (hour !== current.hour) cycle.hour = hour
-    Object.assign(current, changes)
+    if (season !== before.season) cycle.season = season
+    if (hour !== before.hour) cycle.hour = hour
   }
   atmosphere.place({ longitude: 0, latitude: current.latitude })
   cycle.time = Date.UTC(2026, 2, 21, 12)
@@ -125,31 +115,23 @@ export async function createDay(
     // #endregion
     air.render()
   }
-  let ready: Promise<void> = Promise.resolve()
-  return {
+
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      if (current.frame) ready = drawSettled(EXPOSURE_FRAMES, draw, () => exposure)
-    },
-    update(changes) {
-      apply(changes)
+    current,
+    apply,
+    draw,
+    async warmUp() {
+      if (current.frame) await drawSettled(EXPOSURE_FRAMES, draw, () => exposure)
     },
     dispose() {
-      explorer?.dispose()
       for (const light of [moonlight, moonlitSky, night]) light.dispose()
       exposure.dispose()
       air.dispose()
       disposeMeshes(meshes)
-      void renderer.dispose()
     }
-  }
+  })
 }

@@ -12,15 +12,9 @@ import {
 import { Air } from './air'
 import { createWater } from './environment/water'
 import { Explorer } from './moving/Explorer'
-import {
-  createRenderer,
-  exposureOf,
-  disposeMeshes,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { createRenderer, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface EnvironmentArgs extends RendererArgs {
   /** Elevation of the sun [degrees]. */
@@ -113,45 +107,25 @@ export async function createEnvironment(
   }
   apply()
 
-  let ready: Promise<void> = Promise.resolve()
-  const warmUp = async (): Promise<void> => {
-    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-      air.render()
-    }
-  }
   const start = performance.now()
-
-  return {
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    if (!current.frame) water.setTime((performance.now() - start) / 1000)
+    air.render()
+  }
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render() {
-      explorer?.update(elapsed())
-      if (!current.frame) {
-        water.setTime((performance.now() - start) / 1000)
-      }
-      air.render()
-    },
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = warmUp()
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      apply()
-    },
+    current,
+    apply,
+    draw,
     dispose() {
-      explorer?.dispose()
       environment.dispose()
       air.dispose()
       water.dispose()
       disposeMeshes(meshes)
-      void renderer.dispose()
     }
-  }
+  })
 }

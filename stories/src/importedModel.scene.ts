@@ -6,16 +6,9 @@ import { Air } from './air'
 import { squareURL } from './importedModel/square'
 import { Explorer } from './moving/Explorer'
 import { EYE_HEIGHT } from './moving/Walk'
-import {
-  createRenderer,
-  dateOf,
-  disposeMeshes,
-  exposureOf,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { createRenderer, dateOf, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface ImportedModelArgs extends RendererArgs, TimeArgs {
   /** Sine of the sun's elevation under which lamps are lit. */
@@ -83,33 +76,18 @@ export async function createImportedModel(
   }
   apply()
 
-  let ready: Promise<void> = Promise.resolve()
-  return {
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = Promise.resolve().then(() => {
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
-      })
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      apply()
-    },
+    current,
+    apply,
+    draw,
     dispose() {
-      explorer?.dispose()
       air.dispose()
       disposeMeshes(meshes)
       for (const { light } of lamps) light.dispose()
-      void renderer.dispose()
     }
-  }
+  })
 }

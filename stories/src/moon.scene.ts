@@ -13,16 +13,9 @@ import {
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
 import { randomSequence } from './random'
-import {
-  changeOf,
-  createRenderer,
-  dateOf,
-  exposureOf,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { changeOf, createRenderer, dateOf, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface MoonArgs extends RendererArgs {
   /** [degrees] */
@@ -151,42 +144,23 @@ export async function createMoon(
   }
   apply()
 
-  let ready: Promise<void> = Promise.resolve()
-  const warmUp = async (): Promise<void> => {
-    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) air.render()
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    air.render()
   }
-  return {
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render() {
-      explorer?.update(elapsed())
-      air.render()
-    },
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = warmUp()
-    },
-    update(next) {
-      Object.assign(current, next)
-      apply()
-      ready = warmUp()
-    },
+    current,
+    apply,
+    draw,
     dispose() {
-      explorer?.dispose()
       moonlight.dispose()
       moonlitSky.dispose()
       air.dispose()
-      for (const { geometry, material } of meshes) {
-        geometry.dispose()
-        ;(material as MeshStandardMaterial).dispose()
-      }
-      void renderer.dispose()
+      disposeMeshes(meshes)
     }
-  }
+  })
 }

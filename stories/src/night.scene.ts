@@ -25,15 +25,9 @@ import {
 import { CONSTELLATIONS } from './night/constellations'
 import type { Constellation, ConstellationName } from './night/constellations'
 import { Explorer } from './moving/Explorer'
-import {
-  changeOf,
-  createRenderer,
-  exposureOf,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { changeOf, createRenderer, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface NightArgs extends RendererArgs {
   constellation: ConstellationName
@@ -137,36 +131,22 @@ export async function createNight(
     atmosphere.luminanceScale *= exposureOf(current.exposure)
     renderer.render(scene, camera)
   }
-  let ready: Promise<void> = Promise.resolve()
-  return {
+
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = (async () => {
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
-      })()
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      apply()
-    },
+    current,
+    apply,
+    draw,
     dispose() {
-      explorer?.dispose()
       atmosphere.dispose()
       night.dispose()
       for (const { geometry, material } of [ground, house, lines]) {
         geometry.dispose()
         material.dispose()
       }
-      void renderer.dispose()
     }
-  }
+  })
 }

@@ -11,15 +11,9 @@ import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
-import {
-  changeOf,
-  createRenderer,
-  exposureOf,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { changeOf, createRenderer, exposureOf, frameClock, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface OrbitArgs extends RendererArgs {
   /** Altitude above the ellipsoid [km]. */
@@ -94,33 +88,22 @@ export async function createOrbit(
     atmosphere.luminanceScale *= exposureOf(current.exposure)
     renderer.render(scene, camera)
   }
-  let ready: Promise<void> = Promise.resolve()
-  return {
+
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = (async () => {
-        await atmosphere.bake(renderer)
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
-      })()
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      apply()
+    current,
+    apply,
+    draw,
+    async warmUp() {
+      await atmosphere.bake(renderer)
+      for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
     },
     dispose() {
-      explorer?.dispose()
       atmosphere.dispose()
       for (const picture of Object.values(pictures)) picture.dispose()
-      void renderer.dispose()
     }
-  }
+  })
 }

@@ -11,15 +11,9 @@ import {
 } from 'three'
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
-import {
-  applyTime,
-  createRenderer,
-  disposeMeshes,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { applyTime, createRenderer, disposeMeshes, frameClock } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface PlainArgs extends RendererArgs, TimeArgs {
   /** [degrees] */
@@ -117,39 +111,21 @@ export async function createPlain(
   }
   apply()
 
-  let ready: Promise<void> = Promise.resolve()
-  const warmUp = async (): Promise<void> => {
-    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-      air.render()
-    }
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    air.render()
   }
-
-  return {
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render() {
-      explorer?.update(elapsed())
-      air.render()
-    },
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = warmUp()
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      apply()
-    },
+    current,
+    apply,
+    draw,
     dispose() {
-      explorer?.dispose()
       air.dispose()
       disposeMeshes(meshes)
-      void renderer.dispose()
     }
-  }
+  })
 }

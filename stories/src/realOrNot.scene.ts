@@ -2,10 +2,10 @@ import { CloudLayers, cloudPreset, cloudQualities, clouds, cloudSkyLight } from 
 import type { CloudQualityName } from '@welkin/clouds'
 import { screenUV, uniform } from 'three/tsl'
 import {
-  drawSimulation,
   loadSimulation,
   MOST_EXTINCTION,
-  SIMULATED_THICKNESS
+  SIMULATED_THICKNESS,
+  SimulatedClouds
 } from './clouds/simulatedClouds'
 import { createLand } from './globe/land'
 import type { Place } from './globe/places'
@@ -68,6 +68,7 @@ export async function createRealOrNot(
     const { pipeline, color, depth } = picture
     atmosphere.frame = 'ecef'
     const quality = qualityOf(args)
+    const field = new SimulatedClouds(simulation, atmosphere, { ...VIEWS.ground, height: BASE })
     // #region two skies
     const preset = cloudPreset('fairWeather')
     preset.at(0).set({ baseAltitude: BASE, topAltitude: BASE + 1200, coverage: 0.3 })
@@ -78,6 +79,7 @@ export async function createRealOrNot(
     ])
     const simulated = clouds(color, depth, camera, atmosphere, given, {
       quality,
+      extinction: field.extinction,
       noise: made.noise,
       light: made.light
     })
@@ -85,8 +87,6 @@ export async function createRealOrNot(
     pipeline.outputNode = screenUV.x.lessThan(split).select(simulated, made)
     // #endregion
     cloudSkyLight(sky, made)
-    const base = { ...VIEWS.ground, height: BASE }
-    const follow = drawSimulation(simulation, atmosphere, simulated.field, base)
     for (const node of [made, simulated]) node.time = 0
     return {
       warmUpFrames: STILL_FRAMES,
@@ -97,7 +97,7 @@ export async function createRealOrNot(
         for (const node of [made, simulated]) node.quality = qualityOf(current)
       },
       beforeDraw() {
-        follow(camera)
+        field.follow(camera)
         if (args.frame) made.field.bake(renderer)
       },
       dispose() {

@@ -10,15 +10,9 @@ import { SandboxSky } from './sandbox/SandboxSky'
 import type { LightsArgs } from './sandbox/SandboxSky'
 import { overlayOn } from './overlay'
 import { createThings } from './sandbox/things'
-import {
-  createRenderer,
-  disposeMeshes,
-  drawSettled,
-  EXPOSURE_FRAMES,
-  fitToCanvas,
-  frameClock
-} from './scene'
+import { createRenderer, disposeMeshes, drawSettled, EXPOSURE_FRAMES, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface SandboxArgs extends RendererArgs, AirArgs, LightsArgs {
   preset: PresetName
@@ -46,7 +40,7 @@ export async function createSandbox(
   scene.add(ground, ...things)
   const current = { ...args }
   const note = overlayOn(canvas)
-  let onArgs: SceneHandle<SandboxArgs>['onArgs']
+  let handle: SceneHandle<SandboxArgs> | undefined
   let sky: SandboxSky | undefined
   /** Parameters on show, as text. */
   let shownAir = ''
@@ -107,7 +101,7 @@ export async function createSandbox(
     if (current.preset === current.shown) return
     const changes = { ...presets[current.preset], shown: current.preset }
     Object.assign(current, changes)
-    onArgs?.(changes)
+    handle?.onArgs?.(changes)
   }
 
   /** Shows the arguments; what is refused leaves the picture as it is, and says so. */
@@ -135,38 +129,28 @@ export async function createSandbox(
     sky?.render()
   }
 
-  let ready: Promise<void> = Promise.resolve()
-  return {
+  handle = storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      if (current.frame) ready = drawSettled(EXPOSURE_FRAMES, draw, () => sky?.exposure)
-    },
-    update(changes) {
-      const { height, heading, pitch } = current
-      Object.assign(current, changes)
+    current,
+    apply(before) {
       apply()
-      const isMoved =
-        height !== current.height || heading !== current.heading || pitch !== current.pitch
+      const isMoved = (['height', 'heading', 'pitch'] as const).some(
+        name => before[name] !== current[name]
+      )
       if (isMoved) placeCamera()
     },
-    set onArgs(value: typeof onArgs) {
-      onArgs = value
+    draw,
+    async warmUp() {
+      if (current.frame) await drawSettled(EXPOSURE_FRAMES, draw, () => sky?.exposure)
     },
     dispose() {
-      explorer?.dispose()
       note.remove()
       sky?.dispose()
       disposeMeshes([ground, ...things])
-      void renderer.dispose()
     }
-  }
+  })
+  return handle
 }

@@ -20,15 +20,9 @@ import {
 import type { Texture } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
-import {
-  changeOf,
-  createRenderer,
-  exposureOf,
-  fitToCanvas,
-  frameClock,
-  WARM_UP_FRAMES
-} from './scene'
+import { changeOf, createRenderer, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 
 export interface ShellArgs extends RendererArgs {
   /** A map of a few bodies, or the view out of a cockpit. */
@@ -184,37 +178,19 @@ export async function createShell(
     renderer.render(scene, camera)
   }
 
-  let ready: Promise<void> = Promise.resolve()
-  return {
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = Promise.resolve().then(() => {
-        for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) draw()
-      })
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      apply()
-    },
+    current,
+    apply,
+    draw,
     dispose() {
-      explorer?.dispose()
       for (const shell of shells) shell.dispose()
-      for (const { geometry, material } of meshes) {
-        geometry.dispose()
-        ;(material as MeshStandardMaterial).dispose()
-      }
+      disposeMeshes(meshes)
       for (const picture of Object.values(earth ?? {})) picture.dispose()
       light.dispose()
-      void renderer.dispose()
     }
-  }
+  })
 }

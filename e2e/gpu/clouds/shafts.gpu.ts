@@ -5,7 +5,8 @@ import {
   CloudLayers,
   CloudLightTable,
   CloudNoise,
-  clouds
+  clouds,
+  type CloudsOptions
 } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
@@ -87,7 +88,8 @@ async function unseen(
   renderer: WebGPURenderer,
   { camera: { position }, atmosphere }: Stage,
   layers: CloudLayers,
-  noise: CloudNoise
+  noise: CloudNoise,
+  extinction?: CloudsOptions['extinction']
 ): Promise<{ node: CloudsNode; draw: () => Promise<void>; dispose: () => void }> {
   const light = new CloudLightTable()
   const camera = new PerspectiveCamera(60, 2, 1, 1e6)
@@ -95,7 +97,8 @@ async function unseen(
   const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
     quality: coarse,
     noise,
-    light
+    light,
+    extinction
   })
   node.time = 0
   const pipeline = new RenderPipeline(renderer)
@@ -163,10 +166,10 @@ for (const [name, extinction, isClear] of decks) {
         renderer,
         set,
         new CloudLayers([deck]),
-        new SparseNoise()
+        new SparseNoise(),
+        // Above the equator, x is up and z is north.
+        ({ offset }) => extinction(offset.z)
       )
-      // Above the equator, x is up and z is north.
-      node.field.givenExtinction = offset => extinction(offset.z)
       const occluder = castsOnce(node)
       shafts.add(occluder)
       for (const view of [10, 25, 60, 150]) {
@@ -286,9 +289,13 @@ gpuTest(
     const { shafts, camera, air, depth, atmosphere } = set
     const [light, noise] = [new CloudLightTable(), new SparseNoise()]
     const layers = new CloudLayers([deck])
-    const node = clouds(air, depth, camera, atmosphere, layers, { quality: coarse, noise, light })
+    const node = clouds(air, depth, camera, atmosphere, layers, {
+      quality: coarse,
+      noise,
+      light,
+      extinction: () => float(0.5)
+    })
     node.time = 0
-    node.field.givenExtinction = () => float(0.5)
     const pipeline = new RenderPipeline(renderer)
     pipeline.outputColorTransform = false
     pipeline.outputNode = node
@@ -342,15 +349,21 @@ gpuTest(
     const clear = await plain.draw()
     const set = stage(renderer, 20, { quality: 'reference' })
     const { shafts, scene, camera, atmosphere } = set
-    const layers = new CloudLayers([{ ...deck, coverage: 0 }])
-    const { node, draw, dispose } = await unseen(renderer, set, layers, new SparseNoise())
-    // Stripes, one of them overhead.
-    node.field.givenExtinction = ({ y }) =>
-      y
-        .mul(Math.PI / 8000)
-        .cos()
-        .greaterThan(0)
-        .select(0.5, 0)
+    // The cover in the mean, which dims what is scattered more often, is next to none.
+    const layers = new CloudLayers([{ ...deck, coverage: 1e-6 }])
+    const { node, draw, dispose } = await unseen(
+      renderer,
+      set,
+      layers,
+      new SparseNoise(),
+      // Stripes, one of them overhead.
+      ({ offset }) =>
+        offset.y
+          .mul(Math.PI / 8000)
+          .cos()
+          .greaterThan(0)
+          .select(0.5, 0)
+    )
     const occluder = castsOnce(node)
     shafts.add(occluder)
     await draw()

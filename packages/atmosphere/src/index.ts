@@ -129,10 +129,18 @@ export { opticalDepth, lightTransmittance, visibleDisc } from './transmittance/c
 export { NIGHT_ILLUMINANCE } from './night/cpu/twilight'
 export { scaleToLuminance } from './parameters/photometry'
 
-// Preconditions that Welkin's packages share; not for use elsewhere.
+// Preconditions and uniforms that Welkin's packages share; not for use elsewhere.
 export { checkRange, checkSpectrum, withDefaults } from './check'
 export { checkSource } from './view/LightSource'
 export { checkAtmosphere } from './view/ViewNodes'
 export { checkOwner, checkRenderer } from './view/renderers'
 export { unjitteredProjection } from './view/cpu/unjittered'
 export { nameTexture } from './tables/AtlasTexture'
+export {
+  matrix3 as matrix3Uniform,
+  matrix4 as matrix4Uniform,
+  number as numberUniform,
+  vector2 as vector2Uniform,
+  vector3 as vector3Uniform,
+  vector4 as vector4Uniform
+} from './uniforms'

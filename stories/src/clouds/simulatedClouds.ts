@@ -1,17 +1,19 @@
 import type { Atmosphere } from '@welkin/atmosphere'
-import type { CloudField } from '@welkin/clouds'
+import type { CloudSample } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import type { GeodeticLike } from '@welkin/geo'
 import {
   ClampToEdgeWrapping,
   Data3DTexture,
   LinearFilter,
+  Matrix4,
   RedFormat,
   RepeatWrapping,
   Vector3
 } from 'three'
 import type { Camera } from 'three'
 import { float, texture3D, uniform, vec2, vec3 } from 'three/tsl'
+import type { Node } from 'three/webgpu'
 
 /** Cells of the simulation, east, north and up, which repeat east and north, and their size [m]. */
 const CELLS = { x: 640, y: 640, z: 128, size: 10 } as const
@@ -22,6 +24,8 @@ export const MOST_EXTINCTION = 0.226
 
 /** Thickness of the simulated layer [m]. */
 export const SIMULATED_THICKNESS = CELLS.z * CELLS.size
+
+const SIZE = new Vector3(CELLS.x, CELLS.y, CELLS.z).multiplyScalar(CELLS.size)
 
 /** Extinction of trade-wind cumulus, out of a large-eddy simulation: {@link MOST_EXTINCTION} is 1. */
 export async function loadSimulation(): Promise<Data3DTexture> {
@@ -40,35 +44,39 @@ export async function loadSimulation(): Promise<Data3DTexture> {
   return map
 }
 
-/**
- * Has a field draw a simulation in place of weather and noise.
- *
- * @param base - Corner of the simulation, at the altitude of its lowest cells.
- * @returns A function that follows a camera in an ECEF world.
- */
-export function drawSimulation(
-  map: Data3DTexture,
-  atmosphere: Atmosphere,
-  field: CloudField,
-  base: Required<GeodeticLike>
-): (camera: Camera) => void {
-  const cells = texture3D(map)
-  const frame = Ellipsoid.WGS84.eastNorthUpFrame(Ellipsoid.WGS84.geodeticToECEF(base))
-  const toFrame = frame.clone().invert()
-  const axis = (column: number) => {
-    const direction = new Vector3().setFromMatrixColumn(frame, column)
-    return uniform(atmosphere.space.direction(direction, new Vector3()).normalize())
+/** A simulation on a place, for a camera in an ECEF world. */
+export class SimulatedClouds {
+  readonly #cells
+  readonly #base: Required<GeodeticLike>
+  readonly #toFrame = new Matrix4()
+  readonly #east
+  readonly #north
+  /** The camera in the frame of the simulation: east, north, up [m]. */
+  readonly #camera = uniform(new Vector3())
+
+  /** @param base - Corner of the simulation, at the altitude of its lowest cells. */
+  constructor(map: Data3DTexture, { space }: Atmosphere, base: Required<GeodeticLike>) {
+    this.#cells = texture3D(map)
+    this.#base = base
+    const { WGS84 } = Ellipsoid
+    const frame = WGS84.eastNorthUpFrame(WGS84.geodeticToECEF(base))
+    this.#toFrame.copy(frame).invert()
+    const axis = (column: number) => {
+      const direction = new Vector3().setFromMatrixColumn(frame, column)
+      return uniform(space.direction(direction, new Vector3()).normalize())
+    }
+    this.#east = axis(0)
+    this.#north = axis(1)
   }
-  const [east, north] = [axis(0), axis(1)]
-  const origin = uniform(new Vector3())
-  field.givenExtinction = offset => {
-    const { altitude } = field.view.localCoordinates(offset)
-    const across = vec2(offset.dot(east), offset.dot(north)).add(origin.xy)
-    const size = [CELLS.x, CELLS.y, CELLS.z].map(cells => cells * CELLS.size)
-    const place = vec3(across, altitude.sub(base.height)).div(vec3(size[0], size[1], size[2]))
-    return cells.sample(place).level(float(0)).x.mul(MOST_EXTINCTION).toConst()
+
+  /** Extinction at a place [1/m], as `clouds` takes it. */
+  readonly extinction = ({ offset, altitude }: CloudSample): Node<'float'> => {
+    const across = vec2(offset.dot(this.#east), offset.dot(this.#north)).add(this.#camera.xy)
+    const place = vec3(across, altitude.sub(this.#base.height)).div(vec3(SIZE))
+    return this.#cells.sample(place).level(float(0)).x.mul(MOST_EXTINCTION)
   }
-  return camera => {
-    origin.value.copy(camera.position).applyMatrix4(toFrame)
+
+  follow({ position }: Camera): void {
+    this.#camera.value.copy(position).applyMatrix4(this.#toFrame)
   }
 }

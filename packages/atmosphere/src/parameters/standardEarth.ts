@@ -21,7 +21,12 @@ export function rayleighCrossSection(nanometres: number): number {
   return (1e-32 * above) / (1 + 0.0027059889 / square - 85.968563 * square)
 }
 
-/** Ångström exponent: optical depth of aerosols is proportional to λ^−1.3. @see Ångström 1964, Tellus 16 */
+/**
+ * Ångström exponent: optical depth of aerosols is proportional to λ^−1.3.
+ *
+ * @see Preetham et al. 1999, "A practical analytic model for daylight", appendix A.1, after Ångström 1964, "The
+ * parameters of atmospheric turbidity"
+ */
 export const ANGSTROM_EXPONENT = 1.3
 
 /**

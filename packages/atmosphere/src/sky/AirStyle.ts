@@ -1,11 +1,24 @@
 import { MathUtils, Vector4 } from 'three'
 import { If, renderGroup, uniform, vec4 } from 'three/tsl'
 import { checkNonNegative, setOptions } from '@welkin/geo'
+import type { AtmosphereParameters } from '../parameters/AtmosphereParameters'
 import { luminanceOf } from '../parameters/photometry'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { denserAir, saturated } from './tsl/airStyle'
+
+/** Luminance of light that is even at the four wavelengths, in parts of the whole [–]. */
+function luminousShares(parameters: AtmosphereParameters): number[] {
+  const luminances = [0, 1, 2, 3].map(i =>
+    luminanceOf(
+      parameters,
+      [0, 1, 2, 3].map(k => (k === i ? 1 : 0))
+    )
+  )
+  const sum = luminances.reduce((total, value) => total + value, 0) || 1
+  return luminances.map(value => value / sum)
+}
 
 /** Options of {@link AirStyle}. */
 export interface AirStyleOptions {
@@ -36,6 +49,9 @@ export class AirStyle implements SkyLayer {
   #haze = 1
   #twilightSaturation = 1
   #version = 0
+  /** Parameters that the luminous shares are of, and their version. */
+  #parameters: AtmosphereParameters | null = null
+  #parametersVersion = -1
   readonly #strength = uniform(1).setGroup(renderGroup)
   readonly #saturation = uniform(1).setGroup(renderGroup)
   readonly #luminous = uniform(new Vector4()).setGroup(renderGroup)
@@ -95,14 +111,10 @@ export class AirStyle implements SkyLayer {
       (1 - MathUtils.smoothstep(elevation, TWILIGHT[1], NO_TWILIGHT[1]))
     this.#strength.value = this.#haze
     this.#saturation.value = 1 + (this.#twilightSaturation - 1) * share
-    const luminous = [0, 1, 2, 3].map(i =>
-      luminanceOf(
-        parameters,
-        [0, 1, 2, 3].map(k => (k === i ? 1 : 0))
-      )
-    )
-    const sum = luminous.reduce((total, value) => total + value, 0) || 1
-    this.#luminous.value.fromArray(luminous.map(value => value / sum))
+    if (parameters === this.#parameters && parameters.version === this.#parametersVersion) return
+    this.#parameters = parameters
+    this.#parametersVersion = parameters.version
+    this.#luminous.value.fromArray(luminousShares(parameters))
   }
 
   medium({ distance }: LayerRay, air: MediumSegment): MediumSegment {

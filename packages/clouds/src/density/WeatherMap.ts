@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { Vector3 } from 'three'
-import { Fn, If, float, int, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Float, Int, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { vector3 } from '../uniforms'
@@ -59,8 +59,7 @@ export class WeatherMap {
     const [x, y] = this.#axes
     return Fn(() => {
       const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
-      const index = field.layers.length === 1 ? int(0) : at.y.floor().toInt()
-      const layer = layerAt(field, index.toConst())
+      const layer = layerAt(field, at.y.floor().toInt().toConst())
       const position = vec2(at.x, at.y.fract()).sub(0.5).div(PER_POSITION).toConst() as Vec2
       const far = position.length().min(0.98).toConst() as Float
       const flat = position.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
@@ -107,9 +106,8 @@ export class WeatherMap {
     const found = vec4(0).toVar() as Vec4
     If(distance.lessThan(MAXIMUM_DISTANCE), () => {
       const inTile = flat.div(distance.add(EVEN)).mul(PER_POSITION).add(0.5)
-      const at =
-        layers.length === 1 ? inTile : vec2(inTile.x, inTile.y.add(float(index)).div(layers.length))
-      found.assign(this.#map.sample(at).level(0))
+      const row = inTile.y.add(float(index)).div(layers.length)
+      found.assign(this.#map.sample(vec2(inTile.x, row)).level(0))
     }).Else(() => {
       found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint))
     })

@@ -1,20 +1,21 @@
 import { Quaternion, Vector3 } from 'three'
 
+/** Rotation about an axis of any length. */
+const rotation = (x: number, y: number, z: number, angle: number): Quaternion =>
+  new Quaternion().setFromAxisAngle(new Vector3(x, y, z).normalize(), angle)
+
 /** Rotation without a simple relation to the axes, different for each seed. */
 function seededRotation(seed: number): Quaternion {
-  const axis = new Vector3(
-    Math.cos(1 + 2.399963 * seed),
-    Math.sin(1 + 2.399963 * seed),
-    Math.cos(2 + 1.324718 * seed)
-  )
-  return new Quaternion().setFromAxisAngle(axis.normalize(), 0.7 + 1.754878 * seed)
+  const azimuth = 1 + 2.399963 * seed
+  const z = Math.cos(2 + 1.324718 * seed)
+  return rotation(Math.cos(azimuth), Math.sin(azimuth), z, 0.7 + 1.754878 * seed)
 }
 
 /** Turn about the planet's axis, different for each seed, and a tilt away from it [rad]. */
 function seededTilt(seed: number, tilt: number): Quaternion {
-  const axis = new Vector3(Math.cos(2.399963 * seed), Math.sin(2.399963 * seed), 0)
-  const spin = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), 0.7 + 1.754878 * seed)
-  return new Quaternion().setFromAxisAngle(axis, tilt).multiply(spin)
+  const azimuth = 2.399963 * seed
+  const spin = rotation(0, 0, 1, 0.7 + 1.754878 * seed)
+  return rotation(Math.cos(azimuth), Math.sin(azimuth), 0, tilt).multiply(spin)
 }
 
 /**

@@ -111,7 +111,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
 }
 
 /** All names of {@link cloudPreset}, for menus. */
-export const cloudPresetNames = Object.keys(presets) as readonly CloudPresetName[]
+export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly CloudPresetName[]
 
 /**
  * Layers for a well-known sky, to be changed as one likes.

@@ -36,7 +36,6 @@ export function windRotation(
   target: Quaternion
 ): Quaternion {
   const speed = Math.hypot(wind.east, wind.north)
-  if (!(speed > 0)) return target.identity()
   // Whole turns say nothing, and a sine of 1e15 neither.
   const angle = ((speed * seconds) / radius) % (2 * Math.PI)
   return target.setFromAxisAngle(windAxis(wind, up, _axis), -angle)

@@ -54,7 +54,7 @@ export class NightLight {
   readonly nightfall = number(-1)
   readonly deepNight = number(-1)
   /** Direction to the moon, in the mapped space. */
-  readonly moonDirection = vector3(0, 0, 1)
+  readonly moonDirection = vector3()
   /** Irradiance of the moon above the air, over `solarIrradiance`; 0 without a moon. */
   readonly moonIrradiance = vector4()
   /** Mean radiance of the night sky, over `solarIrradiance` [1/sr]. */
@@ -63,6 +63,10 @@ export class NightLight {
   illuminance = NIGHT_ILLUMINANCE
   /** The moon; null if there is none. */
   source: LightSource | null = null
+
+  constructor() {
+    this.moonDirection.value.set(0, 0, 1)
+  }
 
   /** Follows the camera and the moon. */
   update(view: AtmosphereView): void {

@@ -5,7 +5,6 @@ import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { WeatherMap } from '../density/WeatherMap'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import type { FrameUniforms } from './FrameUniforms'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
 import { encodeDistance } from '../temporal/tsl/packing'
@@ -108,7 +107,6 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
  * into the history of the frames before.
  */
 export class CloudRenderer {
-  readonly frame: FrameUniforms
   readonly viewRays: FrameInputs
   readonly #marchedTarget = marchedTarget()
   readonly #shadedTarget = cloudTarget('Shaded')
@@ -131,7 +129,6 @@ export class CloudRenderer {
     const { field, viewRays } = inputs
     this.#weatherMap = new WeatherMap(field)
     const scene = { ...inputs, weatherMap: this.#weatherMap }
-    this.frame = viewRays.frame
     this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
@@ -155,18 +152,19 @@ export class CloudRenderer {
 
   /** Sizes the render targets [pixels]; where the size changes, their contents are gone. */
   setSize(width: number, height: number, block: number): void {
+    const { frame } = this.viewRays
     const [first] = this.#accumulatedTargets
     if (first.width !== width || first.height !== height) {
       for (const target of this.#accumulatedTargets) target.setSize(width, height)
-      this.frame.reset()
+      frame.reset()
     }
     const across = Math.ceil(width / block)
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
     this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
-    this.frame.size.value.set(width, height)
-    this.frame.marchedSize.value.set(across, down)
+    frame.size.value.set(width, height)
+    frame.marchedSize.value.set(across, down)
   }
 
   /**

@@ -125,10 +125,9 @@ export class QualityUniforms {
 
   set(quality: CloudQuality): void {
     this.pairs.value = Math.ceil(quality.steps / 2)
-    this.stepGrowth.value = quality.stepGrowth
-    this.shortestStep.value = quality.shortestStep
-    this.depthStep.value = quality.depthStep
-    this.layerSteps.value = quality.layerSteps
+    for (const name of ['stepGrowth', 'shortestStep', 'depthStep', 'layerSteps'] as const) {
+      this[name].value = quality[name]
+    }
     this.lightSteps.value = Math.round(quality.lightSteps)
   }
 }

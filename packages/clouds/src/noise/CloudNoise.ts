@@ -50,18 +50,13 @@ const SLICE_COST = { shape: 1, weather: 0.3, detail: 0.16, level: 0.12 } as cons
 /** A texture of noise, filled slice by slice, level by level. */
 class NoiseTexture {
   readonly target: RenderTarget3D
-  readonly #size: number
-  readonly #format: PixelFormat
   readonly #cost: number
   readonly #slice: UniformNode<'float', number> = uniform(0)
   readonly #noise: FragmentPass
 
-  constructor(name: NoiseName, format: PixelFormat, cost: number, noise: (p: Vec3) => Vec4) {
-    const size = NOISE_SIZE[name]
-    this.#size = size
-    this.#format = format
-    this.#cost = cost
-    this.target = noiseTarget(`Welkin.CloudNoise.${name}`, size, format, true)
+  constructor(name: NoiseName, format: PixelFormat, noise: (p: Vec3) => Vec4) {
+    this.#cost = SLICE_COST[name]
+    this.target = noiseTarget(`Welkin.CloudNoise.${name}`, NOISE_SIZE[name], format, true)
     this.#noise = new FragmentPass(
       `Welkin.CloudNoise.${name}`,
       Fn(() => noise(vec3(uv(), this.#slice).toConst()))()
@@ -74,7 +69,7 @@ class NoiseTexture {
     target: RenderTarget3D,
     level: number
   ): Generator<number, void, void> {
-    const slices = this.#size >> level
+    const slices = this.target.width >> level
     const targetLevel = target === this.target ? level : 0
     const cost = level === 0 ? this.#cost : SLICE_COST.level
     for (let slice = 0; slice < slices; slice++) {
@@ -89,13 +84,10 @@ class NoiseTexture {
     yield* this.#draw(renderer, this.#noise, this.target, 0)
     let finer = this.target
     // A level is made outside of the texture and copied in: nothing may be read while it is drawn to.
-    for (let level = 1; this.#size >> level > 0; level++) {
-      const scratch = noiseTarget(
-        'Welkin.CloudNoise.level',
-        this.#size >> level,
-        this.#format,
-        false
-      )
+    const { width, texture } = this.target
+    const format = texture.format as PixelFormat
+    for (let level = 1; width >> level > 0; level++) {
+      const scratch = noiseTarget('Welkin.CloudNoise.level', width >> level, format, false)
       const from = (source: RenderTarget3D): FragmentPass => {
         const node = texture3D(source.texture) as unknown as LevelTexture<Vec3>
         // Between texels, the filter is the mean of eight.
@@ -186,12 +178,7 @@ export class CloudNoise {
     const own = checkOptions('CloudNoise', options, 'weather', 'shape', 'detail')
     const make = (name: NoiseName, format: PixelFormat, noise: (p: Vec3) => Vec4): NoiseTexture => {
       const volume = own[name]
-      return new NoiseTexture(
-        name,
-        format,
-        SLICE_COST[name],
-        volume === undefined ? noise : texelsOf(name, volume)
-      )
+      return new NoiseTexture(name, format, volume === undefined ? noise : texelsOf(name, volume))
     }
     this.shape = make('shape', RGBAFormat, p => {
       const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)

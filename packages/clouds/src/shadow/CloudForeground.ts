@@ -23,7 +23,8 @@ export class CloudForeground implements ForegroundLayer {
   }
 
   seenAt(at: Vec2): { distance: Float; transmittance: Float } {
-    const { accumulated, marched, frame } = this.#clouds.passes
+    const { accumulated, marched, viewRays } = this.#clouds.passes
+    const { frame } = viewRays
     const read = ({ distances }: CloudTargets, place: Vec2): Vec4 =>
       distances.sample(place).level(0).toConst()
     const accumulatedDistance = unpack(read(accumulated, at)).x

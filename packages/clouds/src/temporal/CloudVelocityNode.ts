@@ -43,12 +43,12 @@ export class CloudVelocityNode extends Node<'vec4'> {
     checkClouds('CloudVelocityNode', clouds)
     this.velocityNode = velocityNode
     this.clouds = clouds
-    clouds.passes.frame.projectionOf = unjitteredProjection
+    clouds.passes.viewRays.frame.projectionOf = unjitteredProjection
   }
 
   override setup(): Node {
     const { passes } = this.clouds
-    const { frame } = passes
+    const { frame } = passes.viewRays
     return Fn(() => {
       const velocity = vec4(this.velocityNode as Vec4).toVar() as Vec4
       const at = uv() as unknown as Vec2
@@ -71,7 +71,7 @@ export class CloudVelocityNode extends Node<'vec4'> {
 
   /** Lets the clouds follow their camera's jitter again; they stay with who made them. */
   override dispose(): void {
-    this.clouds.passes.frame.projectionOf = jitteredProjection
+    this.clouds.passes.viewRays.frame.projectionOf = jitteredProjection
     super.dispose()
   }
 }

@@ -85,6 +85,17 @@ function bodyAt(
 }
 
 /**
+ * Strength of the clear air of a user's own clouds, of which nothing more is known [–]. Less: small clouds are missed
+ * here and there, as grain (*Real or not*).
+ */
+const CLEAR_STRENGTH = -4
+
+const givenSample = (extinction: Float): LayerSample => {
+  const found = extinction.toConst() as Float
+  return { extinction: found, strength: found.greaterThan(0).select(1, CLEAR_STRENGTH) }
+}
+
+/**
  * One layer at places near each other, in the weather on large scales around them: their texture reads do
  * not wait for each other.
  *
@@ -100,6 +111,8 @@ export function sampleLayerAt(
   samples: readonly CloudSample[],
   { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
 ): LayerSample[] {
+  const { extinction } = field
+  if (extinction !== undefined) return samples.map(sample => givenSample(extinction(sample)))
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution

@@ -1,4 +1,4 @@
-import { If, float, int, mix, vec2, vec4 } from 'three/tsl'
+import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -9,12 +9,6 @@ import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
 import type { CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
-
-/**
- * Likely distance to cloud in the clear air of a given field [m], of which nothing more is known: steps are
- * `CAUTION` of it, about a cell of simulated ones.
- */
-const CLEAR_OF_GIVEN = 100
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -60,14 +54,7 @@ export function samplePair(
   direction: Vec3,
   range: LayerRange
 ): SamplePair {
-  const { givenExtinction } = field
   const places = [-0.5, 0.5].map(at => sampleNearby(middle, direction, length.mul(at)))
-  if (givenExtinction) {
-    const [first, second] = places.map(({ offset }) => givenExtinction(offset))
-    const extinction = vec2(first, second).toConst() as Vec2
-    const likelyDistance = first.max(second).greaterThan(0).select(0, CLEAR_OF_GIVEN)
-    return { extinction, likelyDistance, greatest: layerAt(field, int(0)).density }
-  }
   const sum = vec2(0).toVar() as Vec2
   const nearest = float(NOWHERE).toVar()
   const greatest = float(0).toVar()

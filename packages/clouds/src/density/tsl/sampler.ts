@@ -9,8 +9,7 @@ import { weatherBackground, type PackedBackground } from './weatherBackground'
 
 // The only answer to where the clouds are. `sampleLayerAt` (sampleLayer.ts) goes from a place and the weather's
 // background to extinction and strength; pixels, shadows and light differ in which layers they ask, and in
-// where they have the background from. Where a field is given (`CloudField.givenExtinction`), it stands in
-// place of all weather and noise.
+// where they have the background from.
 
 /** Options of the light march: no detail, and the inside of clouds, where its light is. */
 const LIT: SampleOptions = { detail: false, unresolved: 'inside' }
@@ -22,6 +21,7 @@ export function backgroundAt(
   sample: CloudSample,
   mapped?: { map: WeatherMap | undefined; index: Int }
 ): PackedBackground {
+  if (field.extinction !== undefined) return vec4(0)
   const subpoint = subpointOffset(field, sample).toConst() as Vec3
   const footprint = footprintOf(field, sample)
   const { map, index } = mapped ?? {}
@@ -65,7 +65,6 @@ export function weatherCacheAt(
 ): WeatherCache {
   const background = vec4(0).toVar() as Vec4
   const densest = int(0).toVar() as Int
-  if (field.givenExtinction) return { background, layer: densest }
   const most = float(-1).toVar()
   forLayers(
     field,
@@ -100,7 +99,6 @@ export function extinctionNearby(
   { background, layer: kept }: WeatherCache,
   sample: CloudSample
 ): Float {
-  if (field.givenExtinction) return field.givenExtinction(sample.offset)
   const layer = layerAt(field, field.layers.length === 1 ? int(0) : kept)
   const height = heightIn(layer, sample.altitude)
   const extinction = float(0).toVar()
@@ -122,11 +120,6 @@ export function sampleLayerPair(
   middle: CloudSample,
   samples: readonly [CloudSample, CloudSample]
 ): Vec2 {
-  const { givenExtinction } = field
-  if (givenExtinction) {
-    const [first, second] = samples.map(sample => givenExtinction(sample.offset))
-    return vec2(first, second).toConst()
-  }
   const background = backgroundAt(field, layer, middle)
   const found = sampleLayerAt(field, layer, background, middle, samples, { detail: false })
   const [first, second] = samples.map(({ altitude }, i) =>

@@ -11,11 +11,9 @@ export const matrix = (
   term: (row: number, column: number) => number
 ): Matrix => range.map((_, i) => range.map((__, j) => term(i, j)))
 
-const transposed = (a: Matrix): Matrix => a[0].map((_, j) => a.map(row => row[j]))
-
 /** a b. */
 export function product(a: Matrix, b: Matrix): Matrix {
-  const columns = transposed(b)
+  const columns = b[0].map((_, j) => b.map(row => row[j]))
   return a.map(row => columns.map(column => dot(row, column)))
 }
 
@@ -25,7 +23,7 @@ export function product(a: Matrix, b: Matrix): Matrix {
  */
 export function symmetricEigen(a: Matrix): { values: number[]; vectors: Matrix } {
   const size = a.length
-  const vectors = a.map((row, i) => row.map((_, j) => (i === j ? 1 : 0)))
+  const vectors = matrix(a, (i, j) => (i === j ? 1 : 0))
   for (let sweep = 0; sweep < 30; sweep++) {
     let rest = 0
     for (let p = 0; p < size; p++) {

@@ -15,13 +15,13 @@ const FOUR_PI = 4 * Math.PI
  */
 export const henyeyGreenstein = /*#__PURE__*/ Fn(
   ([asymmetry, cosScatter]: [Float, Float]) => {
-    const square = asymmetry.mul(asymmetry).toConst('square')
+    const square = asymmetry.mul(asymmetry).toConst()
     // (1 − g)² + 2 g (1 − ν): 1 + g² − 2 g ν cancels in the peak.
     const squaredChord = asymmetry
       .oneMinus()
       .mul(asymmetry.oneMinus())
       .add(asymmetry.mul(2).mul(cosScatter.oneMinus()))
-      .toConst('squaredChord')
+      .toConst()
     return square.oneMinus().div(squaredChord.mul(squaredChord.sqrt()).mul(FOUR_PI))
   },
   layout('cloudHenyeyGreenstein', 'float', { asymmetry: 'float', cosScatter: 'float' })

@@ -15,31 +15,31 @@ export const billow = /*#__PURE__*/ Fn(
   ([p, cells, seed]: [Vec3, Vec3, Float]) => {
     const { base, part, origin, index } = cellOf(p, cells, seed)
     // Towards the nearer neighbour along each axis.
-    const side = step(vec3(0.5), part).mul(2).sub(1).toConst('side')
-    const nearStep = wrapped(base.add(side), cells).sub(origin).toConst('nearStep')
-    const farStep = wrapped(base.sub(side), cells).sub(origin).toConst('farStep')
-    const nearest = float(1).toVar('nearest')
+    const side = step(vec3(0.5), part).mul(2).sub(1).toConst()
+    const nearStep = wrapped(base.add(side), cells).sub(origin).toConst()
+    const farStep = wrapped(base.sub(side), cells).sub(origin).toConst()
+    const nearest = float(1).toVar()
     const visit = (cell: UVec3, offset: Vec3): void => {
       const gap = offset.add(hashCell(cell)).sub(part).toConst()
       nearest.assign(nearest.min(gap.dot(gap)))
     }
     loop('nearCell', 8, corner => {
-      const digits = digitsOf(corner, 2).toConst('nearDigits')
+      const digits = digitsOf(corner, 2).toConst()
       visit(index.add(nearStep.mul(digits)), side.mul(vec3(digits)))
     })
     // Squared distances to the cells beside this one.
-    const nearGap = part.min(part.oneMinus()).toConst('nearGap')
-    const farGap = part.max(part.oneMinus()).toConst('farGap')
-    const nearSquare = nearGap.mul(nearGap).toConst('nearSquare')
-    const farSquare = farGap.mul(farGap).toConst('farSquare')
+    const nearGap = part.min(part.oneMinus()).toConst()
+    const farGap = part.max(part.oneMinus()).toConst()
+    const nearSquare = nearGap.mul(nearGap).toConst()
+    const farSquare = farGap.mul(farGap).toConst()
     If(farSquare.x.min(farSquare.y).min(farSquare.z).lessThan(nearest), () => {
       loop('farCell', 27, neighbour => {
         // Digits 0, 1 and 2: this cell's row, the nearer one's, the farther one's.
-        const digits = digitsOf(neighbour, 3).toConst('digits')
+        const digits = digitsOf(neighbour, 3).toConst()
         const isNear = bitAnd(digits as never, uvec3(1) as never) as unknown as UVec3
         const isFar = shiftRight(digits as never, uvec3(1) as never) as unknown as UVec3
-        const near = vec3(isNear).toConst('near')
-        const far = vec3(isFar).toConst('far')
+        const near = vec3(isNear).toConst()
+        const far = vec3(isFar).toConst()
         const beyond = nearSquare.dot(near).add(farSquare.dot(far))
         const isBeside = far.x.max(far.y).max(far.z).greaterThan(0)
         If(isBeside.and(beyond.lessThan(nearest)), () => {

@@ -62,10 +62,10 @@ export const cellOf = (
   cells: Vec3,
   seed: Float
 ): { base: Vec3; part: Vec3; origin: UVec3; index: UVec3 } => {
-  const base = p.mul(cells).floor().toConst('base')
-  const part = p.mul(cells).sub(base).toConst('part')
-  const origin = wrapped(base, cells).toConst('origin')
-  const index = origin.add(uvec3(0, 0, uint(seed.add(0.5)))).toConst('index')
+  const base = p.mul(cells).floor().toConst()
+  const part = p.mul(cells).sub(base).toConst()
+  const origin = wrapped(base, cells).toConst()
+  const index = origin.add(uvec3(0, 0, uint(seed.add(0.5)))).toConst()
   return { base, part, origin, index }
 }
 

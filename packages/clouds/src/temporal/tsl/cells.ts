@@ -50,7 +50,6 @@ export const passesCellDepthTest = (end: Float, { y: beyond, z: near }: Vec4): B
 /** Index of the layer whose middle is nearest to an altitude, in its thicknesses. */
 function nearestLayer(field: CloudField, altitude: Float): Float {
   const nearest = float(0).toVar()
-  if (field.layers.length === 1) return nearest
   const least = float(1e9).toVar()
   forLayers(field, (index: Int) => {
     const { baseAltitude, perThickness } = layerAt(field, index)
