@@ -44,7 +44,7 @@ const SETTLING = 120
 const NOISE_SLICES = 12
 const NOISE_FRAMES = 20
 
-/** Every pixel, with an eighth of the steps' length of `high`, nothing remembered. */
+/** Every pixel, with an eighth of the steps' length of `high`, without history. */
 export const cloudReference: CloudQuality = {
   steps: 1024,
   stepGrowth: cloudQualities.high.stepGrowth / 8,

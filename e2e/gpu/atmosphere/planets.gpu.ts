@@ -142,11 +142,11 @@ gpuTest('puts the ground where float64 does, from 2 m to 20,000 km', async t => 
         const distance = atmosphere.ellipsoid.intersectRayDistance(origin, ray)
         if (distance === null) continue
         seen++
-        const foot = origin.clone().addScaledVector(ray, distance)
-        const longitude = Math.atan2(foot.y, foot.x)
+        const hit = origin.clone().addScaledVector(ray, distance)
+        const longitude = Math.atan2(hit.y, hit.x)
         const column = (longitude / (2 * Math.PI) + 0.5) * columns
         const cosLight = atmosphere.ellipsoid
-          .surfaceNormal(foot)
+          .surfaceNormal(hit)
           .dot(atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF))
         if (cosLight < 0.05) continue
         const isLight = Math.floor(column) % 2 === 1
@@ -158,7 +158,7 @@ gpuTest('puts the ground where float64 does, from 2 m to 20,000 km', async t => 
         if (looksLight === isLight) continue
         // How far from the edge between two texels, on the ground.
         const off = Math.abs(column - Math.round(column)) / columns
-        worst = Math.max(worst, off * 2 * Math.PI * Math.hypot(foot.x, foot.y))
+        worst = Math.max(worst, off * 2 * Math.PI * Math.hypot(hit.x, hit.y))
       }
     }
     t.note(`${height} m: ${worst.toFixed(2)} m`)

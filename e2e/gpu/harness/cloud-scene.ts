@@ -127,7 +127,7 @@ function coverOf(map: DataTexture): (longitude: number, latitude: number) => num
 export function offsets(
   viewpoint: Vector3,
   count: number,
-  reach: number,
+  maximumDistance: number,
   seed: number,
   altitude = (share: number): number => 12_000 * share ** 2
 ): number[][] {
@@ -138,7 +138,7 @@ export function offsets(
   const ground = viewpoint.length()
   return Array.from({ length: count }, () => {
     const angle = 2 * Math.PI * draw()
-    const away = reach * Math.sqrt(draw())
+    const away = maximumDistance * Math.sqrt(draw())
     const point = viewpoint
       .clone()
       .addScaledVector(side, away * Math.cos(angle))

@@ -58,12 +58,12 @@ export function straighten(
 export function contrasts(
   light: readonly number[],
   size: number,
-  reach: number
+  halfWidth: number
 ): { values: number[]; deviation: number } {
   const blurred = (values: readonly number[], stride: number): number[] =>
     values.map((_, i) => {
       const at = Math.floor(i / stride) % size
-      const [first, last] = [Math.max(at - reach, 0), Math.min(at + reach, size - 1)]
+      const [first, last] = [Math.max(at - halfWidth, 0), Math.min(at + halfWidth, size - 1)]
       let sum = 0
       for (let j = first; j <= last; j++) sum += values[i + (j - at) * stride]
       return sum / (last - first + 1)

@@ -254,9 +254,9 @@ export class CloudShadowMap {
 
   #isStale(state: CascadeState): boolean {
     const { inputs, light, texel } = state
-    const place = this.#distance(state)
+    const distance = this.#distance(state)
     return (
-      place > STALE_PLACE * texel ||
+      distance > STALE_PLACE * texel ||
       light.distanceTo(this.#light) > STALE_LIGHT ||
       this.#inputs.some((value, i) => value !== inputs[i]) ||
       [...this.field.layers].some(

@@ -22,10 +22,10 @@ export class DiffuseRatioTable {
     this.#shadows = shadows
     const { view } = field
     const ratio = Fn((): Vec4 => {
-      const place = uv() as unknown as Vec2
-      const side = place.x.mul(2).sub(1).toConst() as Float
+      const texel = uv() as unknown as Vec2
+      const side = texel.x.mul(2).sub(1).toConst() as Float
       const cosLight = side.mul(side.abs()).toConst() as Float
-      const altitude = place.y.mul(place.y).mul(view.air.uniforms.thickness).toConst() as Float
+      const altitude = texel.y.mul(texel.y).mul(view.air.uniforms.thickness).toConst() as Float
       return diffuseRatio(view, meanDecks(field, light, altitude, cosLight), altitude, cosLight)
     })
     this.#pass = new FragmentPass('Welkin.CloudDiffuse', ratio())

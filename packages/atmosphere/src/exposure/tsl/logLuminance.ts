@@ -23,10 +23,10 @@ export const logLuminance = (picture: TextureNode, size: Vec2, cell: Vec2, exten
       const corner = vec2(quadrant % 2, quadrant >> 1).div(2)
       const sum = vec2(0).toVar()
       loop(`tap${quadrant}`, taps * taps, (tap: Int) => {
-        const place = vec2(tap.mod(int(taps)), tap.div(int(taps)))
+        const offset = vec2(tap.mod(int(taps)), tap.div(int(taps)))
           .add(0.5)
           .div(2 * taps)
-        const uv = cell.add(extent.mul(corner.add(place)))
+        const uv = cell.add(extent.mul(corner.add(offset)))
         const texel = ivec2(floor(uv.mul(size)))
         const { rgb } = textureLoad(picture, texel) as unknown as { rgb: Vec3 }
         const value = (luminance(rgb) as unknown as Float).toConst() as Float

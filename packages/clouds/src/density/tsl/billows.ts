@@ -40,8 +40,8 @@ export function billows(
   level: Float
 ): Billows {
   const { perShapePeriod } = layer
-  const place = layer.shapeLattice(offset).add(inLattice(shift).mul(perShapePeriod)) as Vec3
-  const noise = decoded(field.textures.shape.sample(place).level(level))
+  const point = layer.shapeLattice(offset).add(inLattice(shift).mul(perShapePeriod)) as Vec3
+  const noise = decoded(field.textures.shape.sample(point).level(level))
   return { coarse: noise.x, fine: noise.y, curl: vec2(noise.z, noise.w).toConst() }
 }
 
@@ -73,11 +73,11 @@ export function detail(
   footprint: Float
 ): Float {
   const { perDetailPeriod } = layer
-  const place = layer.detailLattice(offset).toConst() as Vec3
+  const point = layer.detailLattice(offset).toConst() as Vec3
   const width = footprint.mul(perDetailPeriod).toConst() as Float
   const octave = (period: number): Float => {
     const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)
-    return decoded(field.textures.detail.sample(place.div(period)).level(level)).x
+    return decoded(field.textures.detail.sample(point.div(period)).level(level)).x
   }
   const sum = octave(1).toVar() as Float
   for (const [period, amplitude] of NEARER) {

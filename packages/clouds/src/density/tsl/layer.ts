@@ -96,8 +96,8 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
   const lattice =
     (slot: number): Lattice =>
     v => {
-      const place = vec4(v, 1).toConst()
-      const [x, y, z] = [0, 1, 2].map(row => read(slot + row).dot(place))
+      const point = vec4(v, 1).toConst()
+      const [x, y, z] = [0, 1, 2].map(row => read(slot + row).dot(point))
       return vec3(x, y, z)
     }
   return {

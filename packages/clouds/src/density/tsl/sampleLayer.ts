@@ -122,11 +122,11 @@ export function sampleLayerAt(
     const { filteredCoverage } = body.weather
     const whole = strength.toVar() as Float
     const density = float(0).toVar() as Float
-    const reach = hasDetail ? detailStrength.abs().mul(MOST_DETAIL).toConst() : float(0)
-    If(strength.greaterThan(reach.negate()), () => {
+    const mostDetail = hasDetail ? detailStrength.abs().mul(MOST_DETAIL).toConst() : float(0)
+    If(strength.greaterThan(mostDetail.negate()), () => {
       const edge = edgeAt(layer, height)
       if (hasDetail) {
-        If(strength.lessThan(reach.add(edge)).and(reach.greaterThan(0)), () => {
+        If(strength.lessThan(mostDetail.add(edge)).and(mostDetail.greaterThan(0)), () => {
           const fine = detail(field, layer, sample.offset, footprint)
           whole.addAssign(fine.mul(detailStrength))
         })

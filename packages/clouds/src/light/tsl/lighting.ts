@@ -34,15 +34,15 @@ function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample): Shadi
 }
 
 /** Source function of a place towards the viewpoint: the light that it scatters there. */
-export function sourceAt(context: ShadingContext, place: ShadedSample): CloudShares {
+export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudShares {
   const { light } = context
-  const { sample, direction, transmittance } = place
+  const { sample, direction, transmittance } = shaded
   const source = lightAt(context, sample)
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewLight = direction.dot(source.direction).clamp(-1, 1).toConst() as Float
-  const depths = localDepths(context, place, source)
+  const depths = localDepths(context, shaded, source)
   const scale = light.depthScale
-  const layered = place.layers.layered.toConst() as Float
+  const layered = shaded.layers.layered.toConst() as Float
   const depthThrough = depths.through.mul(scale).toConst() as Float
   const direct = cloudSource(light, {
     depthToLight: depths.toLight.mul(scale).toConst(),

@@ -42,8 +42,8 @@ export function shadePoints(
       const layers = layersAt(field, sample.altitude)
       const weather = weatherCacheAt(field, sample, layers.range, context.weatherMap)
       const transmittance = seenBefore.add(share.mul(0.5)).oneMinus().toConst() as Float
-      const place = { sample, weather, direction, transmittance, dither, layers }
-      const { direct, sky, ground } = sourceAt(context, place)
+      const shaded = { sample, weather, direction, transmittance, dither, layers }
+      const { direct, sky, ground } = sourceAt(context, shaded)
       radiance.addAssign(shade(field, sample, vec3(direct, sky, ground).mul(share).toConst()))
       seenBefore.addAssign(share)
     })

@@ -25,19 +25,19 @@ export const cumulative = (z: Float): Float => z.mul(-1.702).exp().add(1).recipr
 export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Float {
   const { terms: parts, warp, encoding } = channel
   const [mean, deviation] = channel.statistics
-  let place = p
+  let point = p
   if (warp !== undefined) {
     const shift = (axis: number): Float =>
       perlin(p, vec3(warp.cells), float(seedOf(index, parts.length + axis)))
-    place = p.add(vec3(shift(0), shift(1), shift(2)).mul(warp.amount)).toConst()
+    point = p.add(vec3(shift(0), shift(1), shift(2)).mul(warp.amount)).toConst()
   }
   let sum: Float = float(-mean)
   parts.forEach(({ kind, cells, weight, stir }, i) => {
     if (stir !== undefined) {
       const shift = curl(p, float(stir.cells), float(seedOf(index, parts.length + i)))
-      place = place.add(shift.mul(stir.amount / noiseDeviations.curl)).toConst()
+      point = point.add(shift.mul(stir.amount / noiseDeviations.curl)).toConst()
     }
-    sum = sum.add(terms[kind](place, vec3(...cells), float(seedOf(index, i))).mul(weight))
+    sum = sum.add(terms[kind](point, vec3(...cells), float(seedOf(index, i))).mul(weight))
   })
   const z = sum.div(deviation).toConst() as Float
   if (encoding === 'uniform') return cumulative(z)

@@ -63,7 +63,7 @@ export function sampleShadows(
     .add(0.5 - MARGIN)
     .toConst() as Float
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
-  const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
+  const inAtlas = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
   // From the widest to the narrowest: the last that fits stays.
   for (const { u, v, w, isDrawn, atlasTile } of cascades.toReversed()) {
     const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
@@ -76,18 +76,18 @@ export function sampleShadows(
       .and(above.abs().lessThan(edge.mul(2 * MAXIMUM_DISTANCE)))
       .and(isDrawn.greaterThan(0))
     If(isInside, () => {
-      place.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))
+      inAtlas.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))
     })
   }
-  return depthsAt(map, place)
+  return depthsAt(map, inAtlas)
 }
 
 /** Optical depths by a place in the map, the height over the cascade's plane there, and whether it is known. */
-function depthsAt(map: CloudShadows['map'], place: Vec4): LightDepths {
-  const inMap = place.w.toConst() as Float
-  const texel = map.sample(place.xy).level(0).mul(inMap).toConst() as Vec4
+function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {
+  const inMap = inAtlas.w.toConst() as Float
+  const texel = map.sample(inAtlas.xy).level(0).mul(inMap).toConst() as Vec4
   // Front and half length come times the depth.
-  const share = texel.x.sub(texel.z.mul(place.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
+  const share = texel.x.sub(texel.z.mul(inAtlas.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
   const toLight = texel.z.mul(share).toConst() as Float
   return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), inMap }
 }
@@ -110,7 +110,8 @@ export function sampleShadowsAlong(
   const edge = dither.mul(-FADE).add(0.5 - MARGIN)
   const extent = vec3(edge, edge, edge.mul(2 * MAXIMUM_DISTANCE)).toConst() as Vec3
   const stretches = cascades.map(({ u, v, w, isDrawn, atlasTile }) => {
-    const along = (place: Vec3): Vec3 => vec3(place.dot(u.xyz), place.dot(v.xyz), place.dot(w.xyz))
+    const along = (inAtlas: Vec3): Vec3 =>
+      vec3(inAtlas.dot(u.xyz), inAtlas.dot(v.xyz), inAtlas.dot(w.xyz))
     const start = along(from)
       .add(vec3(u.w, v.w, w.w))
       .toConst() as Vec3
@@ -133,13 +134,13 @@ export function sampleShadowsAlong(
     }
   })
   return distance => {
-    const place = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
+    const inAtlas = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
     // From the widest to the narrowest: the last that fits stays.
     for (const { start, slope, first, last } of stretches.toReversed()) {
       If(distance.greaterThan(first).and(distance.lessThan(last)), () => {
-        place.assign(vec4(start.add(slope.mul(distance)), 1))
+        inAtlas.assign(vec4(start.add(slope.mul(distance)), 1))
       })
     }
-    return depthsAt(map, place)
+    return depthsAt(map, inAtlas)
   }
 }

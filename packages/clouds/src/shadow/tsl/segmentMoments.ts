@@ -53,17 +53,17 @@ export function segmentMoments(
     const square = middle.mul(middle).add(width.mul(width).div(12))
     sums.addAssign(vec3(1, middle, square).mul(extinction.mul(width)))
   }
-  const place = front.toVar() as Float
+  const position = front.toVar() as Float
   const search = edgeSearch(front, length)
   const wasClear = bool(true).toVar() as Bool
   loop('shadowPair', STEPS / 2 + SEARCHES * (CUTS + 2), () => {
-    If(place.lessThanEqual(back), () => {
+    If(position.lessThanEqual(back), () => {
       Break()
     })
     const isCutting = search.cuts.greaterThan(0).toConst()
     const gap = search.clear.sub(search.cloudy)
     const step = isCutting.select(gap.div(3), length).toConst() as Float
-    const from = isCutting.select(search.clear.sub(step.mul(0.5)), place).toConst() as Float
+    const from = isCutting.select(search.clear.sub(step.mul(0.5)), position).toConst() as Float
     const [middle, first, second] = [1, 0.5, 1.5].map(steps => sampleAt(from.sub(step.mul(steps))))
     const found = sampleLayerPair(field, layer, middle, [first, second])
     /** First of the two in clouds, in steps; 2.5 if both are clear. */
@@ -72,7 +72,7 @@ export function segmentMoments(
     If(isCutting, () => {
       narrow(search, at, step)
       search.cuts.subAssign(int(1))
-      place.assign(at.add(step.mul(0.5)))
+      position.assign(at.add(step.mul(0.5)))
     })
       .ElseIf(wasClear.and(entry.lessThan(2)).and(search.searches.greaterThan(0)), () => {
         narrow(search, at, step)
@@ -81,10 +81,10 @@ export function segmentMoments(
         wasClear.assign(false)
       })
       .Else(() => {
-        add(place, found.x)
-        add(place.sub(length), found.y)
+        add(position, found.x)
+        add(position.sub(length), found.y)
         wasClear.assign(found.y.equal(0))
-        place.subAssign(length.mul(2))
+        position.subAssign(length.mul(2))
       })
   })
   return sums
