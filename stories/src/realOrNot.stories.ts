@@ -57,5 +57,5 @@ type Story = StoryObj<RealOrNotArgs>
 /** Simulated cumulus on the left, made ones on the right. */
 export const Ground: Story = { tags: ['screenshot', 'webgpu-only'] }
 
-/** The same between them. */
+/** Simulated and made clouds from among them. */
 export const Among: Story = { args: { view: 'among' } }

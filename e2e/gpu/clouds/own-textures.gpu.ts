@@ -1,4 +1,4 @@
-import { CloudNoise, cloudWorldMap, type MapBounds } from '@welkin/clouds'
+import { CloudNoise, cloudWorldMap, noiseVolume, type MapBounds } from '@welkin/clouds'
 import {
   ClampToEdgeWrapping,
   Data3DTexture,
@@ -123,7 +123,11 @@ gpuTest('clouds take noise of one’s own, with levels of detail made of it', as
     return texture
   }
   const own = { weather: volume(4), shape: volume(4), detail: volume(1) }
-  const noise = new CloudNoise(own)
+  const noise = new CloudNoise({
+    weather: noiseVolume(own.weather),
+    shape: noiseVolume(own.shape),
+    detail: noiseVolume(own.detail)
+  })
   noise.update(renderer)
   const next = random(5)
   const places = Array.from({ length: 128 }, () => [next(), next(), next()].map(Math.fround))

@@ -17,7 +17,8 @@ import {
   CloudField,
   cloudShadow,
   cloudSkyLight,
-  cloudWorldMap
+  cloudWorldMap,
+  noiseVolume
 } from '@welkin/clouds'
 
 const atmosphere = new Atmosphere()
@@ -124,12 +125,16 @@ const cases: [message: string, call: () => unknown][] = [
     () => cloudWorldMap(new Texture(), wrong({ perlayer: true }))
   ],
   [
-    'CloudNoise: shape must be a Data3DTexture, got a Texture',
+    'CloudNoise: shape must be a function, got a Texture',
     () => new CloudNoise({ shape: wrong(new Texture()) })
   ],
   [
-    'CloudNoise: detail.wrapS must be RepeatWrapping, got 1001',
-    () => new CloudNoise({ detail: new Data3DTexture() })
+    'noiseVolume: volume.wrapS must be RepeatWrapping, got 1001',
+    () => noiseVolume(new Data3DTexture())
+  ],
+  [
+    'noiseVolume: volume must be a Data3DTexture, got a Texture',
+    () => noiseVolume(wrong(new Texture()))
   ],
   ['CloudsNode: noise must be a CloudNoise, got {}', () => make({ noise: {} })],
   ["CloudsNode: light must be a CloudLightTable, got 'sun'", () => make({ light: 'sun' })],

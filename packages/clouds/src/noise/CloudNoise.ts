@@ -117,32 +117,27 @@ class NoiseTexture {
 const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3): Float[] =>
   channels.map((channel, i) => channelNoise(channel, first + i, p))
 
-/** Textures of a {@link CloudNoise} in place of its own noise: volumes of any size that repeat without seams. */
+/**
+ * Noise at a place in a texture of it, of which each coordinate is in [0, 1] and that repeats without seams: a function
+ * that builds its node, such as `noiseVolume(texture)`.
+ */
+export type NoiseFunction = (place: Vec3) => Vec4
+
+/** Noise of one's own in place of a {@link CloudNoise}'s. */
 export interface CloudNoiseOptions {
   /**
-   * Weather of single clouds, RGBA: cumulus, stratocumulus, cumulonimbus and cirrus, as `weatherWeights` mixes them.
+   * Weather of single clouds: cumulus, stratocumulus, cumulonimbus and cirrus, as `weatherWeights` mixes them.
    * Where it is greater, there is cloud sooner. Every value in [0, 1] is as frequent as any other: so a `coverage` of
    * 0.3 covers 0.3 of the sky.
    */
-  weather?: Data3DTexture
+  weather?: NoiseFunction
   /**
-   * Billows and turbulence, RGBA: coarse billows, four along an edge; fine ones, sixteen; and two components of a curl.
+   * Billows and turbulence: coarse billows, four along an edge; fine ones, sixteen; and two components of a curl.
    * Each is 0.5 + 0.18 z, with a z of mean 0 and standard deviation 1.
    */
-  shape?: Data3DTexture
-  /** Finest billows, six along an edge, in red: 0.5 + 0.18 z, as in `shape`. */
-  detail?: Data3DTexture
-}
-
-/** Texels of a user's texture in place of a noise. */
-function texelsOf(name: NoiseName, volume: Data3DTexture): (p: Vec3) => Vec4 {
-  const where = 'CloudNoise'
-  if (!volume?.isData3DTexture) fail(where, `${name} must be a Data3DTexture`, volume)
-  if (volume.wrapS !== RepeatWrapping) {
-    fail(where, `${name}.wrapS must be RepeatWrapping`, volume.wrapS)
-  }
-  const node = texture3D(volume) as unknown as LevelTexture<Vec3>
-  return p => node.sample(p).level(0)
+  shape?: NoiseFunction
+  /** Finest billows, six along an edge, in the first component: 0.5 + 0.18 z, as in `shape`. */
+  detail?: NoiseFunction
 }
 
 /**
@@ -153,7 +148,7 @@ function texelsOf(name: NoiseName, volume: Data3DTexture): (p: Vec3) => Vec4 {
  * and since the lattice is tilted against the ground, no two tiles of it look alike.
  *
  * ```ts
- * const noise = new CloudNoise({ shape: billows })
+ * const noise = new CloudNoise({ shape: noiseVolume(billows) })
  * clouds(air, depth, camera, atmosphere, layers, { noise })
  * ```
  */
@@ -170,15 +165,15 @@ export class CloudNoise {
   #renderer: Renderer | null = null
 
   /**
-   * @param options - Textures to take in place of noise; shared, not owned. They are copied when the noise is drawn:
-   *   after a change, call `dispose`.
-   * @throws If one of them is no volume, or does not repeat.
+   * @param options - Noise of one's own. It is drawn into the textures as any other: after a change, call `dispose`.
+   * @throws If one of them is no function.
    */
   constructor(options: CloudNoiseOptions = {}) {
-    const own = checkOptions('CloudNoise', options, 'weather', 'shape', 'detail')
-    const make = (name: NoiseName, format: PixelFormat, noise: (p: Vec3) => Vec4): NoiseTexture => {
-      const volume = own[name]
-      return new NoiseTexture(name, format, volume === undefined ? noise : texelsOf(name, volume))
+    checkOptions('CloudNoise', options, 'weather', 'shape', 'detail')
+    const make = (name: NoiseName, format: PixelFormat, noise: NoiseFunction): NoiseTexture => {
+      const { [name]: own = noise } = options
+      if (typeof own !== 'function') fail('CloudNoise', `${name} must be a function`, own)
+      return new NoiseTexture(name, format, own)
     }
     this.shape = make('shape', RGBAFormat, p => {
       const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)
