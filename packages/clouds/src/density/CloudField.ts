@@ -259,7 +259,7 @@ export class CloudField {
 
   /** True once there is all the noise that the clouds need. */
   get isReady(): boolean {
-    return this.extinction !== undefined || this.noise.isReady
+    return this.extinction ? true : this.noise.isReady
   }
 
   /**

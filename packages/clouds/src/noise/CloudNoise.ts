@@ -169,7 +169,7 @@ export class CloudNoise {
    * @throws If one of them is no function.
    */
   constructor(options: CloudNoiseOptions = {}) {
-    checkOptions('CloudNoise', options, 'weather', 'shape', 'detail')
+    checkOptions('CloudNoise', options, ...(Object.keys(NOISE_SIZE) as NoiseName[]))
     const make = (name: NoiseName, format: PixelFormat, noise: NoiseFunction): NoiseTexture => {
       const { [name]: own = noise } = options
       if (typeof own !== 'function') fail('CloudNoise', `${name} must be a function`, own)

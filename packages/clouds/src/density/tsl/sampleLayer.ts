@@ -90,11 +90,6 @@ function bodyAt(
  */
 const CLEAR_STRENGTH = -4
 
-const givenSample = (extinction: Float): LayerSample => {
-  const found = extinction.toConst() as Float
-  return { extinction: found, strength: found.greaterThan(0).select(1, CLEAR_STRENGTH) }
-}
-
 /**
  * One layer at places near each other, in the weather on large scales around them: their texture reads do
  * not wait for each other.
@@ -111,8 +106,11 @@ export function sampleLayerAt(
   samples: readonly CloudSample[],
   { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
 ): LayerSample[] {
-  const { extinction } = field
-  if (extinction !== undefined) return samples.map(sample => givenSample(extinction(sample)))
+  if (field.extinction)
+    return samples.map(field.extinction).map(extinction => ({
+      extinction,
+      strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH)
+    }))
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution

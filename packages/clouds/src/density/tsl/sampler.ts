@@ -21,7 +21,7 @@ export function backgroundAt(
   sample: CloudSample,
   mapped?: { map: WeatherMap | undefined; index: Int }
 ): PackedBackground {
-  if (field.extinction !== undefined) return vec4(0)
+  if (field.extinction) return vec4(0)
   const subpoint = subpointOffset(field, sample).toConst() as Vec3
   const footprint = footprintOf(field, sample)
   const { map, index } = mapped ?? {}
