@@ -11,6 +11,7 @@ import { skyLine, timeSky } from './sky'
 import { measureCloudMemory } from './memory'
 import { measureShaders } from './shaders'
 import { median } from './statistics'
+import { timeValley, valleyLines } from './valley'
 
 const { values } = parseArgs({
   options: {
@@ -69,6 +70,9 @@ for (const cost of skyCosts) log(skyLine(cost))
 
 const shafts = await timeShafts(device, size, frames)
 for (const cost of shafts) log(shaftLine(cost))
+
+const valley = await timeValley(device, size, frames)
+log(valleyLines(valley))
 
 const shells = await timeShells(device, size, frames)
 for (const { model, outsideMs, insideMs } of shells) {
@@ -153,6 +157,7 @@ const result = {
   cases,
   shells,
   shafts,
+  valley,
   skyCosts,
   bakeMs: bake.total,
   bakeMaxFrameMs: bake.most,

@@ -1,4 +1,4 @@
-import { WebGPURenderer } from 'three/webgpu'
+import { WebGPURenderer, type WebGPURendererParameters } from 'three/webgpu'
 import { TimestampQuery } from 'three'
 import { create, globals } from 'webgpu'
 
@@ -81,8 +81,16 @@ export class HeadlessDevice {
     Object.defineProperty(globalThis, 'navigator', { value: {}, configurable: true })
   }
 
-  /** A renderer on a device of its own. */
-  async renderer(width: number, height: number): Promise<WebGPURenderer> {
+  /**
+   * A renderer on a device of its own.
+   *
+   * @param parameters - Parameters of the renderer, besides canvas and device.
+   */
+  async renderer(
+    width: number,
+    height: number,
+    parameters: Partial<WebGPURendererParameters> = {}
+  ): Promise<WebGPURenderer> {
     // An adapter serves one device.
     const adapter = await requestAdapter(this.#gpu)
     const device = await adapter.requestDevice({ requiredFeatures: ['timestamp-query'] })
@@ -90,7 +98,8 @@ export class HeadlessDevice {
       canvas: offscreenCanvas(width, height),
       antialias: false,
       trackTimestamp: true,
-      device
+      device,
+      ...parameters
     })
     await renderer.init()
     renderer.setPixelRatio(1)

@@ -5,7 +5,7 @@ import { worldData } from '../vite/worldData.ts'
 
 const config: StorybookConfig = {
   framework: '@storybook/html-vite',
-  stories: ['../src/*.stories.ts'],
+  stories: ['../src/*.stories.ts', '../src/gallery/*.stories.ts'],
   core: { disableTelemetry: true, disableWhatsNewNotifications: true, enableCrashReports: false },
   features: {
     backgrounds: false,

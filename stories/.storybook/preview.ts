@@ -3,7 +3,9 @@ import type { Preview } from '@storybook/html-vite'
 const preview: Preview = {
   parameters: {
     layout: 'fullscreen',
-    options: { storySort: { order: ['Valley, all day', 'Globe', 'Plain scene', 'Tables'] } }
+    options: {
+      storySort: { order: ['Valley, all day', 'Gallery', 'Globe', 'Plain scene', 'Tables'] }
+    }
   }
 }
 

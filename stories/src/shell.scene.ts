@@ -20,18 +20,21 @@ import {
 import type { Texture } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
+import { coarseGlobe, descend, DESCENT_SECONDS, landingGround, toZenith } from './shell/descent'
 import { changeOf, createRenderer, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
 
 export interface ShellArgs extends RendererArgs {
-  /** A map of a few bodies, or the view out of a cockpit. */
-  view: 'map' | 'cockpit'
+  /** A map of a few bodies, the view out of a cockpit, or the way from one to the other and down to the ground. */
+  view: 'map' | 'cockpit' | 'descent'
   model: 'tables' | 'single-scattering'
   /** Elevation of the sun above the cockpit's horizon, or its azimuth around the map [degrees]. */
   sun: number
   /** Height of the cockpit above the ground [m]. */
   height: number
+  /** Part of the descent at which it begins, in [0, 1]. */
+  descent: number
   /** [stops], 0 for daylight. */
   exposure: number
 }
@@ -72,11 +75,19 @@ function explore(
   })
 }
 
+/** Bodies of the map: air, radius, place and colour; the Earth's radius is 1, and its picture has its colours. */
+const BODIES = [
+  [() => new AtmosphereParameters(), 1, [-1.3, 0, 0], '#ffffff'],
+  [marsParameters, 0.53, [0.75, 0.3, 0.4], '#8a4a26'],
+  [titanParameters, 0.4, [2.1, -0.5, -0.3], '#6b4a20'],
+  [airlessParameters, 0.27, [0.4, -0.75, 1], '#77736c']
+] as const
+
 /** A sphere of radius 1; or what can be seen of it from 400 km over its pole, in faces that are flat to metres. */
 function globeGeometry(view: ShellArgs['view']): SphereGeometry {
-  return view === 'map'
-    ? new SphereGeometry(1, 256, 128)
-    : new SphereGeometry(1, 512, 256, 0, 2 * Math.PI, 0, 0.4)
+  return view === 'cockpit'
+    ? new SphereGeometry(1, 512, 256, 0, 2 * Math.PI, 0, 0.4)
+    : new SphereGeometry(1, 256, 128)
 }
 
 /** Bodies with shells of air, and no sky, no background, no post pass. */
@@ -91,7 +102,7 @@ export async function createShell(
   const light = new DirectionalLight(0xffffff, SUNLIGHT)
   scene.add(light, light.target)
   const { model } = args
-  const earth = args.view === 'map' ? await earthPictures() : null
+  const earth = args.view === 'cockpit' ? null : await earthPictures()
   const meshes: Mesh[] = []
   const shells: AtmosphereShell[] = []
 
@@ -118,16 +129,31 @@ export async function createShell(
     shells.push(shell)
   }
 
+  /** Turns the Earth, and lays ground about the place of the landing. */
+  const land = (ball: Mesh): void => {
+    ball.quaternion.copy(toZenith())
+    ball.geometry.dispose()
+    ball.geometry = coarseGlobe()
+    const ground = new Mesh(landingGround(), ball.material)
+    meshes.push(ground)
+    ball.add(ground)
+  }
+
   const cockpit = new Group()
   const build = (): void => {
-    if (args.view === 'map') {
-      add(new AtmosphereParameters(), 1, new Vector3(-1.3, 0, 0), '#ffffff', earth?.surface)
-      add(marsParameters(), 0.53, new Vector3(0.75, 0.3, 0.4), '#8a4a26')
-      add(titanParameters(), 0.4, new Vector3(2.1, -0.5, -0.3), '#6b4a20')
-      add(airlessParameters(), 0.27, new Vector3(0.4, -0.75, 1), '#77736c')
-      return
+    if (args.view !== 'cockpit') {
+      // On the way down the Earth is where the cockpit's is, and the others about it.
+      const unit = args.view === 'map' ? 1 : EARTH_RADIUS
+      const shift = args.view === 'map' ? new Vector3() : new Vector3(1.3, -1, 0)
+      for (const [parameters, radius, [x, y, z], color] of BODIES) {
+        const place = new Vector3(x, y, z).add(shift).multiplyScalar(unit)
+        add(parameters(), radius * unit, place, color, radius === 1 ? earth?.surface : null)
+      }
+    } else {
+      add(new AtmosphereParameters(), EARTH_RADIUS, new Vector3(0, -EARTH_RADIUS, 0), '#2b4a2a')
     }
-    add(new AtmosphereParameters(), EARTH_RADIUS, new Vector3(0, -EARTH_RADIUS, 0), '#2b4a2a')
+    if (args.view === 'map') return
+    if (args.view === 'descent') land(meshes[0])
     const frame = new MeshStandardMaterial({ color: '#1b1d20', roughness: 0.6 })
     for (const [x, y, z, width, height, turn] of [
       [0, -0.5, -0.9, 2.6, 0.35, 0],
@@ -150,15 +176,22 @@ export async function createShell(
   const elapsed = frameClock(args.frame)
   const current = { ...args }
   const isMoved = changeOf()
+  /** Part of the descent that is done. */
+  let part = 0
   const apply = (): void => {
     const angle = (current.sun * Math.PI) / 180
     if (args.view === 'map') light.position.set(Math.sin(angle), 0.3, Math.cos(angle))
-    else light.position.set(0.4 * Math.cos(angle), Math.sin(angle), -Math.cos(angle))
-    if (args.view === 'cockpit') {
+    else if (args.view === 'descent') {
+      light.position.set(0.9 * Math.cos(angle), Math.sin(angle), 0.4 * Math.cos(angle))
+    } else light.position.set(0.4 * Math.cos(angle), Math.sin(angle), -Math.cos(angle))
+    if (args.view !== 'map') {
       camera.near = 2e-4
-      if (isMoved([current.height])) camera.position.set(0, 1e-3 * current.height * KILOMETER, 0)
       light.position.multiplyScalar(1e4)
     }
+    if (args.view === 'cockpit' && isMoved([current.height])) {
+      camera.position.set(0, 1e-3 * current.height * KILOMETER, 0)
+    }
+    if (args.view === 'descent' && isMoved([current.descent])) part = current.descent
     renderer.toneMappingExposure = exposureOf(current.exposure)
     camera.updateProjectionMatrix()
     camera.updateMatrixWorld()
@@ -166,12 +199,17 @@ export async function createShell(
   if (args.view === 'map') {
     camera.position.set(0, 0.8, 4.2)
     camera.lookAt(0, 0, 0)
-  } else camera.rotation.x = -0.04
+  } else if (args.view === 'cockpit') camera.rotation.x = -0.04
   apply()
 
   const up = new Vector3()
   const draw = (): void => {
-    explorer?.update(elapsed())
+    const seconds = elapsed()
+    if (args.view === 'descent' && (part < 1 || args.frame)) {
+      descend(camera, part, meshes[0].position, EARTH_RADIUS)
+      part = Math.min(part + seconds / DESCENT_SECONDS, 1)
+    }
+    explorer?.update(seconds)
     cockpit.position.copy(camera.position)
     up.copy(camera.position).sub(meshes[0].position).normalize()
     cockpit.quaternion.setFromUnitVectors(cockpit.up, up) // level, as far as one flies

@@ -26,6 +26,11 @@ const meta: Meta<ShellArgs> = {
       description: 'Of the cockpit above the ground',
       control: { type: 'range', min: 100, max: 400_000, step: 100 }
     },
+    descent: {
+      name: 'Descent',
+      description: 'Part of the way from the map to the ground, from where it goes on',
+      control: { type: 'range', min: 0, max: 0.99, step: 0.01 }
+    },
     exposure: {
       name: 'Exposure [stops]',
       description: 'One more is twice as bright',
@@ -39,6 +44,7 @@ const meta: Meta<ShellArgs> = {
     model: 'tables',
     sun: 60,
     height: 11_000,
+    descent: 0,
     exposure: -1,
     forceWebGL: false,
     path: 'forward',
@@ -61,6 +67,11 @@ export const Cockpit: Story = {
 
 export const CockpitInSpace: Story = {
   args: { view: 'cockpit', sun: 20, height: 300_000 }
+}
+
+/** One take from the map into the cockpit and down to the ground. */
+export const Descent: Story = {
+  args: { view: 'descent', sun: 35 }
 }
 
 export const SingleScattering: Story = {

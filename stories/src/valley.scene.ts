@@ -1,29 +1,14 @@
 import { cloudQualities } from '@welkin/clouds'
 import type { CloudQualityName } from '@welkin/clouds'
-import { Vector3 } from 'three'
 import { Explorer } from './moving/Explorer'
-import { EYE_HEIGHT } from './moving/Walk'
 import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
-
-/** A view of the valley: position and target of the camera [m]. */
-interface ValleyView {
-  readonly label: string
-  readonly position: readonly [number, number, number]
-  readonly target: readonly [number, number, number]
-}
-
-export const VIEWS = {
-  village: { label: 'Village', position: [300, 34, 520], target: [330, 80, -1500] },
-  shore: { label: 'Shore', position: [120, 2.5, -330], target: [60, 150, -3000] },
-  slope: { label: 'From a slope', position: [1150, 330, 900], target: [-300, 60, -2200] },
-  above: { label: 'Above the clouds', position: [-900, 3100, 5200], target: [0, 1300, -4000] }
-} satisfies Record<string, ValleyView>
+import type { ValleyName } from './valley/views'
 
 export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
-  view: keyof typeof VIEWS
+  view: ValleyName
   quality: CloudQualityName
 }
 
@@ -32,6 +17,9 @@ const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 3
 
 /** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100
+
+/** Time between two showings of the hour in the controls, and so in the address [s]. */
+const SHOW_HOUR = 3
 
 const stateOf = (args: ValleyArgs): ValleyState => ({
   ...args,
@@ -51,40 +39,45 @@ export async function createValley(
   const explorer = current.frame
     ? undefined
     : new Explorer(camera, canvas, { groundAt: place => valley.groundAt(place) })
-  const readout = current.frame ? undefined : new Readout(canvas)
+  const readout = current.frame ? undefined : new Readout(canvas, renderer)
   await valley.bake(renderer)
 
-  const goTo = (view: ValleyView, seconds: number): void => {
-    const position = new Vector3(...view.position)
-    position.y = Math.max(position.y, valley.groundAt(position) + EYE_HEIGHT)
-    const direction = new Vector3(...view.target).sub(position).normalize()
-    if (explorer !== undefined && seconds > 0) {
-      void explorer.flyTo({ position, direction }, seconds)
-      return
-    }
-    camera.position.copy(position)
-    camera.lookAt(position.add(direction))
+  const goTo = (name: ValleyName, seconds: number): void => {
+    if (explorer === undefined || seconds === 0) valley.lookFrom(name)
+    else void explorer.flyTo(valley.placeOf(name), seconds)
   }
-  goTo(VIEWS[current.view], 0)
+  goTo(current.view, 0)
 
   const elapsed = frameClock(args.frame)
   let time = STILL_TIME
+  /** Hour that the controls were last given, and the time since that or a change by hand [s]. */
+  let shownHour = current.hour
+  let hourByHand = current.hour
+  let sinceShown = 0
+  const showHour = (delta: number): void => {
+    sinceShown += delta
+    if (current.paused || sinceShown < SHOW_HOUR) return
+    sinceShown = 0
+    shownHour = Math.floor(10 * valley.cycle.hour) / 10
+    handle.onArgs?.({ hour: shownHour })
+  }
   const draw = (): void => {
     const start = performance.now()
     const delta = elapsed()
     explorer?.update(delta)
     valley.time = time += delta
     valley.render(delta)
+    showHour(delta)
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
-    readout?.update(renderer, camera, ground, valley.cycle.hour, spent)
+    readout?.update(camera, ground, valley.cycle.hour, spent)
   }
 
   let ready: Promise<void> = Promise.resolve()
   const warmUp = (): void => {
     if (current.frame) ready = drawSettled(STILL.frames, draw, () => valley.exposure)
   }
-  return {
+  const handle: SceneHandle<ValleyArgs> = {
     renderer,
     scene,
     camera,
@@ -99,10 +92,15 @@ export async function createValley(
       warmUp()
     },
     update(changes) {
-      const before = current.view
+      const { view, hour } = current
       Object.assign(current, changes)
-      valley.set(stateOf(current), current.frame)
-      if (current.view !== before) goTo(VIEWS[current.view], 4)
+      const isSet = current.hour !== hour && current.hour !== shownHour
+      if (isSet) hourByHand = current.hour
+      // The clock is ahead of an hour that the scene has shown of itself.
+      valley.set({ ...stateOf(current), hour: hourByHand }, current.frame)
+      if (isSet) valley.cycle.hour = current.hour
+      if (isSet || current.hour === hour) sinceShown = 0
+      if (current.view !== view) goTo(current.view, 4)
       warmUp()
     },
     dispose() {
@@ -112,4 +110,5 @@ export async function createValley(
       void renderer.dispose()
     }
   }
+  return handle
 }

@@ -3,8 +3,9 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
-import { createValley, VIEWS } from './valley.scene'
+import { createValley } from './valley.scene'
 import type { ValleyArgs } from './valley.scene'
+import { VIEWS } from './valley/views'
 import { weathers } from './valley/weather'
 
 const code = `${storyCode('valleyAir.ts', 'sky and light')}
@@ -124,4 +125,4 @@ export const Evening: Story = {
 }
 
 /** The village's windows are lit; the moon and the stars are. */
-export const Night: Story = { args: { hour: 22.5, season: 0.225, dayLength: 1800 } }
+export const Night: Story = { args: { hour: 22.5, season: 0.27, dayLength: 1800 } }

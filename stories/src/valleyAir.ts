@@ -20,7 +20,7 @@ import type {
 } from '@welkin/atmosphere'
 import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
-import type { PerspectiveCamera, Scene } from 'three'
+import type { Light, PerspectiveCamera, Scene } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { pass } from 'three/tsl'
 
@@ -29,6 +29,11 @@ export interface ValleyAir {
   readonly atmosphere: Atmosphere
   readonly clouds: CloudsNode
   readonly shafts: LightShafts
+  readonly cascades: CSMShadowNode
+  /** Sunlight and moonlight. */
+  readonly directLights: readonly Light[]
+  /** Lights of moon and night sky. */
+  readonly nightLights: readonly Light[]
   /** The finished picture. */
   readonly exposure: AutoExposureNode
   /** Frees the lights and their shadows. */
@@ -55,10 +60,17 @@ export function valleyAir(
   // #endregion
   sun.castShadow = true
   sun.shadow.mapSize.setScalar(2048)
-  sun.shadow.normalBias = 0.4
+  sun.shadow.camera.far = 40_000 // as deep as cascades are wide, and the mountains before them
+
+  const cascades = new CSMShadowNode(sun, {
+    cascades: 3,
+    maxFar: 9000,
+    lightMargin: 8000,
+    mode: 'custom',
+    customSplitsCallback: (_cascades, _near, _far, breaks) => void breaks.push(0.03, 0.17, 1)
+  })
 
   // #region everything
-  const cascades = new CSMShadowNode(sun, { cascades: 3, maxFar: 9000, lightMargin: 4000 })
   const scenePass = pass(scene, camera, { samples: 0 })
   const depth = scenePass.getTextureNode('depth')
   const shafts = lightShafts(atmosphere, camera, sun)
@@ -74,6 +86,9 @@ export function valleyAir(
     atmosphere,
     clouds: node,
     shafts,
+    cascades,
+    directLights: [sun, moonlight],
+    nightLights: [moonlight, moonlitSky, night],
     exposure,
     dispose() {
       for (const light of [sun, sky, moonlight, moonlitSky, night]) light.dispose()

@@ -18,7 +18,17 @@ import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 
 const size = { width: 64, height: 36 }
-const names = ['GTAO', 'bloom', 'depth of field', 'FXAA', 'SMAA', 'TRAA', 'motion blur', 'SSR']
+const names = [
+  'GTAO',
+  'bloom',
+  'depth of field',
+  'FXAA',
+  'SMAA',
+  'TRAA',
+  'TAAU',
+  'motion blur',
+  'SSR'
+]
 /** Frames that are drawn: TRAA has a history, three's velocities a frame before. */
 const FRAMES = 3
 /** Rows of the floor beside the box, and in the open before it. */

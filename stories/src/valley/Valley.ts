@@ -8,20 +8,23 @@ import {
   skyEnvironment,
   stars
 } from '@welkin/atmosphere'
-import type { Atmosphere } from '@welkin/atmosphere'
+import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
-import { MathUtils, PerspectiveCamera, Scene } from 'three'
+import { MathUtils, type Mesh, PerspectiveCamera, Quaternion, Scene, Vector3 } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { RenderPipeline } from 'three/webgpu'
-import type { MeshPhysicalNodeMaterial, Node, WebGPURenderer } from 'three/webgpu'
-import { createWater } from '../environment/water'
+import type { Node, WebGPURenderer } from 'three/webgpu'
+import { EYE_HEIGHT } from '../moving/Walk'
 import { disposeMeshes } from '../scene'
 import { valleyAir } from '../valleyAir'
 import { createForest, createGrove } from './forest'
 import { applyFactors, type ValleyFactors } from '../valleyFactors'
 import { createGround, groundHeight, LAKE } from './ground'
+import { createLake } from './lake'
+import { setLit } from './VertexLitMaterial'
 import { createVillage } from './village'
+import { VIEWS, type ValleyName } from './views'
 import { valleyLayers, WeatherBlend, type WeatherName } from './weather'
 
 /** Parts of the valley that can be switched on and off while it runs. */
@@ -61,14 +64,34 @@ const QUADS: Readonly<Record<CloudQualityName, number>> = {
 
 /** Trees that stand one by one, by quality. */
 const TREES: Readonly<Record<CloudQualityName, number>> = {
-  low: 1500,
-  medium: 5000,
-  high: 10_000,
-  ultra: 18_000
+  low: 3000,
+  medium: 10_000,
+  high: 18_000,
+  ultra: 30_000
 }
 
 /** Elevations of the sun between which lamps are lit [degrees]. */
 const LAMPS = [3, -2] as const
+
+/** Frames at the start in which all shadows are drawn: stills have few. */
+const WHOLE_FRAMES = 10
+
+/** Turn of the camera by which all shadows are drawn at once [rad]. */
+const TURN = 0.01
+
+/** Distance by which receivers of shadows are moved along their normals [texels]. */
+const SHADOW_BIAS = 1.2
+
+/** Fineness of light shafts, by that of clouds. */
+const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
+  low: 'low',
+  medium: 'medium',
+  high: 'high',
+  ultra: 'high'
+}
+
+/** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
+const NIGHT_LIGHTS = 4
 
 /** Strength of the glow around what is bright. */
 const GLOW = 0.02
@@ -91,39 +114,44 @@ export class Valley {
   readonly #ground
   readonly #trees
   readonly #village = createVillage()
-  readonly #water = createWater(2400)
+  readonly #water
   readonly #node
   readonly #shafts
+  readonly #cascades
+  readonly #nightLights
   readonly #environment
   readonly #plain: Node
   readonly #glowing: Node
   readonly #dispose: (() => void)[] = []
   #turbidity = NaN
+  #frame = 0
+  /** Attitude of the camera for which all shadows were drawn last. */
+  readonly #shadowed = new Quaternion()
 
   constructor(renderer: WebGPURenderer, state: ValleyState) {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
     const quality = typeof state.quality === 'string' ? state.quality : 'low'
     this.#ground = createGround(QUADS[quality])
-    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 8))]
+    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 14))]
     const { scene, camera } = this
     const sky = [...this.#glows, this.#moon] as const
     const air = valleyAir(scene, camera, this.#layers, state.quality, sky)
     const { atmosphere, clouds: node, shafts, exposure } = air
+    this.#cascades = air.cascades
+    this.#nightLights = air.nightLights
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
     atmosphere.add(this.#style, this.#mist)
-    scene.add(this.#ground, ...this.#trees, this.#village.object, this.#water.mesh)
-    this.#water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
-    this.#water.setSlope(0.0006)
+    scene.add(this.#ground, ...this.#trees, this.#village.object)
 
     this.#node = node
     this.#shafts = shafts
     this.exposure = exposure
     const overlay = cloudEnvironment(node)
     this.#environment = skyEnvironment(atmosphere, { overlay })
-    const { material } = this.#water.mesh as unknown as { material: MeshPhysicalNodeMaterial }
-    material.envNode = this.#environment as never
+    this.#water = createLake(this.#environment, air.directLights)
+    scene.add(this.#water.mesh)
     this.#plain = exposure
     const halo = bloom(exposure, GLOW, 0.7, 0)
     this.#glowing = (exposure as unknown as { add(other: unknown): Node }).add(halo)
@@ -148,6 +176,21 @@ export class Valley {
     return Math.max(groundHeight(x, z), LAKE.height)
   }
 
+  /** Place of a view, above the ground, and direction of sight. */
+  placeOf(name: ValleyName): { position: Vector3; direction: Vector3 } {
+    const view = VIEWS[name]
+    const position = new Vector3(...view.position)
+    position.y = Math.max(position.y, this.groundAt(position) + EYE_HEIGHT)
+    return { position, direction: new Vector3(...view.target).sub(position).normalize() }
+  }
+
+  /** Puts the camera at a view. */
+  lookFrom(name: ValleyName): void {
+    const { position, direction } = this.placeOf(name)
+    this.camera.position.copy(position)
+    this.camera.lookAt(position.add(direction))
+  }
+
   /** Follows its settings: nothing but bloom is compiled anew. */
   set(changes: Partial<ValleyState>, atOnce = false): void {
     const before = { ...this.#state }
@@ -162,6 +205,7 @@ export class Valley {
     if (season !== before.season) this.cycle.season = season
     if (hour !== before.hour) this.cycle.hour = hour
     this.#node.quality = quality
+    this.#shafts.quality = SHAFTS[typeof quality === 'string' ? quality : 'low']
     const targets = { shafts: this.#shafts, node: this.#node, sky: this.#glows, luna: this.#moon }
     const on = { shafts: Number(this.#state.shafts), nightSky: Number(nightSky) }
     applyFactors(this.#state, this.#style, targets, on)
@@ -185,15 +229,34 @@ export class Valley {
     this.#turbidity = stepped
   }
 
+  /** Draws the cascades of shadows by turns, or all of them while the camera turns. */
+  #updateShadows(): void {
+    const { lights } = this.#cascades
+    const { quaternion } = this.camera
+    this.#frame++
+    const isWhole = this.#frame < WHOLE_FRAMES || quaternion.angleTo(this.#shadowed) > TURN
+    if (isWhole) this.#shadowed.copy(quaternion)
+    for (const [i, { shadow }] of lights.entries()) {
+      if (shadow === undefined) continue
+      const { left, right } = shadow.camera
+      shadow.normalBias = (SHADOW_BIAS * (right - left)) / shadow.mapSize.x
+      shadow.autoUpdate = isWhole
+      if (this.#frame % lights.length === i) shadow.needsUpdate = true
+    }
+  }
+
   /** Draws the next frame. */
   render(deltaSeconds: number): void {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
     this.camera.updateMatrixWorld()
+    for (const each of this.#trees) each.update(this.camera.position)
+    this.#updateShadows()
     this.cycle.update(deltaSeconds)
     const { sunDirection, luminanceScale } = this.atmosphere
     const [from, to] = LAMPS
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
+    for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
     this.#village.light(share, luminanceScale)
     this.pipeline.render()
   }
@@ -211,7 +274,8 @@ export class Valley {
 
   dispose(): void {
     for (const dispose of this.#dispose) dispose()
-    disposeMeshes([this.#ground, ...this.#trees])
+    disposeMeshes(this.#ground.children as Mesh[])
+    for (const each of this.#trees) each.dispose()
     this.#village.dispose()
     this.#water.dispose()
   }

@@ -3,109 +3,152 @@ import {
   Color,
   ConeGeometry,
   CylinderGeometry,
-  IcosahedronGeometry,
   Float32BufferAttribute,
-  InstancedMesh,
+  IcosahedronGeometry,
   Matrix4,
-  MeshStandardMaterial,
   Quaternion,
   Vector3
 } from 'three'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
 import { forestAt, groundHeight, VILLAGE } from './ground'
+import { Trees, type Tree } from './Trees'
 
 /** Distance from the village within which trees stand one by one [m]. */
 const REACH = 2600
 
-/** Colour of a geometry's vertices, linear sRGB. */
-function painted(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {
-  const { count } = geometry.attributes.position
-  const colors = Array.from({ length: count }, () => [r, g, b]).flat()
+/** Distances from which trees are drawn with fewer triangles, and with the fewest [m]. */
+const DISTANCES = [130, 420] as const
+
+/** Colours of needles, leaves and bark, linear sRGB. */
+const NEEDLES = [0.03, 0.048, 0.02] as const
+const LEAVES = [0.042, 0.07, 0.019] as const
+const BARK = [0.06, 0.045, 0.032] as const
+
+/**
+ * Paints a part of a tree, darker where leaves shade each other: below.
+ *
+ * @param shade - Brightness at its foot over that at its top.
+ */
+function painted(
+  geometry: BufferGeometry,
+  [r, g, b]: readonly [number, number, number],
+  shade = 1
+): BufferGeometry {
+  geometry.computeBoundingBox()
+  const { min, max } = geometry.boundingBox!
+  const { position } = geometry.attributes
+  const colors = Array.from({ length: position.count }, (_, i) => {
+    const height = (position.getY(i) - min.y) / (max.y - min.y)
+    const brightness = shade + (1 - shade) * height
+    return [r * brightness, g * brightness, b * brightness]
+  }).flat()
+  geometry.deleteAttribute('uv')
   return geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
 }
 
-/** A spruce, 10 m high: tiers of branches about a trunk. */
-function spruce(): BufferGeometry {
-  const tiers = [0, 1, 2, 3].map(i =>
+/**
+ * A spruce, 10 m high.
+ *
+ * @param tiers - Tiers of branches about the trunk.
+ * @param sides - Sides of a tier.
+ */
+function spruce(tiers: number, sides: number): BufferGeometry {
+  const height = 9 / (tiers + 0.6)
+  const cones = Array.from({ length: tiers }, (_, i) =>
     painted(
-      new ConeGeometry(2.3 - 0.5 * i, 3.6 - 0.3 * i, 7, 1, true)
-        .translate(0, 2.9 + 1.9 * i, 0)
+      new ConeGeometry(2.4 * (1 - i / (tiers + 0.4)), 1.8 * height, sides, 1, true)
+        .translate(0, 0.9 + 0.9 * height + (i * (8.2 - height)) / tiers, 0)
         .rotateY(i),
-      0.032,
-      0.05,
-      0.02
+      NEEDLES,
+      0.55
     )
   )
-  const trunk = painted(
-    new CylinderGeometry(0.12, 0.2, 2, 5).translate(0, 0.8, 0),
-    0.06,
-    0.04,
-    0.03
-  )
-  return mergeGeometries([...tiers, trunk])
+  if (tiers === 1) return cones[0]
+  const trunk = painted(new CylinderGeometry(0.12, 0.2, 2, 5, 1, true).translate(0, 0.8, 0), BARK)
+  return mergeGeometries([...cones, trunk])
 }
 
-/** A crown with an uneven outline. */
-function leafy(size: number): BufferGeometry {
-  const crown = new IcosahedronGeometry(size, 1)
-  const { position } = crown.attributes
+/**
+ * A crown with an uneven outline, lit like a ball.
+ *
+ * @param detail - Times that its faces are divided.
+ */
+function leafy(x: number, y: number, z: number, size: number, detail: number): BufferGeometry {
+  const crown = new IcosahedronGeometry(size, detail)
+  const { position, normal } = crown.attributes
   const vertex = new Vector3()
+  const middle = new Vector3(x, y, z).sub(new Vector3(0, 4.8, 0))
   for (let i = 0; i < position.count; i++) {
     vertex.fromBufferAttribute(position, i)
     // Faces share places, not vertices.
-    const { x, y, z } = vertex
+    const [a, b, c] = vertex
       .clone()
       .multiplyScalar(7 / size)
       .round()
-    const bump = Math.abs(Math.sin(12.9 * x + 78.2 * y + 37.7 * z + 10 * size) * 43_758.5) % 1
-    vertex.multiplyScalar(0.82 + 0.32 * bump)
+    const bump = Math.abs(Math.sin(12.9 * a + 78.2 * b + 37.7 * c + 10 * size) * 43_758.5) % 1
+    vertex.multiplyScalar(0.84 + 0.3 * bump)
     position.setXYZ(i, vertex.x, vertex.y, vertex.z)
+    // Half of the crown, half of the whole tree.
+    vertex.normalize().addScaledVector(middle, 0.25).normalize()
+    normal.setXYZ(i, vertex.x, vertex.y, vertex.z)
   }
-  crown.computeVertexNormals()
-  return crown
+  return painted(crown.translate(x, y, z), LEAVES, 0.6)
 }
 
-/** A broad-leaved tree, 9 m high. */
-function limetree(): BufferGeometry {
-  const crowns = [
-    [0, 5.6, 0, 2.6],
-    [1.5, 4.6, 0.6, 1.9],
-    [-1.3, 4.9, 0.9, 1.8],
-    [0.2, 4.4, -1.5, 1.9],
-    [0.1, 7.3, 0.2, 1.7]
-  ].map(([x, y, z, size]) => painted(leafy(size).translate(x, y, z), 0.04, 0.066, 0.018))
-  const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 6).toNonIndexed().translate(0, 1.6, 0)
-  return mergeGeometries([...crowns, painted(trunk, 0.07, 0.055, 0.04)])
+/**
+ * A broad-leaved tree, 9 m high.
+ *
+ * @param crowns - Balls of leaves, in [1, 5].
+ * @param detail - Times that their faces are divided.
+ */
+function limetree(crowns: number, detail: number): BufferGeometry {
+  const balls =
+    crowns === 1
+      ? [leafy(0, 5.4, 0, 3.3, detail)]
+      : [
+          [0, 5.6, 0, 2.6],
+          [1.5, 4.6, 0.6, 1.9],
+          [-1.3, 4.9, 0.9, 1.8],
+          [0.2, 4.4, -1.5, 1.9],
+          [0.1, 7.3, 0.2, 1.7]
+        ]
+          .slice(0, crowns)
+          .map(([x, y, z, size]) => leafy(x, y, z, size, detail))
+  const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 5, 1, true).toNonIndexed()
+  return mergeGeometries([...balls, painted(trunk.translate(0, 1.6, 0), BARK)])
 }
 
 /** Spruces on the slopes. */
-export const createForest = (count: number): InstancedMesh =>
-  plant(spruce(), count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0))
+export const createForest = (count: number): Trees =>
+  new Trees(
+    [spruce(5, 8), spruce(3, 5), spruce(1, 4)],
+    DISTANCES,
+    plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0))
+  )
 
 /** Broad-leaved trees about the village, along the shore and among the fields. */
-export const createGrove = (count: number): InstancedMesh =>
-  plant(limetree(), count, 23, (x, z, height) => {
-    const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
-    const shore = height > 1.2 && height < 5 ? 0.35 : 0
-    const village = fromVillage > 30 && fromVillage < 210 ? 0.12 : 0
-    return height > 1.2 && height < 45 ? shore + village + 0.03 : 0
-  })
+export const createGrove = (count: number): Trees =>
+  new Trees(
+    [limetree(5, 2), limetree(5, 0), limetree(1, 0)],
+    DISTANCES,
+    plant(count, 23, (x, z, height) => {
+      const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
+      const shore = height > 1.2 && height < 5 ? 0.35 : 0
+      const village = fromVillage > 30 && fromVillage < 210 ? 0.12 : 0
+      return height > 1.2 && height < 45 ? shore + village + 0.03 : 0
+    })
+  )
 
 /** @param shareAt - Chance of a tree at a place of a height, in [0, 1]. */
 function plant(
-  geometry: BufferGeometry,
   count: number,
   seed: number,
   shareAt: (x: number, z: number, height: number) => number
-): InstancedMesh {
+): Tree[] {
   const random = randomSequence(seed)
-  const material = new MeshStandardMaterial({ vertexColors: true, roughness: 1, side: 2 })
-  const mesh = new InstancedMesh(geometry, material, count)
-  const matrix = new Matrix4()
-  const color = new Color()
-  let placed = 0
-  for (let tries = 0; placed < count && tries < 60 * count; tries++) {
+  const trees: Tree[] = []
+  for (let tries = 0; trees.length < count && tries < 60 * count; tries++) {
     const angle = 2 * Math.PI * random()
     const distance = REACH * random() ** 0.8 + 14
     const x = VILLAGE.x + distance * Math.cos(angle)
@@ -113,17 +156,12 @@ function plant(
     const height = groundHeight(x, z)
     if (random() > shareAt(x, z, height)) continue
     const size = 0.55 + 0.95 * random() ** 1.5
-    matrix.compose(
+    const matrix = new Matrix4().compose(
       new Vector3(x, height - 0.2, z),
       new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), 6.3 * random()),
       new Vector3(size * (0.8 + 0.3 * random()), size * (0.9 + 0.5 * random()), size)
     )
-    mesh.setMatrixAt(placed, matrix)
-    mesh.setColorAt(placed, color.setScalar(0.75 + 0.5 * random()))
-    placed++
+    trees.push({ matrix, color: new Color().setScalar(0.75 + 0.5 * random()) })
   }
-  mesh.count = placed
-  mesh.castShadow = mesh.receiveShadow = true
-  mesh.frustumCulled = false
-  return mesh
+  return trees
 }

@@ -1,4 +1,4 @@
-import { BufferAttribute, MathUtils, Mesh, PlaneGeometry } from 'three'
+import { BufferAttribute, BufferGeometry, Group, MathUtils, Mesh, PlaneGeometry } from 'three'
 import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
@@ -8,11 +8,12 @@ import {
   positionWorld,
   smoothstep,
   texture,
+  vec2,
   vec3
 } from 'three/tsl'
-import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
 import { ridges, smoothNoise } from './noise'
+import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** Half width of the land [m]. */
 const EXTENT = 45_000
@@ -59,26 +60,30 @@ export const groundHeight = (x: number, z: number): number =>
 /** Share of forest at a place, in [0, 1]: on slopes up to the tree line. */
 export function forestAt(x: number, z: number): number {
   const height = flatHeight(x, z)
-  const slope = Math.hypot(
-    flatHeight(x + 12, z) - flatHeight(x - 12, z),
-    flatHeight(x, z + 12) - flatHeight(x, z - 12)
-  )
   const patches = smoothNoise(x / 420, z / 420) + 0.5 * smoothNoise(x / 110, z / 110)
   const line = smooth(1250, 1000, height + 140 * smoothNoise(x / 300, z / 300))
   const foot = smooth(9, 34, height + 22 * patches)
   const village = smooth(150, 260, Math.hypot(x - VILLAGE.x, z - VILLAGE.z))
-  return line * foot * smooth(32, 18, slope) * smooth(-0.35, 0.1, patches) * village
+  const share = line * foot * smooth(-0.35, 0.1, patches) * village
+  if (share === 0) return 0
+  const slope = Math.hypot(
+    flatHeight(x + 12, z) - flatHeight(x - 12, z),
+    flatHeight(x, z + 12) - flatHeight(x, z - 12)
+  )
+  return share * smooth(32, 18, slope)
 }
 
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
-function groundMaterial(): MeshStandardNodeMaterial {
-  const material = new MeshStandardNodeMaterial({ roughness: 1 })
+function groundMaterial(): VertexLitMaterial {
+  const material = new VertexLitMaterial()
   const place = positionWorld.xz
+  // Sheared, so that cliffs have rock on them and no streaks.
+  const sheared = place.add(positionWorld.y.mul(vec2(0.83, 0.57))).toVar()
   const picture = createNoiseTexture()
   material.addEventListener('dispose', () => picture.dispose())
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple.
   const noise = (period: number): Node<'float'> =>
-    texture(picture, place.div(period)).r.sub(0.5).mul(2)
+    texture(picture, sheared.div(period)).r.sub(0.5).mul(2)
   const broad = noise(1310).toVar()
   const fine = noise(71).add(noise(7.3)).add(noise(1.9).mul(0.7)).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
@@ -107,13 +112,39 @@ function groundMaterial(): MeshStandardNodeMaterial {
   return material
 }
 
+/** Quads along a side of a tile, which is drawn if it is in sight. */
+const TILE = 64
+
+/** The vertices of a grid's tile. */
+function tileOf(grid: BufferGeometry, quads: number, column: number, row: number): BufferGeometry {
+  const size = Math.min(TILE, quads)
+  const vertices: number[] = []
+  for (let z = 0; z <= size; z++) {
+    for (let x = 0; x <= size; x++) {
+      vertices.push((row * size + z) * (quads + 1) + column * size + x)
+    }
+  }
+  const tile = new BufferGeometry()
+  for (const [name, { array, itemSize }] of Object.entries(
+    grid.attributes as Record<string, BufferAttribute>
+  )) {
+    const values = new Float32Array(vertices.length * itemSize)
+    vertices.forEach((vertex, i) => {
+      for (let j = 0; j < itemSize; j++) values[i * itemSize + j] = array[vertex * itemSize + j]
+    })
+    tile.setAttribute(name, new BufferAttribute(values, itemSize))
+  }
+  return tile.setIndex(new PlaneGeometry(1, 1, size, size).index)
+}
+
 /**
- * The valley and its mountains, finer about the middle.
+ * The valley and its mountains, finer about the middle, in tiles.
  *
- * @param quads - Quads along a side.
+ * @param quads - Quads along a side, a multiple of 64.
  */
-export function createGround(quads: number): Mesh {
+export function createGround(quads: number): Group {
   const geometry = new PlaneGeometry(2, 2, quads, quads).rotateX(-Math.PI / 2)
+  geometry.deleteAttribute('uv')
   const positions = geometry.attributes.position as BufferAttribute
   const cover = new Float32Array(2 * positions.count)
   const stretch = (t: number): number => EXTENT * (0.045 * t + 0.955 * t ** 3)
@@ -126,10 +157,16 @@ export function createGround(quads: number): Mesh {
   }
   geometry.setAttribute('cover', new BufferAttribute(cover, 2))
   geometry.computeVertexNormals()
-  const mesh = new Mesh(geometry, groundMaterial())
-  mesh.castShadow = mesh.receiveShadow = true
-  mesh.frustumCulled = false
-  return mesh
+  const ground = new Group()
+  const material = groundMaterial()
+  const along = Math.max(quads / TILE, 1)
+  for (let i = 0; i < along ** 2; i++) {
+    const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))
+    const mesh = new Mesh(tile, material)
+    mesh.castShadow = mesh.receiveShadow = true
+    ground.add(mesh)
+  }
+  return ground
 }
 
 /** 1 on fields of the valley's floor, in strips of random sizes. */
@@ -137,5 +174,7 @@ function fieldAt(x: number, z: number): number {
   const strip = Math.floor(x / 70 + 0.3 * Math.sin(z / 300))
   const row = Math.floor(z / 160 + 0.7 * strip)
   const isField = Math.abs(Math.sin(127.1 * strip + 311.7 * row)) > 0.62
-  return isField ? smooth(40, 20, flatHeight(x, z)) * smooth(4, 8, flatHeight(x, z)) : 0
+  if (!isField) return 0
+  const height = flatHeight(x, z)
+  return smooth(40, 20, height) * smooth(4, 8, height)
 }

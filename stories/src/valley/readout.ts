@@ -1,7 +1,8 @@
 import type { PerspectiveCamera } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
-import { TimestampQuery } from 'three'
 import { overlayOn } from '../overlay'
+import { PassTimes, type PassTime } from './PassTimes'
+import { sharesOf } from './shares'
 
 /** Time between two readings [ms]. */
 const PERIOD = 500
@@ -9,13 +10,19 @@ const PERIOD = 500
 /** Position, hour and times of a frame in a corner of the canvas. */
 export class Readout {
   readonly #element: HTMLElement
+  readonly #renderer: WebGPURenderer
+  readonly #times = new PassTimes()
   #frames = 0
   #cpu = 0
   #since = performance.now()
   #isReading = false
-  #gpu: number | null = null
+  /** Times of the passes since the last reading, and the frames that they are of. */
+  #passes: PassTime[] = []
+  #timedFrames = 0
 
-  constructor(canvas: HTMLCanvasElement) {
+  constructor(canvas: HTMLCanvasElement, renderer: WebGPURenderer) {
+    this.#renderer = renderer
+    renderer.inspector = this.#times
     this.#element = overlayOn(canvas)
     // It changes twice a second: nothing to be read out.
     this.#element.role = 'none'
@@ -28,37 +35,45 @@ export class Readout {
    * @param milliseconds - Time that it took on the CPU [ms].
    * @param hour - Solar time [h].
    */
-  update(
-    renderer: WebGPURenderer,
-    camera: PerspectiveCamera,
-    ground: number,
-    hour: number,
-    milliseconds: number
-  ): void {
+  update(camera: PerspectiveCamera, ground: number, hour: number, milliseconds: number): void {
     this.#frames++
     this.#cpu += milliseconds
-    if (!this.#isReading) void this.#read(renderer)
+    if (!this.#isReading) void this.#read()
     const now = performance.now()
     const elapsed = now - this.#since
     if (elapsed < PERIOD) return
     const { x, y, z } = camera.position
     const minutes = Math.floor((hour % 1) * 60)
     const clock = `${Math.floor(hour)}:${String(minutes).padStart(2, '0')}`
-    const gpu = this.#gpu === null ? '' : ` · GPU ${this.#gpu.toFixed(1)} ms`
     const cpu = (this.#cpu / this.#frames).toFixed(1)
     this.#element.textContent =
       `${clock} · east ${x.toFixed(0)} m, north ${(-z).toFixed(0)} m · ` +
       `${(y - ground).toFixed(1)} m above ground\n` +
-      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${gpu}`
-    this.#frames = this.#cpu = 0
+      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu()}`
+    this.#frames = this.#cpu = this.#timedFrames = 0
+    this.#passes = []
     this.#since = now
   }
 
-  /** Reads the GPU's time where the backend keeps it. */
-  async #read(renderer: WebGPURenderer): Promise<void> {
+  /** Shares of the features, the mean of some frames; nothing where the backend keeps no times. */
+  #gpu(): string {
+    const frames = this.#timedFrames
+    if (frames === 0) return ''
+    const total = this.#passes.reduce((sum, [, milliseconds]) => sum + milliseconds, 0) / frames
+    const shares = sharesOf(this.#passes)
+      .map(([name, milliseconds]) => `${name} ${(milliseconds / frames).toFixed(2)}`)
+      .join('\n')
+    return ` · GPU ${total.toFixed(1)} ms\n${shares}`
+  }
+
+  /** Reads the GPU's times where the backend keeps them. */
+  async #read(): Promise<void> {
     this.#isReading = true
-    const time = await renderer.resolveTimestampsAsync(TimestampQuery.RENDER).catch(() => null)
-    if (typeof time === 'number' && time > 0) this.#gpu = time
+    const { passes, frames } = await this.#times
+      .read(this.#renderer)
+      .catch(() => ({ passes: [], frames: 0 }))
+    this.#passes.push(...passes)
+    this.#timedFrames += frames
     this.#isReading = false
   }
 

@@ -8,7 +8,6 @@ import {
   InstancedMesh,
   Matrix4,
   Mesh,
-  MeshStandardMaterial,
   PointLight,
   Quaternion,
   Vector3
@@ -24,9 +23,9 @@ import {
   uniform,
   vec3
 } from 'three/tsl'
-import { MeshStandardNodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { groundHeight, VILLAGE } from './ground'
+import { VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
 /** Luminance of a lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
@@ -68,7 +67,7 @@ export function createVillage(): Village {
   const random = randomSequence(5)
   const lit = uniform(0)
   const luminance = uniform(0)
-  const walls = new MeshStandardNodeMaterial({ roughness: 0.9 })
+  const walls = new VertexLitMaterial()
   // Windows in two rows on each wall, lit one by one.
   const cell = vec3(positionLocal.x.mul(5), positionLocal.y.mul(2), positionLocal.z.mul(5))
   const inCell = fract(cell)
@@ -85,7 +84,7 @@ export function createVillage(): Village {
     .add(500)
   const isLit = step(hash(number), lit.mul(0.55))
   walls.emissiveNode = vec3(1, 0.62, 0.28).mul(isWindow.mul(isLit).mul(luminance))
-  const tiles = new MeshStandardMaterial({ color: '#5b3a2e', roughness: 0.95 })
+  const tiles = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
   const matrix = new Matrix4()
@@ -112,7 +111,7 @@ export function createVillage(): Village {
   }
   const { x, z } = VILLAGE
   const base = groundHeight(x, z) - 0.5
-  const plaster = new MeshStandardMaterial({ color: '#cfc8ba', roughness: 0.9 })
+  const plaster = new VertexLitMaterial({ color: '#cfc8ba' })
   const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
   const spire = new Mesh(
     new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),

@@ -1,6 +1,6 @@
 import { If, float, vec4 } from 'three/tsl'
 import { setOptions } from '@welkin/geo'
-import type { AtmosphereView } from '../view/AtmosphereView'
+import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
 import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
 import { densities } from '../air/tsl/medium'
@@ -34,6 +34,7 @@ export class DistanceFog implements SkyLayer {
   #fade: readonly [number, number] = [5000, 15_000]
   #version = 0
   readonly #density = number()
+  #atmosphere: ViewedAtmosphere | null = null
 
   /** @throws If an option is out of range. */
   constructor(options: DistanceFogOptions = {}) {
@@ -82,6 +83,10 @@ export class DistanceFog implements SkyLayer {
     return this.#version
   }
 
+  attach(atmosphere: ViewedAtmosphere): void {
+    this.#atmosphere = atmosphere
+  }
+
   update(view: AtmosphereView): void {
     const [low, high] = this.fade
     const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
@@ -94,7 +99,7 @@ export class DistanceFog implements SkyLayer {
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const color = raisedSky(ray).light.mul(ray.view.source.irradiance)
+      const color = this.#shown(raisedSky(ray).light.mul(ray.view.source.irradiance))
       const fog = this.#depth(distance)
       const through = fog.negate().exp().toConst()
       light.assign(air.radiance.mul(through).add(color.mul(through.oneMinus())))
@@ -105,7 +110,8 @@ export class DistanceFog implements SkyLayer {
 
   shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
     if (!isSun) return null
-    const { light, cosView, cosViewLight } = raisedSky(ray)
+    const { light: sky, cosView, cosViewLight } = raisedSky(ray)
+    const light = this.#shown(sky)
     // The sky's light is scattered once in about the part that it is at the camera.
     const { air, height, viewpoint } = ray.view
     const altitude = height.clamp(0, air.uniforms.thickness) as Float
@@ -131,6 +137,14 @@ export class DistanceFog implements SkyLayer {
         return depth.max(0).sqrt().mul(inverse).min(ray.distance).toConst()
       }
     }
+  }
+
+  /** Light of the sky as layers before the fog show it. */
+  #shown(light: Vec4): Vec4 {
+    const layers: readonly SkyLayer[] = this.#atmosphere?.layers ?? []
+    return layers
+      .slice(0, layers.indexOf(this))
+      .reduce((sky, layer) => layer.skyLight?.(sky) ?? sky, light)
   }
 
   /** Optical depth up to a distance [m]. */

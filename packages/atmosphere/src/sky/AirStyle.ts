@@ -6,6 +6,7 @@ import { luminanceOf } from '../parameters/photometry'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
+import type { Vec4 } from '../tsl-types'
 import { denserAir, saturated } from './tsl/airStyle'
 
 /** Luminance of light that is even at the four wavelengths, in parts of the whole [–]. */
@@ -42,7 +43,7 @@ const NO_TWILIGHT = [-18, 10] as const
  * ```
  *
  * They act on the picture alone, and on environment maps: lights and `skyIlluminanceAt` stay physical. Add it before
- * fogs, which have densities of their own and are left alone if they come later. Light shafts take what the air would
+ * fogs, which have densities of their own and keep them if they come later; `distanceFog` has the sky's colours. Light shafts take what the air would
  * lose without it: give them a `strength` to match. An `AtmosphereShell` has no such factors.
  */
 export class AirStyle implements SkyLayer {
@@ -127,10 +128,15 @@ export class AirStyle implements SkyLayer {
         depth.assign(denser.depth)
       })
     }
+    return { depth, radiance: this.skyLight(radiance) }
+  }
+
+  skyLight(light: Vec4): Vec4 {
+    const tinted = vec4(light).toVar()
     If(this.#saturation.notEqual(1), () => {
-      radiance.assign(saturated(radiance, this.#luminous, this.#saturation))
+      tinted.assign(saturated(tinted, this.#luminous, this.#saturation))
     })
-    return { depth, radiance }
+    return tinted
   }
 }
 

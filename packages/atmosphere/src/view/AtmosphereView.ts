@@ -7,6 +7,7 @@ import { viewpointScalars } from './cpu/viewpoint'
 import type { SphericalSpace } from './cpu/spherical'
 import type { LightSource } from './LightSource'
 import type { SkyVolumes, VolumeOrigins } from '../skyVolume/SkyVolumes'
+import type { Vec4 } from '../tsl-types'
 import type { ViewpointScalars } from './tsl/viewpoint'
 
 /** Cosine of the source's zenith angle, 25° below the horizon. */
@@ -23,7 +24,7 @@ export interface ViewedAtmosphere {
   /** World space to the space in which the planet is a sphere. */
   readonly space: SphericalSpace
   /** Layers of the sky, as far as they light the planet. */
-  readonly layers: readonly { readonly source?: LightSource }[]
+  readonly layers: readonly { readonly source?: LightSource; skyLight?(light: Vec4): Vec4 }[]
   /** `version` is 0 until the first bake is done. */
   readonly tables: { readonly version: number; readonly volumes: Pick<SkyVolumes, 'volumeFor'> }
 }

@@ -104,6 +104,8 @@ export interface SkyLayer {
   inScatter?(ray: PointRay, without: Vec4): Vec4
   /** Medium along a ray, in front of the sky too, given what air and layers before are. */
   medium?(ray: LayerRay, air: MediumSegment): MediumSegment
+  /** Light of the sky as the layer shows it, for a medium after it that is drawn in that light: `distanceFog`. */
+  skyLight?(light: Vec4): Vec4
   /** Extinction of its medium at the camera, as of the last {@link update} [1/m]. */
   readonly extinction?: number
   /**

@@ -1,0 +1,128 @@
+import { AgXToneMapping, RenderTarget } from 'three'
+import { PassTimes, type PassTime } from '../../stories/src/valley/PassTimes'
+import { sharesOf } from '../../stories/src/valley/shares'
+import { Valley, type ValleyFeatures, type ValleyState } from '../../stories/src/valley/Valley'
+import { nextFrame, release, type HeadlessDevice } from '../headless/device'
+import { median } from './statistics'
+
+const WARM_UP = 40
+/** Time between two frames [s]. */
+const STEP = 1 / 60
+
+/** State in which the story *Valley, all day* opens, everything on. */
+export const valleyState: ValleyState = {
+  weather: 'fair',
+  latitude: 46,
+  season: 0.2,
+  hour: 9,
+  dayLength: 600,
+  paused: false,
+  quality: 'medium',
+  clouds: true,
+  shafts: true,
+  mist: true,
+  nightSky: true,
+  trees: true,
+  village: true,
+  water: true,
+  bloom: true,
+  haze: 1,
+  twilightSaturation: 1,
+  shaftStrength: 1,
+  starlight: 1,
+  airglow: 1,
+  earthshine: 1,
+  ambient: 1
+}
+
+const PARTS: readonly (keyof ValleyFeatures)[] = [
+  'clouds',
+  'shafts',
+  'mist',
+  'nightSky',
+  'trees',
+  'village',
+  'water',
+  'bloom'
+]
+
+/** GPU times of the valley, everything on at medium quality [ms]. */
+export interface ValleyCost {
+  /** A frame, all of it: mean. */
+  totalMs: number
+  /** Without bloom. */
+  beforeBloomMs: number
+  /** Time of what features draw, by timestamps of their passes. */
+  features: PassTime[]
+  /** Time that is saved with a part off. */
+  parts: PassTime[]
+  /** Time to submit a frame, median. */
+  cpuMs: number
+}
+
+/** Times the valley of the story, on its clock. */
+export async function timeValley(
+  device: HeadlessDevice,
+  size: readonly [number, number],
+  frames: number
+): Promise<ValleyCost> {
+  const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
+  renderer.highPrecision = true
+  renderer.shadowMap.enabled = true
+  renderer.toneMapping = AgXToneMapping
+  const times = new PassTimes()
+  renderer.inspector = times
+  const valley = new Valley(renderer, valleyState)
+  await valley.bake(renderer)
+  valley.lookFrom('village')
+  valley.camera.aspect = size[0] / size[1]
+  valley.camera.updateProjectionMatrix()
+  const target = new RenderTarget(...size)
+  let time = 0
+
+  const measure = async (changes: Partial<ValleyState>): Promise<[PassTime[], number]> => {
+    valley.set({ ...valleyState, ...changes }, true)
+    const passes: PassTime[] = []
+    const cpu: number[] = []
+    for (let frame = 0; frame < WARM_UP + frames; frame++) {
+      nextFrame()
+      valley.time = time += STEP
+      renderer.setRenderTarget(target)
+      const start = performance.now()
+      valley.render(STEP)
+      cpu.push(performance.now() - start)
+      renderer.setRenderTarget(null)
+      const read = await times.read(renderer)
+      if (frame >= WARM_UP) passes.push(...read.passes)
+    }
+    const shares = sharesOf(passes).map(([name, ms]) => [name, ms / frames] as const)
+    return [shares, median(cpu.slice(WARM_UP))]
+  }
+  const sum = (shares: PassTime[]): number => shares.reduce((total, [, ms]) => total + ms, 0)
+
+  const [features, cpuMs] = await measure({})
+  const totalMs = sum(features)
+  const parts: PassTime[] = []
+  for (const part of PARTS) parts.push([part, totalMs - sum((await measure({ [part]: false }))[0])])
+  valley.dispose()
+  target.dispose()
+  release(renderer)
+  const beforeBloomMs = totalMs - parts.find(([name]) => name === 'bloom')![1]
+  return { totalMs, beforeBloomMs, features, parts, cpuMs }
+}
+
+/** Lines of a report. */
+export function valleyLines({
+  totalMs,
+  beforeBloomMs,
+  features,
+  parts,
+  cpuMs
+}: ValleyCost): string {
+  const list = (shares: PassTime[]): string =>
+    shares.map(([name, ms]) => `  ${name.padEnd(36)} ${ms.toFixed(2)} ms`).join('\n')
+  return (
+    `valley, everything on at medium   ${totalMs.toFixed(2)} ms, ${beforeBloomMs.toFixed(2)} ms before bloom; ` +
+    `CPU ${cpuMs.toFixed(2)} ms\n by pass\n${list(features)}\n saved with a part off\n${list(parts)}`
+  )
+}

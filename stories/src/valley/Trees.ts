@@ -1,0 +1,82 @@
+import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
+import type { BufferGeometry, Matrix4 } from 'three'
+import { positionGeometry, sin, vec3 } from 'three/tsl'
+import type { Node } from 'three/webgpu'
+import { disposeMeshes } from '../scene'
+import { VertexLitMaterial } from './VertexLitMaterial'
+
+/** A tree: its place and size, and its brightness over that of its kind. */
+export interface Tree {
+  readonly matrix: Matrix4
+  readonly color: Color
+}
+
+/** Distance that the camera moves before trees are sorted by distance anew [m]. */
+const STEP = 10
+
+const _place = new Vector3()
+
+/** Brightness of leaves and the gaps between them, about 1. */
+function mottled(): Node<'float'> {
+  const { x, y, z } = positionGeometry.mul(5.3)
+  const across = sin(x.add(sin(z.mul(1.3)).mul(2.1)))
+  const up = sin(y.mul(1.4).add(sin(x.mul(0.8)).mul(1.7)))
+  return across.mul(up).mul(0.3).add(1)
+}
+
+/** Trees of a kind, drawn with fewer triangles the farther they are from the camera. */
+export class Trees extends Group {
+  readonly #trees: readonly Tree[]
+  readonly #distances: readonly number[]
+  readonly #levels: readonly InstancedMesh[]
+  readonly #sortedAt = new Vector3(Infinity, 0, 0)
+
+  /**
+   * @param geometries - Finest to coarsest, with vertex colours.
+   * @param distances - Distances from which each but the first is drawn [m].
+   */
+  constructor(
+    geometries: readonly BufferGeometry[],
+    distances: readonly number[],
+    trees: readonly Tree[]
+  ) {
+    super()
+    this.#trees = trees
+    this.#distances = distances
+    const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
+    material.colorNode = vec3(mottled())
+    this.#levels = geometries.map(geometry => {
+      const mesh = new InstancedMesh(geometry, material, trees.length)
+      mesh.setColorAt(0, new Color())
+      mesh.castShadow = mesh.receiveShadow = true
+      mesh.frustumCulled = false
+      // Before the ground, of which they hide much.
+      mesh.renderOrder = -1
+      return mesh
+    })
+    this.add(...this.#levels)
+  }
+
+  /** Sorts the trees by distance if the camera has moved far enough. */
+  update(camera: Vector3): void {
+    if (camera.distanceTo(this.#sortedAt) < STEP) return
+    this.#sortedAt.copy(camera)
+    for (const level of this.#levels) level.count = 0
+    for (const { matrix, color } of this.#trees) {
+      const distance = _place.setFromMatrixPosition(matrix).distanceTo(camera)
+      const level = this.#levels[this.#distances.filter(from => distance >= from).length]
+      level.setMatrixAt(level.count, matrix)
+      level.setColorAt(level.count, color)
+      level.count++
+    }
+    for (const level of this.#levels) {
+      level.visible = level.count > 0
+      level.instanceMatrix.needsUpdate = true
+      level.instanceColor!.needsUpdate = true
+    }
+  }
+
+  override dispose(): void {
+    disposeMeshes(this.#levels)
+  }
+}

@@ -1,0 +1,92 @@
+import type { Light } from 'three'
+import { Fn, If, uniform, varying, vec3 } from 'three/tsl'
+import { MeshLambertNodeMaterial, PhongLightingModel } from 'three/webgpu'
+import type { LightingModelDirectInput, Node, NodeBuilder, UniformNode } from 'three/webgpu'
+
+type Vec3 = Node<'vec3'>
+
+/** Parts of three's light nodes and contexts of which its types have none. */
+interface ShadowedLightNode {
+  light: Light & { isDirectionalLight?: true }
+  baseColorNode: Vec3 | null
+  shadowNode: Node | null
+}
+interface LightsBuilder {
+  context: { irradiance: { addAssign(node: Vec3): void } }
+  lightsNode: {
+    getLightNodes(builder: unknown): ShadowedLightNode[]
+    setupLights(builder: unknown, nodes: ShadowedLightNode[]): void
+  }
+}
+
+/** 1 for lights that are computed. */
+const _lit = new WeakMap<Light, UniformNode<'float', number>>()
+
+function litOf(light: Light): UniformNode<'float', number> {
+  let lit = _lit.get(light)
+  if (lit === undefined) _lit.set(light, (lit = uniform(1)))
+  return lit
+}
+
+/** Turns a light on or off for {@link VertexLitMaterial}, at no cost where it is off; nothing is compiled. */
+export function setLit(light: Light, isLit: boolean): void {
+  litOf(light).value = isLit ? 1 : 0
+}
+
+/** A colour at the vertices, black where its light is off. */
+const atVertices = (light: Light, color: Vec3): Vec3 =>
+  varying(
+    Fn(() => {
+      const result = vec3(0).toVar()
+      If(litOf(light).greaterThan(0), () => {
+        result.assign(color)
+      })
+      return result
+    })()
+  )
+
+/** Lambert's model whose light from all sides, and colours of directional lights, are of the vertices. */
+class VertexLightingModel extends PhongLightingModel {
+  constructor() {
+    super(false)
+  }
+
+  override start(builder: NodeBuilder): void {
+    const lit = builder as unknown as LightsBuilder
+    const { context, lightsNode } = lit
+    const { irradiance } = context
+    for (const node of lightsNode.getLightNodes(lit)) {
+      context.irradiance = {
+        addAssign: received => irradiance.addAssign(atVertices(node.light, received))
+      }
+      lightsNode.setupLights(lit, [node])
+    }
+    context.irradiance = irradiance
+    this.indirect(builder)
+  }
+
+  override direct(input: LightingModelDirectInput, builder: NodeBuilder): void {
+    const { light, baseColorNode, shadowNode } = input.lightNode as unknown as ShadowedLightNode
+    if (light.isDirectionalLight !== true) {
+      super.direct(input, builder)
+      return
+    }
+    const color = atVertices(light, baseColorNode ?? (input.lightColor as Vec3))
+    const lightColor = baseColorNode === null ? color : color.mul(shadowNode as Vec3)
+    super.direct({ ...input, lightColor }, builder)
+  }
+}
+
+/**
+ * A matte material for dense meshes: light of sky and night, and the colour that the air gives to sun and moon, are found
+ * at the vertices, where they differ little from one to the next; what faces the sun and what lies in shadow, at each pixel.
+ */
+export class VertexLitMaterial extends MeshLambertNodeMaterial {
+  static override get type(): string {
+    return 'VertexLitMaterial'
+  }
+
+  override setupLightingModel(): PhongLightingModel {
+    return new VertexLightingModel()
+  }
+}

@@ -1,0 +1,75 @@
+import {
+  DataTexture,
+  DataUtils,
+  HalfFloatType,
+  LinearFilter,
+  RedFormat,
+  RepeatWrapping
+} from 'three'
+import type { Light } from 'three'
+import { atan, float, lights, mix, reflectVector, smoothstep, texture, vec2 } from 'three/tsl'
+import type { MeshPhysicalNodeMaterial, Node } from 'three/webgpu'
+import { createWater, type Water } from '../environment/water'
+import { groundHeight, LAKE } from './ground'
+
+/** Directions and distances in which the skyline is looked for, and the nearest and farthest of these [m]. */
+const AZIMUTHS = 128
+const STEPS = 48
+const REACH = [250, 20_000] as const
+
+/** Brightness of land that the lake mirrors over that of the sky before it. */
+const MIRRORED_LAND = 0.22
+/** Height over which the skyline in the lake is blurred, as a tangent. */
+const BLUR = 0.03
+
+/** Mean square slope of the ripples. */
+const SLOPE = 0.0006
+
+/** Tangent of the skyline's elevation about the lake, by azimuth. */
+function skyline(): DataTexture {
+  const heights = Uint16Array.from({ length: AZIMUTHS }, (_, i) => {
+    const azimuth = (2 * Math.PI * (i + 0.5)) / AZIMUTHS - Math.PI
+    let highest = 0
+    for (let step = 0; step < STEPS; step++) {
+      const distance = REACH[0] * (REACH[1] / REACH[0]) ** (step / (STEPS - 1))
+      const x = LAKE.x + distance * Math.cos(azimuth)
+      const z = LAKE.z + distance * Math.sin(azimuth)
+      highest = Math.max(highest, (groundHeight(x, z) - LAKE.height) / distance)
+    }
+    return DataUtils.toHalfFloat(highest)
+  })
+  const result = new DataTexture(heights, AZIMUTHS, 1, RedFormat, HalfFloatType)
+  result.wrapS = RepeatWrapping
+  result.magFilter = result.minFilter = LinearFilter
+  result.needsUpdate = true
+  return result
+}
+
+/**
+ * The lake: it mirrors sky and clouds, and the mountains as dark as they are before them.
+ *
+ * @param environment - Sky and clouds.
+ * @param directLights - Lights that glitter on it. Others light what is matte, which water is not.
+ */
+export function createLake(environment: Node, directLights: readonly Light[]): Water {
+  const water = createWater(2400)
+  water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
+  water.setSlope(SLOPE)
+  const material = water.mesh.material as unknown as MeshPhysicalNodeMaterial
+  material.envNode = environment as never
+  material.lightsNode = lights([...directLights]) as never
+  const heights = skyline()
+  const { x, y, z } = reflectVector
+  const azimuth = atan(z, x).div(2 * Math.PI)
+  const elevation = y.div(vec2(x, z).length().max(1e-4))
+  const height = texture(heights, vec2(azimuth.add(0.5), 0.5)).level(float(0)).r
+  const isSky = smoothstep(height.sub(BLUR), height.add(BLUR), elevation)
+  material.specularIntensityNode = mix(float(MIRRORED_LAND), float(1), isSky)
+  return {
+    ...water,
+    dispose() {
+      water.dispose()
+      heights.dispose()
+    }
+  }
+}
