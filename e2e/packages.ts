@@ -15,7 +15,7 @@ function check(name: string, binary: string, args: string[]): void {
   else report.fail(name, `${stdout}${stderr}`.trim())
 }
 
-for (const name of ['geo', 'atmosphere', 'clouds']) {
+for (const name of ['geo', 'atmosphere', 'clouds', 'terrain']) {
   const folder = `packages/${name}`
   check(`${name}: publint`, 'publint', ['--strict', folder])
   check(`${name}: types resolve for ESM`, 'attw', ['--profile', 'esm-only', '--pack', folder])

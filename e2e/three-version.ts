@@ -71,7 +71,7 @@ try {
     // Packages of others that ask for a three of their own get this one.
     manifest.overrides = { three }
   })
-  for (const name of ['geo', 'atmosphere', 'clouds']) {
+  for (const name of ['geo', 'atmosphere', 'clouds', 'terrain']) {
     editManifest(join(copy, 'packages', name, 'package.json'), manifest => {
       manifest.peerDependencies.three = three
     })

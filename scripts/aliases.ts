@@ -7,5 +7,6 @@ const source = (name: string): string =>
 export const sourceAliases: Record<string, string> = {
   '@welkin/geo': source('geo'),
   '@welkin/atmosphere': source('atmosphere'),
-  '@welkin/clouds': source('clouds')
+  '@welkin/clouds': source('clouds'),
+  '@welkin/terrain': source('terrain')
 }

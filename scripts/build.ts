@@ -8,7 +8,7 @@ import { build } from 'vite'
 const packagesFolder = fileURLToPath(new URL('../packages', import.meta.url))
 
 // A package's declarations are checked against the declarations of those before it.
-const order = ['geo', 'atmosphere', 'clouds']
+const order = ['geo', 'atmosphere', 'clouds', 'terrain']
 
 /** One output module per source module, so that a bundler drops those that nobody imports. */
 async function buildModules(folder: string): Promise<void> {

@@ -9,7 +9,7 @@ export function codeBlocks(markdown: string, language = 'ts'): string[] {
 
 const documents = [
   'README.md',
-  ...['geo', 'atmosphere', 'clouds'].map(p => `packages/${p}/README.md`)
+  ...['geo', 'atmosphere', 'clouds', 'terrain'].map(p => `packages/${p}/README.md`)
 ]
 
 /** Modules of the app's pages that are the first block of a document. */

@@ -61,7 +61,7 @@ const foreign = {
 
 /** Installs the packed packages as a user would: from files, with the versions of the workspace. */
 function install(app: string): string {
-  const packed = ['geo', 'atmosphere', 'clouds'].map(name => {
+  const packed = ['geo', 'atmosphere', 'clouds', 'terrain'].map(name => {
     const output = execute(
       'npm',
       ['pack', '--json', '--pack-destination', app, join(root, 'packages', name)],

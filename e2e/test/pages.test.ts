@@ -13,7 +13,7 @@ const read = (file: string): string => readFileSync(resolve(root, file), 'utf8')
 const pages = [
   'README.md',
   'CONTRIBUTING.md',
-  ...['geo', 'atmosphere', 'clouds'].flatMap(name =>
+  ...['geo', 'atmosphere', 'clouds', 'terrain'].flatMap(name =>
     [`packages/${name}/README.md`, `packages/${name}/src/README.md`].filter(file =>
       existsSync(resolve(root, file))
     )

@@ -1,0 +1,53 @@
+import type { Vector3 } from 'three'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
+
+/** Height of the ground at a place, and its gradient: ECEF axes, any component along the normal is ignored. */
+export interface HeightSample {
+  /** Above the ellipsoid [m]. */
+  height: number
+  /** Metres per metre [–]. */
+  readonly gradient: Vector3
+}
+
+/** A place of the ellipsoid's surface in a shader, exact to 1e-7 of the distance from the reference. */
+export interface SurfacePoint {
+  /** Point near the viewer in whole multiples of 256 m, ECEF axes [256 m]. */
+  readonly reference: Vec3
+  /** Place relative to the reference, ECEF axes [m]. */
+  readonly offset: Vec3
+}
+
+/**
+ * Heights of a planet's ground, on the GPU and in float64 on the CPU. Both must agree: what is drawn is what one
+ * walks on.
+ */
+export interface HeightSource {
+  /** Lower bound of all heights [m]. */
+  readonly lowest: number
+  /** Upper bound of all heights [m]. */
+  readonly highest: number
+
+  /**
+   * Upper bound of the difference between the heights of two places.
+   *
+   * @param distance - Between them [m].
+   * @returns [m]
+   */
+  variation(distance: number): number
+
+  /**
+   * Height and gradient on the CPU, with all detail.
+   *
+   * @param positionECEF - On the ellipsoid [m].
+   */
+  sampleAt(positionECEF: Vector3, target: HeightSample): HeightSample
+
+  /**
+   * Height and gradient in a shader.
+   *
+   * @param point - On the ellipsoid.
+   * @param shortest - Detail of a shorter wavelength than this is left out, of twice this and more is whole [m].
+   * @returns Gradient (xyz) [–] and height (w) [m].
+   */
+  sample(point: SurfacePoint, shortest: Float): Vec4
+}

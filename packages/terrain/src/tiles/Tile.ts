@@ -1,0 +1,99 @@
+import { Vector3 } from 'three'
+import type { Ellipsoid } from '@welkin/geo'
+import type { HeightSample, HeightSource } from '../heights/HeightSource'
+import { cubeToEllipsoid, faceAxes } from './cpu/cubeSphere'
+
+const sample: HeightSample = { height: 0, gradient: new Vector3() }
+const corner = new Vector3()
+
+/** A tile of the quadtree on a face of the cube about the planet. */
+export class Tile {
+  /** Point of the cube of half width 1 above the tile's centre. */
+  readonly cube: Vector3
+  /** Centre on the ellipsoid, ECEF [m]. */
+  readonly center: Vector3
+  /** Geodetic up at the centre. */
+  readonly normal: Vector3
+  /** Distance of the farthest corner from the centre, on the ellipsoid [m]. */
+  readonly radius: number
+  /** Unit vector to the centre where the ellipsoid is the unit sphere. */
+  readonly direction: Vector3
+  /** Angle at the planet's centre that the tile reaches from its own, in the same space [rad]. */
+  readonly spread: number
+  /** Bounds of its heights [m]. */
+  readonly lowest: number
+  readonly highest: number
+  /** Four tiles of half its size; null before any is needed. */
+  children: Tile[] | null = null
+  /** Number of the last selection that came by. */
+  lastUse = 0
+
+  /**
+   * @param face - Face of the cube, 0 to 5.
+   * @param level - 0 for a whole face.
+   * @param x - Centre along the face's first axis, in (−1, 1), like `y` along the second.
+   * @param parent - Tile that it is a quarter of; null for a whole face.
+   */
+  constructor(
+    readonly face: number,
+    readonly level: number,
+    readonly x: number,
+    readonly y: number,
+    ellipsoid: Ellipsoid,
+    source: HeightSource,
+    parent: Tile | null = null
+  ) {
+    const { outward, first, second } = faceAxes(face)
+    this.cube = outward.clone().addScaledVector(first, x).addScaledVector(second, y)
+    this.center = cubeToEllipsoid(this.cube, ellipsoid.radii, new Vector3())
+    this.normal = ellipsoid.surfaceNormal(this.center)
+    const { extent } = this
+    let square = 0
+    for (const [i, j] of CORNERS) {
+      corner
+        .copy(this.cube)
+        .addScaledVector(first, i * extent)
+        .addScaledVector(second, j * extent)
+      cubeToEllipsoid(corner, ellipsoid.radii, corner)
+      square = Math.max(square, corner.distanceToSquared(this.center))
+    }
+    this.radius = Math.sqrt(square)
+    this.direction = this.cube.clone().normalize()
+    this.spread = 2 * Math.asin(Math.min(this.radius / ellipsoid.minimumRadius / 2, 1))
+    const { lowest, highest } = parent ?? source
+    const { height } = source.sampleAt(this.center, sample)
+    // Of the arc, which is longer than the chord by 11 % at most.
+    const variation = source.variation(1.12 * this.radius)
+    this.lowest = Math.max(lowest, height - variation)
+    this.highest = Math.min(highest, height + variation)
+  }
+
+  /** Half width on the cube of half width 1: a power of two. */
+  get extent(): number {
+    return 2 ** -this.level
+  }
+
+  /** Quarters, made at the first call. */
+  split(ellipsoid: Ellipsoid, source: HeightSource): Tile[] {
+    const half = this.extent / 2
+    return (this.children ??= CORNERS.map(
+      ([i, j]) =>
+        new Tile(
+          this.face,
+          this.level + 1,
+          this.x + i * half,
+          this.y + j * half,
+          ellipsoid,
+          source,
+          this
+        )
+    ))
+  }
+}
+
+const CORNERS = [
+  [-1, -1],
+  [1, -1],
+  [-1, 1],
+  [1, 1]
+] as const

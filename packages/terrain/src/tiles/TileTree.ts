@@ -1,0 +1,147 @@
+import type { Vector3 } from 'three'
+import type { Ellipsoid } from '@welkin/geo'
+import type { HeightSource } from '../heights/HeightSource'
+import { FACES } from './cpu/cubeSphere'
+import { horizonAngle, type Viewer } from './cpu/viewer'
+import { Tile } from './Tile'
+
+/** Selections after which a tile that none came by is forgotten. */
+const FORGET_AFTER = 240
+
+/** Selections between two searches for tiles to forget. */
+const FORGET_EVERY = 60
+
+/** Tiles chosen for a viewer. */
+export interface TileSelection {
+  /** Tiles in view first, then those out of it that may cast shadows into it. */
+  readonly tiles: Tile[]
+  /** Number of those in view. */
+  inView: number
+}
+
+/**
+ * Quadtree of tiles on the six faces of a cube about the planet, and the choice of those to draw.
+ *
+ * A tile is split where its nearest point is within the range of the next level; ranges double from a level to
+ * the one above. That alone keeps neighbours within one level of each other, and the finer of two is wholly
+ * morphed to the coarser one's grid where they meet.
+ *
+ * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3.2 and §3.3
+ */
+export class TileTree {
+  /** Finest level. */
+  readonly finestLevel: number
+  /** Whole faces. */
+  readonly roots: readonly Tile[]
+  #selections = 0
+  readonly #ranges: number[]
+
+  /**
+   * @param finestLevel - Level of the smallest tiles.
+   * @param detail - Distance at which a tile is split, in diagonals of it; > 1.
+   */
+  constructor(
+    readonly ellipsoid: Ellipsoid,
+    readonly source: HeightSource,
+    finestLevel: number,
+    detail: number
+  ) {
+    this.finestLevel = finestLevel
+    // Longest diagonal of a tile of level 0: that of the cube's face, at the face's middle.
+    const diagonal = 2 * Math.SQRT2 * ellipsoid.maximumRadius
+    this.#ranges = Array.from({ length: finestLevel + 1 }, (_, level) =>
+      level === 0 ? Infinity : (detail * diagonal) / 2 ** (level - 1)
+    )
+    this.roots = Array.from(
+      { length: FACES },
+      (_, face) => new Tile(face, 0, 0, 0, ellipsoid, source)
+    )
+  }
+
+  /** Distance from the viewer at which a level ends; infinity for the coarsest [m]. */
+  range(level: number): number {
+    return this.#ranges[level]
+  }
+
+  /**
+   * Tiles to draw. They cover what a viewer can see, each point once.
+   *
+   * @param most - Number of tiles that there is room for: beyond it tiles are left unsplit.
+   */
+  select(viewer: Viewer, most: number, target: TileSelection): TileSelection {
+    this.#selections++
+    const unseen: Tile[] = []
+    target.tiles.length = 0
+    // Nearest level by level: if room runs out, what is coarse is far away.
+    let open: Tile[] = [...this.roots]
+    const radius = this.ellipsoid.minimumRadius
+    while (open.length > 0) {
+      const next: Tile[] = []
+      for (const [i, tile] of open.entries()) {
+        tile.lastUse = this.#selections
+        const isVisible = isInFrustum(tile, viewer, radius)
+        if (!isVisible && !mayCastShadow(tile, viewer)) continue
+        if (isBelowHorizon(tile, viewer, radius)) continue
+        const taken = target.tiles.length + unseen.length + next.length + (open.length - i)
+        const range = this.#ranges[tile.level + 1] ?? 0
+        if (distanceTo(tile, viewer.datumPoint) < range && taken + 4 <= most) {
+          next.push(...tile.split(this.ellipsoid, this.source))
+        } else if (isVisible) target.tiles.push(tile)
+        else unseen.push(tile)
+      }
+      open = next
+    }
+    // Fine ones first: what is near hides what is far.
+    target.tiles.reverse()
+    target.inView = target.tiles.length
+    target.tiles.push(...unseen)
+    if (this.#selections % FORGET_EVERY === 0) for (const root of this.roots) this.#forget(root)
+    return target
+  }
+
+  /** Lets go of tiles that nobody has come by for long. */
+  #forget(tile: Tile): void {
+    if (tile.children === null) return
+    if (tile.children.every(({ lastUse }) => this.#selections - lastUse > FORGET_AFTER)) {
+      tile.children = null
+    } else for (const child of tile.children) this.#forget(child)
+  }
+}
+
+/** Lower bound of the distance from a point to a tile on the ellipsoid [m]. */
+export const distanceTo = ({ center, radius }: Tile, point: Vector3): number =>
+  center.distanceTo(point) - radius
+
+/**
+ * True of a tile whose ground may be in view.
+ *
+ * @param size - Smallest radius of the planet [m].
+ */
+function isInFrustum(tile: Tile, { position, planes }: Viewer, size: number): boolean {
+  const { center, normal, radius, lowest, highest } = tile
+  const middle = (lowest + highest) / 2
+  const x = center.x - position.x + normal.x * middle
+  const y = center.y - position.y + normal.y * middle
+  const z = center.z - position.z + normal.z * middle
+  const swelling = 1 + Math.max(highest, 0) / size
+  const reach = radius * swelling + (highest - lowest) / 2
+  for (const { normal: n, constant } of planes) {
+    if (n.x * x + n.y * y + n.z * z + constant < -reach) return false
+  }
+  return true
+}
+
+/** True of a tile near enough to cast shadows into view. */
+const mayCastShadow = (tile: Tile, { datumPoint, shadowDistance }: Viewer): boolean =>
+  shadowDistance > 0 && distanceTo(tile, datumPoint) < shadowDistance
+
+/** True of a tile that the planet itself hides. */
+function isBelowHorizon(
+  { direction, spread, highest }: Tile,
+  viewer: Viewer,
+  radius: number
+): boolean {
+  const angle = Math.acos(Math.min(Math.max(viewer.direction.dot(direction), -1), 1)) - spread
+  if (angle <= viewer.horizon) return false
+  return angle > viewer.horizon + horizonAngle(1 + Math.max(highest, 0) / radius, viewer.occluder)
+}

@@ -1,0 +1,73 @@
+import { Frustum, Matrix4, Vector3 } from 'three'
+import type { Camera, Plane } from 'three'
+import type { Ellipsoid } from '@welkin/geo'
+
+/** Viewer that tiles are chosen for. ECEF axes. */
+export interface Viewer {
+  /** [m] */
+  readonly position: Vector3
+  /**
+   * Point from which distances to tiles count [m]: above the ellipsoid as high as the viewer is above the
+   * ground, so that they are of the same kind on a mountain and at sea.
+   */
+  readonly datumPoint: Vector3
+  /** Sides of the view, relative to the position. */
+  readonly planes: readonly Plane[]
+  /** Distance within which tiles out of view may cast shadows into it [m]; 0 for none. */
+  readonly shadowDistance: number
+  /** Unit vector to the viewer where the ellipsoid is the unit sphere. */
+  readonly direction: Vector3
+  /** Radius of what hides things, where the ellipsoid is the unit sphere; at most 1. */
+  readonly occluder: number
+  /** Angle at the planet's centre from the viewer to the horizon [rad]. */
+  readonly horizon: number
+}
+
+/** Angle at the centre of a sphere between a point and the horizon that one sees from it [rad]. */
+export const horizonAngle = (radius: number, sphereRadius: number): number =>
+  Math.acos(Math.min(sphereRadius / radius, 1))
+
+const frustum = new Frustum()
+const rotation = new Matrix4()
+const foot = new Vector3()
+
+/**
+ * Viewer of a camera.
+ *
+ * @param positionECEF - Position of the camera [m].
+ * @param clearance - Height above the ground [m], > 0.
+ * @param lowest - Lower bound of all ground [m].
+ * @param worldToECEF - Rotation and scale of the world, translation ignored.
+ * @param shadowDistance - See {@link Viewer}.
+ */
+export function viewerOf(
+  camera: Camera,
+  positionECEF: Vector3,
+  clearance: number,
+  lowest: number,
+  worldToECEF: Matrix4,
+  ellipsoid: Ellipsoid,
+  shadowDistance: number
+): Viewer {
+  ellipsoid.footPoint(positionECEF, foot)
+  const up = ellipsoid.surfaceNormal(positionECEF)
+  // From ECEF axes at the camera to clip space.
+  rotation.copy(worldToECEF).setPosition(0, 0, 0).invert()
+  const view = camera.matrixWorldInverse.clone().setPosition(0, 0, 0).multiply(rotation)
+  view.premultiply(camera.projectionMatrix)
+  frustum.setFromProjectionMatrix(view, camera.coordinateSystem)
+  const direction = positionECEF.clone().divide(ellipsoid.radii)
+  const radius = direction.length()
+  // Heights shrink by the largest radius at least, where the ellipsoid is the unit sphere.
+  const occluder = 1 + Math.min(lowest, 0) / ellipsoid.minimumRadius
+  return {
+    position: positionECEF.clone(),
+    datumPoint: foot.clone().addScaledVector(up, clearance),
+    // Left, right, top and bottom: near and far depend on the kind of depth.
+    planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
+    shadowDistance,
+    direction: direction.divideScalar(radius),
+    occluder,
+    horizon: horizonAngle(radius, occluder)
+  }
+}

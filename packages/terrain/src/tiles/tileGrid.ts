@@ -1,0 +1,52 @@
+import {
+  BufferAttribute,
+  DynamicDrawUsage,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry
+} from 'three'
+
+/** Names of the attributes of an instance, four numbers each. */
+export const INSTANCE_ATTRIBUTES = ['tileBase', 'tileOffset', 'tileCube'] as const
+
+/**
+ * Grid that all tiles share, with a skirt about it, and room for tiles as instances.
+ *
+ * Its `position` is the column and row of a vertex, and 1 in z for those of the skirt.
+ *
+ * @param resolution - Cells along an edge, even.
+ * @param capacity - Number of tiles that there is room for.
+ */
+export function tileGrid(resolution: number, capacity: number): InstancedBufferGeometry {
+  const side = resolution + 1
+  const positions: number[] = []
+  const indices: number[] = []
+  for (let y = 0; y < side; y++) for (let x = 0; x < side; x++) positions.push(x, y, 0)
+  for (let y = 0; y < resolution; y++) {
+    for (let x = 0; x < resolution; x++) {
+      const i = y * side + x
+      // One diagonal for all: morphed to half the resolution it is the same one.
+      indices.push(i, i + 1, i + side + 1, i, i + side + 1, i + side)
+    }
+  }
+  const edge: number[] = []
+  for (let i = 0; i < resolution; i++) edge.push(i)
+  for (let i = 0; i < resolution; i++) edge.push(i * side + resolution)
+  for (let i = resolution; i > 0; i--) edge.push(resolution * side + i)
+  for (let i = resolution; i > 0; i--) edge.push(i * side)
+  const first = side * side
+  for (const [n, i] of edge.entries()) {
+    positions.push(positions[3 * i], positions[3 * i + 1], 1)
+    const m = (n + 1) % edge.length
+    indices.push(edge[n], first + n, first + m, edge[n], first + m, edge[m])
+  }
+  const geometry = new InstancedBufferGeometry()
+  geometry.name = 'Welkin.Terrain'
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3))
+  geometry.setIndex(new BufferAttribute(new Uint32Array(indices), 1))
+  for (const name of INSTANCE_ATTRIBUTES) {
+    const attribute = new InstancedBufferAttribute(new Float32Array(4 * capacity), 4)
+    geometry.setAttribute(name, attribute.setUsage(DynamicDrawUsage))
+  }
+  geometry.instanceCount = 0
+  return geometry
+}

@@ -1,0 +1,143 @@
+import fc from 'fast-check'
+import { Ellipsoid } from '@welkin/geo'
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import { expect, it } from 'vitest'
+import { MountainHeights } from '../src/heights/MountainHeights'
+import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
+import { cubeToEllipsoid, faceAxes } from '../src/tiles/cpu/cubeSphere'
+import { morphStart } from '../src/tiles/tsl/tileVertex'
+import { distanceTo, TileTree } from '../src/tiles/TileTree'
+import type { Tile } from '../src/tiles/Tile'
+
+const earth = Ellipsoid.WGS84
+const source = new MountainHeights({ seed: 1 })
+const DETAIL = 1.5
+const FINEST = 17
+
+const heightOf = (foot: Vector3): number =>
+  source.sampleAt(foot, { height: 0, gradient: new Vector3() }).height
+
+/** Places anywhere: poles and the antimeridian as often as all else. */
+const places = fc.record({
+  longitude: fc.oneof(fc.double({ min: -180, max: 180, noNaN: true }), fc.constantFrom(-180, 180)),
+  latitude: fc.oneof(fc.double({ min: -90, max: 90, noNaN: true }), fc.constantFrom(-90, 90, 35.3)),
+  clearance: fc.double({ min: 0.3, max: 7.3, noNaN: true }).map(power => 10 ** power)
+})
+type Place = typeof places extends fc.Arbitrary<infer T> ? T : never
+
+/** Viewer at a place; with `planes` left out it sees all round. */
+function viewerAt(place: Place, pitch = 0, isAllRound = true): Viewer {
+  const foot = earth.geodeticToECEF({ ...place, height: 0 })
+  const position = earth.geodeticToECEF({ ...place, height: heightOf(foot) + place.clearance })
+  const camera = new PerspectiveCamera(50, 1.6, 1, 1e8)
+  camera.quaternion.setFromRotationMatrix(earth.localYUpFrame(position, new Matrix4()))
+  camera.rotateX(pitch)
+  camera.position.copy(position)
+  camera.updateMatrixWorld()
+  const { lowest } = source
+  const viewer = viewerOf(camera, position, place.clearance, lowest, new Matrix4(), earth, 0)
+  return isAllRound ? { ...viewer, planes: [], horizon: Math.PI } : viewer
+}
+
+const treeOf = (): TileTree => new TileTree(earth, source, FINEST, DETAIL)
+const select = (viewer: Viewer, most = 1e5, tree = treeOf()): Tile[] =>
+  tree.select(viewer, most, { tiles: [], inView: 0 }).tiles
+
+/** Point of a face on the ellipsoid. */
+function pointOf(face: number, x: number, y: number): Vector3 {
+  const { outward, first, second } = faceAxes(face)
+  outward.addScaledVector(first, x).addScaledVector(second, y)
+  return cubeToEllipsoid(outward, earth.radii, outward)
+}
+
+it('covers every point of the planet once', () => {
+  fc.assert(
+    fc.property(places, place => {
+      const tiles = select(viewerAt(place))
+      // Areas on the cube are sums of powers of two: exact.
+      const areas = tiles.reduce((sum, { extent }) => sum + 4 * extent ** 2, 0)
+      expect(areas).toBe(24)
+      expect(new Set(tiles.map(({ face, x, y }) => `${face} ${x} ${y}`)).size).toBe(tiles.length)
+    }),
+    { numRuns: 12 }
+  )
+})
+
+it('lets neighbours meet: the finer one wholly morphed, the coarser one not at all', () => {
+  const tree = treeOf()
+  fc.assert(
+    fc.property(places, place => {
+      const viewer = viewerAt(place)
+      const tiles = select(viewer, 1e5, tree)
+      /** Tiles by their point nearest to an edge's middle. */
+      const morphAt = (tile: Tile, point: Vector3): number => {
+        const part = point.distanceTo(viewer.datumPoint) / tree.range(tile.level)
+        const start = morphStart(DETAIL)
+        return Math.min(Math.max((part - start) / (1 - start), 0), 1)
+      }
+      const holds = (tile: Tile, face: number, x: number, y: number): boolean =>
+        tile.face === face &&
+        Math.abs(tile.x - x) <= tile.extent &&
+        Math.abs(tile.y - y) <= tile.extent
+      for (const tile of tiles.slice(-200)) {
+        const beyond = tile.extent * (1 + 2 ** -20)
+        const [x, y] = [tile.x + beyond, tile.y + 0.3 * tile.extent]
+        if (x > 1) continue
+        const neighbour = tiles.find(other => other !== tile && holds(other, tile.face, x, y))!
+        expect(Math.abs(neighbour.level - tile.level)).toBeLessThan(2)
+        if (neighbour.level === tile.level) continue
+        const shared = pointOf(tile.face, tile.x + tile.extent, y)
+        const [fine, coarse] = neighbour.level > tile.level ? [neighbour, tile] : [tile, neighbour]
+        expect(morphAt(fine, shared)).toBe(1)
+        expect(morphAt(coarse, shared)).toBe(0)
+      }
+    }),
+    { numRuns: 8 }
+  )
+})
+
+it('leaves out nothing that can be seen', () => {
+  const tree = treeOf()
+  const ray = new Vector3()
+  fc.assert(
+    fc.property(places, fc.double({ min: -1.5, max: 0.2, noNaN: true }), (place, pitch) => {
+      const viewer = viewerAt(place, pitch, false)
+      const tiles = select(viewer, 1e5, tree)
+      const all = select({ ...viewer, planes: [], horizon: Math.PI }, 1e5, tree)
+      const chosen = new Set(tiles)
+      const core = earth.grown(source.lowest)
+      for (const { center, normal } of all.filter(tile => !chosen.has(tile))) {
+        const ground = center.clone().addScaledVector(normal, heightOf(center))
+        ray.copy(ground).sub(viewer.position)
+        const isInView = viewer.planes.every(plane => plane.distanceToPoint(ray) > 0)
+        const hidden = core.intersectRayDistance(viewer.position, ray)
+        expect(isInView && (hidden === null || hidden > ray.length())).toBe(false)
+      }
+    }),
+    { numRuns: 12 }
+  )
+})
+
+it('keeps within its room, and forgets tiles that are left behind', () => {
+  const tree = treeOf()
+  const here = viewerAt({ longitude: 1, latitude: 47, clearance: 2 })
+  expect(select(here, 100, tree).length).toBeLessThanOrEqual(100)
+  const count = (tile: Tile): number =>
+    1 + (tile.children ?? []).reduce((sum, child) => sum + count(child), 0)
+  const total = (): number => tree.roots.reduce((sum, root) => sum + count(root), 0)
+  select(here, 1e5, tree)
+  const before = total()
+  const there = viewerAt({ longitude: -120, latitude: -30, clearance: 2e7 })
+  for (let i = 0; i < 600; i++) select(there, 1e5, tree)
+  expect(total()).toBeLessThan(before / 10)
+})
+
+it('finds the distance to a tile from below', () => {
+  const [tile] = treeOf().roots
+  const point = earth.geodeticToECEF({ longitude: 30, latitude: 10, height: 1e6 })
+  for (let x = -1; x <= 1; x += 0.25) {
+    for (let y = -1; y <= 1; y += 0.25) {
+      expect(distanceTo(tile, point)).toBeLessThanOrEqual(pointOf(0, x, y).distanceTo(point))
+    }
+  }
+})

@@ -1,0 +1,47 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+import { createTerrain, VIEWS } from './terrain.scene'
+import type { TerrainArgs } from './terrain.scene'
+
+const meta: Meta<TerrainArgs> = {
+  title: 'Terrain',
+  render: mount(createTerrain, storyCode('terrain.scene.ts', 'terrain')),
+  argTypes: {
+    view: {
+      name: 'Place',
+      control: {
+        type: 'select',
+        labels: Object.fromEntries(Object.entries(VIEWS).map(([key, { label }]) => [key, label]))
+      },
+      options: Object.keys(VIEWS)
+    },
+    wireframe: { name: 'Wireframe', control: 'boolean' },
+    ...timeArgTypes,
+    ...rendererArgTypes
+  },
+  args: {
+    view: 'meadow',
+    wireframe: false,
+    day: Date.UTC(2026, 5, 21),
+    hour: 15.5,
+    exposure: 0,
+    forceWebGL: false,
+    path: 'forward',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<TerrainArgs>
+
+/** Two metres above the ground, among mountains. */
+export const Meadow: Story = { tags: ['screenshot'] }
+
+/** Above the ridges. */
+export const Range: Story = { args: { view: 'range' }, tags: ['screenshot', 'webgpu-only'] }
+
+/** The whole planet: the same mesh. */
+export const Globe: Story = { args: { view: 'globe' }, tags: ['screenshot', 'webgpu-only'] }
