@@ -8,8 +8,9 @@ import { cloudReference } from '../bench/clouds'
 import { median } from '../bench/statistics'
 import { tonesOf, type Tones } from '../harness/tones'
 import { gpuMilliseconds, HeadlessDevice, nextFrame } from '../headless/device'
-import { selectStills, stills, type Still } from './scenes'
+import { selectStills, stills } from './scenes'
 import { StillView } from './StillView'
+import { ValleyView } from './ValleyView'
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -72,9 +73,16 @@ function encode(name: string, pixels: Uint8Array): Buffer {
   return PNG.sync.write(png)
 }
 
-async function take(renderer: Parameters<typeof gpuMilliseconds>[0], still: Still): Promise<Taken> {
-  const view = new StillView(renderer, still, size, quality)
+async function take(
+  renderer: Parameters<typeof gpuMilliseconds>[0],
+  still: (typeof stills)[number]
+): Promise<Taken> {
+  const view =
+    'valley' in still
+      ? new ValleyView(renderer, still, size, quality)
+      : new StillView(renderer, still, size, quality)
   try {
+    if (view instanceof ValleyView) await view.bake()
     const times: number[] = []
     for (let frame = 0; frame < frames; frame++) {
       nextFrame()

@@ -1,4 +1,6 @@
 import type { CloudPresetName } from '@welkin/clouds'
+import type { ValleyState } from '../../stories/src/valley/Valley'
+import type { ValleyName } from '../../stories/src/valley/views'
 
 /** A still: what is in it, where the sun stands, and where the camera looks. */
 export interface Still {
@@ -18,6 +20,14 @@ export interface Still {
   view: { azimuth: number; pitch: number }
   /** Hills and trees about the camera, the same under snow, or the bare planet. */
   land: 'hills' | 'snow' | 'planet'
+}
+
+/** A still of the story *Valley, all day*: a view, and what differs from how the story opens. */
+export interface ValleyStill {
+  name: string
+  /** Features to look for. */
+  about: string
+  valley: { view: ValleyName } & Partial<Pick<ValleyState, 'hour' | 'weather' | 'season'>>
 }
 
 /** The presets from the ground: where to look. */
@@ -117,10 +127,45 @@ const shafts: Still[] = [
   }
 ]
 
+/** The valley, at hours and in weathers that differ much. */
+const valleys: ValleyStill[] = [
+  {
+    name: 'valley-morning',
+    about: 'mist over the lake, peaks in the first sun',
+    valley: { view: 'slope', hour: 5, weather: 'mist' }
+  },
+  {
+    name: 'valley-day',
+    about: 'village, forests in sun and shade of clouds, mountains in the lake',
+    valley: { view: 'village', hour: 9 }
+  },
+  {
+    name: 'valley-noon',
+    about: 'the lake: waves, sky and mountains in it',
+    valley: { view: 'shore', hour: 12 }
+  },
+  {
+    name: 'valley-evening',
+    about: 'low sun among broken clouds',
+    valley: { view: 'shore', hour: 18.8, weather: 'broken' }
+  },
+  {
+    name: 'valley-night',
+    about: 'windows of the village, moonlit mountains, stars: dark, not black',
+    valley: { view: 'village', hour: 22.5, season: 0.27 }
+  },
+  {
+    name: 'valley-above',
+    about: 'over broken clouds at noon',
+    valley: { view: 'above', hour: 14, weather: 'broken' }
+  }
+]
+
 /** All stills, by name. */
-export const stills: readonly Still[] = [
+export const stills: readonly (Still | ValleyStill)[] = [
   ...fromTheGround,
   ...shafts,
+  ...valleys,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',
@@ -266,7 +311,7 @@ export const stills: readonly Still[] = [
  *
  * @throws Error with the list if a word matches none.
  */
-export function selectStills(words: readonly string[]): readonly Still[] {
+export function selectStills(words: readonly string[]): readonly (Still | ValleyStill)[] {
   if (words.length === 0) return stills
   const wanted = words.map(word => {
     const named = stills.filter(({ name }) => name === word)

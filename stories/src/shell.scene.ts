@@ -20,7 +20,14 @@ import {
 import type { Texture } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
-import { coarseGlobe, descend, DESCENT_SECONDS, landingGround, toZenith } from './shell/descent'
+import {
+  boardCockpit,
+  coarseGlobe,
+  descend,
+  DESCENT_SECONDS,
+  landingGround,
+  toZenith
+} from './shell/descent'
 import { changeOf, createRenderer, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -134,9 +141,9 @@ export async function createShell(
     ball.quaternion.copy(toZenith())
     ball.geometry.dispose()
     ball.geometry = coarseGlobe()
-    const ground = new Mesh(landingGround(), ball.material)
+    const ground = new Mesh(landingGround(EARTH_RADIUS), ball.material)
     meshes.push(ground)
-    ball.add(ground)
+    scene.add(ground)
   }
 
   const cockpit = new Group()
@@ -205,7 +212,8 @@ export async function createShell(
   const up = new Vector3()
   const draw = (): void => {
     const seconds = elapsed()
-    if (args.view === 'descent' && (part < 1 || args.frame)) {
+    const descends = args.view === 'descent' && (part < 1 || args.frame)
+    if (descends) {
       descend(camera, part, meshes[0].position, EARTH_RADIUS)
       part = Math.min(part + seconds / DESCENT_SECONDS, 1)
     }
@@ -213,6 +221,7 @@ export async function createShell(
     cockpit.position.copy(camera.position)
     up.copy(camera.position).sub(meshes[0].position).normalize()
     cockpit.quaternion.setFromUnitVectors(cockpit.up, up) // level, as far as one flies
+    if (descends) boardCockpit(cockpit, camera, part)
     renderer.render(scene, camera)
   }
 

@@ -14,13 +14,13 @@ import { float, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { meanDecks } from '../../../packages/clouds/src/environment/tsl/decks'
 import {
   diffuseRatio,
   overcastIrradiance
 } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
+import { cloudExtinction } from '../harness/cloud-extinction'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'

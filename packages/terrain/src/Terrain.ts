@@ -13,7 +13,7 @@ import { TileTree, type TileSelection } from './tiles/TileTree'
 
 /** Options of {@link Terrain}. */
 export interface TerrainOptions {
-  /** Cells along a tile's edge, even, in [4, 128], default 64. */
+  /** Cells along a tile's edge, even, in [4, 128], default 32. */
   resolution?: number
   /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
   detail?: number
@@ -29,7 +29,7 @@ export interface TerrainOptions {
 const SETTINGS = ['seaLevel', 'shadowDistance', 'camera'] as const
 
 const DEFAULTS: Required<TerrainOptions> = {
-  resolution: 64,
+  resolution: 32,
   detail: 1.5,
   seaLevel: 0,
   shadowDistance: 3000,

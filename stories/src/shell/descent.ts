@@ -1,5 +1,5 @@
 import { MathUtils, Quaternion, SphereGeometry, Vector3 } from 'three'
-import type { PerspectiveCamera } from 'three'
+import type { Object3D, PerspectiveCamera } from 'three'
 
 /** Time from the map to the ground [s]. */
 export const DESCENT_SECONDS = 45
@@ -11,6 +11,10 @@ const LANDED = 0.002
 /** Parts of the descent in which the way leads over the landing place, and from the map's view to the horizon. */
 const OVERHEAD = 0.6
 const TURNED = 0.35
+
+/** Parts of the descent between which the cockpit comes up around the camera, and the way that it does [km]. */
+const BOARDING = [0.12, 0.3] as const
+const CLIMB = 0.0025
 
 /** Place of the landing, in the Alps: the zenith of the world [degrees]. */
 const PLACE = { latitude: 46.5, longitude: 9 } as const
@@ -32,26 +36,28 @@ export const toZenith = (): Quaternion =>
 /** A globe of radius 1, a little lower than the ground about the landing place, which goes over it. */
 export const coarseGlobe = (): SphereGeometry => new SphereGeometry(LOWERED, 256, 128)
 
-/** The ground about the landing place on a globe of radius 1, the finer the nearer, with the globe's texture coordinates. */
-export function landingGround(): SphereGeometry {
+/**
+ * The ground about the landing place, the finer the nearer, from there: a globe's own vertices are half a metre off. It has
+ * the globe's texture coordinates.
+ *
+ * @param radius - The Earth's radius [km].
+ */
+export function landingGround(radius: number): SphereGeometry {
   const geometry = new SphereGeometry(1, 256, 256, 0, 2 * Math.PI, 0, CAP)
   const { position, normal, uv } = geometry.attributes
   const turn = toZenith().invert()
-  const vertex = new Vector3()
+  const direction = new Vector3()
   for (let i = 0; i < position.count; i++) {
-    vertex.fromBufferAttribute(position, i)
-    const azimuth = Math.atan2(vertex.z, vertex.x)
-    const angle = Math.acos(MathUtils.clamp(vertex.y, -1, 1)) ** 2 / CAP
+    direction.fromBufferAttribute(position, i)
+    const azimuth = Math.atan2(direction.z, direction.x)
+    const angle = Math.acos(MathUtils.clamp(direction.y, -1, 1)) ** 2 / CAP
     const sine = Math.sin(angle)
-    vertex.set(sine * Math.cos(azimuth), Math.cos(angle), sine * Math.sin(azimuth))
-    vertex.applyQuaternion(turn)
-    position.setXYZ(i, vertex.x, vertex.y, vertex.z)
-    normal.setXYZ(i, vertex.x, vertex.y, vertex.z)
-    uv.setXY(
-      i,
-      0.5 + Math.atan2(-vertex.z, vertex.x) / (2 * Math.PI),
-      0.5 + Math.asin(vertex.y) / Math.PI
-    )
+    direction.set(sine * Math.cos(azimuth), Math.cos(angle), sine * Math.sin(azimuth))
+    const drop = 2 * Math.sin(angle / 2) ** 2
+    position.setXYZ(i, radius * direction.x, -radius * drop, radius * direction.z)
+    normal.setXYZ(i, direction.x, direction.y, direction.z)
+    const { x, y, z } = direction.applyQuaternion(turn)
+    uv.setXY(i, 0.5 + Math.atan2(-z, x) / (2 * Math.PI), 0.5 + Math.asin(y) / Math.PI)
   }
   return geometry
 }
@@ -96,4 +102,10 @@ export function descend(
   camera.quaternion.slerp(_mapView, 1 - MathUtils.smootherstep(part, 0, TURNED))
   camera.up.set(0, 1, 0)
   camera.updateMatrixWorld()
+}
+
+/** Turns a cockpit, which is where the camera is, as the camera is turned; on the map it is still below. */
+export function boardCockpit(cockpit: Object3D, camera: PerspectiveCamera, part: number): void {
+  cockpit.quaternion.copy(camera.quaternion)
+  cockpit.translateY((MathUtils.smootherstep(part, ...BOARDING) - 1) * CLIMB)
 }

@@ -106,12 +106,12 @@ export function createVillage(): Village {
       i,
       matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth))
     )
-    bodies.setColorAt(i, color.setHSL(0.09, 0.12 * random(), 0.5 + 0.22 * random()))
+    bodies.setColorAt(i, color.setHSL(0.09, 0.16 * random(), 0.42 + 0.22 * random()))
     roofs.setColorAt(i, color.setScalar(0.6 + 0.6 * random()))
   }
   const { x, z } = VILLAGE
   const base = groundHeight(x, z) - 0.5
-  const plaster = new VertexLitMaterial({ color: '#cfc8ba' })
+  const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
   const spire = new Mesh(
     new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),
