@@ -49,6 +49,24 @@ it('tests and twins stay out of what is published', () => {
   expect(crossing).toEqual([])
 })
 
+it('what only tests use stays out of what is published', () => {
+  const codes = published.map(({ path, text }) => ({
+    path,
+    code: text.replaceAll(/\/\*[^]*?\*\/|\/\/.*/g, '')
+  }))
+  const uses = new Map<string, number>()
+  for (const { code } of codes) {
+    for (const [word] of code.matchAll(/\w+/g)) uses.set(word, (uses.get(word) ?? 0) + 1)
+  }
+  const unused = codes.flatMap(({ path, code }) =>
+    [...code.matchAll(/^export (?:async )?(?:const|function\*?|class) (\w+)/gm)]
+      .filter(([, name]) => uses.get(name) === 1)
+      .map(([, name]) => `${path}: ${name}`)
+  )
+  // The catalogue of stars is written by a script, with what reads it beside.
+  expect(unused).toEqual(['packages/atmosphere/src/stars/starEncoding.ts: encodeStar'])
+})
+
 it('imports only public entry points of three', () => {
   const entries = /^three(\/webgpu|\/tsl|\/addons\/.*)?$/
   const inner = sources.flatMap(({ path, text }) =>

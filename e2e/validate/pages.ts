@@ -2,7 +2,6 @@ import type { Page } from 'playwright-core'
 import { fileURLToPath } from 'node:url'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
-import { replaceModules } from '../harness/replaceModules'
 import { serveStatic } from '../harness/serve'
 
 /**
@@ -15,9 +14,7 @@ export async function withPages<T>(
   ready: keyof Window,
   use: (open: () => Promise<Page>) => Promise<T>
 ): Promise<T> {
-  const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {}, [
-    replaceModules('sampler')
-  ])
+  const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {})
   const server = await serveStatic([{ path: '/', folder }])
   const browser = await launchChromium()
   try {

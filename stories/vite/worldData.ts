@@ -1,6 +1,7 @@
 import { createReadStream, existsSync, readdirSync, readFileSync, statSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { dirname, join, relative, sep } from 'node:path'
+import { fileURLToPath } from 'node:url'
 import type { Plugin } from 'vite'
 import { ensureTerrain } from '../scripts/make-terrain.ts'
 
@@ -12,6 +13,8 @@ const TYPES: Record<string, string> = {
   xml: 'application/xml'
 }
 
+const DATA = fileURLToPath(new URL('../data/', import.meta.url))
+
 /** Path under the site's root of everything that the stories load. */
 const PREFIX = 'world-data'
 
@@ -20,10 +23,11 @@ function imageryDirectory(): string {
   return join(engine, 'Source/Assets/Textures/NaturalEarthII')
 }
 
-/** Pictures of the whole Earth that a story uses: colours, open water, lights; clouds. */
-const PICTURES: Record<string, string[]> = {
+/** Files of directories that hold more: pictures of the whole Earth (colours, open water, lights; clouds), simulated clouds. */
+const PARTS: Record<string, string[]> = {
   earth: ['earth-blue-marble.jpg', 'earth-water.png', 'earth-night.jpg'],
-  clouds: ['clouds.png']
+  clouds: ['clouds.png'],
+  simulated: ['simulated-clouds.bin']
 }
 
 function exampleDirectory(name: string): string {
@@ -40,7 +44,7 @@ function filesUnder(directory: string): string[] {
 /**
  * Serves the stories' local data in development and adds it to a build: no network is needed for either.
  *
- * `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the
+ * `world-data/simulated/` is in `data/`; `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the
  * imagery in the `@cesium/engine` package; `world-data/terrain/` is made here from the heights in `data/`, the first time and
  * whenever they or the script change.
  */
@@ -53,6 +57,7 @@ export function worldData(): Plugin {
       directories.set('terrain', ensureTerrain())
       directories.set('earth', exampleDirectory('img'))
       directories.set('clouds', exampleDirectory('clouds'))
+      directories.set('simulated', DATA)
     },
     configureServer(server) {
       server.middlewares.use((request, response, next) => {
@@ -78,8 +83,7 @@ export function worldData(): Plugin {
     },
     generateBundle() {
       for (const [name, directory] of directories) {
-        const files =
-          PICTURES[name]?.map(picture => join(directory, picture)) ?? filesUnder(directory)
+        const files = PARTS[name]?.map(picture => join(directory, picture)) ?? filesUnder(directory)
         for (const file of files) {
           const path = relative(directory, file).split(sep).join('/')
           this.emitFile({

@@ -4,12 +4,12 @@ import type { Node } from 'three/webgpu'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import type { CloudSample } from '../../../packages/clouds/src/density/tsl/sample'
 import {
-  cloudExtinction,
   extinctionNearby,
   sampleLayerPair,
   weatherCacheAt
 } from '../../../packages/clouds/src/density/tsl/sampler'
 import { samplePair } from '../../../packages/clouds/src/density/tsl/samplePair'
+import { cloudExtinction } from '../harness/cloud-extinction'
 import { altitudeIn, cloudScene, offsets } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'

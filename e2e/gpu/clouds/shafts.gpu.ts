@@ -5,7 +5,8 @@ import {
   CloudLayers,
   CloudLightTable,
   CloudNoise,
-  clouds
+  clouds,
+  type CloudsOptions
 } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { PerspectiveCamera, Vector3 } from 'three'
@@ -13,18 +14,17 @@ import { float, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { meanDecks } from '../../../packages/clouds/src/environment/tsl/decks'
 import {
   diffuseRatio,
   overcastIrradiance
 } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
+import { cloudExtinction } from '../harness/cloud-extinction'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
-import { giveExtinction } from '../harness/given-clouds'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
@@ -88,7 +88,8 @@ async function unseen(
   renderer: WebGPURenderer,
   { camera: { position }, atmosphere }: Stage,
   layers: CloudLayers,
-  noise: CloudNoise
+  noise: CloudNoise,
+  extinction?: CloudsOptions['extinction']
 ): Promise<{ node: CloudsNode; draw: () => Promise<void>; dispose: () => void }> {
   const light = new CloudLightTable()
   const camera = new PerspectiveCamera(60, 2, 1, 1e6)
@@ -96,7 +97,8 @@ async function unseen(
   const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
     quality: coarse,
     noise,
-    light
+    light,
+    extinction
   })
   node.time = 0
   const pipeline = new RenderPipeline(renderer)
@@ -164,10 +166,10 @@ for (const [name, extinction, isClear] of decks) {
         renderer,
         set,
         new CloudLayers([deck]),
-        new SparseNoise()
+        new SparseNoise(),
+        // Above the equator, x is up and z is north.
+        ({ offset }) => extinction(offset.z)
       )
-      // Above the equator, x is up and z is north.
-      giveExtinction(node.field, offset => extinction(offset.z))
       const occluder = castsOnce(node)
       shafts.add(occluder)
       for (const view of [10, 25, 60, 150]) {
@@ -287,9 +289,13 @@ gpuTest(
     const { shafts, camera, air, depth, atmosphere } = set
     const [light, noise] = [new CloudLightTable(), new SparseNoise()]
     const layers = new CloudLayers([deck])
-    const node = clouds(air, depth, camera, atmosphere, layers, { quality: coarse, noise, light })
+    const node = clouds(air, depth, camera, atmosphere, layers, {
+      quality: coarse,
+      noise,
+      light,
+      extinction: () => float(0.5)
+    })
     node.time = 0
-    giveExtinction(node.field, () => float(0.5))
     const pipeline = new RenderPipeline(renderer)
     pipeline.outputColorTransform = false
     pipeline.outputNode = node
@@ -343,15 +349,20 @@ gpuTest(
     const clear = await plain.draw()
     const set = stage(renderer, 20, { quality: 'reference' })
     const { shafts, scene, camera, atmosphere } = set
-    const layers = new CloudLayers([{ ...deck, coverage: 0 }])
-    const { node, draw, dispose } = await unseen(renderer, set, layers, new SparseNoise())
-    // Stripes, one of them overhead.
-    giveExtinction(node.field, ({ y }) =>
-      y
-        .mul(Math.PI / 8000)
-        .cos()
-        .greaterThan(0)
-        .select(0.5, 0)
+    // The cover in the mean, which dims what is scattered more often, is next to none.
+    const layers = new CloudLayers([{ ...deck, coverage: 1e-6 }])
+    const { node, draw, dispose } = await unseen(
+      renderer,
+      set,
+      layers,
+      new SparseNoise(),
+      // Stripes, one of them overhead.
+      ({ offset }) =>
+        offset.y
+          .mul(Math.PI / 8000)
+          .cos()
+          .greaterThan(0)
+          .select(0.5, 0)
     )
     const occluder = castsOnce(node)
     shafts.add(occluder)

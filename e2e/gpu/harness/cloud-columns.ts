@@ -2,8 +2,8 @@ import { FloatType, RenderTarget } from 'three'
 import { exp, float, Fn, Loop, screenCoordinate, uniform, vec3 } from 'three/tsl'
 import { NodeMaterial, QuadMesh, type Node, type WebGPURenderer } from 'three/webgpu'
 import type { CloudField, CloudLayerParameters } from '@welkin/clouds'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
 import { powerSpectrum } from '../../validate/power-spectrum'
+import { cloudExtinction } from './cloud-extinction'
 import { readPicture } from './picture'
 
 /** Draws a square picture of floats; pixels, channel by channel. */

@@ -10,7 +10,7 @@ import {
 } from 'three'
 import type { Node, NodeFrame, WebGPURenderer } from 'three/webgpu'
 import type { CloudState } from '../../../packages/clouds/test/twins/density'
-import { cloudExtinction } from '../../../packages/clouds/src/density/tsl/sampler'
+import { cloudExtinction } from './cloud-extinction'
 import { random } from './atmosphere'
 import type { GpuContext } from './context'
 import { expectTrue } from './expect'

@@ -12,7 +12,10 @@ import {
 } from 'three/tsl'
 import type { Node, Renderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
-import { CloudNoise as BakedNoise } from '../../../packages/clouds/src/noise/CloudNoise'
+import {
+  CloudNoise as BakedNoise,
+  type CloudNoiseOptions
+} from '../../../packages/clouds/src/noise/CloudNoise'
 import { isReusingTables, readTexels, waitFor } from './reuse-tables'
 
 const STORE = 'noise'
@@ -112,10 +115,10 @@ function* restore(
 
 /** Clouds' noise, reused just as tables are, once {@link loadNoise} has been called. */
 export class CloudNoise extends BakedNoise {
-  constructor() {
-    super()
-    this.#reuse('weather')
-    this.#reuse('shape')
+  constructor(options: CloudNoiseOptions = {}) {
+    super(options)
+    if (options.weather === undefined) this.#reuse('weather')
+    if (options.shape === undefined) this.#reuse('shape')
   }
 
   #reuse(name: 'weather' | 'shape'): void {

@@ -28,7 +28,6 @@ import { CloudShadowMap } from '../../../packages/clouds/src/shadow/CloudShadowM
 import { interleavedNoise } from '../../../packages/clouds/src/temporal/tsl/noisePattern'
 import type { Float, LevelTexture, Vec2, Vec3 } from '../../../packages/clouds/src/tsl-types'
 import { createContext } from '../../gpu/harness/context'
-import { giveExtinction } from '../../gpu/harness/given-clouds'
 import { readPicture } from '../../gpu/harness/picture'
 import type { Backend } from '../../harness/backend'
 
@@ -130,7 +129,7 @@ async function draw(renderer: WebGPURenderer, request: CloudLightRequest): Promi
   const size = vec3(nx + 2, ny + 2, nz + 2).mul(cell)
   const extinctionFrom =
     (shift: Vec3) =>
-    (offset: Vec3): Float => {
+    ({ offset }: { offset: Vec3 }): Float => {
       const from = offset.add(shift).toConst() as Vec3
       const place = vec3(from.dot(east), from.dot(north), from.dot(up)).add(origin).add(cell)
       return node.sample(place.div(size)).level(0).x.mul(scale).toConst()
@@ -138,8 +137,10 @@ async function draw(renderer: WebGPURenderer, request: CloudLightRequest): Promi
 
   const noise = new CloudNoise()
   const view = viewNodes(atmosphere)
-  const mapped = new CloudField(atmosphere, layers, view, { noise })
-  giveExtinction(mapped, extinctionFrom(vec3(0)))
+  const mapped = new CloudField(atmosphere, layers, view, {
+    noise,
+    extinction: extinctionFrom(vec3(0))
+  })
   const shadows = new CloudShadowMap(mapped)
 
   const pixels = blocks * RAYS
@@ -149,8 +150,10 @@ async function draw(renderer: WebGPURenderer, request: CloudLightRequest): Promi
     .mul(2 / pixels)
     .sub(1)
   const shift = right.mul(at.x).sub(above.mul(at.y)).mul(halfWidth) as Vec3
-  const marched = new CloudField(atmosphere, layers, viewFrom(view, shift), { noise })
-  giveExtinction(marched, extinctionFrom(shift))
+  const marched = new CloudField(atmosphere, layers, viewFrom(view, shift), {
+    noise,
+    extinction: extinctionFrom(shift)
+  })
   const fields = [mapped, marched]
   const target = new RenderTarget(pixels, pixels, { type: FloatType, depthBuffer: false })
   const pass = new FragmentPass(

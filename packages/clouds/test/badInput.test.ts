@@ -1,5 +1,5 @@
 import { Atmosphere, SkyLightProbe } from '@welkin/atmosphere'
-import { Mesh, PerspectiveCamera, Scene, Texture } from 'three'
+import { Data3DTexture, Mesh, PerspectiveCamera, Scene, Texture } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
 import {
@@ -7,6 +7,7 @@ import {
   CloudLayer,
   CloudLayers,
   CloudLightTable,
+  CloudNoise,
   cloudAirShadow,
   cloudEnvironment,
   cloudLayersFromMETAR,
@@ -16,7 +17,8 @@ import {
   CloudField,
   cloudShadow,
   cloudSkyLight,
-  cloudWorldMap
+  cloudWorldMap,
+  noiseVolume
 } from '@welkin/clouds'
 
 const atmosphere = new Atmosphere()
@@ -109,6 +111,30 @@ const cases: [message: string, call: () => unknown][] = [
   [
     'CloudWorldMap: texture.wrapS must be RepeatWrapping, got 1001',
     () => cloudWorldMap(new Texture())
+  ],
+  [
+    'CloudWorldMap: bounds.north must be in [-90, 90], got 91',
+    () => cloudWorldMap(new Texture(), { bounds: { west: 0, south: 0, east: 1, north: 91 } })
+  ],
+  [
+    'CloudWorldMap: bounds.north must be greater than bounds.south, got { west: 0, south: 5, east: 1, north: 5 }',
+    () => cloudWorldMap(new Texture(), { bounds: { west: 0, south: 5, east: 1, north: 5 } })
+  ],
+  [
+    "CloudWorldMap: unknown option 'perlayer', did you mean 'perLayer'?",
+    () => cloudWorldMap(new Texture(), wrong({ perlayer: true }))
+  ],
+  [
+    'CloudNoise: shape must be a function, got a Texture',
+    () => new CloudNoise({ shape: wrong(new Texture()) })
+  ],
+  [
+    'noiseVolume: volume.wrapS must be RepeatWrapping, got 1001',
+    () => noiseVolume(new Data3DTexture())
+  ],
+  [
+    'noiseVolume: volume must be a Data3DTexture, got a Texture',
+    () => noiseVolume(wrong(new Texture()))
   ],
   ['CloudsNode: noise must be a CloudNoise, got {}', () => make({ noise: {} })],
   ["CloudsNode: light must be a CloudLightTable, got 'sun'", () => make({ light: 'sun' })],

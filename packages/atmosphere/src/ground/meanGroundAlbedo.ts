@@ -8,6 +8,7 @@ import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { equirectangular } from './tsl/equirectangular'
 import type { GradientSampler } from './tsl/groundTexture'
 
+/** Size of the map of the whole planet whose mean is taken [texels]. */
 const WIDTH = 128
 const HEIGHT = 64
 

@@ -113,7 +113,9 @@ const map = (values: Spectrum, f: (value: number) => number): Spectrum => [
   f(values[3])
 ]
 
+/** Wavelengths of the default's spectra [nm]. */
 const EARTH_WAVELENGTHS: Spectrum = [440, 520, 560, 630]
+/** Half of the altitudes that the ozone layer spans: a tent over the altitude [m]. */
 const OZONE_HALF_WIDTH = 15_000
 
 const earthOzone = (dobsonUnits: number): Spectrum =>

@@ -8,6 +8,7 @@ import { CloudLayers } from '../layers/CloudLayers'
 import { CloudNoise } from '../noise/CloudNoise'
 import { NightLight } from '../light/NightLight'
 import type { NoiseName } from '../noise/noiseSizes'
+import type { CloudSample } from './CloudSample'
 import type { CloudWorldMap } from './CloudWorldMap'
 import { latticeRotations, layerRotation } from './lattice'
 import {
@@ -19,7 +20,7 @@ import {
 } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { billowForm } from './formConstants'
-import { vec4Array, type LevelTexture, type Vec3 } from '../tsl-types'
+import { vec4Array, type Float, type LevelTexture, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
 
@@ -45,6 +46,11 @@ export interface CloudFieldOptions {
   worldMap?: CloudWorldMap | null
   /** Noise to share between fields; left out, the field makes and owns its own. */
   noise?: CloudNoise
+  /**
+   * Clouds of one's own in place of weather and noise, a simulation's say: builds the node of their extinction at a
+   * place [1/m]. The layers then say between which altitudes they are, and how dense at most (`density`).
+   */
+  extinction?: (place: CloudSample) => Float
 }
 
 /** Viewpoint of a camera, from the planet's centre in the mapped space [m]. */
@@ -127,6 +133,8 @@ export class CloudField {
   readonly worldMap: CloudWorldMap | null
   /** Mapped space's axial ratio a/b of the ellipsoid, for geodetic latitudes. */
   readonly axialRatio: number
+  /** See {@link CloudFieldOptions.extinction}. */
+  readonly extinction: CloudFieldOptions['extinction']
   readonly #ownsNoise: boolean
   /** Rotation of each layer's noise about the planet's centre: the wind's work. */
   readonly rotations: readonly Quaternion[] = Array.from(
@@ -155,7 +163,8 @@ export class CloudField {
   ) {
     checkAtmosphere(where, atmosphere)
     if (!(layers instanceof CloudLayers)) fail(where, 'layers must be CloudLayers', layers)
-    const { worldMap = null, noise } = checkOptions(where, options, 'worldMap', 'noise')
+    const names = ['worldMap', 'noise', 'extinction'] as const
+    const { worldMap = null, noise, extinction } = checkOptions(where, options, ...names)
     // By what it does: its class is for those who import it.
     if (worldMap !== null && !worldMap?.coverageAt) {
       fail(where, 'worldMap must be a CloudWorldMap, by cloudWorldMap(), or null', worldMap)
@@ -172,6 +181,7 @@ export class CloudField {
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
     this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
     this.worldMap = worldMap
+    this.extinction = extinction
     const { x, z } = atmosphere.ellipsoid.radii
     this.axialRatio = x / z
   }
@@ -187,7 +197,7 @@ export class CloudField {
     const now = Number.isFinite(seconds) ? seconds : (this.#seconds ?? 0)
     const elapsed = now - (this.#seconds ?? now)
     this.#seconds = now
-    this.fadeIn = this.noise.isReady ? Math.min(this.fadeIn + this.#fadeInStep, 1) : 0
+    this.fadeIn = this.isReady ? Math.min(this.fadeIn + this.#fadeInStep, 1) : 0
     this.radius.value = bottomRadius
     this.night.update(view)
     viewpointMapped(view, _position)
@@ -221,7 +231,7 @@ export class CloudField {
     const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
     const { weatherWeights, openCells, turbulence } = parameters
     const periods = layerPeriods(parameters)
-    const scales = weatherScales(weatherWeights, this.worldMap !== null, openCells)
+    const scales = weatherScales(weatherWeights, this.worldMap?.coversPlanet === true, openCells)
     const { stretch, edge, coarseness } = layerForms(parameters)
     const column = meanColumnOf(parameters, this.depthScale.value)
     const bend = turbulence * billowForm.bend * periods.shape
@@ -247,12 +257,18 @@ export class CloudField {
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }
 
+  /** True once there is all the noise that the clouds need. */
+  get isReady(): boolean {
+    return this.extinction ? true : this.noise.isReady
+  }
+
   /**
    * Draws missing noise: `CloudNoise.update`. Until that is done, the sky is clear. Then clouds are there
    * at once, or grow over some frames if the noise was drawn over several.
    */
   bake(renderer: Renderer, slices = Infinity): boolean {
-    if (!this.noise.isReady) this.#fadeInStep = slices === Infinity ? 1 : FADE_IN_STEP
+    if (this.isReady) return true
+    this.#fadeInStep = slices === Infinity ? 1 : FADE_IN_STEP
     return this.noise.update(renderer, slices)
   }
 

@@ -36,11 +36,11 @@ export const noisePeriods = {
 export const weatherShifts = { fields: 0.25, regions: 0.5 } as const
 
 /**
- * Shift of a world map's look-up by the fields, for a map of so many texels around the planet: half a
+ * Shift of a world map's look-up by the fields, for texels of an angle [rad] seen from the planet's centre: half a
  * texel to either side, as far as fields are large enough for that [rad]. 0: the map's texels show as
  * squares near the ground (*World clouds*).
  */
-export const mapShift = (width: number): number => Math.min((2 * Math.PI) / width, 0.003)
+export const mapShift = (texel: number): number => Math.min(texel, 0.003)
 
 /** Waves around the planet. */
 export const waveForm = {

@@ -89,6 +89,7 @@ export function seenShare(layer: CloudLayerParameters, height: number): number {
   return MathUtils.clamp(tops * reached, 0, 1) * MathUtils.clamp(height / hidden, leastSeen, 1)
 }
 
+/** Numbers of heights and of columns that means are taken over. */
 const HEIGHTS = 24
 const COLUMNS = 8
 /** Deviations of the billows, and their weights: three-point Gauss–Hermite. */

@@ -5,7 +5,7 @@ import { Vector2 } from 'three'
 import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
-import { CloudField } from '../density/CloudField'
+import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
@@ -46,6 +46,8 @@ export interface CloudsOptions {
    * own, and draws it over its first frames: the sky is clear until then, and clouds grow in the next.
    */
   noise?: CloudNoise
+  /** Clouds of one's own in place of weather and noise: see {@link CloudFieldOptions.extinction}. */
+  extinction?: CloudFieldOptions['extinction']
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
 }
@@ -114,8 +116,8 @@ export class CloudsNode extends AtmosphereNode {
   ) {
     if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     super(atmosphere, camera)
-    checkOptions('CloudsNode', options, 'worldMap', 'noise', 'light', ...SETTINGS)
-    const { worldMap, noise, light, ...settings } = options
+    checkOptions('CloudsNode', options, 'worldMap', 'noise', 'extinction', 'light', ...SETTINGS)
+    const { worldMap, noise, extinction, light, ...settings } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
     if (!isDepth(depthNode)) {
       fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
@@ -126,7 +128,8 @@ export class CloudsNode extends AtmosphereNode {
     this.colorNode = colorNode
     this.depthNode = depthNode
     this.camera = camera
-    this.field = new CloudField(atmosphere, layers, this.view, { noise, worldMap }, 'CloudsNode')
+    const field = { noise, worldMap, extinction }
+    this.field = new CloudField(atmosphere, layers, this.view, field, 'CloudsNode')
     this.set(settings)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
@@ -207,7 +210,7 @@ export class CloudsNode extends AtmosphereNode {
 
   /** True once there is noise to make clouds of. Before, the sky is clear; {@link bake} makes all at once. */
   get isReady(): boolean {
-    return this.field.noise.isReady
+    return this.field.isReady
   }
 
   /** Fineness of the march. */

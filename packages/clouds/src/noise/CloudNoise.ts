@@ -9,6 +9,7 @@ import {
 } from 'three'
 import type { Data3DTexture, PixelFormat } from 'three'
 import { checkOwner, FragmentPass } from '@welkin/atmosphere'
+import { checkOptions, fail } from '@welkin/geo'
 import { Fn, float, texture3D, uniform, uv, vec3, vec4 } from 'three/tsl'
 import type { Renderer, UniformNode } from 'three/webgpu'
 import { NOISE_SIZE, type NoiseName } from './noiseSizes'
@@ -117,31 +118,76 @@ const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3): 
   channels.map((channel, i) => channelNoise(channel, first + i, p))
 
 /**
+ * Noise at a place in a texture of it, of which each coordinate is in [0, 1] and that repeats without seams: a function
+ * that builds its node, such as `noiseVolume(texture)`.
+ */
+export type NoiseFunction = (place: Vec3) => Vec4
+
+/** Noise of one's own in place of a {@link CloudNoise}'s. */
+export interface CloudNoiseOptions {
+  /**
+   * Weather of single clouds: cumulus, stratocumulus, cumulonimbus and cirrus, as `weatherWeights` mixes them.
+   * Where it is greater, there is cloud sooner. Every value in [0, 1] is as frequent as any other: so a `coverage` of
+   * 0.3 covers 0.3 of the sky.
+   */
+  weather?: NoiseFunction
+  /**
+   * Billows and turbulence: coarse billows, four along an edge; fine ones, sixteen; and two components of a curl.
+   * Each is 0.5 + 0.18 z, with a z of mean 0 and standard deviation 1.
+   */
+  shape?: NoiseFunction
+  /** Finest billows, six along an edge, in the first component: 0.5 + 0.18 z, as in `shape`. */
+  detail?: NoiseFunction
+}
+
+/**
  * The noise that clouds are made of: three tileable 3-D textures with levels of detail, drawn on the
  * GPU in fragment passes. About 11 MB.
  *
  * Weather is a volume too, of which the planet's surface is a slice: it has neither seams nor poles,
  * and since the lattice is tilted against the ground, no two tiles of it look alike.
+ *
+ * ```ts
+ * const noise = new CloudNoise({ shape: noiseVolume(billows) })
+ * clouds(air, depth, camera, atmosphere, layers, { noise })
+ * ```
  */
 export class CloudNoise {
   /** Coarse and fine billows, by `shapeChannels`, and two components of a curl. */
-  readonly shape = new NoiseTexture('shape', RGBAFormat, p => {
-    const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)
-    return vec4(coarse, fine, curlNoise(FIRST_CHANNEL.shape + shapeChannels.length, p))
-  })
+  readonly shape: NoiseTexture
   /** Finest billows, by `detailChannel`. */
-  readonly detail = new NoiseTexture('detail', RedFormat, p =>
-    vec4(vec3(channelNoise(detailChannel, FIRST_CHANNEL.detail, p)), 1)
-  )
+  readonly detail: NoiseTexture
   /** Weather, by `weatherChannels`. */
-  readonly weather = new NoiseTexture('weather', RGBAFormat, p => {
-    const [r, g, b, a] = channelsAt(weatherChannels, FIRST_CHANNEL.weather, p)
-    return vec4(r, g, b, a)
-  })
-  readonly #textures = [this.weather, this.shape, this.detail]
+  readonly weather: NoiseTexture
+  readonly #textures: readonly NoiseTexture[]
   #steps: Generator<number, void, void> | null = null
   #isReady = false
   #renderer: Renderer | null = null
+
+  /**
+   * @param options - Noise of one's own. It is drawn into the textures as any other: after a change, call `dispose`.
+   * @throws If one of them is no function.
+   */
+  constructor(options: CloudNoiseOptions = {}) {
+    checkOptions('CloudNoise', options, ...(Object.keys(NOISE_SIZE) as NoiseName[]))
+    const make = (name: NoiseName, format: PixelFormat, noise: NoiseFunction): NoiseTexture => {
+      const { [name]: own = noise } = options
+      if (typeof own !== 'function') fail('CloudNoise', `${name} must be a function`, own)
+      return new NoiseTexture(name, format, own)
+    }
+    this.shape = make('shape', RGBAFormat, p => {
+      const [coarse, fine] = channelsAt(shapeChannels, FIRST_CHANNEL.shape, p)
+      return vec4(coarse, fine, curlNoise(FIRST_CHANNEL.shape + shapeChannels.length, p))
+    })
+    this.detail = make('detail', RedFormat, p =>
+      vec4(vec3(channelNoise(detailChannel, FIRST_CHANNEL.detail, p)), 1)
+    )
+    this.weather = make('weather', RGBAFormat, p => {
+      const [r, g, b, a] = channelsAt(weatherChannels, FIRST_CHANNEL.weather, p)
+      return vec4(r, g, b, a)
+    })
+    this.#textures = [this.weather, this.shape, this.detail]
+  }
 
   /** True once all texels are drawn. */
   get isReady(): boolean {

@@ -165,9 +165,9 @@ export class CloudShadowMap {
   }
 
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
-    const { layers, noise, fadeIn, worldMap } = this.field
+    const { layers, isReady, fadeIn, worldMap } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
-    this.#inputs = [noise.isReady, radius, fadeIn, worldMap?.texture.version, ...parameters]
+    this.#inputs = [isReady, radius, fadeIn, worldMap?.texture.version, ...parameters]
     _below.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_below.dot(this.#anchor) > ANCHOR_COSINE * _below.length() * this.#anchor.length())) {
       this.#anchor.copy(_below)

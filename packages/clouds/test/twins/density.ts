@@ -100,7 +100,9 @@ function coverageAt(
   shift: Vector3
 ): number {
   if (state.worldMap === undefined) return coverage
-  const { x, y, z } = zenith.clone().addScaledVector(shift, mapShift(state.worldMapWidth ?? 2048))
+  const { x, y, z } = zenith
+    .clone()
+    .addScaledVector(shift, mapShift((2 * Math.PI) / (state.worldMapWidth ?? 2048)))
   const latitude = Math.atan2(z * (state.axialRatio ?? 1), Math.hypot(x, y))
   const share = clamp(state.worldMap(Math.atan2(y, x), latitude), 0, 1)
   const covered = share * coverage

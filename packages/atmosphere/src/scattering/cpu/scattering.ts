@@ -7,6 +7,7 @@ import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from '../../air/
 import { gaussLegendre } from '../../math/cpu/quadrature'
 import { opticalDepth, lightTransmittance } from '../../transmittance/cpu/transmittance'
 
+/** Quadrature on each piece of a ray, and the number of pieces. */
 const RULE = /*#__PURE__*/ gaussLegendre(6)
 const PIECES = 10
 

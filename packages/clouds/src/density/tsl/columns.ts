@@ -7,22 +7,6 @@ import { subpointOffset, type CloudSample } from './sample'
 import { filteredCoverageAt } from './weather'
 
 /**
- * Vertical optical depth of all clouds above or below a place of the ground, from the weather alone.
- *
- * @param sample - Any altitude: that is not looked at, but `offset` must agree with it.
- */
-export function verticalOpticalDepth(field: CloudField, sample: CloudSample): Float {
-  const subpoint = subpointOffset(field, sample).toConst()
-  const sum = float(0).toVar()
-  forLayers(field, index => {
-    const layer = layerAt(field, index)
-    const filteredCoverage = filteredCoverageAt(field, layer, subpoint, sample)
-    sum.addAssign(effectiveOpticalDepth(field, layer, filteredCoverage))
-  })
-  return sum
-}
-
-/**
  * Cosine of the lowest sun whose rays through a layer grow longer. Smaller: the ground beyond the shadow maps is
  * black at sunset (*World clouds*).
  */

@@ -25,6 +25,8 @@ export const inLattice = (displacement: Vec2): Vec3 =>
 
 /** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
 export interface LayerNodes {
+  /** Index among the layers, from 0. */
+  index: Int
   baseAltitude: Float
   /** 1 / (top − base) [1/m]. */
   perThickness: Float
@@ -99,6 +101,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
       return vec3(x, y, z)
     }
   return {
+    index,
     baseAltitude: extent.x,
     perThickness: extent.y,
     thickness: extent.y.reciprocal(),

@@ -85,6 +85,12 @@ function bodyAt(
 }
 
 /**
+ * Strength of the clear air of a user's own clouds, of which nothing more is known [–]. Less: small clouds are missed
+ * here and there, as grain (*Real or not*).
+ */
+const CLEAR_STRENGTH = -4
+
+/**
  * One layer at places near each other, in the weather on large scales around them: their texture reads do
  * not wait for each other.
  *
@@ -100,6 +106,11 @@ export function sampleLayerAt(
   samples: readonly CloudSample[],
   { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
 ): LayerSample[] {
+  if (field.extinction)
+    return samples.map(field.extinction).map(extinction => ({
+      extinction,
+      strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH)
+    }))
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution

@@ -21,31 +21,13 @@ export function backgroundAt(
   sample: CloudSample,
   mapped?: { map: WeatherMap | undefined; index: Int }
 ): PackedBackground {
+  if (field.extinction) return vec4(0)
   const subpoint = subpointOffset(field, sample).toConst() as Vec3
   const footprint = footprintOf(field, sample)
   const { map, index } = mapped ?? {}
   return map === undefined || index === undefined
     ? weatherBackground(field, layer, subpoint, sample, footprint)
     : map.sample(layer, index, subpoint, sample.up, footprint)
-}
-
-/**
- * Extinction of all clouds at a place, in the weather of that very place: what the samplers below come
- * near to, which share its background between places.
- *
- * @param detail - True if edges have detail.
- * @returns [1/m], at least 0. Twin: test/twins/density.ts
- */
-export function cloudExtinction(field: CloudField, sample: CloudSample, detail: boolean): Float {
-  const sum = float(0).toVar()
-  forLayers(field, index => {
-    const layer = layerAt(field, index)
-    If(isWithin(layer, heightIn(layer, sample.altitude)), () => {
-      const background = backgroundAt(field, layer, sample)
-      sum.addAssign(sampleLayer(field, layer, background, sample, { detail }).extinction)
-    })
-  })
-  return sum
 }
 
 /** The weather around a place, kept for places nearby: that of the layer which is densest there. */

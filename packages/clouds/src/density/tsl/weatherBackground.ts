@@ -87,7 +87,6 @@ export function weatherBackground(
     .add(regions.xy.mul(weatherShifts.regions))
     .mul(period)
   const coverage =
-    field.worldMap?.coverageAt(field, layer.coverage, sample.up, footprint, fields.zxy) ??
-    layer.coverage
+    field.worldMap?.coverageAt(field, layer, sample.up, footprint, fields.zxy) ?? layer.coverage
   return vec4(sum, coverage, shift).toConst()
 }

@@ -1,7 +1,7 @@
 import { Fn, float, vec2 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
 import { slabTableForm } from '../cpu/slabTableForm'
-import type { Float, Vec2, Vec4 } from '../../tsl-types'
+import type { Float, Vec2 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
 import { lateralLeak, type LeakNodes } from './lateralLeak'
 import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
@@ -87,7 +87,7 @@ export interface CloudAmbientNodes {
 
 /**
  * Source function of light from sky and ground along a view ray, all orders of scattering: radiance per
- * scaled extinction, for a mean radiance of 1 of the upper or of the lower hemisphere.
+ * scaled extinction, for a mean radiance of 1 of the upper or of the lower hemisphere. Twin: test/twins/cloudLight.ts
  */
 export function cloudAmbientShares(
   light: CloudLight,
@@ -109,23 +109,4 @@ export function cloudAmbientShares(
     // The same slab seen from below.
     ground: at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
   }
-}
-
-/**
- * Source function of light from a given sky and ground: radiance per scaled extinction. Twin:
- * test/twins/cloudLight.ts
- *
- * @param sky - Mean radiance of the upper hemisphere: irradiance from above over π.
- * @param ground - Mean radiance of the lower hemisphere: irradiance from below over π.
- */
-export function cloudAmbient(
-  light: CloudLight,
-  sample: CloudAmbientNodes,
-  sky: Vec4,
-  ground: Vec4
-): Vec4 {
-  return Fn(() => {
-    const shares = cloudAmbientShares(light, sample)
-    return sky.mul(shares.sky).add(ground.mul(shares.ground))
-  })()
 }

@@ -1,4 +1,4 @@
-import { vec2 } from 'three/tsl'
+import { float, vec2, vec4 } from 'three/tsl'
 import type { Float, LevelTexture, Vec2, Vec4 } from '../../tsl-types'
 
 /**
@@ -21,15 +21,19 @@ export function sharpSample(light: LevelTexture<Vec2>, at: Vec2, size: Vec2): Ve
   const inner = first.add(second).toConst() as Vec2
   const between = middle.add(second.div(inner)).toConst() as Vec2
   const [start, end] = [middle.sub(1), middle.add(2)]
-  const read = (x: Vec2, y: Vec2): Vec4 => light.sample(vec2(x.x, y.y).div(size)).level(0)
-  const taps = [
-    { value: read(between, between), weight: inner.x.mul(inner.y).toConst() },
-    { value: read(start, between), weight: before.x.mul(inner.y).toConst() },
-    { value: read(end, between), weight: after.x.mul(inner.y).toConst() },
-    { value: read(between, start), weight: inner.x.mul(before.y).toConst() },
-    { value: read(between, end), weight: inner.x.mul(after.y).toConst() }
+  // Corners weigh next to nothing.
+  const taps: [x: Float, y: Float, weight: Float][] = [
+    [between.x, between.y, inner.x.mul(inner.y)],
+    [start.x, between.y, before.x.mul(inner.y)],
+    [end.x, between.y, after.x.mul(inner.y)],
+    [between.x, start.y, inner.x.mul(before.y)],
+    [between.x, end.y, inner.x.mul(after.y)]
   ]
-  const total = taps.map(({ weight }) => weight as Float).reduce((a, b) => a.add(b) as Float)
-  const sum = taps.map(({ value, weight }) => value.mul(weight)).reduce((a, b) => a.add(b))
+  const sum = vec4(0).toVar() as Vec4
+  const total = float(0).toVar()
+  for (const [x, y, weight] of taps) {
+    sum.addAssign(light.sample(vec2(x, y).div(size)).level(0).mul(weight))
+    total.addAssign(weight)
+  }
   return sum.div(total).max(0).toConst()
 }
