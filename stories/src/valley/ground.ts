@@ -5,6 +5,7 @@ import {
   float,
   mix,
   normalWorld,
+  positionView,
   positionWorld,
   smoothstep,
   texture,
@@ -81,11 +82,22 @@ function groundMaterial(): VertexLitMaterial {
   const sheared = place.add(positionWorld.y.mul(vec2(0.83, 0.57))).toVar()
   const picture = createNoiseTexture()
   material.addEventListener('dispose', () => picture.dispose())
-  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple.
-  const noise = (period: number): Node<'float'> =>
-    texture(picture, sheared.div(period)).r.sub(0.5).mul(2)
-  const broad = noise(1310).toVar()
-  const fine = noise(71).add(noise(7.3)).add(noise(1.9).mul(0.7)).toVar()
+  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned.
+  const noise = (period: number): Node<'float'> => {
+    const [cos, sin] = [Math.cos(period), Math.sin(period)].map(t => t / period)
+    const turned = vec2(sheared.dot(vec2(cos, sin)), sheared.dot(vec2(-sin, cos)))
+    return texture(picture, turned).r.sub(0.5).mul(2)
+  }
+  // A period that is a few pixels wide would show as a net.
+  const distance = positionView.z.negate()
+  const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
+  const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
+  const fine = noise(1.9)
+    .mul(0.7)
+    .add(noise(7.3))
+    .add(noise(71).mul(upTo(2500)))
+    .add(noise(390).mul(upTo(12_000)))
+    .toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const slope = normalWorld.y.oneMinus().add(fine.mul(0.025)).toVar()
   const [forest, field] = [

@@ -17,8 +17,9 @@ import {
   fract,
   hash,
   instanceIndex,
-  normalLocal,
-  positionLocal,
+  mix,
+  normalGeometry,
+  positionGeometry,
   step,
   uniform,
   vec3
@@ -68,21 +69,22 @@ export function createVillage(): Village {
   const lit = uniform(0)
   const luminance = uniform(0)
   const walls = new VertexLitMaterial()
-  // Windows in two rows on each wall, lit one by one.
-  const cell = vec3(positionLocal.x.mul(5), positionLocal.y.mul(2), positionLocal.z.mul(5))
+  // Windows in two rows on each wall, lit one by one; on the unit cube, before it becomes a house.
+  const cell = positionGeometry.add(vec3(0.5, 0, 0.5)).mul(vec3(4, 2, 4))
   const inCell = fract(cell)
-  const along = normalLocal.x.abs().greaterThan(0.5).select(inCell.z, inCell.x)
+  const along = normalGeometry.x.abs().greaterThan(0.5).select(inCell.z, inCell.x)
   const isWindow = step(0.3, along)
     .mul(step(along, 0.7))
     .mul(step(0.35, inCell.y))
     .mul(step(inCell.y, 0.8))
-    .mul(step(normalLocal.y.abs(), 0.5))
+    .mul(step(normalGeometry.y.abs(), 0.5))
   const number = cell
     .floor()
     .dot(vec3(1, 7, 13))
     .add(float(instanceIndex).mul(101))
     .add(500)
   const isLit = step(hash(number), lit.mul(0.55))
+  walls.colorNode = mix(vec3(1), vec3(0.12, 0.13, 0.15), isWindow)
   walls.emissiveNode = vec3(1, 0.62, 0.28).mul(isWindow.mul(isLit).mul(luminance))
   const tiles = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
