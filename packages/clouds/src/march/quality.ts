@@ -60,7 +60,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     shortestStep: 4,
     depthStep: 0.2,
     layerSteps: 14,
-    lightSteps: 2,
+    lightSteps: 4,
     block: 4
   },
   high: {
@@ -69,7 +69,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     shortestStep: 4,
     depthStep: 0.25,
     layerSteps: 18,
-    lightSteps: 2,
+    lightSteps: 4,
     block: 3
   },
   ultra: {
