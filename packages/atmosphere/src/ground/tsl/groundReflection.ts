@@ -68,9 +68,8 @@ function smithLambda(cosine: Float, slope: Float): Float {
  * Mean square slope of the sea's surface in a wind.
  *
  * @param windSpeed - 12.5 m above the water [m/s].
- * @see Spurr 2004, "A new approach to the retrieval of surface properties from earthshine measurements", JQSRT 83,
- * eq. A.18, after Cox & Munk 1954, "Measurement of the roughness of the sea surface from photographs of the sun's
- * glitter", whose slopes are 0.003 + 5.12e-3 W
+ * @see Mobley 2021, "Ocean Optics Web Book", "Cox-Munk sea surface slope statistics", after Cox & Munk 1954,
+ * "Measurement of the roughness of the sea surface from photographs of the sun's glitter"
  */
 export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 * windSpeed
 
@@ -79,7 +78,7 @@ export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 *
  * F P(slope)/(4 cos θ_eye cos⁴β), with P Gaussian, and slopes in each other's shadow left out.
  *
  * @param variance - {@link seaSlopeVariance}.
- * @see Spurr 2004, eq. A.18, as for {@link seaSlopeVariance}; shadowing as for `smithLambda`
+ * @see Mobley 2021, as for {@link seaSlopeVariance}, "Cox-Munk sea surface slope statistics"; shadowing as for `smithLambda`
  */
 export function sunGlint(angles: GroundAngles, variance: Float): Float {
   const { cosLight, cosViewer, cosLightViewer } = angles
