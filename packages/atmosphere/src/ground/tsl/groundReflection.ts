@@ -78,7 +78,7 @@ export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 *
  * F P(slope)/(4 cos θ_eye cos⁴β), with P Gaussian, and slopes in each other's shadow left out.
  *
  * @param variance - {@link seaSlopeVariance}.
- * @see Mobley 2021, as for {@link seaSlopeVariance}, "Cox-Munk sea surface slope statistics"; shadowing as for `smithLambda`
+ * @see Mobley 2021, "Ocean Optics Web Book", "Cox-Munk sea surface slope statistics"; shadowing as for `smithLambda`
  */
 export function sunGlint(angles: GroundAngles, variance: Float): Float {
   const { cosLight, cosViewer, cosLightViewer } = angles
