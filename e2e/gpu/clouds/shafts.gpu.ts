@@ -349,8 +349,7 @@ gpuTest(
     const clear = await plain.draw()
     const set = stage(renderer, 20, { quality: 'reference' })
     const { shafts, scene, camera, atmosphere } = set
-    // The cover in the mean, which dims what is scattered more often, is next to none.
-    const layers = new CloudLayers([{ ...deck, coverage: 1e-6 }])
+    const layers = new CloudLayers([{ ...deck, coverage: 0 }])
     const { node, draw, dispose } = await unseen(
       renderer,
       set,
