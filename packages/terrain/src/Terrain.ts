@@ -237,7 +237,8 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       lowest,
       worldToECEF,
       ellipsoid,
-      shadowDistance
+      shadowDistance,
+      this.#seaLevel
     )
     this.#uniforms.update(viewer, ground)
     const { tiles } = this.#tree.select(viewer, CAPACITY, this.#selection)
@@ -280,8 +281,12 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
 
+  /** Rays do not hit it: its vertices are moved on the GPU. `heightBelow` says where the ground is. */
+  override raycast(): void {}
+
   /** Frees geometry and material; atmosphere and source are shared. */
   override dispose(): void {
+    super.dispose()
     this.geometry.dispose()
     this.material.dispose()
   }

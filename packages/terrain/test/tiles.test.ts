@@ -25,17 +25,18 @@ const places = fc.record({
 })
 type Place = typeof places extends fc.Arbitrary<infer T> ? T : never
 
-/** Viewer at a place; with `planes` left out it sees all round. */
-function viewerAt(place: Place, pitch = 0, isAllRound = true): Viewer {
-  const foot = earth.geodeticToECEF({ ...place, height: 0 })
-  const position = earth.geodeticToECEF({ ...place, height: heightOf(foot) + place.clearance })
+/** Viewer at a place, over ground and sea; with `planes` left out it sees all round. */
+function viewerAt(place: Place, pitch = 0, isAllRound = true, sea = -Infinity): Viewer {
+  const subpoint = earth.geodeticToECEF({ ...place, height: 0 })
+  const height = Math.max(heightOf(subpoint), sea) + place.clearance
+  const position = earth.geodeticToECEF({ ...place, height })
   const camera = new PerspectiveCamera(50, 1.6, 1, 1e8)
   camera.quaternion.setFromRotationMatrix(earth.localYUpFrame(position, new Matrix4()))
   camera.rotateX(pitch)
   camera.position.copy(position)
   camera.updateMatrixWorld()
-  const { lowest } = source
-  const viewer = viewerOf(camera, position, place.clearance, lowest, new Matrix4(), earth, 0)
+  const lowest = Math.max(source.lowest, sea)
+  const viewer = viewerOf(camera, position, place.clearance, lowest, new Matrix4(), earth, 0, sea)
   return isAllRound ? { ...viewer, planes: [], horizon: Math.PI } : viewer
 }
 
@@ -101,13 +102,13 @@ it('leaves out nothing that can be seen', () => {
   const ray = new Vector3()
   fc.assert(
     fc.property(places, fc.double({ min: -1.5, max: 0.2, noNaN: true }), (place, pitch) => {
-      const viewer = viewerAt(place, pitch, false)
+      const viewer = viewerAt(place, pitch, false, 0)
       const tiles = select(viewer, 1e5, tree)
       const all = select({ ...viewer, planes: [], horizon: Math.PI }, 1e5, tree)
       const chosen = new Set(tiles)
-      const core = earth.grown(source.lowest)
+      const core = earth
       for (const { center, normal } of all.filter(tile => !chosen.has(tile))) {
-        const ground = center.clone().addScaledVector(normal, heightOf(center))
+        const ground = center.clone().addScaledVector(normal, Math.max(heightOf(center), 0))
         ray.copy(ground).sub(viewer.position)
         const isInView = viewer.planes.every(plane => plane.distanceToPoint(ray) > 0)
         const hidden = core.intersectRayDistance(viewer.position, ray)
@@ -125,7 +126,8 @@ it('keeps within its room, and forgets tiles that are left behind', () => {
   const count = (tile: Tile): number =>
     1 + (tile.children ?? []).reduce((sum, child) => sum + count(child), 0)
   const total = (): number => tree.roots.reduce((sum, root) => sum + count(root), 0)
-  select(here, 1e5, tree)
+  const levels = select(here, 1e5, tree).map(({ level }) => level)
+  expect(Math.max(...levels)).toBe(FINEST)
   const before = total()
   const there = viewerAt({ longitude: -120, latitude: -30, clearance: 2e7 })
   for (let i = 0; i < 600; i++) select(there, 1e5, tree)

@@ -144,7 +144,7 @@ export class DistanceFog implements SkyLayer {
   #shown(light: Vec4): Vec4 {
     const layers: readonly SkyLayer[] = this.#atmosphere?.layers ?? []
     return layers
-      .slice(0, layers.indexOf(this))
+      .slice(0, Math.max(layers.indexOf(this), 0))
       .reduce((sky, layer) => layer.skyLight?.(sky) ?? sky, light)
   }
 

@@ -24,8 +24,7 @@ export function rayleighCrossSection(nanometres: number): number {
 /**
  * Ångström exponent: optical depth of aerosols is proportional to λ^−1.3.
  *
- * @see Preetham et al. 1999, "A practical analytic model for daylight", appendix A.1, after Ångström 1964, "The
- * parameters of atmospheric turbidity"
+ * @see Preetham et al. 1999, "A practical analytic model for daylight", appendix A.1
  */
 export const ANGSTROM_EXPONENT = 1.3
 

@@ -14,6 +14,9 @@ const MOST = 6e4
 /** Least height over which shadows end [m]. */
 const LEAST_BLUR = 0.1
 
+/** Error of heights in half floats, over their size, after some sweeps. Less: high ground shades itself in bands. */
+const HALF_STEP = 2 ** -10
+
 const _toLight = new Vector3()
 const _linear = new Matrix3()
 
@@ -110,10 +113,10 @@ export class SweptHeights {
    * @param raised - Height that is added to it, in that of shadows' edges.
    */
   transmittance(place: Vec3, raised = 0): Float {
-    const dark = sampleLevel0(this.#shadow, place.xy).r as Float
+    const dark = (sampleLevel0(this.#shadow, place.xy).r as Float).toConst()
     const lit = place.z
       .sub(dark)
-      .div(this.#blur)
+      .div(dark.abs().mul(HALF_STEP).add(this.#blur))
       .add(1 + raised)
       .clamp()
     return isInField(place.xy).lessThan(0.5).select(1, lit).toConst()

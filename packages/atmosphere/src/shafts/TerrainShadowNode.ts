@@ -29,7 +29,7 @@ const _target = new Vector3()
  * ```
  *
  * It falls on what has `receiveShadow`, the terrain too: what stands no deeper below the heights of the field than light
- * falls over two of its texels is lit. Light shafts of the same light read the same map.
+ * falls over one of its texels is lit. Light shafts of the same light, one with a `source`, read the same map.
  */
 export class TerrainShadowNode extends Node<'float'> {
   static get type(): string {

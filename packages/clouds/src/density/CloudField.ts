@@ -267,8 +267,8 @@ export class CloudField {
    * at once, or grow over some frames if the noise was drawn over several.
    */
   bake(renderer: Renderer, slices = Infinity): boolean {
-    if (this.isReady) return true
-    this.#fadeInStep = slices === Infinity ? 1 : FADE_IN_STEP
+    if (this.extinction) return true
+    if (!this.noise.isReady) this.#fadeInStep = slices === Infinity ? 1 : FADE_IN_STEP
     return this.noise.update(renderer, slices)
   }
 

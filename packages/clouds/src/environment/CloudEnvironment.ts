@@ -208,9 +208,9 @@ export class CloudEnvironment implements SkyOverlay {
   /** Makes field and shader for the environment's camera. */
   #build({ camera }: AtmosphereView): CloudField {
     const { atmosphere, field: source, light, shadows } = this.clouds
-    const { layers, noise, worldMap } = source
+    const { layers, noise, worldMap, extinction } = source
     const view = viewNodes(atmosphere, camera)
-    const field = new CloudField(atmosphere, layers, view, { noise, worldMap })
+    const field = new CloudField(atmosphere, layers, view, { noise, worldMap, extinction })
     const draw = Fn(() => {
       const at = uv() as unknown as Vec2
       const local = octahedralDirection(at.mul(2).sub(1)).toConst()

@@ -167,7 +167,8 @@ export class CloudShadowMap {
   #draw(renderer: Renderer, view: AtmosphereView, radius: number): void {
     const { layers, isReady, fadeIn, worldMap } = this.field
     const parameters = [...layers].map(layer => layer.parameters)
-    this.#inputs = [isReady, radius, fadeIn, worldMap?.texture.version, ...parameters]
+    const map = [worldMap?.texture.version, worldMap?.bounds]
+    this.#inputs = [isReady, radius, fadeIn, ...map, ...parameters]
     _below.copy(view.up).multiplyScalar(radius + this.#middle())
     if (!(_below.dot(this.#anchor) > ANCHOR_COSINE * _below.length() * this.#anchor.length())) {
       this.#anchor.copy(_below)

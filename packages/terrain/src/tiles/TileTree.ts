@@ -83,8 +83,9 @@ export class TileTree {
         if (!isVisible && !mayCastShadow(tile, viewer)) continue
         if (isBelowHorizon(tile, viewer, radius)) continue
         const taken = target.tiles.length + unseen.length + next.length + (open.length - i)
-        const range = this.#ranges[tile.level + 1] ?? 0
-        if (distanceTo(tile, viewer.datumPoint) < range && taken + 4 <= most) {
+        const range = this.#ranges[tile.level + 1]
+        const isNear = tile.level < this.finestLevel && distanceTo(tile, viewer.datumPoint) < range
+        if (isNear && taken + 4 <= most) {
           next.push(...tile.split(this.ellipsoid, this.source))
         } else if (isVisible) target.tiles.push(tile)
         else unseen.push(tile)
@@ -117,8 +118,11 @@ export const distanceTo = ({ center, radius }: Tile, point: Vector3): number =>
  *
  * @param size - Smallest radius of the planet [m].
  */
-function isInFrustum(tile: Tile, { position, planes }: Viewer, size: number): boolean {
-  const { center, normal, radius, lowest, highest } = tile
+function isInFrustum(tile: Tile, viewer: Viewer, size: number): boolean {
+  const { position, planes, seaLevel } = viewer
+  const { center, normal, radius } = tile
+  const lowest = Math.max(tile.lowest, seaLevel)
+  const highest = Math.max(tile.highest, seaLevel)
   const middle = (lowest + highest) / 2
   const x = center.x - position.x + normal.x * middle
   const y = center.y - position.y + normal.y * middle
@@ -137,10 +141,11 @@ const mayCastShadow = (tile: Tile, { datumPoint, shadowDistance }: Viewer): bool
 
 /** True of a tile that the planet itself hides. */
 function isBelowHorizon(
-  { direction, spread, highest }: Tile,
+  { direction, spread, highest: ground }: Tile,
   viewer: Viewer,
   radius: number
 ): boolean {
+  const highest = Math.max(ground, viewer.seaLevel)
   const angle = Math.acos(Math.min(Math.max(viewer.direction.dot(direction), -1), 1)) - spread
   if (angle <= viewer.horizon) return false
   return angle > viewer.horizon + horizonAngle(1 + Math.max(highest, 0) / radius, viewer.occluder)

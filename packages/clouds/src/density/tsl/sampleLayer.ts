@@ -107,10 +107,12 @@ export function sampleLayerAt(
   { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
 ): LayerSample[] {
   if (field.extinction)
-    return samples.map(field.extinction).map(extinction => ({
-      extinction,
-      strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH)
-    }))
+    return samples
+      .map(sample => field.extinction!(sample))
+      .map(extinction => ({
+        extinction,
+        strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH)
+      }))
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution

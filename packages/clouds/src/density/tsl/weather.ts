@@ -81,6 +81,7 @@ export function filteredCoverageAt(
   subpoint: Vec3,
   sample: CloudSample
 ): Float {
+  if (field.extinction) return layer.coverage
   const footprint = footprintOf(field, sample)
   const packed = weatherBackground(field, layer, subpoint, sample, footprint)
   const background = unpackBackground(packed)

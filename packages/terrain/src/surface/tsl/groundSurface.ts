@@ -57,11 +57,11 @@ export function groundSurface(
   const patch = patches(reference, offset, shortest, zero).w.toConst('patchiness')
   const grain = grains(reference, offset, shortest, zero).toConst('grain')
   const climate = climates(reference, offset, shortest, zero).w.toConst('climate')
-  const latitude = up.z.abs().toConst('latitude')
+  const sinLatitude = up.z.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
 
-  // Snow lies above 4,900 m at the equator, 2,900 m in the Alps, and at sea level near the poles.
-  const snowLine = float(4900).sub(latitude.mul(latitude).mul(5000)).toConst('snowLine')
+  // Snow lies above 4,900 m at the equator, 2,200 m in the Alps, and at sea level near the poles.
+  const snowLine = float(4900).sub(sinLatitude.mul(sinLatitude).mul(5000)).toConst('snowLine')
   const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
   const steepness = cosSlope
     .oneMinus()
@@ -69,8 +69,8 @@ export function groundSurface(
     .add(grain.w.mul(0.02))
     .toConst('steepness')
 
-  const dryness = smoothstep(0.12, 0.4, latitude)
-    .mul(smoothstep(0.42, 0.62, latitude).oneMinus())
+  const dryness = smoothstep(0.12, 0.4, sinLatitude)
+    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
     .mul(1.1)
     .sub(0.35)
     .add(climate.mul(1.4))

@@ -13,6 +13,8 @@ export interface Viewer {
   readonly datumPoint: Vector3
   /** Sides of the view, relative to the position. */
   readonly planes: readonly Plane[]
+  /** Surface of the sea [m]; −Infinity for none. */
+  readonly seaLevel: number
   /** Distance within which tiles out of view may cast shadows into it [m]; 0 for none. */
   readonly shadowDistance: number
   /** Unit vector to the viewer where the ellipsoid is the unit sphere. */
@@ -38,7 +40,7 @@ const foot = new Vector3()
  * @param clearance - Height above the ground [m], > 0.
  * @param lowest - Lower bound of all ground [m].
  * @param worldToECEF - Rotation and scale of the world, translation ignored.
- * @param shadowDistance - See {@link Viewer}.
+ * @param shadowDistance - See {@link Viewer}, like `seaLevel`.
  */
 export function viewerOf(
   camera: Camera,
@@ -47,7 +49,8 @@ export function viewerOf(
   lowest: number,
   worldToECEF: Matrix4,
   ellipsoid: Ellipsoid,
-  shadowDistance: number
+  shadowDistance: number,
+  seaLevel = -Infinity
 ): Viewer {
   ellipsoid.footPoint(positionECEF, foot)
   const up = ellipsoid.surfaceNormal(positionECEF)
@@ -65,6 +68,7 @@ export function viewerOf(
     datumPoint: foot.clone().addScaledVector(up, clearance),
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
+    seaLevel,
     shadowDistance,
     direction: direction.divideScalar(radius),
     occluder,
