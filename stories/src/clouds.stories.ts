@@ -220,8 +220,7 @@ export const Shadows: Story = {
 
 /** Each preset over the same land; choose one. */
 export const Presets: Story = {
-  args: { ...sky('mixed'), altitude: 500, pitch: 12 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { ...sky('mixed'), altitude: 500, pitch: 12 }
 }
 
 /** The stages of a cumulus, one on top of the other; choose one. */

@@ -69,6 +69,7 @@ export async function createRealOrNot(
     atmosphere.frame = 'ecef'
     const quality = qualityOf(args)
     const field = new SimulatedClouds(simulation, atmosphere, { ...VIEWS.ground, height: BASE })
+    const split = uniform(args.split)
     // #region two skies
     const preset = cloudPreset('fairWeather')
     preset.at(0).set({ baseAltitude: BASE, topAltitude: BASE + 1200, coverage: 0.3 })
@@ -83,7 +84,6 @@ export async function createRealOrNot(
       noise: made.noise,
       light: made.light
     })
-    const split = uniform(args.split)
     pipeline.outputNode = screenUV.x.lessThan(split).select(simulated, made)
     // #endregion
     cloudSkyLight(sky, made)

@@ -55,7 +55,7 @@ export default meta
 type Story = StoryObj<RealOrNotArgs>
 
 /** Simulated cumulus on the left, made ones on the right. */
-export const Ground: Story = { tags: ['screenshot', 'webgpu-only'] }
+export const Ground: Story = { tags: ['screenshot'] }
 
 /** Simulated and made clouds from among them. */
 export const Among: Story = { args: { view: 'among' } }
