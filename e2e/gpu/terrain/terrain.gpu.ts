@@ -86,13 +86,13 @@ function groundPoints(picture: Picture, camera: PerspectiveCamera): Vector3[] {
 gpuTest('a shader finds heights and slopes as the CPU does', async t => {
   const { ellipsoid } = new Atmosphere()
   const random = randomNumbers(5)
-  const foot = ellipsoid.geodeticToECEF({ longitude: 1.02, latitude: 47.01 })
-  const reference = foot.clone().divideScalar(256).round()
+  const subpoint = ellipsoid.geodeticToECEF({ longitude: 1.02, latitude: 47.01 })
+  const reference = subpoint.clone().divideScalar(256).round()
   const origin = reference.clone().multiplyScalar(256)
   const inputs = Array.from({ length: 300 }, () => {
     const reach = 10 ** (4 * random())
     const offset = new Vector3(random() - 0.5, random() - 0.5, random() - 0.5)
-    const place = offset.multiplyScalar(reach).add(foot)
+    const place = offset.multiplyScalar(reach).add(subpoint)
     return ellipsoid.footPoint(place).sub(origin).toArray().map(Math.fround)
   })
   const sample = (input: Node<'vec4'>) =>

@@ -50,7 +50,7 @@ const NO_SEA = -1e9
 
 const positionWorld = new Vector3()
 const positionECEF = new Vector3()
-const foot = new Vector3()
+const subpoint = new Vector3()
 const reference = new Vector3()
 const up = new Vector3()
 const quaternion = new Quaternion()
@@ -173,7 +173,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    * @throws If one is not finite or out of its range.
    */
   heightAt(longitude: number, latitude: number): number {
-    return this.#heightAtFoot(this.#footAt('heightAt', longitude, latitude))
+    return this.#heightAtSubpoint(this.#subpointAt('heightAt', longitude, latitude))
   }
 
   /**
@@ -184,7 +184,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    * @throws If one is not finite or out of its range.
    */
   normalAt(longitude: number, latitude: number, target: Vector3 = new Vector3()): Vector3 {
-    const position = this.#footAt('normalAt', longitude, latitude)
+    const position = this.#subpointAt('normalAt', longitude, latitude)
     this.atmosphere.ellipsoid.surfaceNormal(position, target)
     const { height, gradient } = this.source.sampleAt(position, sample)
     if (height <= this.#seaLevel) return target
@@ -201,18 +201,18 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   heightBelow(position: Vector3): number {
     checkVector('Terrain.heightBelow', 'position', position)
     const { ellipsoid, worldToECEF } = this.atmosphere
-    foot.copy(position).applyMatrix4(worldToECEF)
-    return this.#heightAtFoot(ellipsoid.footPoint(foot, foot))
+    subpoint.copy(position).applyMatrix4(worldToECEF)
+    return this.#heightAtSubpoint(ellipsoid.footPoint(subpoint, subpoint))
   }
 
-  #footAt(method: string, longitude: number, latitude: number): Vector3 {
+  #subpointAt(method: string, longitude: number, latitude: number): Vector3 {
     checkFinite(`Terrain.${method}`, 'longitude', longitude)
     checkRange(`Terrain.${method}`, 'latitude', latitude, -90, 90)
-    return this.atmosphere.ellipsoid.geodeticToECEF({ longitude, latitude }, foot)
+    return this.atmosphere.ellipsoid.geodeticToECEF({ longitude, latitude }, subpoint)
   }
 
   /** Height of the surface at a point of the ellipsoid [m]. */
-  #heightAtFoot(position: Vector3): number {
+  #heightAtSubpoint(position: Vector3): number {
     return Math.max(this.source.sampleAt(position, sample).height, this.#seaLevel)
   }
 
@@ -226,7 +226,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     const { source } = this
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(worldToECEF)
-    const ground = this.#heightAtFoot(ellipsoid.footPoint(positionECEF, foot))
+    const ground = this.#heightAtSubpoint(ellipsoid.footPoint(positionECEF, subpoint))
     const clearance = Math.max(ellipsoid.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
     const lowest = Math.max(source.lowest, this.#seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
@@ -244,7 +244,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     const { tiles } = this.#tree.select(viewer, CAPACITY, this.#selection)
     this.#write(tiles, ground)
     // ECEF axes at the camera.
-    matrix.copy(worldToECEF).invert().decompose(foot, quaternion, scale)
+    matrix.copy(worldToECEF).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
     this.matrix.copy(this.matrixWorld)
   }

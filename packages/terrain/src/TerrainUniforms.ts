@@ -17,7 +17,7 @@ const reference = new Vector3()
 
 /** Uniforms of a terrain's shaders, for one viewer. ECEF axes. */
 export class TerrainUniforms {
-  /** Point near the viewer's foot in whole multiples of 256 m [256 m]. */
+  /** Point near the viewer's subpoint in whole multiples of 256 m [256 m]. */
   readonly reference = vector()
   /** Reference to the point from which distances to tiles count [m]. */
   readonly datum = vector()

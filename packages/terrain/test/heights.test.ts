@@ -17,7 +17,7 @@ const directions = fc
   .tuple(...[0, 1, 2].map(() => fc.double({ min: -1, max: 1, noNaN: true })))
   .map(([x, y, z]) => new Vector3(x, y, z))
   .filter(vector => vector.length() > 0.1)
-const feet = directions.map(direction => earth.footPoint(direction.setLength(6.4e6)))
+const subpoints = directions.map(direction => earth.footPoint(direction.setLength(6.4e6)))
 
 it('is 0 at the corners of the lattice, and smooth across its cells', () => {
   fc.assert(
@@ -34,11 +34,11 @@ it('is 0 at the corners of the lattice, and smooth across its cells', () => {
 it('has the gradient of its values', () => {
   const step = 0.01
   fc.assert(
-    fc.property(feet, foot => {
-      const { gradient } = sampleAt(foot)
+    fc.property(subpoints, subpoint => {
+      const { gradient } = sampleAt(subpoint)
       for (const axis of ['x', 'y', 'z'] as const) {
         const at = (shift: number): number => {
-          const place = foot.clone()
+          const place = subpoint.clone()
           place[axis] += shift
           return sampleAt(place).height
         }
@@ -51,16 +51,16 @@ it('has the gradient of its values', () => {
 it('is within its bounds', () => {
   fc.assert(
     fc.property(
-      feet,
+      subpoints,
       directions,
       fc.double({ min: -1, max: 6, noNaN: true }),
-      (foot, to, power) => {
-        const { height } = sampleAt(foot)
+      (subpoint, to, power) => {
+        const { height } = sampleAt(subpoint)
         expect(height).toBeGreaterThan(source.lowest)
         expect(height).toBeLessThan(source.highest)
         const distance = 10 ** power
-        const there = earth.footPoint(to.setLength(distance).add(foot))
-        const variation = source.variation(there.distanceTo(foot))
+        const there = earth.footPoint(to.setLength(distance).add(subpoint))
+        const variation = source.variation(there.distanceTo(subpoint))
         expect(Math.abs(sampleAt(there).height - height)).toBeLessThanOrEqual(variation + 1e-9)
       }
     ),

@@ -14,8 +14,8 @@ const source = new MountainHeights({ seed: 1 })
 const DETAIL = 1.5
 const FINEST = 17
 
-const heightOf = (foot: Vector3): number =>
-  source.sampleAt(foot, { height: 0, gradient: new Vector3() }).height
+const heightOf = (subpoint: Vector3): number =>
+  source.sampleAt(subpoint, { height: 0, gradient: new Vector3() }).height
 
 /** Places anywhere: poles and the antimeridian as often as all else. */
 const places = fc.record({

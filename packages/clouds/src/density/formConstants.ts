@@ -12,14 +12,15 @@ export const strengthForm = {
   leastCoverage: 0.02,
   /**
    * Added to the strength for the shape amount s and coverage c: s (a + b c) + d c³² [–]. It makes a layer
-   * cover what its coverage says, billows and all, and closes it at full coverage (*Presets*).
+   * cover what its coverage says, billows and all, and closes it at full coverage. Greater: more cloud than asked for; less of
+   * the last: holes in an overcast (*Presets*).
    */
   offset: -0.13,
   coverageOffset: 0.59,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
-   * fraction at which it is 0 (*Cockpit*).
+   * fraction at which it is 0. Greater: more cloud far away than near by (*Cockpit*).
    */
   smoothOffset: 0.77,
   smoothUntil: 0.78,
@@ -57,16 +58,20 @@ export const heightForm = {
   grown: 0.73,
   /**
    * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
-   * in [0, 1] (*Storm*).
+   * in [0, 1]. Smaller: a storm as wide as its anvil from the base on (*Storm*).
    */
   tower: 2.6,
   towerHeights: [0.3, 0.68],
   /** Strength that anvils need all over [–]: greater, and a storm covers less than it is asked to (*Storm*). */
   anvil: 1.15,
-  /** Height at which anvils end, in [0, 1], and the strength needed there: what overshoots (*Storm*). */
+  /** Height at which anvils end, in [0, 1], and the strength needed there. Smaller: what overshoots covers the
+   * anvil like a second deck (*Storm*). */
   anvilHeights: [0.72, 1],
   overshoot: 4.6,
-  /** Heights between which water freezes, in [0, 1], and extinction of ice over that of water (*Storm*). */
+  /**
+   * Heights between which water freezes, in [0, 1], and extinction of ice over that of water. Greater: anvils as hard as towers
+   * (*Storm*).
+   */
   iceHeights: [0.4, 0.72],
   iceDensity: 0.16
 } as const
@@ -92,7 +97,7 @@ export const billowForm = {
    */
   middle: [0.3, 1.6],
   atTops: 0.6,
-  /** Height in the layer below which detail makes wisps, not billows, in [0, 1] (*Cumulus*). */
+  /** Height in the layer below which detail makes wisps, not billows, in [0, 1]. 0: bases of small balls (*Cumulus*). */
   wispHeight: 0.1,
   /**
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
@@ -104,12 +109,18 @@ export const billowForm = {
 
 /** Constants of density: tsl/density.ts. */
 export const densityForm = {
-  /** Strength over which density rises at crisp edges, and the factor for wholly soft ones [–] (*Cumulus*). */
+  /**
+   * Strength over which density rises at crisp edges, and the factor for wholly soft ones [–]. Greater: clouds of wool; smaller:
+   * of plaster (*Cumulus*).
+   */
   crispEdge: 0.2,
   softEdge: 12,
   /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
   softerBase: 4,
-  /** Density of cloud just inside its edges, and strength by which it is full [–]: mixed air (*Cumulus*). */
+  /**
+   * Density of cloud just inside its edges, and strength by which it is full [–]: mixed air. Smaller density, or greater strength:
+   * dull, see-through heads (*Cumulus*).
+   */
   edgeDensity: 0.92,
   core: 0.66,
   /**
@@ -137,7 +148,7 @@ export const columnForm = {
   tops: 3.5,
   /**
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
-   * with one, and the least share (*World clouds*).
+   * with one, and the least share. Smaller: clouds are too bright at the limb (*World clouds*).
    */
   hiddenBelow: 0.4,
   hiddenByAnvil: 0.75,

@@ -55,7 +55,7 @@ const _pole = new Vector3(0, 0, 1)
 
 /**
  * Change of the direction to the moon, or of its light's strength, for which the map is drawn again. Greater:
- * reflections jump.
+ * reflections jump (*24 hours*).
  */
 const MOON_CHANGE = 2e-3
 

@@ -45,14 +45,14 @@ export const mapShift = (texel: number): number => Math.min(texel, 0.003)
 /** Waves around the planet. */
 export const waveForm = {
   /**
-   * Wave numbers of each axis along the two others [rad]. Greater: shorter waves (*World clouds from afar*,
+   * Wave numbers of each axis along the two others [rad]. Greater: shorter waves (*World clouds from 12,000 km*,
    * without its map).
    */
   next: 3.1,
   last: 1.7,
   /**
    * Shift of the regions by the waves [periods of the regions]. 0: regions repeat every 2,300 km (*World clouds
-   * from afar*, without its map).
+   * from 12,000 km*, without its map).
    */
   warp: 0.22
 } as const
@@ -60,7 +60,7 @@ export const waveForm = {
 /**
  * Weights of the scales that the weather is the sum of, with that of single clouds 1. A greater one gathers
  * clouds more at its scale, with more clear sky between: *Cockpit* for fields and cells, *World clouds from
- * afar* without its map for the others.
+ * 12,000 km* without its map for the others.
  */
 export const scaleWeights = {
   /** Fields of tens of kilometres, of the layer's own weather and of large cells. */

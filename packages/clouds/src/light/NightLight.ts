@@ -16,7 +16,7 @@ const DUSK = MathUtils.degToRad(2)
 
 /**
  * Orders of magnitude by which light is raised in deep night, for half floats, and the sine of the sun's
- * depression there. Fewer: steps of grey in dark clouds.
+ * depression there. Fewer: steps of grey in dark clouds (*24 hours*).
  */
 const NIGHT_ORDERS = 5
 const NIGHT_SINE = 0.3

@@ -17,7 +17,7 @@ const _bits = new Int32Array(3)
 /**
  * Float64 twin of `hashBits`: 96 bits for a cell of a lattice, the same as the shader's.
  *
- * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", PCG3D.
+ * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", JCGT 9 (3), supplement: pcg3d.
  */
 export function hashBits(i: number, j: number, k: number): Int32Array {
   let x = (Math.imul(i, multiplier) + increment) | 0

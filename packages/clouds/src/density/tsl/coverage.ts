@@ -32,7 +32,8 @@ export interface CoverMap {
   readonly shift: Float
 }
 
-/** Share of the width of a placed map over which it fades in at its edges. 0: weather ends in straight walls. */
+/** Share of the width of a placed map over which it fades in at its edges. 0: weather ends in straight walls. No story
+ * has such a map: see it with `bounds` in *World clouds*. */
 const EDGE = 0.05
 
 /** Place in a map, from 0 to 1 between its edges, in the direction of `up`; and the extent of a texel there [m]. */

@@ -8,7 +8,8 @@ import type { Float, Variable, Vec2, Vec4 } from '../../tsl-types'
 
 /**
  * Most points of a ray, each for a stratum of its opacity: equal ones of its root, since light changes most just
- * inside of clouds. More: light takes longer.
+ * inside of clouds. More: light takes longer; fewer: flat, banded insides
+ * (*Inside a cloud*).
  */
 export const POINTS = 4
 
@@ -20,7 +21,7 @@ const LEAST_SHARE = 0.02
 
 /**
  * Gap between clouds from which they count as apart: part of the distance, and at least [m]. The light of a
- * point between two clouds would be that of neither.
+ * point between two clouds would be that of neither. Greater: light rims where one cloud stands before another (*Cumulus*).
  */
 const GAP_GROWTH = 0.02
 const LEAST_GAP = 60

@@ -6,7 +6,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { loop, type Bool, type Float, type Int, type Vec3 } from '../../tsl-types'
 import type { LayerSegment } from './layerSegment'
 
-/** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun. */
+/** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun (*Shadows*). */
 export const STEPS = 48
 
 /**

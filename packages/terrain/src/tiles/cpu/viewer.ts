@@ -31,7 +31,7 @@ export const horizonAngle = (radius: number, sphereRadius: number): number =>
 
 const frustum = new Frustum()
 const rotation = new Matrix4()
-const foot = new Vector3()
+const subpoint = new Vector3()
 
 /**
  * Viewer of a camera.
@@ -52,7 +52,7 @@ export function viewerOf(
   shadowDistance: number,
   seaLevel = -Infinity
 ): Viewer {
-  ellipsoid.footPoint(positionECEF, foot)
+  ellipsoid.footPoint(positionECEF, subpoint)
   const up = ellipsoid.surfaceNormal(positionECEF)
   // From ECEF axes at the camera to clip space.
   rotation.copy(worldToECEF).setPosition(0, 0, 0).invert()
@@ -65,7 +65,7 @@ export function viewerOf(
   const occluder = 1 + Math.min(lowest, 0) / ellipsoid.minimumRadius
   return {
     position: positionECEF.clone(),
-    datumPoint: foot.clone().addScaledVector(up, clearance),
+    datumPoint: subpoint.clone().addScaledVector(up, clearance),
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
     seaLevel,

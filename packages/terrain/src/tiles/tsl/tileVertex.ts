@@ -11,7 +11,7 @@ export const morphStart = (detail: number): number => (detail + 1) / (2 * detail
 export interface TileVertex {
   /** Viewer to the vertex, ECEF axes [m]. */
   readonly position: Vec3
-  /** Reference to the vertex's foot on the ellipsoid, ECEF axes [m]. */
+  /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m]. */
   readonly offset: Vec3
 }
 
@@ -58,10 +58,10 @@ export function tileVertex(
     .clamp(0, 1)
 
   const delta = alongCube(cells.sub(odd.mul(morph)))
-  const foot = fromCenter(delta)
-  const offset = tileOffset.xyz.add(foot).toConst('offset')
+  const subpoint = fromCenter(delta)
+  const offset = tileOffset.xyz.add(subpoint).toConst('offset')
   // Two cells of the coarsest tile at that distance.
-  const shortest = distance(foot).mul(shortestPerDistance(resolution, detail))
+  const shortest = distance(subpoint).mul(shortestPerDistance(resolution, detail))
   const height = source.sample({ reference, offset }, shortest).w.max(seaLevel)
   const up = cube.add(delta).mul(stretch).normalize().toConst('up')
   const tilt = unitDifference(cube.mul(stretch), delta.mul(stretch))
@@ -70,7 +70,7 @@ export function tileVertex(
     .mul(radii.x)
     .mul(2 / resolution)
   const position = base.xyz
-    .add(foot)
+    .add(subpoint)
     .add(tilt.mul(groundHeight))
     .add(up.mul(height.sub(groundHeight).sub(skirt)))
   return { position, offset }
