@@ -1,5 +1,6 @@
 import { AgXToneMapping, RenderTarget } from 'three'
 import { PassTimes, type PassTime } from '../../stories/src/valley/PassTimes'
+import { openingState } from '../../stories/src/valley/openingState'
 import { sharesOf } from '../../stories/src/valley/shares'
 import { Valley, type ValleyFeatures, type ValleyState } from '../../stories/src/valley/Valley'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
@@ -8,32 +9,6 @@ import { median } from './statistics'
 const WARM_UP = 40
 /** Time between two frames [s]. */
 const STEP = 1 / 60
-
-/** State in which the story *Valley, all day* opens, everything on. */
-export const valleyState: ValleyState = {
-  weather: 'fair',
-  latitude: 46,
-  season: 0.2,
-  hour: 9,
-  dayLength: 600,
-  paused: false,
-  quality: 'medium',
-  clouds: true,
-  shafts: true,
-  mist: true,
-  nightSky: true,
-  trees: true,
-  village: true,
-  water: true,
-  bloom: true,
-  haze: 1,
-  twilightSaturation: 1,
-  shaftStrength: 1,
-  starlight: 1,
-  airglow: 1,
-  earthshine: 1,
-  ambient: 1
-}
 
 const PARTS: readonly (keyof ValleyFeatures)[] = [
   'clouds',
@@ -72,7 +47,7 @@ export async function timeValley(
   renderer.toneMapping = AgXToneMapping
   const times = new PassTimes()
   renderer.inspector = times
-  const valley = new Valley(renderer, valleyState)
+  const valley = new Valley(renderer, openingState)
   await valley.bake(renderer)
   valley.lookFrom('village')
   valley.camera.aspect = size[0] / size[1]
@@ -81,7 +56,7 @@ export async function timeValley(
   let time = 0
 
   const measure = async (changes: Partial<ValleyState>): Promise<[PassTime[], number]> => {
-    valley.set({ ...valleyState, ...changes }, true)
+    valley.set({ ...openingState, ...changes }, true)
     const passes: PassTime[] = []
     const cpu: number[] = []
     for (let frame = 0; frame < WARM_UP + frames; frame++) {

@@ -2,7 +2,7 @@ import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
 import { RenderTarget } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Valley } from '../../stories/src/valley/Valley'
-import { valleyState } from '../bench/valley'
+import { openingState } from '../../stories/src/valley/openingState'
 import type { ValleyStill } from './scenes'
 
 /** Time of waves and clouds [s]. */
@@ -22,7 +22,7 @@ export class ValleyView {
   ) {
     this.#renderer = renderer
     this.#target = new RenderTarget(width, height)
-    const valley = new Valley(renderer, { ...valleyState, ...changes, quality, paused: true })
+    const valley = new Valley(renderer, { ...openingState, ...changes, quality, paused: true })
     valley.lookFrom(view)
     valley.camera.aspect = width / height
     valley.camera.updateProjectionMatrix()

@@ -1,6 +1,5 @@
 import {
   cloudPreset,
-  cloudQualities,
   clouds,
   cloudsDebug,
   cloudShadow,
@@ -9,6 +8,7 @@ import {
 } from '@welkin/clouds'
 import type { CloudPresetName, CloudQuality, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
+import { STILL_QUALITY } from './clouds/still'
 import { cloudCover } from './clouds/cloudCover'
 import { layerArgs, layerParameters } from './clouds/layerArgs'
 import type { LayerArgs } from './clouds/layerArgs'
@@ -48,8 +48,7 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   pitch: number
 }
 
-/** A still marches every pixel in every frame, coarsely: a few frames converge. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 6 }
+const STILL = { quality: STILL_QUALITY, frames: 6 }
 
 const qualityOf = ({ frame, quality }: CloudsArgs): CloudQuality | CloudQualityName =>
   frame ? STILL.quality : quality

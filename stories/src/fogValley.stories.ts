@@ -2,7 +2,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { createFogValley, VIEWS } from './fogValley.scene'
 import type { FogValleyArgs } from './fogValley.scene'
 import { mount } from './mount'
-import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const code = `${storyCode('quickStart.ts', 'quick start')}
@@ -16,11 +16,7 @@ const meta: Meta<FogValleyArgs> = {
     view: {
       name: 'Camera',
       description: 'Where the camera goes; fly on from there with the mouse',
-      options: Object.keys(VIEWS),
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(Object.entries(VIEWS).map(([name, { label }]) => [name, label]))
-      }
+      ...choiceOf(VIEWS)
     },
     density: {
       name: 'Density [1/km]',

@@ -3,7 +3,7 @@ import { createGlobe } from './globe.scene'
 import type { GlobeArgs } from './globe.scene'
 import { PLACES } from './globe/places'
 import { mount } from './mount'
-import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const code = `${storyCode('quickStart.ts', 'quick start')}
@@ -19,11 +19,7 @@ const meta: Meta<GlobeArgs> = {
     place: {
       name: 'Camera',
       description: 'Where the camera goes; fly on from there with the mouse',
-      options: Object.keys(PLACES),
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(Object.entries(PLACES).map(([name, { label }]) => [name, label]))
-      }
+      ...choiceOf(PLACES)
     },
     clouds: {
       name: 'Clouds',

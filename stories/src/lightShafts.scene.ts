@@ -10,13 +10,13 @@ import {
   cloudAirShadow,
   CloudCover,
   cloudPreset,
-  cloudQualities,
   clouds,
   cloudShadow,
   cloudSkyLight
 } from '@welkin/clouds'
 import type { CloudPresetName, CloudsNode } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
+import { STILL_QUALITY } from './clouds/still'
 import { createCity } from './globe/city'
 import { createLand } from './globe/land'
 import { CITY } from './globe/places'
@@ -94,7 +94,7 @@ export interface LightShaftsArgs extends RendererArgs {
 }
 
 /** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 }, frames: 3 }
+const STILL = { quality: STILL_QUALITY, frames: 3 }
 
 /** Time of the clouds' drift: there are gaps in the views then [s]. */
 const TIME = 300

@@ -3,7 +3,7 @@ import { mount } from './mount'
 import { createNight } from './night.scene'
 import type { NightArgs } from './night.scene'
 import { CONSTELLATIONS } from './night/constellations'
-import { rendererArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const code = `${storyCode('night.scene.ts', 'night')}
@@ -16,13 +16,7 @@ const meta: Meta<NightArgs> = {
   argTypes: {
     constellation: {
       name: 'Constellation',
-      options: Object.keys(CONSTELLATIONS),
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(
-          Object.entries(CONSTELLATIONS).map(([name, { label }]) => [name, label])
-        )
-      }
+      ...choiceOf(CONSTELLATIONS)
     },
     fieldOfView: {
       name: 'Field of view [°]',

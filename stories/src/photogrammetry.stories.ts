@@ -3,7 +3,7 @@ import { mount } from './mount'
 import { createPhotogrammetry } from './photogrammetry.scene'
 import type { PhotogrammetryArgs } from './photogrammetry.scene'
 import { SIGHTS } from './photogrammetry/places'
-import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const meta: Meta<PhotogrammetryArgs> = {
@@ -19,11 +19,7 @@ const meta: Meta<PhotogrammetryArgs> = {
     key: { name: 'Key', description: 'Key or token that goes with it', control: 'text' },
     place: {
       name: 'Place',
-      options: Object.keys(SIGHTS),
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(Object.entries(SIGHTS).map(([name, { label }]) => [name, label]))
-      }
+      ...choiceOf(SIGHTS)
     },
     strength: {
       name: 'Light',

@@ -1,4 +1,4 @@
-import { CloudLayers, cloudPreset, cloudQualities, clouds, cloudSkyLight } from '@welkin/clouds'
+import { CloudLayers, cloudPreset, clouds, cloudSkyLight } from '@welkin/clouds'
 import type { CloudQualityName } from '@welkin/clouds'
 import { screenUV, uniform } from 'three/tsl'
 import {
@@ -7,6 +7,7 @@ import {
   SIMULATED_THICKNESS,
   SimulatedClouds
 } from './clouds/simulatedClouds'
+import { STILL_QUALITY } from './clouds/still'
 import { createLand } from './globe/land'
 import type { Place } from './globe/places'
 import { applyTime } from './scene'
@@ -59,8 +60,7 @@ export async function createRealOrNot(
   args: RealOrNotArgs
 ): Promise<SceneHandle<RealOrNotArgs>> {
   const post: RealOrNotArgs = { ...args, path: 'post' }
-  const qualityOf = ({ frame, quality }: RealOrNotArgs) =>
-    frame ? { ...cloudQualities.low, block: 1 as const } : quality
+  const qualityOf = ({ frame, quality }: RealOrNotArgs) => (frame ? STILL_QUALITY : quality)
   const simulation = await loadSimulation()
   return createLand(canvas, post, 55, ({ renderer, camera, air }) => {
     const { atmosphere, sky, post: picture } = air

@@ -3,7 +3,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
 import { createRealOrNot, VIEWS } from './realOrNot.scene'
 import type { RealOrNotArgs } from './realOrNot.scene'
-import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const code = `${storyCode('quickStart.ts', 'quick start')}
@@ -25,11 +25,7 @@ const meta: Meta<RealOrNotArgs> = {
     view: {
       name: 'Camera',
       description: 'Where the camera goes; fly on from there with the mouse',
-      options: Object.keys(VIEWS),
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(Object.entries(VIEWS).map(([name, { label }]) => [name, label]))
-      }
+      ...choiceOf(VIEWS)
     },
     quality: { name: 'Quality', options: Object.keys(cloudQualities), control: 'inline-radio' },
     ...timeArgTypes,

@@ -1,6 +1,15 @@
 import type { ArgTypes } from '@storybook/html-vite'
 import type { RendererArgs, TimeArgs } from './scene'
 
+/** A choice among things with labels. */
+export const choiceOf = (things: Readonly<Record<string, { readonly label: string }>>) => ({
+  options: Object.keys(things),
+  control: {
+    type: 'select' as const,
+    labels: Object.fromEntries(Object.entries(things).map(([name, { label }]) => [name, label]))
+  }
+})
+
 export const timeArgTypes: ArgTypes<TimeArgs> = {
   day: {
     name: 'Date [UTC]',

@@ -8,13 +8,13 @@ import { Explorer } from './moving/Explorer'
 import {
   applyTime,
   createRenderer,
-  fitToCanvas,
   frameClock,
   WARM_UP_FRAMES,
   type RendererArgs,
   type SceneHandle,
   type TimeArgs
 } from './scene'
+import { storyHandle } from './storyHandle'
 
 /** A view of the made-up planet, above its ground. */
 interface TerrainView {
@@ -141,6 +141,7 @@ export async function createTerrain(
 
   const up = new Vector3()
   const draw = (): void => {
+    explorer?.update(elapsed())
     camera.updateMatrixWorld()
     const height = Math.max(heightAt(camera.position) - groundAt(camera.position), 2)
     camera.near = Math.min(height / 10, 1e4)
@@ -149,43 +150,26 @@ export async function createTerrain(
     air.render()
   }
 
-  let ready: Promise<void> = Promise.resolve()
-  const warmUp = async (): Promise<void> => {
-    for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-      draw()
-      await new Promise(requestAnimationFrame)
-    }
-  }
-
-  return {
+  return storyHandle<TerrainArgs>({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render() {
-      explorer?.update(elapsed())
-      draw()
-    },
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      ready = warmUp()
-    },
-    update(changes) {
-      const before = current.view
-      Object.assign(current, changes)
+    current,
+    apply(before) {
       apply()
-      if (current.view !== before) goTo(VIEWS[current.view])
-      ready = warmUp()
+      if (current.view !== before.view) goTo(VIEWS[current.view])
+    },
+    draw,
+    async warmUp() {
+      for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
+        draw()
+        await new Promise(requestAnimationFrame)
+      }
     },
     dispose() {
-      explorer?.dispose()
       terrain.dispose()
       air.dispose()
-      void renderer.dispose()
     }
-  }
+  })
 }

@@ -1,6 +1,6 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { rendererArgTypes, timeArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 import { createTerrain, VIEWS } from './terrain.scene'
 import type { TerrainArgs } from './terrain.scene'
@@ -11,11 +11,7 @@ const meta: Meta<TerrainArgs> = {
   argTypes: {
     view: {
       name: 'Place',
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(Object.entries(VIEWS).map(([key, { label }]) => [key, label]))
-      },
-      options: Object.keys(VIEWS)
+      ...choiceOf(VIEWS)
     },
     wireframe: { name: 'Wireframe', control: 'boolean' },
     ...timeArgTypes,

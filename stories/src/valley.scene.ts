@@ -1,5 +1,5 @@
-import { cloudQualities } from '@welkin/clouds'
 import type { CloudQualityName } from '@welkin/clouds'
+import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
@@ -13,7 +13,7 @@ export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
 }
 
 /** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: { ...cloudQualities.low, block: 1 as const }, frames: 3 }
+const STILL = { quality: STILL_QUALITY, frames: 3 }
 
 /** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100

@@ -1,10 +1,11 @@
 import { cloudQualities } from '@welkin/clouds'
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { rendererArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 import { createValley } from './valley.scene'
 import type { ValleyArgs } from './valley.scene'
+import { openingState } from './valley/openingState'
 import { VIEWS } from './valley/views'
 import { weathers } from './valley/weather'
 
@@ -30,11 +31,7 @@ const meta: Meta<ValleyArgs> = {
   argTypes: {
     view: {
       name: 'Place',
-      control: {
-        type: 'select',
-        labels: Object.fromEntries(Object.entries(VIEWS).map(([key, { label }]) => [key, label]))
-      },
-      options: Object.keys(VIEWS)
+      ...choiceOf(VIEWS)
     },
     weather: {
       name: 'Weather',
@@ -81,28 +78,7 @@ const meta: Meta<ValleyArgs> = {
   },
   args: {
     view: 'village',
-    weather: 'fair',
-    hour: 9,
-    dayLength: 600,
-    paused: false,
-    season: 0.2,
-    latitude: 46,
-    quality: 'medium',
-    clouds: true,
-    shafts: true,
-    mist: true,
-    nightSky: true,
-    trees: true,
-    village: true,
-    water: true,
-    bloom: true,
-    haze: 1,
-    twilightSaturation: 1,
-    shaftStrength: 1,
-    starlight: 1,
-    airglow: 1,
-    earthshine: 1,
-    ambient: 1,
+    ...openingState,
     forceWebGL: false,
     path: 'post',
     frame: false

@@ -1,17 +1,8 @@
 import { Vector3 } from 'three'
-import { renderGroup, uniform } from 'three/tsl'
-import type { UniformNode } from 'three/webgpu'
+import { numberUniform as number, vector3Uniform as vector } from '@welkin/atmosphere'
 import type { Ellipsoid } from '@welkin/geo'
 import { REFERENCE_STEP } from './noise/tsl/latticeNoise'
 import type { Viewer } from './tiles/cpu/viewer'
-
-type Scalar = UniformNode<'float', number>
-type Vector = UniformNode<'vec3', Vector3>
-
-// Uniforms of all that a camera renders: what is an object's own does not reach materials that three
-// does not refresh.
-const number = (value = 0): Scalar => uniform(value).setGroup(renderGroup)
-const vector = (value = new Vector3()): Vector => uniform(value).setGroup(renderGroup)
 
 const reference = new Vector3()
 
@@ -26,13 +17,13 @@ export class TerrainUniforms {
   /** Surface of the sea [m]; far below all ground where there is none. */
   readonly seaLevel = number()
   /** Radii of the ellipsoid [m]. */
-  readonly radii: Vector
+  readonly radii = vector()
   /** Largest radius over each radius: where the ellipsoid is a sphere, but for size [–]. */
-  readonly stretch: Vector
+  readonly stretch = vector()
 
   constructor({ radii, maximumRadius }: Ellipsoid) {
-    this.radii = vector(radii.clone())
-    this.stretch = vector(new Vector3().setScalar(maximumRadius).divide(radii))
+    this.radii.value.copy(radii)
+    this.stretch.value.setScalar(maximumRadius).divide(radii)
   }
 
   /** Reference in metres, for the CPU [m]. */
