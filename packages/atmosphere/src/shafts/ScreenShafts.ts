@@ -150,7 +150,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Place of a fragment in the picture: meshes have coordinates of their own. */
   get #place(): Vec2 {
-    return (this.#isMesh ? screenUV : uv()) as unknown as Vec2
+    return this.#isMesh ? screenUV : uv()
   }
 
   /** Light that the pixel loses, for unit irradiance [1/sr]. */

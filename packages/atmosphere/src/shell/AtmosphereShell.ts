@@ -132,7 +132,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   #volumes: SkyVolumes | null = null
   #uniforms = new AtmosphereUniforms()
   readonly #shafts: AirShadows | undefined
-  /** Those shadows as pixels have them, while it has a renderer. */
+  /** Shadows in its air as pixels have them, while it has a renderer. */
   #shadows: ScreenShadows | undefined
   /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
