@@ -1,40 +1,28 @@
 import { Matrix4, Mesh, Quaternion, Vector3 } from 'three'
-import type { Camera, InstancedBufferGeometry, InstancedBufferAttribute, Scene } from 'three'
-import type { MeshStandardNodeMaterial } from 'three/webgpu'
+import type { Camera, InstancedBufferGeometry, Scene, Texture } from 'three'
+import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
 import { checkFinite, checkNonNegative, checkVector, fail, setOptions } from '@welkin/geo'
 import type { HeightSample, HeightSource } from './heights/HeightSource'
+import { HeightPages } from './pages/HeightPages'
+import type { PageSource } from './pages/PageSource'
+import { grainTexture } from './surface/grainTexture'
 import { terrainMaterial } from './surface/terrainMaterial'
+import { checkSource, defaultsFor, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
-import { viewerOf } from './tiles/cpu/viewer'
-import type { Tile } from './tiles/Tile'
-import { INSTANCE_ATTRIBUTES, tileGrid } from './tiles/tileGrid'
-import { TileTree, type TileSelection } from './tiles/TileTree'
+import { viewerOf, type Viewer } from './tiles/cpu/viewer'
+import { tileGrid } from './tiles/tileGrid'
+import { writeTiles } from './tiles/writeTiles'
+import { noTiles, TileTree } from './tiles/TileTree'
 
-/** Options of {@link Terrain}. */
-export interface TerrainOptions {
-  /** Cells along a tile's edge, even, in [4, 128], default 32. */
-  resolution?: number
-  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
-  detail?: number
-  /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
-  seaLevel?: number
-  /** Distance within which ground out of view casts shadows into it, default 3,000 [m]. */
-  shadowDistance?: number
-  /** Camera that tiles are chosen for; null, the default, for each one that draws. */
-  camera?: Camera | null
-}
+/** Factor on the pages in a frame until the first picture is full. */
+const FIRST_PAGES = 4
 
-/** Options that may change later. */
-const SETTINGS = ['seaLevel', 'shadowDistance', 'camera'] as const
+/** Frames in which a page takes the place of its parent's. */
+const FADE_FRAMES = 10
 
-const DEFAULTS: Required<TerrainOptions> = {
-  resolution: 32,
-  detail: 1.5,
-  seaLevel: 0,
-  shadowDistance: 3000,
-  camera: null
-}
+/** Levels that the ground is too coarse by from which on pages do not fade in: after a leap. */
+const LEAP = 4
 
 /** Tiles that there is room for. */
 const CAPACITY = 3000
@@ -52,7 +40,6 @@ const positionWorld = new Vector3()
 const positionECEF = new Vector3()
 const subpoint = new Vector3()
 const reference = new Vector3()
-const up = new Vector3()
 const quaternion = new Quaternion()
 const scale = new Vector3()
 const matrix = new Matrix4()
@@ -77,36 +64,59 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
-  readonly source: HeightSource
+  readonly source: HeightSource | PageSource
   /** Cells along a tile's edge. */
   readonly resolution: number
   /** Distance at which a tile is split, in diagonals of it. */
   readonly detail: number
+  /** Most memory of pages on the GPU [MB]. */
+  readonly pageMemory: number
   readonly #uniforms: TerrainUniforms
   readonly #tree: TileTree
-  readonly #selection: TileSelection = { tiles: [], inView: 0 }
+  readonly #selection = noTiles()
+  readonly #pages: HeightPages
+  readonly #grain: Texture
   #seaLevel = 0
   #shadowDistance = 0
   #camera: Camera | null = null
+  #pagesPerFrame = 1
+  /** Frame of the renderer, and pages that may still be drawn in it. */
+  #frame = -1
+  #pagesLeft = 0
+  #isFull = false
+  /** False until a picture was full. */
+  #wasFull = false
 
   /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
-  constructor(atmosphere: Atmosphere, source: HeightSource, options: TerrainOptions = {}) {
+  constructor(
+    atmosphere: Atmosphere,
+    source: HeightSource | PageSource,
+    options: TerrainOptions = {}
+  ) {
     const where = 'Terrain'
     checkAtmosphere(where, atmosphere)
     if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     checkSource(where, source)
-    const { resolution, detail, ...settings } = withDefaults(where, DEFAULTS, options)
+    const defaults = defaultsFor(options)
+    const { resolution, detail, pageMemory, ...settings } = withDefaults(where, defaults, options)
     checkRange(where, 'resolution', resolution, 4, 128)
     if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
     checkRange(where, 'detail', detail, 1.2, 4)
+    checkRange(where, 'pageMemory', pageMemory, 4, 1000)
     const { ellipsoid } = atmosphere
     const uniforms = new TerrainUniforms(ellipsoid)
-    super(tileGrid(resolution, CAPACITY), terrainMaterial(source, uniforms, resolution, detail))
+    const pages = new HeightPages(source, ellipsoid, resolution, 1e6 * pageMemory)
+    const grain = grainTexture()
+    const material = terrainMaterial(pages.atlas, grain, uniforms, resolution, detail)
+    super(tileGrid(resolution, CAPACITY), material)
     this.atmosphere = atmosphere
     this.source = source
     this.resolution = resolution
     this.detail = detail
+    this.pageMemory = pageMemory
     this.#uniforms = uniforms
+    this.#pages = pages
+    this.#grain = grain
     const cells = (2 * ellipsoid.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.#tree = new TileTree(ellipsoid, source, finestLevel, detail)
@@ -156,6 +166,27 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     if (value !== null && !value?.isCamera)
       fail('Terrain', 'camera must be a Camera or null', value)
     this.#camera = value
+  }
+
+  /** Pages drawn in a frame, ≥ 1: four times as many until the first picture is full. */
+  get pagesPerFrame(): number {
+    return this.#pagesPerFrame
+  }
+
+  set pagesPerFrame(value: number) {
+    checkRange('Terrain', 'pagesPerFrame', value, 1, 1000)
+    this.#pagesPerFrame = value
+  }
+
+  /** True if nothing is missing in what was drawn last: all tiles have pages, which have faded in. */
+  get isFull(): boolean {
+    return this.#isFull
+  }
+
+  /** Pages: how many tiles have one, how many there is room for, how many were drawn so far, and memory on the GPU [bytes]. */
+  get pages(): { count: number; capacity: number; drawn: number; bytes: number } {
+    const { count, drawn, atlas } = this.#pages
+    return { count, capacity: atlas.capacity, drawn, bytes: atlas.bytes }
   }
 
   /** Number of tiles chosen last, and of those in view. */
@@ -217,11 +248,18 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   }
 
   /**
-   * Chooses tiles for a camera. Drawing does this by itself; call it for what is drawn before the first frame.
+   * Chooses tiles for a camera and draws pages that are missing. Drawing the terrain does this by itself; call it for a full
+   * picture at once:
+   *
+   * ```ts
+   * terrain.update(renderer, camera, Infinity)
+   * ```
    *
    * @param camera - With `matrixWorld` and projection up to date.
+   * @param most - Pages to draw now, default: what is left of `pagesPerFrame` in this frame. Without an end no page fades in.
+   * @throws If another renderer drew the pages that was not disposed of.
    */
-  update(camera: Camera): void {
+  update(renderer: Renderer, camera: Camera, most?: number): void {
     const { ellipsoid, worldToECEF } = this.atmosphere
     const { source } = this
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
@@ -241,42 +279,51 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       this.#seaLevel
     )
     this.#uniforms.update(viewer, ground)
-    const { tiles } = this.#tree.select(viewer, CAPACITY, this.#selection)
-    this.#write(tiles, ground)
+    this.#load(renderer, viewer, most)
+    this.#uniforms.referenceECEF(reference)
+    const { tiles } = this.#selection
+    writeTiles(this.geometry, tiles, positionECEF, reference, ground, level =>
+      this.#tree.range(level)
+    )
     // ECEF axes at the camera.
     matrix.copy(worldToECEF).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
     this.matrix.copy(this.matrixWorld)
   }
 
-  /** Writes tiles as instances, from float64 to differences that float32 can hold. */
-  #write(tiles: readonly Tile[], ground: number): void {
-    const attributes = INSTANCE_ATTRIBUTES.map(
-      name => this.geometry.getAttribute(name) as InstancedBufferAttribute
-    )
-    const [base, offset, cube] = attributes.map(attribute => attribute.array)
-    this.#uniforms.referenceECEF(reference)
-    for (const [i, { center, normal, level, extent, cube: point, face }] of tiles.entries()) {
-      const n = 4 * i
-      up.copy(center).sub(positionECEF).addScaledVector(normal, ground).toArray(base, n)
-      base[n + 3] = Math.min(this.#tree.range(level), 1e30)
-      up.copy(center).sub(reference).toArray(offset, n)
-      offset[n + 3] = extent
-      point.toArray(cube, n)
-      cube[n + 3] = face
+  /** Chooses tiles and draws their pages. */
+  #load(renderer: Renderer, viewer: Viewer, most?: number): void {
+    const [tree, pages, selection] = [this.#tree, this.#pages, this.#selection]
+    if (pages.begin(renderer, tree.roots)) this.#wasFull = false
+    const { frame } = renderer.info
+    const isNewFrame = frame !== this.#frame
+    if (isNewFrame) {
+      this.#frame = frame
+      this.#pagesLeft = this.#pagesPerFrame * (this.#wasFull ? 1 : FIRST_PAGES)
     }
-    for (const attribute of attributes) {
-      attribute.clearUpdateRanges()
-      attribute.addUpdateRange(0, 4 * tiles.length)
-      attribute.needsUpdate = true
+    let left = most ?? this.#pagesLeft
+    const isAtOnce = left === Infinity || !this.#wasFull
+    for (let drawn = -1; drawn !== 0;) {
+      tree.select(viewer, CAPACITY, selection)
+      drawn = pages.load(selection.missing, tree.selections, left)
+      left -= drawn
+      const leaps = isAtOnce || selection.lag >= LEAP
+      for (const tile of selection.tiles) tile.show(frame, leaps ? 1 : 1 / FADE_FRAMES)
+      if (!isAtOnce) break
     }
+    if (most === undefined) this.#pagesLeft = left
+    this.#isFull = selection.lag === 0
+    this.#wasFull ||= this.#isFull
+    this.#uniforms.skirt.value = 2 ** selection.lag
   }
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
-  override onBeforeRender(_renderer: unknown, scene: Scene, camera: Camera): void {
+  override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
     const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
     const isShadow = pass?.isShadowPassMaterial === true
-    if (!isShadow && (this.#camera === null || camera === this.#camera)) this.update(camera)
+    if (!isShadow && (this.#camera === null || camera === this.#camera)) {
+      this.update(renderer as Renderer, camera)
+    }
     const { chosen, inView } = this.tileCount
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
@@ -284,21 +331,13 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   /** Rays do not hit it: its vertices are moved on the GPU. `heightBelow` says where the ground is. */
   override raycast(): void {}
 
-  /** Frees geometry and material; atmosphere and source are shared. */
+  /** Frees geometry, material and pages; atmosphere and source are shared. */
   override dispose(): void {
     super.dispose()
+    this.#pages.dispose()
+    this.#grain.dispose()
+    this.#wasFull = this.#isFull = false
     this.geometry.dispose()
     this.material.dispose()
   }
-}
-
-/** @throws If it is no source of heights. */
-function checkSource(where: string, source: HeightSource): void {
-  const isSource =
-    typeof source?.sampleAt === 'function' &&
-    typeof source.sample === 'function' &&
-    typeof source.variation === 'function'
-  if (!isSource) fail(where, 'source must be a HeightSource', source)
-  checkFinite(where, 'source.lowest', source.lowest)
-  checkFinite(where, 'source.highest', source.highest)
 }
