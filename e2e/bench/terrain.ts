@@ -39,16 +39,16 @@ export interface TerrainCost {
   resolution: number
   /** A frame with sky, haze, sun and light of the sky, GPU, without a shadow map [ms]. */
   ms: number
-  /** The same without the terrain [ms]. */
+  /** A frame without the terrain, GPU [ms]. */
   withoutMs: number
-  /** The same with its shadow map of 2048 texels [ms]. */
+  /** A frame with a shadow map of 2048 texels, GPU [ms]. */
   shadowMs: number
   /** Drawing pages while flying, GPU: the mean of a frame, and the most [ms]. */
   pagesMs: number
   pagesMostMs: number
   /** CPU time of a frame in flight, of the terrain alone: choosing tiles and asking for pages [ms]. */
   updateMs: number
-  /** From a new terrain to a full picture: wall-clock, frame after frame [ms], and in frames. */
+  /** Time from a new terrain to a full picture, frame after frame: wall-clock [ms], and in frames. */
   firstMs: number
   firstFrames: number
   tiles: number

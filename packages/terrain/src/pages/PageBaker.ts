@@ -92,7 +92,7 @@ export class PageBaker {
   /**
    * Draws a page; the renderer is left as it was.
    *
-   * @param heights - Those that were loaded, as `request` asked for them; null for a source that is a function.
+   * @param heights - Loaded heights, as `request` asked for them; null for a source that is a function.
    * @throws If their number is another.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {

@@ -88,7 +88,7 @@ export class Tile {
     this.fade = Math.max(this.fade - step, 0)
   }
 
-  /** Which quarter of its parent it is: columns first. */
+  /** Number of the quarter of its parent that it is, columns first; 0 for a whole face. */
   get quarter(): number {
     const { parent } = this
     return parent === null ? 0 : Number(this.x > parent.x) + 2 * Number(this.y > parent.y)

@@ -35,7 +35,7 @@ type Axes = ReturnType<typeof faceAxes>
 /** Column and row of the texel that is drawn. */
 const texelOf = (side: number): Vec2 => (uv() as unknown as Vec2).mul(side).floor().toConst('texel')
 
-/** @param cells - From the tile's first corner, in steps between texels of a page with that many on an edge. */
+/** @param cells - Steps between texels from the tile's first corner. */
 function placeAt(
   { cube, extent, reference, center, radii }: PageUniforms,
   { first, second }: Axes,
