@@ -1,38 +1,12 @@
 import { Atmosphere } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import fc from 'fast-check'
-import { Matrix4, Raycaster, Vector3 } from 'three'
+import { Raycaster, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
-import type { HeightSource } from '../../src/heights/HeightSource'
 import { MountainHeights } from '../../src/heights/MountainHeights'
 import { distanceToGround } from '../../src/rays/distanceToGround'
 import { Terrain } from '../../src/Terrain'
-
-const RADIUS = 6.371e6
-const sphere = new Ellipsoid(RADIUS)
-const none = (): never => {
-  throw new Error('not drawn here')
-}
-
-/** Ground on a ball, from a function of the direction from its centre. */
-function groundOf(
-  heightOf: (direction: Vector3) => number,
-  [lowest, highest]: [number, number],
-  slope: number
-) {
-  const source: HeightSource = {
-    lowest,
-    highest,
-    variation: distance => Math.min(slope * distance, highest - lowest),
-    sampleAt(position, target) {
-      target.height = heightOf(position.clone().normalize())
-      return target
-    },
-    sample: none
-  }
-  const atmosphere = { ellipsoid: sphere, worldToECEF: new Matrix4() }
-  return { atmosphere, source, seaLevel: -Infinity }
-}
+import { groundOf, RADIUS } from '../ground'
 
 const flat = (height: number) => groundOf(() => height, [height, height], 0)
 
