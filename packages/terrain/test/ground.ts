@@ -1,5 +1,5 @@
 import { Ellipsoid } from '@welkin/geo'
-import { Matrix4, Vector3 } from 'three'
+import { Matrix4, type Vector3 } from 'three'
 import type { HeightSource } from '../src/heights/HeightSource'
 
 /** Radius of the ball [m]. */

@@ -23,7 +23,7 @@ function walkerOn(ground: Ground, height: number, options: WalkerOptions = {}, e
   const eye = new Vector3()
   return {
     walker,
-    run(seconds: number, direction = none, isJumping = false, step = 1 / 60): void {
+    run: (seconds: number, direction = none, isJumping = false, step = 1 / 60): void => {
       for (let t = step / 2; t < seconds; t += step) walker.update(direction, isJumping, step)
     },
     /** Way to the east [m]. */
