@@ -1,34 +1,35 @@
 import { Matrix4, Mesh, Quaternion, Vector3 } from 'three'
-import type { Camera, InstancedBufferGeometry, Scene, Texture } from 'three'
+import type {
+  Camera,
+  InstancedBufferGeometry,
+  Intersection,
+  Raycaster,
+  Scene,
+  Texture
+} from 'three'
 import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
-import { checkFinite, checkNonNegative, checkVector, fail, setOptions } from '@welkin/geo'
+import {
+  checkDirection,
+  checkFinite,
+  checkNonNegative,
+  checkVector,
+  fail,
+  setOptions
+} from '@welkin/geo'
 import type { HeightSample, HeightSource } from './heights/HeightSource'
-import { HeightPages } from './pages/HeightPages'
+import { CAPACITY, PagedTiles } from './pages/PagedTiles'
 import type { PageSource } from './pages/PageSource'
 import { grainTexture } from './surface/grainTexture'
+import { distanceToGround } from './rays/distanceToGround'
+import { groundNormal } from './rays/Ground'
+import { raycastGround } from './rays/raycastGround'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { checkSource, defaultsFor, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
-import { viewerOf, type Viewer } from './tiles/cpu/viewer'
+import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
 import { writeTiles } from './tiles/writeTiles'
-import { noTiles, TileTree } from './tiles/TileTree'
-
-/** Factor on the pages in a frame until the first picture is full. */
-const FIRST_PAGES = 4
-
-/** Frames in which a page takes the place of its parent's. */
-const FADE_FRAMES = 10
-
-/** Levels that the ground is too coarse by from which on pages do not fade in: after a leap. */
-const LEAP = 4
-
-/** Tiles that there is room for. */
-const CAPACITY = 3000
-
-/** Longest side of a cell of the finest tiles [m]. */
-const FINEST_CELL = 0.15
 
 /** Least height of the viewer above the ground that distances count from [m]. */
 const LEAST_CLEARANCE = 0.5
@@ -40,6 +41,7 @@ const positionWorld = new Vector3()
 const positionECEF = new Vector3()
 const subpoint = new Vector3()
 const reference = new Vector3()
+const up = new Vector3()
 const quaternion = new Quaternion()
 const scale = new Vector3()
 const matrix = new Matrix4()
@@ -72,20 +74,11 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   /** Most memory of pages on the GPU [MB]. */
   readonly pageMemory: number
   readonly #uniforms: TerrainUniforms
-  readonly #tree: TileTree
-  readonly #selection = noTiles()
-  readonly #pages: HeightPages
+  readonly #tiles: PagedTiles
   readonly #grain: Texture
   #seaLevel = 0
   #shadowDistance = 0
   #camera: Camera | null = null
-  #pagesPerFrame = 1
-  /** Frame of the renderer, and pages that may still be drawn in it. */
-  #frame = -1
-  #pagesLeft = 0
-  #isFull = false
-  /** False until a picture was full. */
-  #wasFull = false
 
   /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
   constructor(
@@ -105,9 +98,9 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     checkRange(where, 'pageMemory', pageMemory, 4, 1000)
     const { ellipsoid } = atmosphere
     const uniforms = new TerrainUniforms(ellipsoid)
-    const pages = new HeightPages(source, ellipsoid, resolution, 1e6 * pageMemory)
+    const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory)
     const grain = grainTexture()
-    const material = terrainMaterial(pages.atlas, grain, uniforms, resolution, detail)
+    const material = terrainMaterial(tiles.pages.atlas, grain, uniforms, resolution, detail)
     super(tileGrid(resolution, CAPACITY), material)
     this.atmosphere = atmosphere
     this.source = source
@@ -115,11 +108,8 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.detail = detail
     this.pageMemory = pageMemory
     this.#uniforms = uniforms
-    this.#pages = pages
+    this.#tiles = tiles
     this.#grain = grain
-    const cells = (2 * ellipsoid.maximumRadius) / resolution / FINEST_CELL
-    const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
-    this.#tree = new TileTree(ellipsoid, source, finestLevel, detail)
     this.set(settings)
     this.name = 'Terrain'
     // Tiles are culled one by one, and the matrix follows the camera.
@@ -168,30 +158,30 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#camera = value
   }
 
-  /** Pages drawn in a frame, ≥ 1: four times as many until the first picture is full. */
+  /** Pages drawn in a frame, ≥ 1: eight times as many until the first picture is full. */
   get pagesPerFrame(): number {
-    return this.#pagesPerFrame
+    return this.#tiles.pagesPerFrame
   }
 
   set pagesPerFrame(value: number) {
     checkRange('Terrain', 'pagesPerFrame', value, 1, 1000)
-    this.#pagesPerFrame = value
+    this.#tiles.pagesPerFrame = value
   }
 
   /** True if nothing is missing in what was drawn last: all tiles have pages, which have faded in. */
   get isFull(): boolean {
-    return this.#isFull
+    return this.#tiles.isFull
   }
 
   /** Pages: how many tiles have one, how many there is room for, how many were drawn so far, and memory on the GPU [bytes]. */
   get pages(): { count: number; capacity: number; drawn: number; bytes: number } {
-    const { count, drawn, atlas } = this.#pages
+    const { count, drawn, atlas } = this.#tiles.pages
     return { count, capacity: atlas.capacity, drawn, bytes: atlas.bytes }
   }
 
   /** Number of tiles chosen last, and of those in view. */
   get tileCount(): { chosen: number; inView: number } {
-    const { tiles, inView } = this.#selection
+    const { tiles, inView } = this.#tiles.selection
     return { chosen: tiles.length, inView }
   }
 
@@ -216,11 +206,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    */
   normalAt(longitude: number, latitude: number, target: Vector3 = new Vector3()): Vector3 {
     const position = this.#subpointAt('normalAt', longitude, latitude)
-    this.atmosphere.ellipsoid.surfaceNormal(position, target)
-    const { height, gradient } = this.source.sampleAt(position, sample)
-    if (height <= this.#seaLevel) return target
-    gradient.addScaledVector(target, -gradient.dot(target))
-    return target.sub(gradient).normalize()
+    return groundNormal(this, position, target)
   }
 
   /**
@@ -279,42 +265,17 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       this.#seaLevel
     )
     this.#uniforms.update(viewer, ground)
-    this.#load(renderer, viewer, most)
+    this.#tiles.update(renderer, viewer, most)
+    const { tree, selection } = this.#tiles
+    this.#uniforms.skirt.value = 2 ** selection.lag
     this.#uniforms.referenceECEF(reference)
-    const { tiles } = this.#selection
-    writeTiles(this.geometry, tiles, positionECEF, reference, ground, level =>
-      this.#tree.range(level)
+    writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
+      tree.range(level)
     )
     // ECEF axes at the camera.
     matrix.copy(worldToECEF).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
     this.matrix.copy(this.matrixWorld)
-  }
-
-  /** Chooses tiles and draws their pages. */
-  #load(renderer: Renderer, viewer: Viewer, most?: number): void {
-    const [tree, pages, selection] = [this.#tree, this.#pages, this.#selection]
-    if (pages.begin(renderer, tree.roots)) this.#wasFull = false
-    const { frame } = renderer.info
-    const isNewFrame = frame !== this.#frame
-    if (isNewFrame) {
-      this.#frame = frame
-      this.#pagesLeft = this.#pagesPerFrame * (this.#wasFull ? 1 : FIRST_PAGES)
-    }
-    let left = most ?? this.#pagesLeft
-    const isAtOnce = left === Infinity || !this.#wasFull
-    for (let drawn = -1; drawn !== 0;) {
-      tree.select(viewer, CAPACITY, selection)
-      drawn = pages.load(selection.missing, tree.selections, left)
-      left -= drawn
-      const leaps = isAtOnce || selection.lag >= LEAP
-      for (const tile of selection.tiles) tile.show(frame, leaps ? 1 : 1 / FADE_FRAMES)
-      if (!isAtOnce) break
-    }
-    if (most === undefined) this.#pagesLeft = left
-    this.#isFull = selection.lag === 0
-    this.#wasFull ||= this.#isFull
-    this.#uniforms.skirt.value = 2 ** selection.lag
   }
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
@@ -328,15 +289,39 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
 
-  /** Rays do not hit it: its vertices are moved on the GPU. `heightBelow` says where the ground is. */
-  override raycast(): void {}
+  /**
+   * Point where a ray enters the ground or the sea, with all detail that the source has.
+   *
+   * @param originECEF - [m]
+   * @param directionECEF - Any length but 0.
+   * @returns ECEF [m], or null if the ray misses.
+   * @throws If a component is not finite or the direction is zero.
+   */
+  intersectRay(
+    originECEF: Vector3,
+    directionECEF: Vector3,
+    target: Vector3 = new Vector3()
+  ): Vector3 | null {
+    checkVector('Terrain.intersectRay', 'originECEF', originECEF)
+    checkDirection('Terrain.intersectRay', 'directionECEF', directionECEF)
+    up.copy(directionECEF).normalize()
+    const distance = distanceToGround(this, originECEF, up, 0, Infinity)
+    return distance === null ? null : target.copy(originECEF).addScaledVector(up, distance)
+  }
+
+  /**
+   * Hit of a ray of three's `Raycaster` on the ground or the sea: to 1 mm, wherever the camera is. Its normal is in the
+   * terrain's own axes, those of ECEF; it has no face.
+   */
+  override raycast(raycaster: Raycaster, intersects: Intersection[]): void {
+    raycastGround(this, raycaster, intersects)
+  }
 
   /** Frees geometry, material and pages; atmosphere and source are shared. */
   override dispose(): void {
     super.dispose()
-    this.#pages.dispose()
+    this.#tiles.dispose()
     this.#grain.dispose()
-    this.#wasFull = this.#isFull = false
     this.geometry.dispose()
     this.material.dispose()
   }

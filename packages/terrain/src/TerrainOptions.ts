@@ -17,15 +17,15 @@ export interface TerrainOptions {
   camera?: Camera | null
   /** Most memory of pages on the GPU, in [4, 1000], default 128 [MB]; room for 64 pages is taken at least. */
   pageMemory?: number
-  /** Pages drawn in a frame, ≥ 1; the default, 4 at a resolution of 32, goes with its inverse square. */
+  /** Pages drawn in a frame, ≥ 1; the default, 1 at a resolution of 32, goes with its inverse square. */
   pagesPerFrame?: number
 }
 
 /** Options that may change later. */
 export const SETTINGS = ['seaLevel', 'shadowDistance', 'camera', 'pagesPerFrame'] as const
 
-/** Cells of tiles whose pages are drawn in a frame. */
-const CELLS_PER_FRAME = 4 * 32 ** 2
+/** Cells of tiles whose pages are drawn in a frame: a page of 32² cells takes about 1 ms of a slow graphics unit. */
+const CELLS_PER_FRAME = 32 ** 2
 
 /** Options that are left out. */
 export function defaultsFor({ resolution = 32 }: TerrainOptions): Required<TerrainOptions> {

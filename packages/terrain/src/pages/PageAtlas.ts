@@ -15,8 +15,8 @@ const LONGEST = 8192
 /** Bytes of a texel: two float32 of the vertices' texture, four float16 of the pixels'. */
 const TEXEL_BYTES = 8
 
-/** Texels of a page per cell of its tile, for pixels. */
-export const SURFACE_DENSITY = 2
+/** Texels of a page per cell of its tile, for pixels: a texel is two to four pixels wide at 1080 lines from a resolution of 32 on. */
+const densityOf = (resolution: number): number => (resolution > 32 ? 2 : 4)
 
 /** Fewest pages: the six faces, and a tile with all that it is a part of, several times over. */
 export const LEAST_PAGES = 64
@@ -38,7 +38,7 @@ function target(name: string, side: number, type: TextureDataType): RenderTarget
 
 /** Bytes of a page. */
 export const bytesOfPage = (resolution: number): number =>
-  TEXEL_BYTES * ((resolution + 1) ** 2 + (SURFACE_DENSITY * resolution + 1) ** 2)
+  TEXEL_BYTES * ((resolution + 1) ** 2 + (densityOf(resolution) * resolution + 1) ** 2)
 
 /** Two textures with a fixed number of pages: a tile's heights for vertices, and slopes and patches for pixels. */
 export class PageAtlas {
@@ -48,6 +48,8 @@ export class PageAtlas {
   readonly columns: number
   /** Side of a page for vertices, one texel to a vertex [texels]. */
   readonly heightSide: number
+  /** Texels of a page for pixels per cell of its tile, along an edge. */
+  readonly density: number
   /** Side of a page for pixels [texels]. */
   readonly surfaceSide: number
   /** Height [m] and climate, float32, for vertices. */
@@ -61,7 +63,8 @@ export class PageAtlas {
    */
   constructor(resolution: number, bytes: number) {
     this.heightSide = resolution + 1
-    this.surfaceSide = SURFACE_DENSITY * resolution + 1
+    this.density = densityOf(resolution)
+    this.surfaceSide = this.density * resolution + 1
     const most = Math.floor(LONGEST / this.surfaceSide)
     const wanted = Math.max(Math.floor(bytes / bytesOfPage(resolution)), LEAST_PAGES)
     this.columns = Math.min(Math.floor(Math.sqrt(wanted)), most)

@@ -7,7 +7,7 @@ import type { HeightSource } from '../heights/HeightSource'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { cubeToEllipsoid, faceAxes } from '../tiles/cpu/cubeSphere'
 import type { Tile } from '../tiles/Tile'
-import { SURFACE_DENSITY, type PageAtlas } from './PageAtlas'
+import type { PageAtlas } from './PageAtlas'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
   heightsOf,
@@ -49,7 +49,7 @@ export class PageBaker {
   ) {
     this.#tile.radii.value.copy(ellipsoid.radii)
     this.#tile.seed.value = source.seed ?? 0
-    const { heightSide, surfaceSide } = atlas
+    const { heightSide, surfaceSide, density } = atlas
     const tile = this.#tile as unknown as PageUniforms
     const pass = (name: string, output: ReturnType<typeof heightsOf>): FragmentPass =>
       new FragmentPass(`Welkin.Terrain.${name}`, output)
@@ -59,17 +59,17 @@ export class PageBaker {
       texture.name = 'Welkin.Terrain.loaded'
       texture.minFilter = texture.magFilter = NearestFilter
       this.#loaded = texture
-      this.#heights = pass('heights', loadedHeightsOf(texture, tile, heightSide, SURFACE_DENSITY))
-      this.#surface = pass('surface', loadedSurfaceOf(texture, tile, surfaceSide, SURFACE_DENSITY))
+      this.#heights = pass('heights', loadedHeightsOf(texture, tile, heightSide, density))
+      this.#surface = pass('surface', loadedSurfaceOf(texture, tile, surfaceSide, density))
     } else {
       this.#heights = pass('heights', heightsOf(source, tile, heightSide))
-      this.#surface = pass('surface', surfaceOf(source, tile, surfaceSide, SURFACE_DENSITY))
+      this.#surface = pass('surface', surfaceOf(source, tile, surfaceSide, density))
     }
   }
 
   /** Heights to load for a tile. */
   request(tile: Tile): PageRequest {
-    const steps = SURFACE_DENSITY * this.resolution
+    const steps = this.atlas.density * this.resolution
     const { face, level, x, y, extent } = tile
     const { first, second } = faceAxes(face)
     const { radii } = this.ellipsoid

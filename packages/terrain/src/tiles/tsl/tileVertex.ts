@@ -1,6 +1,6 @@
 import { attribute, ivec2, mix, positionGeometry, texture, vec2, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
-import { SURFACE_DENSITY, type PageAtlas } from '../../pages/PageAtlas'
+import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { faceAxes, unitDifference } from './cubeSphere'
@@ -35,7 +35,7 @@ export interface TileVertex {
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3.4
  */
 export function tileVertex(
-  { heights, columns, heightSide, surfaceSide }: PageAtlas,
+  { heights, columns, heightSide, surfaceSide, density }: PageAtlas,
   uniforms: TerrainUniforms,
   resolution: number,
   detail: number
@@ -104,8 +104,8 @@ export function tileVertex(
     position,
     place: vec4(tileOffset.xyz.add(subpoint), mixed.x),
     texels: vec4(
-      texelAt(own, moved.mul(SURFACE_DENSITY)),
-      texelAt(parent, moved.add(inParent).mul(SURFACE_DENSITY / 2))
+      texelAt(own, moved.mul(density)),
+      texelAt(parent, moved.add(inParent).mul(density / 2))
     ),
     blend: vec3(morph, mixed.y, tileCube.w)
   }
