@@ -194,7 +194,7 @@ gpuTest('there is no hole in the ground for cameras anywhere', async t => {
 gpuTest(
   'with room for few pages the ground is coarse, but has no hole, and takes no more memory',
   async t => {
-    const made = await stage(t, 32, { width: 48, height: 32 }, { pageMemory: 4 })
+    const made = await stage(t, 16, { width: 48, height: 32 }, { pageMemory: 4 })
     const { terrain } = made
     await findHoles(made, 12)
     const { count, capacity, drawn, bytes } = terrain.pages
