@@ -1,5 +1,5 @@
 export { Terrain } from './Terrain'
-export type { TerrainOptions } from './Terrain'
+export type { TerrainOptions } from './TerrainOptions'
 export { Walker } from './walk/Walker'
 export type { WalkerOptions, WalkerState } from './walk/Walker'
 export type { Ground } from './rays/Ground'
