@@ -57,7 +57,7 @@ export class CloudBench {
   )
   readonly #noise = new CloudNoise()
   readonly #light = new CloudLightTable()
-  /** Where the camera looks from, until the next `look`. */
+  /** Pose of the camera by `look`. */
   #pose = new Matrix4()
   #frame = 0
 
@@ -91,7 +91,7 @@ export class CloudBench {
     setSun(this.#atmosphere, this.#camera, sunElevation)
   }
 
-  /** Moves the camera off where it looks from: turned to the left [°], and back [m]. The sun stays. */
+  /** Moves the camera off its pose by `look`: turned to the left [°], and back [m]. The sun stays. */
   displace(turn: number, back: number): void {
     const camera = this.#camera
     this.#pose.decompose(camera.position, camera.quaternion, camera.scale)
