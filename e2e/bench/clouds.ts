@@ -35,7 +35,7 @@ export interface CloudCost {
   passes: number[]
   /** Peak signal-to-noise ratio of a settled picture against `cloudReference` [dB]. */
   psnr: number
-  /** The same in the midst of a turn of 30°/s, and of a flight at 60 m/s, at 60 frames a second [dB]. */
+  /** PSNR in the midst of a turn of 30°/s, and of a flight at 60 m/s, at 60 frames a second [dB]. */
   turningPsnr: number
   flyingPsnr: number
   /** Mean change of a channel from frame to frame of the settled picture [levels of 255]. */
