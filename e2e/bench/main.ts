@@ -1,6 +1,6 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
-import { timeClouds, timeNoise } from './clouds'
+import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { HeadlessDevice, finished, gpuMilliseconds } from '../headless/device'
 import { timeEnvironment } from './environment'
 import { timeFrame } from './frame'
@@ -151,12 +151,7 @@ const bake = await timeBake()
 const environment = await timeEnvironment(device, size, 10)
 const noise = await timeNoise(device)
 const cloudCosts = await timeClouds(device, size, Math.min(frames, 10))
-for (const { name, quality, ms, passes, psnr } of cloudCosts) {
-  const each = passes.map(pass => pass.toFixed(2)).join(' ')
-  log(
-    `clouds, ${name.padEnd(12)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})   PSNR ${psnr.toFixed(1)} dB`
-  )
-}
+for (const cost of cloudCosts) log(cloudLine(cost))
 const cloudMemory = await measureCloudMemory(device, size)
 for (const { quality, renderTargets, shadowMaps, noise } of cloudMemory) {
   log(
