@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
 import type { Ellipsoid } from '@welkin/geo'
-import type { HeightSample, HeightSource } from '../heights/HeightSource'
+import type { GroundBounds, HeightSample } from '../heights/HeightSource'
 import { cubeToEllipsoid, faceAxes } from './cpu/cubeSphere'
 
 const sample: HeightSample = { height: 0, gradient: new Vector3() }
@@ -16,6 +16,8 @@ export class Tile {
   readonly normal: Vector3
   /** Distance of the farthest corner from the centre, on the ellipsoid [m]. */
   readonly radius: number
+  /** Unit normals, outward, of the planes through the planet's centre and the four edges. */
+  readonly edges: readonly Vector3[]
   /** Unit vector to the centre where the ellipsoid is the unit sphere. */
   readonly direction: Vector3
   /** Angle at the planet's centre that the tile reaches from its own, in the same space [rad]. */
@@ -27,6 +29,14 @@ export class Tile {
   children: Tile[] | null = null
   /** Number of the last selection that came by. */
   lastUse = 0
+  /** Number of the last selection that it could be seen in. */
+  lastDrawn = 0
+  /** Place of its page in the atlas; −1 without one. */
+  slot = -1
+  /** Share of the parent's page in what is drawn, in [0, 1]: 1 as its own page arrives, then ever less. */
+  fade = 1
+  /** Frame in which that share last changed. */
+  #frame = -1
 
   /**
    * @param face - Face of the cube, 0 to 5.
@@ -40,8 +50,8 @@ export class Tile {
     readonly x: number,
     readonly y: number,
     ellipsoid: Ellipsoid,
-    source: HeightSource,
-    parent: Tile | null = null
+    source: GroundBounds,
+    readonly parent: Tile | null = null
   ) {
     const { outward, first, second } = faceAxes(face)
     this.cube = outward.clone().addScaledVector(first, x).addScaledVector(second, y)
@@ -58,6 +68,14 @@ export class Tile {
       square = Math.max(square, corner.distanceToSquared(this.center))
     }
     this.radius = Math.sqrt(square)
+    const { radii } = ellipsoid
+    const { x: cubeX, y: cubeY } = this
+    const edge = (axis: Vector3, place: number, sign: number): Vector3 =>
+      axis.clone().addScaledVector(outward, -place).divide(radii).normalize().multiplyScalar(sign)
+    this.edges = [-1, 1].flatMap(sign => [
+      edge(first, cubeX + sign * extent, sign),
+      edge(second, cubeY + sign * extent, sign)
+    ])
     this.direction = this.cube.clone().normalize()
     this.spread = 2 * Math.asin(Math.min(this.radius / ellipsoid.minimumRadius / 2, 1))
     const { lowest, highest } = parent ?? source
@@ -73,8 +91,21 @@ export class Tile {
     return 2 ** -this.level
   }
 
+  /** Has its page, if there is one, take more of the parent's place; once in a frame unless at once. */
+  show(frame: number, step: number): void {
+    if (this.slot < 0 || (step < 1 && frame === this.#frame)) return
+    this.#frame = frame
+    this.fade = Math.max(this.fade - step, 0)
+  }
+
+  /** Number of the quarter of its parent that it is, columns first; 0 for a whole face. */
+  get quarter(): number {
+    const { parent } = this
+    return parent === null ? 0 : Number(this.x > parent.x) + 2 * Number(this.y > parent.y)
+  }
+
   /** Quarters, made at the first call. */
-  split(ellipsoid: Ellipsoid, source: HeightSource): Tile[] {
+  split(ellipsoid: Ellipsoid, source: GroundBounds): Tile[] {
     const half = this.extent / 2
     return (this.children ??= CORNERS.map(
       ([i, j]) =>

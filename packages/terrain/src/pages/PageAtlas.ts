@@ -1,0 +1,106 @@
+import {
+  FloatType,
+  HalfFloatType,
+  LinearFilter,
+  NearestFilter,
+  RenderTarget,
+  RGBAFormat,
+  RGFormat
+} from 'three'
+import type { PixelFormat, TextureDataType } from 'three'
+
+/** Longest side of a texture that every device has [texels]. */
+const LONGEST = 8192
+
+/** Bytes of a texel: two float32 of the vertices' texture, four float16 of the pixels'. */
+const TEXEL_BYTES = 8
+
+/** Pages that a view needs where it needs the most: at eye height, with the horizon in view. */
+const ENOUGH_PAGES = 1100
+
+/** Bytes of a page. */
+const bytesOfPage = (resolution: number, density: number): number =>
+  TEXEL_BYTES * ((resolution + 1) ** 2 + (density * resolution + 1) ** 2)
+
+/**
+ * Texels of a page per cell of its tile, for pixels: a texel is two to four pixels wide at 1080 lines from a resolution of 32 on, or
+ * wider if there is not the memory.
+ */
+const densityOf = (resolution: number, bytes: number): number => {
+  const densities = resolution > 32 ? [2, 1] : [4, 2, 1]
+  const isEnough = (density: number): boolean =>
+    bytes >= ENOUGH_PAGES * bytesOfPage(resolution, density)
+  return densities.find(isEnough) ?? 1
+}
+
+/** Fewest pages: the six faces, and a tile with all that it is a part of, several times over. */
+const LEAST_PAGES = 64
+
+function target(name: string, width: number, height: number, type: TextureDataType): RenderTarget {
+  const isFloat = type === FloatType
+  const filter = isFloat ? NearestFilter : LinearFilter
+  const made = new RenderTarget(width, height, {
+    type,
+    format: (isFloat ? RGFormat : RGBAFormat) as PixelFormat,
+    depthBuffer: false,
+    minFilter: filter as typeof NearestFilter,
+    magFilter: filter as typeof NearestFilter
+  })
+  made.texture.name = name
+  made.scissorTest = true
+  return made
+}
+
+/** Two textures with a fixed number of pages: a tile's heights for vertices, and slopes and patches for pixels. */
+export class PageAtlas {
+  /** Number of pages that there is room for. */
+  readonly capacity: number
+  /** Memory on the GPU [bytes]. */
+  readonly bytes: number
+  /** Pages in a row. */
+  readonly columns: number
+  /** Side of a page for vertices, one texel to a vertex [texels]. */
+  readonly heightSide: number
+  /** Texels of a page for pixels per cell of its tile, along an edge. */
+  readonly density: number
+  /** Side of a page for pixels [texels]. */
+  readonly surfaceSide: number
+  /** Height [m] and climate, float32, for vertices. */
+  readonly heights: RenderTarget
+  /** Gradient along the face's two axes [–], height [m] and patchiness, float16, for pixels. */
+  readonly surface: RenderTarget
+
+  /**
+   * @param resolution - Cells along a tile's edge.
+   * @param bytes - Most memory that both may take; they take that of `LEAST_PAGES` at least.
+   */
+  constructor(resolution: number, bytes: number) {
+    this.heightSide = resolution + 1
+    this.density = densityOf(resolution, bytes)
+    this.surfaceSide = this.density * resolution + 1
+    const most = Math.floor(LONGEST / this.surfaceSide)
+    const bytesPerPage = bytesOfPage(resolution, this.density)
+    const wanted = Math.max(Math.floor(bytes / bytesPerPage), LEAST_PAGES)
+    this.columns = Math.min(Math.ceil(Math.sqrt(wanted)), most)
+    const rows = Math.min(Math.floor(wanted / this.columns), most)
+    this.capacity = this.columns * rows
+    this.bytes = this.capacity * bytesPerPage
+    const pages = (name: string, side: number, type: TextureDataType): RenderTarget =>
+      target(`Welkin.Terrain.${name}`, this.columns * side, rows * side, type)
+    this.heights = pages('heights', this.heightSide, FloatType)
+    this.surface = pages('surface', this.surfaceSide, HalfFloatType)
+  }
+
+  /** Has the next drawing go to a page alone. */
+  aim(drawn: RenderTarget, slot: number): void {
+    const side = drawn.width / this.columns
+    const x = (slot % this.columns) * side
+    const y = Math.floor(slot / this.columns) * side
+    for (const box of [drawn.viewport, drawn.scissor]) box.set(x, y, side, side)
+  }
+
+  dispose(): void {
+    this.heights.dispose()
+    this.surface.dispose()
+  }
+}
