@@ -19,8 +19,11 @@ import {
   FloatType,
   type Camera
 } from 'three'
+import { SunLight } from 'three/addons/lights/SunLight.js'
+import { SunLightNode } from 'three/addons/lights/SunLightNode.js'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { quantile } from '../../validate/score'
 import { drawToFloat } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -114,6 +117,63 @@ function second({ scene, atmosphere, light }: Stage, renderer: WebGPURenderer, c
     }
   }
 }
+
+gpuTest('has the same shafts when the origin of the world moves', async t => {
+  const renderer = await t.createRenderer(size)
+  const set = stage(renderer, 15)
+  const { atmosphere, camera, light } = set
+  addTowers(set, new Matrix4())
+  await set.draw()
+  const before = await set.draw()
+  set.shafts.enabled = false
+  const lit = await set.draw()
+  set.shafts.enabled = true
+  const step = new Vector3(3000, -20, 1500)
+  atmosphere.worldToECEF.multiply(new Matrix4().makeTranslation(step))
+  for (const { position } of [camera, light.target, set.scene.children.at(-1)!]) position.sub(step)
+  const after = await set.draw()
+  const error = apart(before, after) / apart(before, lit)
+  t.note(`${(100 * error).toFixed(2)} % of the shafts apart`)
+  expectTrue(error < 0.02, `${error} of the shafts apart`)
+  set.dispose()
+})
+
+gpuTest("reads the cascades of three's SunLight as it reads one map", async t => {
+  const renderer = await t.createRenderer(size)
+  SunLight.registerNode(SunLightNode)
+  const set = stage(renderer, 15)
+  addBox(set.scene, [-100, 200, -600], [60, 500, 60]).material.color.set(0)
+  await set.draw()
+  const map = await set.draw()
+  set.shafts.enabled = false
+  const lit = await set.draw()
+  const light = new SunLight()
+  light.position.copy(set.atmosphere.sunDirection)
+  light.castShadow = true
+  light.shadow.mapSize.setScalar(2048)
+  light.shadow.camera.far = 3000
+  set.scene.remove(set.light).add(light)
+  const { pipeline, dispose } = second({ ...set, light: light as never }, renderer, set.camera)
+  let cascades = map
+  for (let i = 0; i < 2; i++) {
+    await nextFrame()
+    cascades = await drawToFloat(renderer, () => pipeline.render())
+  }
+  const relative = (a: Picture, b: Picture): number =>
+    quantile(
+      [...a.data].map((value, i) => Math.abs(value - b.data[i]) / (lit.data[i] + 1e-6)),
+      0.98
+    )
+  const [errors, shadows] = [relative(cascades, map), relative(map, lit)]
+  t.note(
+    `98 % of pixels differ by less than ${errors.toFixed(4)}, by shadows ${shadows.toFixed(4)}`
+  )
+  expectTrue(shadows > 0.02, 'the tower casts a shadow')
+  expectTrue(errors < 0.1 * shadows, 'cascades')
+  dispose()
+  light.dispose()
+  set.dispose()
+})
 
 gpuTest(
   'takes from an orthographic camera what it takes from a narrow perspective one',

@@ -1,25 +1,23 @@
 import { RGFormat, UnsignedByteType, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import {
-  Fn,
   If,
   float,
+  getViewPosition,
   int,
-  outputStruct,
-  property,
   screenUV,
   texture,
+  uniform,
   uv,
   vec2,
   vec4
 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
-import { FragmentPass, tableTarget, type Outputs } from '../tables/FragmentPass'
+import { FragmentPass, outputs, tableTarget, type Outputs } from '../tables/FragmentPass'
 import { rowAndColumn } from '../tables/tsl/texels'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import { loop, sampleLevel0, type Float, type Mat4, type Vec2, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import { DepthRays } from '../view/DepthRays'
 import type { ViewNodes } from '../view/ViewNodes'
 import type { CameraShafts } from './CameraShafts'
 import { lostInSlice, type Slice } from './tsl/lostInSlice'
@@ -45,18 +43,13 @@ const MOST = 6e4
 
 const _size = new Vector2()
 
-/** A shader of two attachments. */
-function lightAndEdges(body: (renderer: Renderer) => { light: Vec4; edges: Vec4 }): Outputs {
-  const first = property('vec4') as unknown as Vec4
-  const second = property('vec4') as unknown as Vec4
-  const assign = Fn(({ renderer }): Vec4 => {
-    const { light, edges } = body(renderer)
+/** A shader of light and edges. */
+const lightAndEdges = (body: () => { light: Vec4; edges: Vec4 }): Outputs =>
+  outputs<[Vec4, Vec4]>(2, ([first, second]) => {
+    const { light, edges } = body()
     first.assign(light.clamp(-MOST, MOST))
     second.assign(edges)
-    return vec4(0)
   })
-  return { color: assign(), output: outputStruct(first, second) }
-}
 
 /** Shafts whose light a volume has; `version` grows whenever its shader changes. */
 type ShaftsInVolume = Pick<CameraShafts, 'view' | 'shadowedAir' | 'steps' | 'version'>
@@ -82,7 +75,7 @@ export class ShaftVolume {
   readonly #sums: RenderTarget
   /** Textures of both: light, and edges of the dark. */
   readonly #textures: readonly (readonly TextureNode[])[]
-  readonly #rays: DepthRays
+  readonly #projectionInverse: Mat4
   /** Number of rays in each direction, with one beyond each edge of the picture. */
   readonly #grid = vector2()
   /** Size of the picture, in steps from ray to ray. */
@@ -97,7 +90,7 @@ export class ShaftVolume {
   #compiled = -1
 
   constructor(camera: Camera) {
-    this.#rays = new DepthRays(float(0.5), camera)
+    this.#projectionInverse = uniform(camera.projectionMatrixInverse) as unknown as Mat4
     this.#slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.#sums = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.#textures = [this.#slices, this.#sums].map(({ textures }) => {
@@ -174,12 +167,12 @@ export class ShaftVolume {
   }
 
   #march({ view, shadowedAir, steps }: ShaftsInVolume, shadowedSky: ShadowedAir): Outputs {
-    return lightAndEdges(renderer => {
+    return lightAndEdges(() => {
       const { slice, place } = this.#texel()
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
       const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
-      const ray = this.#rayAt(renderer, view, place.sub(0.5).div(this.#size))
+      const ray = this.#rayAt(view, place.sub(0.5).div(this.#size))
       const jitter = staggered(place)
       const light = vec4(0).toVar()
       const edges = vec4(0).toVar()
@@ -194,8 +187,8 @@ export class ShaftVolume {
     })
   }
 
-  #rayAt(renderer: Renderer, view: ViewNodes, at: Vec2): ShaftRay {
-    const position = this.#rays.position(renderer, at, float(0.5))
+  #rayAt(view: ViewNodes, at: Vec2): ShaftRay {
+    const position = getViewPosition(at, float(0.5), this.#projectionInverse)
     const direction = view.toMapped(position).normalize().toConst()
     const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
     const cosViewLight = direction.dot(view.lightDirection).toConst() as Float

@@ -1,0 +1,166 @@
+import {
+  aerialPerspective,
+  Atmosphere,
+  exposureFor,
+  heightFieldShadow,
+  lightShafts,
+  terrainShadow
+} from '@welkin/atmosphere'
+import { MountainHeights, Terrain } from '@welkin/terrain'
+import {
+  DataTexture,
+  FloatType,
+  Matrix4,
+  PerspectiveCamera,
+  RedFormat,
+  Scene,
+  Vector3
+} from 'three'
+import { shadow } from 'three/tsl'
+import { Air } from './air'
+import { aimShadow, prepareShadow } from './globe/sunShadow'
+import { Explorer } from './moving/Explorer'
+import {
+  createRenderer,
+  exposureOf,
+  frameClock,
+  type RendererArgs,
+  type SceneHandle
+} from './scene'
+import { storyHandle } from './storyHandle'
+
+export interface MountainShadowsArgs extends RendererArgs {
+  /** Part of the light that shadowed air loses; 1 is physical, 0 has no shafts. */
+  strength: number
+  /** Aerosol of the air: 1 is clear, 6 thick haze. */
+  turbidity: number
+  /** Elevation of the sun [degrees]. */
+  elevation: number
+  /** Its azimuth, clockwise from north [degrees]. */
+  azimuth: number
+  /** [stops], 0 as `exposureFor` says. */
+  exposure: number
+}
+
+/** Place of the world's origin [°], and the camera's height above the ground there [m]. */
+const ORIGIN = { longitude: 2.49, latitude: 46.209 }
+const HEIGHT = 250
+
+/** Direction of the camera, clockwise from north, and above the horizontal [°]. */
+const HEADING = 58
+const PITCH = 3
+
+/** Edge of the field whose mountains cast shadows [m], and texels along it. */
+const FIELD = 110_000
+const TEXELS = 256
+
+/** Cells along a tile's edge in a still: a software renderer draws it. */
+const STILL_RESOLUTION = 16
+
+/** Heights over the plane through the world's origin, of places in rows from south to north [m]. */
+function heightsAbovePlane(terrain: Terrain, altitudeOf: (place: Vector3) => number): DataTexture {
+  const heights = new Float32Array(TEXELS ** 2)
+  const place = new Vector3()
+  for (let i = 0; i < heights.length; i++) {
+    const [east, north] = [i % TEXELS, Math.floor(i / TEXELS)].map(
+      texel => ((texel + 0.5) / TEXELS - 0.5) * FIELD
+    )
+    // The planet falls away from the plane.
+    heights[i] = terrain.heightBelow(place.set(east, 0, -north)) - altitudeOf(place)
+  }
+  const texture = new DataTexture(heights, TEXELS, TEXELS, RedFormat, FloatType)
+  texture.needsUpdate = true
+  return texture
+}
+
+/** Shadows of mountains tens of kilometres away, in the haze and on the ground, where no shadow map reaches. */
+export async function createMountainShadows(
+  canvas: HTMLCanvasElement,
+  args: MountainShadowsArgs
+): Promise<SceneHandle<MountainShadowsArgs>> {
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(40, 1, 1, 1e7)
+  const current = { ...args }
+  const atmosphere = new Atmosphere()
+  atmosphere.place(ORIGIN)
+  const air = new Air(renderer, scene, camera, 'post', atmosphere)
+  const { sun, post } = air
+  if (post === undefined) throw new Error('createMountainShadows: there must be a post effect')
+  const terrain = new Terrain(
+    atmosphere,
+    new MountainHeights({ seed: 1 }),
+    args.frame ? { resolution: STILL_RESOLUTION } : {}
+  )
+  terrain.castShadow = terrain.receiveShadow = true
+  scene.add(terrain)
+  prepareShadow(sun)
+
+  const { ellipsoid, worldToECEF } = atmosphere
+  const ecefToWorld = new Matrix4().copy(worldToECEF).invert()
+  const position = new Vector3()
+  const toECEF = (place: Vector3): Vector3 => position.copy(place).applyMatrix4(worldToECEF)
+  const upAt = (place: Vector3, target: Vector3): Vector3 =>
+    ellipsoid.surfaceNormal(toECEF(place), target).transformDirection(ecefToWorld)
+  const heightAt = (place: Vector3): number => ellipsoid.heightAt(toECEF(place))
+  const groundAt = (place: Vector3): number => terrain.heightBelow(place)
+  const heights = heightsAbovePlane(terrain, heightAt)
+  // #region mountain shadows
+  // From the field, whose first texel is in the south-west, to the world: x is east, y up, z south.
+  const toWorld = new Matrix4()
+  toWorld.set(FIELD, 0, 0, -FIELD / 2, 0, 0, 1, 0, 0, -FIELD, 0, FIELD / 2, 0, 0, 0, 1)
+  const hills = heightFieldShadow(heights, toWorld) // a texture in metres
+  const shafts = lightShafts(atmosphere, camera, sun).add(hills) // into the air, and onto the ground:
+  Object.assign(sun.shadow, { shadowNode: terrainShadow(hills, sun, shadow(sun)) })
+  const { picture, depth, pipeline } = post
+  pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
+  // #endregion
+
+  const explorer = args.frame
+    ? undefined
+    : new Explorer(camera, canvas, { upAt, heightAt, groundAt })
+  const elapsed = frameClock(args.frame)
+  camera.position.y = groundAt(camera.position) + HEIGHT
+  const degree = Math.PI / 180
+  camera.rotation.set(PITCH * degree, -HEADING * degree, 0, 'YXZ')
+
+  let haze = NaN
+  const apply = (): void => {
+    const { strength, turbidity, elevation, azimuth, exposure } = current
+    shafts.strength = strength
+    if (turbidity !== haze) atmosphere.parameters.set({ turbidity })
+    haze = turbidity
+    atmosphere.setSunAngles(elevation, azimuth)
+    renderer.toneMappingExposure = exposureOf(exposure)
+  }
+  apply()
+  if (args.frame) await atmosphere.bake(renderer) // exposure is that of the tables
+
+  const up = new Vector3()
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    camera.updateMatrixWorld()
+    const height = Math.max(heightAt(camera.position) - groundAt(camera.position), 2)
+    camera.near = Math.min(height / 10, 1e4)
+    camera.updateProjectionMatrix()
+    aimShadow(sun, camera, height, upAt(camera.position, up))
+    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera)
+    pipeline.render()
+  }
+
+  return storyHandle<MountainShadowsArgs>({
+    renderer,
+    scene,
+    camera,
+    explorer,
+    current,
+    apply,
+    draw,
+    dispose() {
+      shafts.dispose()
+      heights.dispose()
+      terrain.dispose()
+      air.dispose()
+    }
+  })
+}
