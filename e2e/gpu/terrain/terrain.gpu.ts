@@ -53,7 +53,13 @@ async function stage(
   renderer.highPrecision = true
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const { ellipsoid } = atmosphere
-  const terrain = new Terrain(atmosphere, source, { resolution, seaLevel: -Infinity, ...options })
+  const terrain = new Terrain(atmosphere, source, {
+    resolution,
+    seaLevel: -Infinity,
+    // Slopes half as fine as by default: nothing here looks at them, and pages are drawn in software.
+    pageMemory: 0.08 * resolution ** 2,
+    ...options
+  })
   terrain.material.fragmentNode = vec4(positionView, 1)
   const scene = new Scene()
   scene.background = new Color(0, 0, 0)
