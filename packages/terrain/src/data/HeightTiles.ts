@@ -238,13 +238,21 @@ export class HeightTiles implements PageSource {
   #keysOf(z: number, { x, y }: PagePlaces): Set<number> {
     const { size, coarsest } = this.#pyramid
     const keys = new Set<number>()
+    const margin = 2 / size
+    let last = NaN
     const add = (level: number, column: number, row: number): void => {
       const scale = 2 ** level
-      const margin = 2 / size
-      const [left, right] = [column * scale - margin, column * scale + margin].map(Math.floor)
-      const [top, bottom] = [row * scale - margin, row * scale + margin].map(Math.floor)
-      for (let i = left; i <= right; i++) {
-        for (let j = top; j <= bottom; j++) keys.add(tileKey(level, i, j))
+      const left = Math.floor(column * scale - margin)
+      const right = Math.floor(column * scale + margin)
+      const top = Math.floor(row * scale - margin)
+      const bottom = Math.floor(row * scale + margin)
+      if (left === right && top === bottom) {
+        const key = tileKey(level, left, top)
+        if (key !== last) keys.add((last = key))
+        return
+      }
+      for (const i of [left, right]) {
+        for (const j of [top, bottom]) keys.add(tileKey(level, i, j))
       }
     }
     for (let i = 0; i < x.length; i++) {
