@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { Terrain, TerrariumTiles, tileUrl, type GridHeights } from '@welkin/terrain'
+import { GridHeights, Terrain, TerrariumTiles, tileUrl } from '@welkin/terrain'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
@@ -14,7 +14,6 @@ import {
 } from './scene'
 import { storyHandle } from './storyHandle'
 import { GroundCamera, type GroundView } from './terrain/GroundCamera'
-import { loadGrid } from './terrain/loadGrid'
 import { createVillage } from './valley/village'
 
 /** Middle of the made-up village, on level ground between two ridges [°]. */
@@ -68,6 +67,47 @@ const STILL_RESOLUTION = 16
 /** Time in which the first tile must arrive [ms]. */
 const PATIENCE = 6000
 
+/** Description of the grid in `data/`. */
+interface GridFile {
+  readonly rows: number
+  readonly columns: number
+  readonly west: number
+  readonly east: number
+  readonly south: number
+  readonly north: number
+  readonly source: string
+}
+
+async function load(name: string): Promise<Response> {
+  const url = new URL(`world-data/heights/${name}`, document.baseURI)
+  const response = await fetch(url)
+  if (!response.ok || response.body === null) throw new Error(`${url.href}: ${response.status}`)
+  return response
+}
+
+/** Heights measured from space, 28 × 32 km of ridges in Tennessee; a plain about them. */
+async function loadGrid(): Promise<GridHeights> {
+  const file = (await (await load('jacksboro-dem.json')).json()) as GridFile
+  const packed = (await load('jacksboro-dem.i16.gz')).body!
+  const cells = packed.pipeThrough(new DecompressionStream('gzip'))
+  const numbers = await new Response(cells).arrayBuffer()
+  const { columns: width, rows: height, west, east, south, north, source } = file
+  // #region heights
+  const heights = new GridHeights(new Int16Array(numbers), {
+    width,
+    height,
+    west, // edges [°]
+    east,
+    south,
+    north,
+    outside: 300, // a plain, from 6 km beyond the edges on
+    fade: 6000,
+    attribution: source
+  })
+  // #endregion
+  return heights
+}
+
 /** Reason why tiles cannot be used; undefined if the first one arrives. */
 async function problemOf(url: string): Promise<string | undefined> {
   try {
@@ -82,12 +122,10 @@ async function problemOf(url: string): Promise<string | undefined> {
 async function heightsOf({ url }: RealHeightsArgs) {
   const problem = url === '' ? undefined : await problemOf(url)
   if (url !== '' && problem === undefined) {
-    // #region tiles
     const tiles = new TerrariumTiles(url, { maxZoom: 14 })
-    // #endregion
     return { heights: tiles, note: `Tiles of ${new URL(url).host}` }
   }
-  const grid: GridHeights = await loadGrid()
+  const grid = await loadGrid()
   const note = problem === undefined ? '' : `No tiles: ${problem}. The local grid instead.\n`
   return { heights: grid, note: note + grid.attribution }
 }

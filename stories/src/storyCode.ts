@@ -1,14 +1,7 @@
 import { codeRegion } from './codeRegion'
 
 const sources = import.meta.glob<string>(
-  [
-    './quickStart.ts',
-    './air.ts',
-    './*.scene.ts',
-    './terrain/loadGrid.ts',
-    './valleyAir.ts',
-    './valleyFactors.ts'
-  ],
+  ['./quickStart.ts', './air.ts', './*.scene.ts', './valleyAir.ts', './valleyFactors.ts'],
   { query: '?raw', import: 'default', eager: true }
 )
 
