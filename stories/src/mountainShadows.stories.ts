@@ -47,7 +47,7 @@ const meta: Meta<MountainShadowsArgs> = {
   args: {
     strength: 1,
     turbidity: 5,
-    elevation: 4.5,
+    elevation: 4,
     azimuth: 57,
     exposure: -1.75,
     forceWebGL: false,
