@@ -1,5 +1,5 @@
 import type { SunDirectionalLight } from '@welkin/atmosphere'
-import type { Terrain } from '@welkin/terrain'
+import { Walker, type Terrain } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
 import { moveCamera } from '../globe/places'
 import { aimShadow } from '../globe/sunShadow'
@@ -41,7 +41,9 @@ export class GroundCamera {
     const groundAt = (place: Vector3): number => terrain.heightBelow(place)
     const upAt = (place: Vector3, target: Vector3): Vector3 => this.#upAt(place, target)
     const heightAt = (place: Vector3): number => this.#heightAt(place)
-    this.explorer = isStill ? undefined : new Explorer(camera, canvas, { upAt, heightAt, groundAt })
+    const walker = new Walker(terrain)
+    const options = { upAt, heightAt, groundAt, walker }
+    this.explorer = isStill ? undefined : new Explorer(camera, canvas, options)
   }
 
   /** Flies to a view, or jumps there where nobody watches. */
