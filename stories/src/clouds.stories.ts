@@ -142,15 +142,16 @@ export const Cockpit: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** Towers 10 km high among small cumulus, against the sun of the late afternoon. */
+/** Storms up to 11 km high, 20 to 40 km off, in the sun of the afternoon: flat bases, towers, an anvil. */
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    altitude: 2200,
-    heading: 20,
-    pitch: 10,
-    hour: 22.4,
-    exposure: 0.2
+    longitude: -84.3,
+    latitude: 36.3,
+    altitude: 600,
+    heading: 348,
+    pitch: 9,
+    hour: 21.5
   },
   tags: ['screenshot', 'webgpu-only']
 }
