@@ -55,7 +55,7 @@ export class Explorer {
   private flight?: Flight
   private walk?: Walk
   private readonly walker: ExplorerOptions['walker']
-  /** Where the walker's eyes were last. */
+  /** Eyes of the walker, as it left them. */
   private readonly eye = new Vector3()
 
   constructor(camera: PerspectiveCamera, canvas: HTMLElement, options: ExplorerOptions = {}) {
