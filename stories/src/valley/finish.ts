@@ -10,13 +10,13 @@ import { smaa } from 'three/addons/tsl/display/SMAANode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
 import {
   builtinAOContext,
-  convertToTexture,
   int,
   mrt,
   normalView,
   output,
   pass,
   renderOutput,
+  rtt,
   screenUV,
   velocity
 } from 'three/tsl'
@@ -90,18 +90,20 @@ export class ValleyFinish {
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
+    const isMoved = effects.antialiasing === 'traa' || effects.motionBlur
+    const motion = isMoved ? this.#motion() : null
     scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
     let picture: Node = exposure
-    if (effects.antialiasing === 'traa') {
-      const smooth = traa(convertToTexture(picture as never), depth, this.#motion(), this.#camera)
+    if (motion !== null && effects.antialiasing === 'traa') {
+      const smooth = traa(this.#texture(picture), depth, motion, this.#camera)
       picture = this.#keep(smooth)
     }
     if (effects.depthOfField) {
-      const sharp = convertToTexture(picture as never)
+      const sharp = this.#texture(picture)
       picture = this.#keep(dof(sharp, scenePass.getViewZNode(), FOCUS, FOCAL_DEPTH, 1.5))
     }
-    if (effects.motionBlur) {
-      picture = motionBlur(convertToTexture(picture as never), this.#motion(), int(12))
+    if (motion !== null && effects.motionBlur) {
+      picture = motionBlur(this.#texture(picture), motion, int(12))
     }
     if (effects.bloom) {
       const halo = this.#keep(bloom(picture as never, GLOW, 0.7, 0))
@@ -111,11 +113,11 @@ export class ValleyFinish {
   }
 
   /** Motion of ground, clouds and sky over the screen since the last frame. */
-  #motion(): ReturnType<typeof convertToTexture> {
+  #motion(): ReturnType<typeof rtt> {
     const { scenePass, depth, clouds } = this.#air
     scenePass.setMRT(mrt({ output, velocity }))
     const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
-    return convertToTexture(cloudVelocity(sky, clouds))
+    return this.#texture(this.#keep(cloudVelocity(sky, clouds)))
   }
 
   #occlusion(): PassNode['contextNode'] {
@@ -126,6 +128,11 @@ export class ValleyFinish {
     )
     occlusion.radius.value = OCCLUSION_REACH
     return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
+  }
+
+  /** A picture that effects read at many places. */
+  #texture(picture: Node): ReturnType<typeof rtt> {
+    return this.#keep(rtt(picture as never))
   }
 
   #keep<T extends object>(used: T): T {
