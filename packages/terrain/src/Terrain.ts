@@ -1,9 +1,25 @@
 import { Matrix4, Mesh, Quaternion, Vector3 } from 'three'
-import type { Camera, InstancedBufferGeometry, InstancedBufferAttribute, Scene } from 'three'
+import type {
+  Camera,
+  InstancedBufferGeometry,
+  InstancedBufferAttribute,
+  Intersection,
+  Raycaster,
+  Scene
+} from 'three'
 import type { MeshStandardNodeMaterial } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
-import { checkFinite, checkNonNegative, checkVector, fail, setOptions } from '@welkin/geo'
+import {
+  checkDirection,
+  checkFinite,
+  checkNonNegative,
+  checkVector,
+  fail,
+  setOptions
+} from '@welkin/geo'
 import type { HeightSample, HeightSource } from './heights/HeightSource'
+import { distanceToGround } from './rays/distanceToGround'
+import { raycastGround } from './rays/raycastGround'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { TerrainUniforms } from './TerrainUniforms'
 import { viewerOf } from './tiles/cpu/viewer'
@@ -281,8 +297,33 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
 
-  /** Rays do not hit it: its vertices are moved on the GPU. `heightBelow` says where the ground is. */
-  override raycast(): void {}
+  /**
+   * Point where a ray enters the ground or the sea, with all detail that the source has.
+   *
+   * @param originECEF - [m]
+   * @param directionECEF - Any length but 0.
+   * @returns ECEF [m], or null if the ray misses.
+   * @throws If a component is not finite or the direction is zero.
+   */
+  intersectRay(
+    originECEF: Vector3,
+    directionECEF: Vector3,
+    target: Vector3 = new Vector3()
+  ): Vector3 | null {
+    checkVector('Terrain.intersectRay', 'originECEF', originECEF)
+    checkDirection('Terrain.intersectRay', 'directionECEF', directionECEF)
+    up.copy(directionECEF).normalize()
+    const distance = distanceToGround(this, originECEF, up, 0, Infinity)
+    return distance === null ? null : target.copy(originECEF).addScaledVector(up, distance)
+  }
+
+  /**
+   * Hit of a ray of three's `Raycaster` on the ground or the sea: to 1 mm, wherever the camera is. Its normal is in the
+   * terrain's own axes, those of ECEF; it has no face.
+   */
+  override raycast(raycaster: Raycaster, intersects: Intersection[]): void {
+    raycastGround(this, raycaster, intersects)
+  }
 
   /** Frees geometry and material; atmosphere and source are shared. */
   override dispose(): void {

@@ -1,5 +1,8 @@
 export { Terrain } from './Terrain'
 export type { TerrainOptions } from './Terrain'
+export { Walker } from './walk/Walker'
+export type { WalkerOptions, WalkerState } from './walk/Walker'
+export type { Ground } from './rays/Ground'
 export { MountainHeights } from './heights/MountainHeights'
 export type { MountainHeightsOptions } from './heights/MountainHeights'
 export type { HeightSample, HeightSource, SurfacePoint } from './heights/HeightSource'

@@ -41,8 +41,12 @@ const STEEPEST = 1.8 / 4200
 /** Sum over octaves, each at most `slope` wavelengths or `most`, in units of the first one's amplitude. */
 const most = (octaves: Octaves, slope: number, limit: number): number => {
   let total = 0
+  let amplitude = 1
+  let steepness = slope * octaves.inverse
   for (let i = 0; i < octaves.count; i++) {
-    total += octaves.gain ** i * Math.min(slope * octaves.inverse * 2 ** i, limit)
+    total += amplitude * Math.min(steepness, limit)
+    amplitude *= octaves.gain
+    steepness *= 2
   }
   return total
 }

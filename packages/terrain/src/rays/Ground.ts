@@ -1,0 +1,33 @@
+import { Vector3 } from 'three'
+import type { Atmosphere } from '@welkin/atmosphere'
+import type { HeightSample, HeightSource } from '../heights/HeightSource'
+
+/** Ground of a planet that rays hit and feet stand on; a `Terrain` is one. */
+export interface Ground {
+  /** Its ellipsoid, and where that is in the world. */
+  readonly atmosphere: Pick<Atmosphere, 'ellipsoid' | 'worldToECEF'>
+  /** Heights over the ellipsoid. */
+  readonly source: HeightSource
+  /** Surface of the sea [m]; −Infinity for none. */
+  readonly seaLevel: number
+}
+
+const sample: HeightSample = { height: 0, gradient: new Vector3() }
+
+/**
+ * Unit normal of the surface, that of the sea where it covers the ground.
+ *
+ * @param subpoint - On the ellipsoid, ECEF [m].
+ * @returns ECEF.
+ */
+export function groundNormal(
+  { atmosphere, source, seaLevel }: Ground,
+  subpoint: Vector3,
+  target: Vector3
+): Vector3 {
+  atmosphere.ellipsoid.surfaceNormal(subpoint, target)
+  const { height, gradient } = source.sampleAt(subpoint, sample)
+  if (height <= seaLevel) return target
+  gradient.addScaledVector(target, -gradient.dot(target))
+  return target.sub(gradient).normalize()
+}
