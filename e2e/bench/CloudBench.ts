@@ -4,12 +4,14 @@ import type { CloudLayers, CloudsNode } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import {
   ACESFilmicToneMapping,
+  Matrix4,
   Mesh,
   MeshBasicMaterial,
   PerspectiveCamera,
   RenderTarget,
   Scene,
-  SphereGeometry
+  SphereGeometry,
+  Vector3
 } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
@@ -32,6 +34,8 @@ export type CloudView = (typeof cloudViews)[number]
 /** Frames before any are timed. */
 const WARM_UP = 40
 
+const _up = new Vector3()
+
 function brokenCumulus(): CloudLayers {
   const layers = cloudPreset('fairWeather')
   layers.at(0).set({ coverage: 0.4 })
@@ -53,6 +57,8 @@ export class CloudBench {
   )
   readonly #noise = new CloudNoise()
   readonly #light = new CloudLightTable()
+  /** Pose of the camera by `look`. */
+  #pose = new Matrix4()
   #frame = 0
 
   constructor(
@@ -81,7 +87,17 @@ export class CloudBench {
     placeCamera(this.#camera, altitude, longitude)
     this.#camera.rotateX((pitch * Math.PI) / 180)
     this.#camera.updateMatrixWorld()
+    this.#pose.copy(this.#camera.matrixWorld)
     setSun(this.#atmosphere, this.#camera, sunElevation)
+  }
+
+  /** Moves the camera off its pose by `look`: turned to the left [°], and back [m]. The sun stays. */
+  displace(turn: number, back: number): void {
+    const camera = this.#camera
+    this.#pose.decompose(camera.position, camera.quaternion, camera.scale)
+    camera.rotateOnWorldAxis(_up.copy(camera.up).normalize(), (turn * Math.PI) / 180)
+    camera.translateZ(back)
+    camera.updateMatrixWorld()
   }
 
   set withClouds(withClouds: boolean) {

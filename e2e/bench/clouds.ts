@@ -35,7 +35,20 @@ export interface CloudCost {
   passes: number[]
   /** Peak signal-to-noise ratio of a settled picture against `cloudReference` [dB]. */
   psnr: number
+  /** PSNR in the midst of a turn of 30°/s, and of a flight at 60 m/s, at 60 frames a second [dB]. */
+  turningPsnr: number
+  flyingPsnr: number
+  /** Mean change of a channel from frame to frame of the settled picture [levels of 255]. */
+  flicker: number
 }
+
+/** Frames of a move, and what the camera turns [°] or goes on [m] in each. */
+const MOVING = 60
+const TURN = 30 / 60
+const FLIGHT = 60 / 60
+
+/** Frames between which flicker is measured. */
+const FLICKERING = 5
 
 /** Frames in which a picture that stands still settles: two seconds. */
 const SETTLING = 120
@@ -62,6 +75,34 @@ export function psnr(a: Uint8Array, b: Uint8Array): number {
   return 10 * Math.log10(255 ** 2 / (sum / (0.75 * a.length)))
 }
 
+/** Mean difference of colours in [0, 255] [levels]. */
+export function meanDifference(a: Uint8Array, b: Uint8Array): number {
+  let sum = 0
+  for (let i = 0; i < a.length; i++) if (i % 4 < 3) sum += Math.abs(a[i] - b[i])
+  return sum / (0.75 * a.length)
+}
+
+/** Flicker of what stands still. */
+async function flickerOf(bench: CloudBench): Promise<number> {
+  let [sum, before] = [0, await bench.picture()]
+  for (let i = 1; i < FLICKERING; i++) {
+    bench.draw(true)
+    const picture = await bench.picture()
+    sum += meanDifference(before, picture)
+    before = picture
+  }
+  return sum / (FLICKERING - 1)
+}
+
+/** Picture at the end of a move that ends where the camera looks from: `turn` [°] and `back` [m] a frame. */
+async function moved(bench: CloudBench, turn: number, back: number): Promise<Uint8Array> {
+  for (let left = MOVING; left >= 0; left--) {
+    bench.displace(left * turn, left * back)
+    bench.draw(true)
+  }
+  return bench.picture()
+}
+
 /** Cost of one case at each of its qualities. */
 async function timeCase(
   bench: CloudBench,
@@ -84,8 +125,12 @@ async function timeCase(
     node.quality = quality
     const { ms, passes } = await bench.time(frames)
     for (let i = 0; i < SETTLING; i++) bench.draw(true)
-    const picture = await bench.picture()
-    costs.push({ name, quality, ms: ms - without.ms, passes, psnr: psnr(picture, reference) })
+    const settled = psnr(await bench.picture(), reference)
+    const flicker = await flickerOf(bench)
+    const turningPsnr = psnr(await moved(bench, TURN, 0), reference)
+    const flyingPsnr = psnr(await moved(bench, 0, FLIGHT), reference)
+    const still = { psnr: settled, flicker }
+    costs.push({ name, quality, ms: ms - without.ms, passes, ...still, turningPsnr, flyingPsnr })
   }
   return costs
 }
@@ -126,4 +171,15 @@ export async function timeNoise(device: HeadlessDevice): Promise<{ total: number
   }
   release(renderer)
   return { total: median(runs.map(run => run.total)), most: median(runs.map(run => run.most)) }
+}
+
+/** A line of a report. */
+export function cloudLine(cost: CloudCost): string {
+  const { name, quality, ms, passes, psnr, turningPsnr, flyingPsnr, flicker } = cost
+  const each = passes.map(pass => pass.toFixed(2)).join(' ')
+  const [still, turning, flying] = [psnr, turningPsnr, flyingPsnr].map(value => value.toFixed(1))
+  return (
+    `clouds, ${name.padEnd(12)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})` +
+    `   PSNR ${still} dB, turning ${turning}, flying ${flying}   flicker ${flicker.toFixed(2)} levels`
+  )
 }

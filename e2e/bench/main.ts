@@ -1,6 +1,6 @@
 import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
-import { timeClouds, timeNoise } from './clouds'
+import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { HeadlessDevice, finished, gpuMilliseconds } from '../headless/device'
 import { timeEnvironment } from './environment'
 import { timeFrame } from './frame'
@@ -11,6 +11,7 @@ import { skyLine, timeSky } from './sky'
 import { measureCloudMemory } from './memory'
 import { measureShaders } from './shaders'
 import { median } from './statistics'
+import { terrainLine, timeTerrain } from './terrain'
 import { timeValley, valleyLines } from './valley'
 
 const { values } = parseArgs({
@@ -18,6 +19,7 @@ const { values } = parseArgs({
     json: { type: 'boolean', default: false },
     frames: { type: 'string', default: '40' },
     size: { type: 'string', default: '1920x1080' },
+    terrain: { type: 'boolean', default: false },
     out: { type: 'string' }
   }
 })
@@ -43,6 +45,14 @@ const log = (text: string): void => {
   if (!values.json) console.log(text)
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
+
+if (values.terrain) {
+  const terrain = await timeTerrain(device, size, frames)
+  for (const cost of terrain) log(terrainLine(cost))
+  if (values.json) console.log(JSON.stringify({ device: device.name, terrain }, null, 2))
+  if (values.out !== undefined) writeFileSync(values.out, JSON.stringify({ terrain }, null, 2))
+  process.exit()
+}
 
 // Before anything else is warm.
 const firstFrameMs = await timeFirstFrame()
@@ -73,6 +83,9 @@ for (const cost of shafts) log(shaftLine(cost))
 
 const valley = await timeValley(device, size, frames)
 log(valleyLines(valley))
+
+const terrain = await timeTerrain(device, size, frames)
+for (const cost of terrain) log(terrainLine(cost))
 
 const shells = await timeShells(device, size, frames)
 for (const { model, outsideMs, insideMs } of shells) {
@@ -138,12 +151,7 @@ const bake = await timeBake()
 const environment = await timeEnvironment(device, size, 10)
 const noise = await timeNoise(device)
 const cloudCosts = await timeClouds(device, size, Math.min(frames, 10))
-for (const { name, quality, ms, passes, psnr } of cloudCosts) {
-  const each = passes.map(pass => pass.toFixed(2)).join(' ')
-  log(
-    `clouds, ${name.padEnd(12)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})   PSNR ${psnr.toFixed(1)} dB`
-  )
-}
+for (const cost of cloudCosts) log(cloudLine(cost))
 const cloudMemory = await measureCloudMemory(device, size)
 for (const { quality, renderTargets, shadowMaps, noise } of cloudMemory) {
   log(
@@ -158,6 +166,7 @@ const result = {
   shells,
   shafts,
   valley,
+  terrain,
   skyCosts,
   bakeMs: bake.total,
   bakeMaxFrameMs: bake.most,

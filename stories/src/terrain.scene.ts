@@ -163,6 +163,8 @@ export async function createTerrain(
     draw,
     async warmUp() {
       for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
+        camera.updateMatrixWorld()
+        terrain.update(renderer, camera, Infinity)
         draw()
         await new Promise(requestAnimationFrame)
       }

@@ -1,5 +1,5 @@
 import { cloudPreset } from '@welkin/clouds'
-import { float, int, vec4 } from 'three/tsl'
+import { float, int, vec2, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import type { CloudSample } from '../../../packages/clouds/src/density/tsl/sample'
@@ -9,6 +9,7 @@ import {
   weatherCacheAt
 } from '../../../packages/clouds/src/density/tsl/sampler'
 import { samplePair } from '../../../packages/clouds/src/density/tsl/samplePair'
+import { addPair, seenClouds, seenState } from '../../../packages/clouds/src/march/tsl/seenPoints'
 import { cloudExtinction } from '../harness/cloud-extinction'
 import { altitudeIn, cloudScene, offsets } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -82,3 +83,15 @@ gpuTest(
   // `clouds/density` holds the sampler to its twin on both.
   { backends: ['webgpu'] }
 )
+
+gpuTest('clouds too thin to be seen do not move the points that a ray sees', async t => {
+  // Optical depths of two pairs of steps, and where they begin.
+  const [distance] = await t.evaluate([[1e-9, 0.5, 100, 200]], input => {
+    const state = seenState()
+    addPair(state, vec2(input.x), [input.z, input.z.add(1)])
+    addPair(state, vec2(input.y), [input.w, input.w.add(2)])
+    return seenClouds(state, float(1)).points.distances
+  })
+  const share = Math.exp(-0.5) / (1 + Math.exp(-0.5))
+  expectTrue(Math.abs(distance - (200 + 2 * share)) < 1e-3, `they are at ${distance} m`)
+})

@@ -141,7 +141,7 @@ gpuTest('towers are as deep in their shadow maps as along the sun', async t => {
       }
       marched.addAssign(cloudExtinction(field, sample, false).mul(to.sub(from)))
     })
-    const { toLight, through, inMap } = sampleShadows(shadows.nodes, start, float(0))
+    const { toLight, through, inMap } = sampleShadows(shadows.nodes, start)
     return vec4(toLight, marched, through, inMap)
   })
   let [apart, lit, wronglyDark, dark, wronglyLit] = [0, 0, 0, 0, 0]

@@ -2,12 +2,12 @@ import { Matrix4, Mesh, Quaternion, Vector3 } from 'three'
 import type {
   Camera,
   InstancedBufferGeometry,
-  InstancedBufferAttribute,
   Intersection,
   Raycaster,
-  Scene
+  Scene,
+  Texture
 } from 'three'
-import type { MeshStandardNodeMaterial } from 'three/webgpu'
+import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
 import {
   checkDirection,
@@ -18,45 +18,18 @@ import {
   setOptions
 } from '@welkin/geo'
 import type { HeightSample, HeightSource } from './heights/HeightSource'
+import { CAPACITY, PagedTiles } from './pages/PagedTiles'
+import type { PageSource } from './pages/PageSource'
+import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
+import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
 import { terrainMaterial } from './surface/terrainMaterial'
+import { checkSource, defaultsFor, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
 import { viewerOf } from './tiles/cpu/viewer'
-import type { Tile } from './tiles/Tile'
-import { INSTANCE_ATTRIBUTES, tileGrid } from './tiles/tileGrid'
-import { TileTree, type TileSelection } from './tiles/TileTree'
-
-/** Options of {@link Terrain}. */
-export interface TerrainOptions {
-  /** Cells along a tile's edge, even, in [4, 128], default 32. */
-  resolution?: number
-  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
-  detail?: number
-  /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
-  seaLevel?: number
-  /** Distance within which ground out of view casts shadows into it, default 3,000 [m]. */
-  shadowDistance?: number
-  /** Camera that tiles are chosen for; null, the default, for each one that draws. */
-  camera?: Camera | null
-}
-
-/** Options that may change later. */
-const SETTINGS = ['seaLevel', 'shadowDistance', 'camera'] as const
-
-const DEFAULTS: Required<TerrainOptions> = {
-  resolution: 32,
-  detail: 1.5,
-  seaLevel: 0,
-  shadowDistance: 3000,
-  camera: null
-}
-
-/** Tiles that there is room for. */
-const CAPACITY = 3000
-
-/** Longest side of a cell of the finest tiles [m]. */
-const FINEST_CELL = 0.15
+import { tileGrid } from './tiles/tileGrid'
+import { writeTiles } from './tiles/writeTiles'
 
 /** Least height of the viewer above the ground that distances count from [m]. */
 const LEAST_CLEARANCE = 0.5
@@ -93,39 +66,50 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
-  readonly source: HeightSource
+  readonly source: HeightSource | PageSource
   /** Cells along a tile's edge. */
   readonly resolution: number
   /** Distance at which a tile is split, in diagonals of it. */
   readonly detail: number
+  /** Most memory of pages on the GPU [MB]. */
+  readonly pageMemory: number
   readonly #uniforms: TerrainUniforms
-  readonly #tree: TileTree
-  readonly #selection: TileSelection = { tiles: [], inView: 0 }
+  readonly #tiles: PagedTiles
+  readonly #grain: Texture
   #seaLevel = 0
   #shadowDistance = 0
   #camera: Camera | null = null
 
   /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
-  constructor(atmosphere: Atmosphere, source: HeightSource, options: TerrainOptions = {}) {
+  constructor(
+    atmosphere: Atmosphere,
+    source: HeightSource | PageSource,
+    options: TerrainOptions = {}
+  ) {
     const where = 'Terrain'
     checkAtmosphere(where, atmosphere)
     if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     checkSource(where, source)
-    const { resolution, detail, ...settings } = withDefaults(where, DEFAULTS, options)
+    const defaults = defaultsFor(options)
+    const { resolution, detail, pageMemory, ...settings } = withDefaults(where, defaults, options)
     checkRange(where, 'resolution', resolution, 4, 128)
     if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
     checkRange(where, 'detail', detail, 1.2, 4)
+    checkRange(where, 'pageMemory', pageMemory, 4, 1000)
     const { ellipsoid } = atmosphere
     const uniforms = new TerrainUniforms(ellipsoid)
-    super(tileGrid(resolution, CAPACITY), terrainMaterial(source, uniforms, resolution, detail))
+    const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory)
+    const grain = grainTexture()
+    const material = terrainMaterial(tiles.pages.atlas, grain, uniforms, resolution, detail)
+    super(tileGrid(resolution, CAPACITY), material)
     this.atmosphere = atmosphere
     this.source = source
     this.resolution = resolution
     this.detail = detail
+    this.pageMemory = pageMemory
     this.#uniforms = uniforms
-    const cells = (2 * ellipsoid.maximumRadius) / resolution / FINEST_CELL
-    const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
-    this.#tree = new TileTree(ellipsoid, source, finestLevel, detail)
+    this.#tiles = tiles
+    this.#grain = grain
     this.set(settings)
     this.name = 'Terrain'
     // Tiles are culled one by one, and the matrix follows the camera.
@@ -174,9 +158,30 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#camera = value
   }
 
+  /** Pages drawn in a frame, ≥ 1: eight times as many until the first picture is full. */
+  get pagesPerFrame(): number {
+    return this.#tiles.pagesPerFrame
+  }
+
+  set pagesPerFrame(value: number) {
+    checkRange('Terrain', 'pagesPerFrame', value, 1, 1000)
+    this.#tiles.pagesPerFrame = value
+  }
+
+  /** True if nothing is missing in what was drawn last: all tiles have pages, which have faded in. */
+  get isFull(): boolean {
+    return this.#tiles.isFull
+  }
+
+  /** Pages: how many tiles have one, how many there is room for, how many were drawn so far, and memory on the GPU [bytes]. */
+  get pages(): { count: number; capacity: number; drawn: number; bytes: number } {
+    const { count, drawn, atlas } = this.#tiles.pages
+    return { count, capacity: atlas.capacity, drawn, bytes: atlas.bytes }
+  }
+
   /** Number of tiles chosen last, and of those in view. */
   get tileCount(): { chosen: number; inView: number } {
-    const { tiles, inView } = this.#selection
+    const { tiles, inView } = this.#tiles.selection
     return { chosen: tiles.length, inView }
   }
 
@@ -201,11 +206,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    */
   normalAt(longitude: number, latitude: number, target: Vector3 = new Vector3()): Vector3 {
     const position = this.#subpointAt('normalAt', longitude, latitude)
-    this.atmosphere.ellipsoid.surfaceNormal(position, target)
-    const { height, gradient } = this.source.sampleAt(position, sample)
-    if (height <= this.#seaLevel) return target
-    gradient.addScaledVector(target, -gradient.dot(target))
-    return target.sub(gradient).normalize()
+    return groundNormal(this, position, target)
   }
 
   /**
@@ -233,11 +234,18 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   }
 
   /**
-   * Chooses tiles for a camera. Drawing does this by itself; call it for what is drawn before the first frame.
+   * Chooses tiles for a camera and draws pages that are missing. Drawing the terrain does this by itself; call it for a full
+   * picture at once:
+   *
+   * ```ts
+   * terrain.update(renderer, camera, Infinity)
+   * ```
    *
    * @param camera - With `matrixWorld` and projection up to date.
+   * @param most - Pages to draw now, default: what is left of `pagesPerFrame` in this frame. Without an end no page fades in.
+   * @throws If another renderer drew the pages that was not disposed of.
    */
-  update(camera: Camera): void {
+  update(renderer: Renderer, camera: Camera, most?: number): void {
     const { ellipsoid, worldToECEF } = this.atmosphere
     const { source } = this
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
@@ -257,42 +265,26 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       this.#seaLevel
     )
     this.#uniforms.update(viewer, ground)
-    const { tiles } = this.#tree.select(viewer, CAPACITY, this.#selection)
-    this.#write(tiles, ground)
+    this.#tiles.update(renderer, viewer, most)
+    const { tree, selection } = this.#tiles
+    this.#uniforms.skirt.value = 2 ** selection.lag
+    this.#uniforms.referenceECEF(reference)
+    writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
+      tree.range(level)
+    )
     // ECEF axes at the camera.
     matrix.copy(worldToECEF).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
     this.matrix.copy(this.matrixWorld)
   }
 
-  /** Writes tiles as instances, from float64 to differences that float32 can hold. */
-  #write(tiles: readonly Tile[], ground: number): void {
-    const attributes = INSTANCE_ATTRIBUTES.map(
-      name => this.geometry.getAttribute(name) as InstancedBufferAttribute
-    )
-    const [base, offset, cube] = attributes.map(attribute => attribute.array)
-    this.#uniforms.referenceECEF(reference)
-    for (const [i, { center, normal, level, extent, cube: point, face }] of tiles.entries()) {
-      const n = 4 * i
-      up.copy(center).sub(positionECEF).addScaledVector(normal, ground).toArray(base, n)
-      base[n + 3] = Math.min(this.#tree.range(level), 1e30)
-      up.copy(center).sub(reference).toArray(offset, n)
-      offset[n + 3] = extent
-      point.toArray(cube, n)
-      cube[n + 3] = face
-    }
-    for (const attribute of attributes) {
-      attribute.clearUpdateRanges()
-      attribute.addUpdateRange(0, 4 * tiles.length)
-      attribute.needsUpdate = true
-    }
-  }
-
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
-  override onBeforeRender(_renderer: unknown, scene: Scene, camera: Camera): void {
+  override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
     const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
     const isShadow = pass?.isShadowPassMaterial === true
-    if (!isShadow && (this.#camera === null || camera === this.#camera)) this.update(camera)
+    if (!isShadow && (this.#camera === null || camera === this.#camera)) {
+      this.update(renderer as Renderer, camera)
+    }
     const { chosen, inView } = this.tileCount
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
@@ -325,21 +317,12 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     raycastGround(this, raycaster, intersects)
   }
 
-  /** Frees geometry and material; atmosphere and source are shared. */
+  /** Frees geometry, material and pages; atmosphere and source are shared. */
   override dispose(): void {
     super.dispose()
+    this.#tiles.dispose()
+    this.#grain.dispose()
     this.geometry.dispose()
     this.material.dispose()
   }
-}
-
-/** @throws If it is no source of heights. */
-function checkSource(where: string, source: HeightSource): void {
-  const isSource =
-    typeof source?.sampleAt === 'function' &&
-    typeof source.sample === 'function' &&
-    typeof source.variation === 'function'
-  if (!isSource) fail(where, 'source must be a HeightSource', source)
-  checkFinite(where, 'source.lowest', source.lowest)
-  checkFinite(where, 'source.highest', source.highest)
 }

@@ -16,6 +16,8 @@ export class TerrainUniforms {
   readonly groundHeight = number()
   /** Surface of the sea [m]; far below all ground where there is none. */
   readonly seaLevel = number()
+  /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */
+  readonly skirt = number(1)
   /** Radii of the ellipsoid [m]. */
   readonly radii = vector()
   /** Largest radius over each radius: where the ellipsoid is a sphere, but for size [–]. */

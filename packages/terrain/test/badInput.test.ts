@@ -7,6 +7,7 @@ const atmosphere = new Atmosphere()
 const heights = new MountainHeights()
 /** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
+const bounds = { sampleAt: () => null, variation: () => 0 }
 const make = (options = {}) => new Terrain(atmosphere, heights, options)
 const terrain = make({ resolution: 4 })
 
@@ -23,6 +24,12 @@ const cases: [message: string, call: () => unknown][] = [
   ['Terrain: detail must be in [1.2, 4], got 1', () => make({ detail: 1 })],
   ['Terrain: seaLevel must be in [-100000, 100000], got NaN', () => make({ seaLevel: NaN })],
   ['Terrain: shadowDistance must be finite and ≥ 0, got -1', () => make({ shadowDistance: -1 })],
+  ['Terrain: pageMemory must be in [4, 1000], got 1', () => make({ pageMemory: 1 })],
+  ['Terrain: pagesPerFrame must be in [1, 1000], got 0', () => make({ pagesPerFrame: 0 })],
+  [
+    'Terrain: source must be a HeightSource',
+    () => new Terrain(atmosphere, wrong({ loadHeights: true, ...bounds }))
+  ],
   ['Terrain: camera must be a Camera or null', () => (terrain.camera = wrong({}))],
   ['Terrain.heightAt: longitude must be a finite number, got NaN', () => terrain.heightAt(NaN, 0)],
   ['Terrain.heightAt: latitude must be in [-90, 90], got 91', () => terrain.heightAt(0, 91)],

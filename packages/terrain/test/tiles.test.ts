@@ -6,7 +6,7 @@ import { MountainHeights } from '../src/heights/MountainHeights'
 import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
 import { cubeToEllipsoid, faceAxes } from '../src/tiles/cpu/cubeSphere'
 import { morphStart } from '../src/tiles/tsl/tileVertex'
-import { distanceTo, TileTree } from '../src/tiles/TileTree'
+import { distanceTo, noTiles, TileTree } from '../src/tiles/TileTree'
 import type { Tile } from '../src/tiles/Tile'
 
 const earth = Ellipsoid.WGS84
@@ -42,7 +42,7 @@ function viewerAt(place: Place, pitch = 0, isAllRound = true, sea = -Infinity): 
 
 const treeOf = (): TileTree => new TileTree(earth, source, FINEST, DETAIL)
 const select = (viewer: Viewer, most = 1e5, tree = treeOf()): Tile[] =>
-  tree.select(viewer, most, { tiles: [], inView: 0 }).tiles
+  tree.select(viewer, most, noTiles(), false).tiles
 
 /** Point of a face on the ellipsoid. */
 function pointOf(face: number, x: number, y: number): Vector3 {

@@ -83,7 +83,7 @@ function marchPixels(scene: CloudScene): Outputs {
 function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
   const { field, viewRays } = scene
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
-    const { at, noise } = marchedPixel(scene)
+    const { at } = marchedPixel(scene)
     const here = uv() as unknown as Vec2
     const ray = marched.ray.sample(here).level(0).toConst() as Vec4
     color.assign(vec4(0, 0, 0, 1))
@@ -94,7 +94,7 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
         shares: marched.shares.sample(here).level(0).toConst() as Vec4
       }
       const { direction, directionView } = viewRayAt(viewRays, at)
-      const radiance = shadePoints(scene, direction, points, noise)
+      const radiance = shadePoints(scene, direction, points)
       const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })

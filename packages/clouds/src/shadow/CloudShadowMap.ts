@@ -7,7 +7,7 @@ import type { Renderer } from 'three/webgpu'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
 import { CASCADE_SIZE as SIZE, CascadeState } from './CascadeState'
 import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
-import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
+import { CASCADE_RATIO, shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
 import { number, vector3, vector4 } from '../uniforms'
 
@@ -15,7 +15,7 @@ import { number, vector3, vector4 } from '../uniforms'
  * Half widths of the cascades for a camera near the ground [m]. Greater: blurred shadows near by; smaller:
  * they end nearer (*Shadows*).
  */
-const HALF_WIDTHS = [5000, 20_000, 80_000] as const
+const HALF_WIDTHS = [0, 1, 2].map(i => 5000 * CASCADE_RATIO ** i)
 
 /**
  * Height of the camera above which cascades double in width with each doubling of it [m]. Greater: shadows

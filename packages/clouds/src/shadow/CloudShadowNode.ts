@@ -91,12 +91,14 @@ export class CloudShadowNode extends Node<'float'> {
     if (clouds.isDisposed) return this.shadowNode ?? float(1)
     return Fn(() => {
       const offset = this.#view.toMapped(positionView).add(this.#shift).toConst() as Vec3
-      const { shadow, inMap } = sampleShadows(shadows.nodes, offset, float(0))
-      const depth = shadow.toVar()
-      If(inMap.mul(this.#isMapped).equal(0), () => {
+      const { shadow, inMap } = sampleShadows(shadows.nodes, offset)
+      const isMapped = inMap.mul(this.#isMapped).toConst()
+      const depth = shadow.mul(this.#isMapped).toVar()
+      If(isMapped.lessThan(1), () => {
         const distance = offset.length()
         const sample = { offset, ...field.view.localCoordinates(offset), distance }
-        depth.assign(opticalDepthTowards(field, sample, this.#view.lightDirection))
+        const mean = opticalDepthTowards(field, sample, this.#view.lightDirection)
+        depth.addAssign(isMapped.oneMinus().mul(mean))
       })
       // What is scattered within the forward peak arrives with the sun.
       const passing = depth.mul(clouds.light.nodes.depthScale).negate().exp()

@@ -17,11 +17,8 @@ export interface SurfacePoint {
   readonly offset: Vec3
 }
 
-/**
- * Heights of a planet's ground, on the GPU and in float64 on the CPU. Both must agree: what is drawn is what one
- * walks on.
- */
-export interface HeightSource {
+/** Heights on the CPU, and bounds of them. */
+export interface GroundBounds {
   /** Lower bound of all heights [m]. */
   readonly lowest: number
   /** Upper bound of all heights [m]. */
@@ -41,6 +38,15 @@ export interface HeightSource {
    * @param positionECEF - On the ellipsoid [m].
    */
   sampleAt(positionECEF: Vector3, target: HeightSample): HeightSample
+}
+
+/**
+ * Heights of a planet's ground, on the GPU and in float64 on the CPU. Both must agree: what is drawn is what one
+ * walks on.
+ */
+export interface HeightSource extends GroundBounds {
+  /** Whole number ≥ 0, default 0: another one, other patches of grass, rock and forest. */
+  readonly seed?: number
 
   /**
    * Height and gradient in a shader.

@@ -1,13 +1,13 @@
 import { Vector3 } from 'three'
 import type { Atmosphere } from '@welkin/atmosphere'
-import type { HeightSample, HeightSource } from '../heights/HeightSource'
+import type { GroundBounds, HeightSample } from '../heights/HeightSource'
 
 /** Ground of a planet that rays hit and feet stand on; a `Terrain` is one. */
 export interface Ground {
   /** Its ellipsoid, and where that is in the world. */
   readonly atmosphere: Pick<Atmosphere, 'ellipsoid' | 'worldToECEF'>
   /** Heights over the ellipsoid. */
-  readonly source: HeightSource
+  readonly source: GroundBounds
   /** Surface of the sea [m]; −Infinity for none. */
   readonly seaLevel: number
 }

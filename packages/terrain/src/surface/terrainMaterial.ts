@@ -1,15 +1,14 @@
-import { Fn, dFdx, dFdy, transformNormalToView, varyingProperty, vec4 } from 'three/tsl'
+import { Fn, mix, texture, transformNormalToView, varyingProperty, vec4 } from 'three/tsl'
+import type { Texture } from 'three'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
-import type { NodeBuilder } from 'three/webgpu'
-import type { HeightSource } from '../heights/HeightSource'
+import type { Node, NodeBuilder } from 'three/webgpu'
+import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
-import { tileVertex } from '../tiles/tsl/tileVertex'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
+import { faceAxes } from '../tiles/tsl/cubeSphere'
+import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
+import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
-
-/** Shortest wavelength of the ground that is shown [pixels]. */
-const SHORTEST_PIXELS = 2
 
 /** True of the material that three draws shadow maps with. */
 const isShadowPass = (material: object): boolean =>
@@ -18,14 +17,22 @@ const isShadowPass = (material: object): boolean =>
 /** Part of a gradient along the ellipsoid. */
 const gradientAlong = (gradient: Vec3, up: Vec3): Vec3 => gradient.sub(up.mul(gradient.dot(up)))
 
+/** A value that vertices assign and pixels read. */
+const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>
+  varyingProperty(type as never, `welkinTerrain${name}`) as unknown as T & {
+    assign(value: T): void
+  }
+
 /**
- * Material of a terrain: vertices on the ground, normals from the height's own gradient at every pixel.
+ * Material of a terrain: vertices on the ground and normals at every pixel, by pages.
  *
+ * @param grain - As of `grainTexture`.
  * @param resolution - Cells along a tile's edge.
  * @param detail - As of `TileTree`.
  */
 export function terrainMaterial(
-  source: HeightSource,
+  atlas: PageAtlas,
+  grain: Texture,
   uniforms: TerrainUniforms,
   resolution: number,
   detail: number
@@ -35,24 +42,58 @@ export function terrainMaterial(
   material.metalness = 0
   const { reference, radii, stretch, seaLevel } = uniforms
 
-  const offset = varyingProperty('vec3', 'welkinTerrainOffset') as unknown as Vec3
+  const handed = {
+    place: handedOn<Vec4>('vec4', 'Place'),
+    texels: handedOn<Vec4>('vec4', 'Texels'),
+    blend: handedOn<Vec3>('vec3', 'Blend')
+  }
   material.positionNode = Fn(() => {
-    const vertex = tileVertex(source, uniforms, resolution, detail)
-    ;(offset as unknown as { assign(value: Vec3): void }).assign(vertex.offset)
+    const vertex: TileVertex = tileVertex(atlas, uniforms, resolution, detail)
+    handed.place.assign(vertex.place)
+    handed.texels.assign(vertex.texels)
+    handed.blend.assign(vertex.blend)
     return vertex.position
   })()
 
-  const point = { reference, offset }
-  // Footprint: the geometric mean of a pixel's sides, on the ellipsoid.
-  const footprint = dFdx(offset).length().mul(dFdy(offset).length()).sqrt().toConst('footprint')
-  const shortest = footprint.mul(SHORTEST_PIXELS).toConst('shortest') as Float
-  const ground = source.sample(point, shortest).toConst('ground') as Vec4
+  const { place: handedPlace, texels, blend } = handed
+  const page = texture(atlas.surface.texture)
+  const pageAt = (texel: Vec2): Vec4 =>
+    (page as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } })
+      .sample(texel.div(atlas.surface.width))
+      .level(0)
+  // Gradient along the face's axes, height and patchiness.
+  const ground = mix(
+    pageAt(texels.xy),
+    pageAt((texels as unknown as { zw: Vec2 }).zw),
+    blend.x
+  ).toConst('ground') as Vec4
+  const offset = handedPlace.xyz
   const place = reference.mul(REFERENCE_STEP).add(offset)
   const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
-  const isLand = ground.w.greaterThan(seaLevel).select(1, 0) as unknown as Float
-  const gradient = gradientAlong(ground.xyz, up).mul(isLand).toConst('gradient') as Vec3
+  const { first, second } = faceAxes(blend.z.round())
+  const isLand = ground.z.greaterThan(seaLevel).select(1, 0) as unknown as Float
+  // Two components of a vector along the ellipsoid tell the third.
+  const outward = first.cross(second).toConst('outward')
+  const along = first.mul(ground.x).add(second.mul(ground.y)).toConst('along')
+  const gradient = along
+    .sub(outward.mul(along.dot(up).div(outward.dot(up))))
+    .mul(isLand)
+    .toConst('gradient') as Vec3
   const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst('cosSlope') as Float
-  const surface = groundSurface(point, ground.w, up, cosSlope, shortest, seaLevel)
+  const surface = groundSurface(
+    {
+      grain,
+      offset,
+      first,
+      second,
+      height: ground.z,
+      patch: ground.w,
+      climate: blend.y,
+      up,
+      cosSlope
+    },
+    seaLevel
+  )
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) =>
     isShadowPass(drawn) ? vec4(1) : vec4(surface.color, 1)

@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
 import type { Ellipsoid } from '@welkin/geo'
-import type { HeightSample, HeightSource } from '../heights/HeightSource'
+import type { GroundBounds, HeightSample } from '../heights/HeightSource'
 import { cubeToEllipsoid, faceAxes } from './cpu/cubeSphere'
 
 const sample: HeightSample = { height: 0, gradient: new Vector3() }
@@ -27,6 +27,14 @@ export class Tile {
   children: Tile[] | null = null
   /** Number of the last selection that came by. */
   lastUse = 0
+  /** Number of the last selection that it could be seen in. */
+  lastDrawn = 0
+  /** Place of its page in the atlas; −1 without one. */
+  slot = -1
+  /** Share of the parent's page in what is drawn, in [0, 1]: 1 as its own page arrives, then ever less. */
+  fade = 1
+  /** Frame in which that share last changed. */
+  #frame = -1
 
   /**
    * @param face - Face of the cube, 0 to 5.
@@ -40,8 +48,8 @@ export class Tile {
     readonly x: number,
     readonly y: number,
     ellipsoid: Ellipsoid,
-    source: HeightSource,
-    parent: Tile | null = null
+    source: GroundBounds,
+    readonly parent: Tile | null = null
   ) {
     const { outward, first, second } = faceAxes(face)
     this.cube = outward.clone().addScaledVector(first, x).addScaledVector(second, y)
@@ -73,8 +81,21 @@ export class Tile {
     return 2 ** -this.level
   }
 
+  /** Has its page, if there is one, take more of the parent's place; once in a frame unless at once. */
+  show(frame: number, step: number): void {
+    if (this.slot < 0 || (step < 1 && frame === this.#frame)) return
+    this.#frame = frame
+    this.fade = Math.max(this.fade - step, 0)
+  }
+
+  /** Number of the quarter of its parent that it is, columns first; 0 for a whole face. */
+  get quarter(): number {
+    const { parent } = this
+    return parent === null ? 0 : Number(this.x > parent.x) + 2 * Number(this.y > parent.y)
+  }
+
   /** Quarters, made at the first call. */
-  split(ellipsoid: Ellipsoid, source: HeightSource): Tile[] {
+  split(ellipsoid: Ellipsoid, source: GroundBounds): Tile[] {
     const half = this.extent / 2
     return (this.children ??= CORNERS.map(
       ([i, j]) =>

@@ -1,6 +1,6 @@
 import type { Vector3 } from 'three'
 import type { Ellipsoid } from '@welkin/geo'
-import type { HeightSource } from '../heights/HeightSource'
+import type { GroundBounds } from '../heights/HeightSource'
 import { FACES } from './cpu/cubeSphere'
 import { horizonAngle, type Viewer } from './cpu/viewer'
 import { Tile } from './Tile'
@@ -17,7 +17,14 @@ export interface TileSelection {
   readonly tiles: Tile[]
   /** Number of those in view. */
   inView: number
+  /** Tiles of those whose page is missing, the most urgent first. */
+  readonly missing: Tile[]
+  /** Levels that the ground is coarser than it ought to be, at most. */
+  lag: number
 }
+
+/** A selection of nothing. */
+export const noTiles = (): TileSelection => ({ tiles: [], inView: 0, missing: [], lag: 0 })
 
 /**
  * Quadtree of tiles on the six faces of a cube about the planet, and the choice of those to draw.
@@ -42,7 +49,7 @@ export class TileTree {
    */
   constructor(
     readonly ellipsoid: Ellipsoid,
-    readonly source: HeightSource,
+    readonly source: GroundBounds,
     finestLevel: number,
     detail: number
   ) {
@@ -67,11 +74,14 @@ export class TileTree {
    * Tiles to draw. They cover what a viewer can see, each point once.
    *
    * @param most - Number of tiles that there is room for: beyond it tiles are left unsplit.
+   * @param isPaged - True if a tile is split only when its own page is there and shown.
    */
-  select(viewer: Viewer, most: number, target: TileSelection): TileSelection {
+  select(viewer: Viewer, most: number, target: TileSelection, isPaged = true): TileSelection {
     this.#selections++
     const unseen: Tile[] = []
-    target.tiles.length = 0
+    const urgency = new Map<Tile, number>()
+    target.tiles.length = target.missing.length = 0
+    target.lag = 0
     // Nearest level by level: if room runs out, what is coarse is far away.
     let open: Tile[] = [...this.roots]
     const radius = this.ellipsoid.minimumRadius
@@ -83,12 +93,25 @@ export class TileTree {
         if (!isVisible && !mayCastShadow(tile, viewer)) continue
         if (isBelowHorizon(tile, viewer, radius)) continue
         const taken = target.tiles.length + unseen.length + next.length + (open.length - i)
+        tile.lastDrawn = this.#selections
+        const distance = distanceTo(tile, viewer.datumPoint)
         const range = this.#ranges[tile.level + 1]
-        const isNear = tile.level < this.finestLevel && distanceTo(tile, viewer.datumPoint) < range
-        if (isNear && taken + 4 <= most) {
+        const isNear = tile.level < this.finestLevel && distance < range
+        const isShown = !isPaged || (tile.slot >= 0 && tile.fade === 0)
+        if (isNear && isShown && taken + 4 <= most) {
           next.push(...tile.split(this.ellipsoid, this.source))
-        } else if (isVisible) target.tiles.push(tile)
+          continue
+        }
+        if (isVisible) target.tiles.push(tile)
         else unseen.push(tile)
+        if (isShown) continue
+        const finer = isNear ? Math.log2(range / Math.max(distance, this.#ranges.at(-1)! / 2)) : 0
+        target.lag = Math.max(target.lag, Math.ceil(finer) + 1)
+        if (tile.slot < 0) {
+          // Half of what tiles in view are, at the same size in the picture.
+          urgency.set(tile, this.#size(tile, distance) * (isVisible ? 2 : 1))
+          target.missing.push(tile)
+        }
       }
       open = next
     }
@@ -96,16 +119,31 @@ export class TileTree {
     target.tiles.reverse()
     target.inView = target.tiles.length
     target.tiles.push(...unseen)
+    target.missing.sort((a, b) => urgency.get(b)! - urgency.get(a)!)
     if (this.#selections % FORGET_EVERY === 0) for (const root of this.roots) this.#forget(root)
     return target
   }
 
-  /** Lets go of tiles that nobody has come by for long. */
-  #forget(tile: Tile): void {
-    if (tile.children === null) return
-    if (tile.children.every(({ lastUse }) => this.#selections - lastUse > FORGET_AFTER)) {
-      tile.children = null
-    } else for (const child of tile.children) this.#forget(child)
+  /** Number of selections so far. */
+  get selections(): number {
+    return this.#selections
+  }
+
+  /** Size of a tile as seen [rad], or thereabouts. */
+  #size({ radius }: Tile, distance: number): number {
+    return radius / Math.max(distance, radius / 8)
+  }
+
+  /**
+   * Lets go of tiles that nobody has come by for long, and that have no page.
+   *
+   * @returns True if the tile itself may go.
+   */
+  #forget(tile: Tile): boolean {
+    // All four, without stopping at the first that may not go.
+    const kept = (tile.children ?? []).filter(child => !this.#forget(child))
+    if (kept.length === 0) tile.children = null
+    return kept.length === 0 && tile.slot < 0 && this.#selections - tile.lastUse > FORGET_AFTER
   }
 }
 

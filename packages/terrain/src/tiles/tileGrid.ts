@@ -6,7 +6,7 @@ import {
 } from 'three'
 
 /** Names of the attributes of an instance, four numbers each. */
-export const INSTANCE_ATTRIBUTES = ['tileBase', 'tileOffset', 'tileCube'] as const
+export const INSTANCE_ATTRIBUTES = ['tileBase', 'tileOffset', 'tileCube', 'tilePage'] as const
 
 /**
  * Grid that all tiles share, with a skirt about it, and room for tiles as instances.

@@ -52,7 +52,7 @@ export interface LocalDepths {
  */
 export function localDepths(
   { field, shadows, quality }: ShadingContext,
-  { sample, weather, dither, layers: { base, top, layered } }: ShadedSample,
+  { sample, weather, layers: { base, top, layered } }: ShadedSample,
   { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
 ): LocalDepths {
   const rise = top.sub(sample.altitude).max(1).toConst()
@@ -91,16 +91,21 @@ export function localDepths(
     )
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
-  const far = sampleShadows(shadows, beyond, dither)
-  const isMappedThere = far.inMap.mul(isMapped).toConst() as Float
+  const far = sampleShadows(shadows, beyond)
+  const unmapped = far.inMap.mul(isMapped).oneMinus().toConst() as Float
   // Where no map is: as near, thinning out towards the top.
   const density = found.y.div(probed).toConst()
   const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
   const guess = density.mul(toTop.min(widest).sub(probed).max(0)).toConst()
-  const depthToLight = found.y.add(isMappedThere.mix(guess, far.toLight)).toConst() as Float
+  const depthToLight = found.y
+    .add(far.toLight.mul(isMapped))
+    .add(guess.mul(unmapped))
+    .toConst() as Float
   const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
-  const through = isMappedThere
-    .mix(depthToLight.add(behind), far.through.max(depthToLight))
+  const through = far.through
+    .mul(isMapped)
+    .add(depthToLight.add(behind).mul(unmapped))
+    .max(depthToLight)
     .toConst() as Float
   const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))
   return { toLight: depthToLight, through, above, below: fall.mul(found.x).mul(0.7) }

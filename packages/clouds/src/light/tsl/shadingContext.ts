@@ -26,8 +26,6 @@ export interface ShadedSample {
   readonly direction: Vec3
   /** Transmittance of the clouds between it and the camera, in [0, 1]. */
   readonly transmittance: Float
-  /** Noise in [0, 1), in which cascades of the shadow map meet. */
-  readonly dither: Float
   /** The layers around it. */
   readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered'>
 }

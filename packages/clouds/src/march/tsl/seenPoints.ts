@@ -115,7 +115,8 @@ export function addPair(state: SeenState, depth: Vec2, places: readonly Float[])
   latest.assign(places[1])
   const own = componentAt(index)
   shares.addAssign(own.mul(both))
-  If(run.x.greaterThanEqual(most), () => {
+  // Clouds too thin to be seen have no share, and no middle.
+  If(run.x.greaterThan(most), () => {
     most.assign(run.x)
     distances.assign(mix(distances, vec4(run.y.div(run.x)), own))
   })

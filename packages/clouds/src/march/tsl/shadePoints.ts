@@ -20,14 +20,12 @@ export interface LitClouds extends MarchedClouds {
  * function.
  *
  * @param direction - Direction of the ray, in the mapped space.
- * @param dither - Noise in [0, 1), in which cascades of the shadow map meet.
  * @returns Spectral radiance at the clouds for unit irradiance of the bare sun [1/sr].
  */
 export function shadePoints(
   context: ShadingContext,
   direction: Vec3,
-  { distances, shares }: SeenPoints,
-  dither: Float
+  { distances, shares }: SeenPoints
 ): Vec4 {
   const { field } = context
   const radiance = vec4(0).toVar() as Vec4
@@ -42,7 +40,7 @@ export function shadePoints(
       const layers = layersAt(field, sample.altitude)
       const weather = weatherCacheAt(field, sample, layers.range, context.weatherMap)
       const transmittance = seenBefore.add(share.mul(0.5)).oneMinus().toConst() as Float
-      const shaded = { sample, weather, direction, transmittance, dither, layers }
+      const shaded = { sample, weather, direction, transmittance, layers }
       const { direct, sky, ground } = sourceAt(context, shaded)
       radiance.addAssign(shade(field, sample, vec3(direct, sky, ground).mul(share).toConst()))
       seenBefore.addAssign(share)
@@ -54,6 +52,6 @@ export function shadePoints(
 /** Marches a ray and computes its light at once, for pictures that have no pass for either. */
 export function litClouds(context: ShadingContext, ray: CloudRay): LitClouds {
   const marched = marchClouds(context, ray)
-  const radiance = shadePoints(context, ray.direction, marched.points, ray.jitter)
+  const radiance = shadePoints(context, ray.direction, marched.points)
   return { ...marched, radiance }
 }

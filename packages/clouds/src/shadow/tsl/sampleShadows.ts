@@ -1,8 +1,8 @@
 import type { Vector3, Vector4 } from 'three'
-import { If, vec2, vec3, vec4 } from 'three/tsl'
+import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { MAXIMUM_DISTANCE } from './shadowRay'
+import { CASCADE_RATIO, MAXIMUM_DISTANCE } from './shadowRay'
 
 /** Uniforms to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
 export interface CascadeNodes {
@@ -35,7 +35,7 @@ export interface LightDepths {
   through: Float
   /** Optical depth from the point to the light, of layers that cast shadows. */
   shadow: Float
-  /** 1 where the map has the place; 0 where it does not, and the depths are 0. */
+  /** 1 where the map has the place, falling to 0 at its edges; depths are times as much. */
   inMap: Float
 }
 
@@ -48,46 +48,54 @@ const MARGIN = 0.02
  */
 const FADE = 0.1
 
+/** Heights over the plane at which rays of the next narrower cascade end, in half widths of this one. */
+const NARROWER_END = MAXIMUM_DISTANCE / CASCADE_RATIO
+
 /**
- * Optical depths at a place, from the smallest cascade that holds it.
- *
- * @param dither - Noise in [0, 1), in which cascades meet.
+ * Optical depths at a place, from the narrowest cascade that holds it. What its rays are too short for, under a
+ * low sun and below tall clouds, comes from the wider ones: without, storms are bright where cascades meet.
  */
 export function sampleShadows(
   { map, cascades, tileCount, shift }: CloudShadows,
-  offset: Vec3,
-  dither: Float
+  offset: Vec3
 ): LightDepths {
-  const edge = dither
-    .mul(-FADE)
-    .add(0.5 - MARGIN)
-    .toConst() as Float
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
-  const inAtlas = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
-  // From the widest to the narrowest: the last that fits stays.
+  /** Depths to the light, of all layers and of those that cast shadows; through; weight of the map. */
+  const found = vec4(0).toVar() as Vec4
+  /** Depths to the light from the end of the next narrower cascade's rays on. */
+  const beyond = vec2(0).toVar() as Vec2
   for (const { u, v, w, isDrawn, atlasTile } of cascades.toReversed()) {
-    const row = (r: CascadeNodes['u']): Float => r.xyz.dot(from).add(r.w)
-    const at = vec2(row(u), row(v)).toConst() as Vec2
-    const aside = at.sub(0.5).abs().toConst() as Vec2
-    const above = row(w).toConst() as Float
-    const isInside = aside.x
-      .max(aside.y)
-      .lessThan(edge)
-      .and(above.abs().lessThan(edge.mul(2 * MAXIMUM_DISTANCE)))
-      .and(isDrawn.greaterThan(0))
-    If(isInside, () => {
-      inAtlas.assign(vec4(at.x.add(atlasTile).div(tileCount), at.y, above, 1))
-    })
+    const [x, y, above] = [u, v, w].map(row => row.xyz.dot(from).add(row.w).toConst() as Float)
+    const aside = vec3(vec2(x, y).sub(0.5), above.div(2 * MAXIMUM_DISTANCE)).abs()
+    const edge = aside.x.max(aside.y).max(aside.z)
+    const weight = edge
+      .mul(-1 / FADE)
+      .add((0.5 - MARGIN) / FADE)
+      .clamp()
+      .mul(isDrawn)
+      .toConst()
+    const texel = map
+      .sample(vec2(x.add(atlasTile).div(tileCount), y))
+      .level(0)
+      .toConst() as Vec4
+    const own = texel.zw.mul(shareAbove(texel, above)).add(beyond)
+    found.assign(mix(found, vec4(own, texel.z.add(beyond.x), 1), weight))
+    const behind = texel.zw.mul(shareAbove(texel, float(NARROWER_END)))
+    beyond.assign(beyond.add(behind).mul(weight))
   }
-  return depthsAt(map, inAtlas)
+  const { x: toLight, y: shadow, z: through, w: inMap } = found
+  return { toLight, through, shadow, inMap }
 }
+
+/** Share of a texel's clouds that is above a height over the cascade's plane: front and half length come times the depth. */
+const shareAbove = ({ x: front, y: half, z: depth }: Vec4, height: Float): Float =>
+  front.sub(depth.mul(height)).div(half.mul(2).max(1e-6)).clamp().toConst()
 
 /** Optical depths by a place in the map, the height over the cascade's plane there, and whether it is known. */
 function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {
   const inMap = inAtlas.w.toConst() as Float
   const texel = map.sample(inAtlas.xy).level(0).mul(inMap).toConst() as Vec4
-  // Front and half length come times the depth.
-  const share = texel.x.sub(texel.z.mul(inAtlas.z)).div(texel.y.mul(2).max(1e-6)).clamp().toConst()
+  const share = shareAbove(texel, inAtlas.z)
   const toLight = texel.z.mul(share).toConst() as Float
   return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), inMap }
 }

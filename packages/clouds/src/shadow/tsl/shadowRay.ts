@@ -29,6 +29,9 @@ export interface ShadowRayUniforms {
  */
 export const MAXIMUM_DISTANCE = 1.2
 
+/** Width of a cascade over that of the next narrower one. */
+export const CASCADE_RATIO = 4
+
 /** Greatest optical depth: half floats hold a few times as much. */
 const MOST = 15_000
 

@@ -1,12 +1,6 @@
 import { float, mix, smoothstep, vec3 } from 'three/tsl'
-import type { SurfacePoint } from '../../heights/HeightSource'
-import { fractalSum } from '../../noise/tsl/fractalSum'
 import type { Float, Vec3 } from '../../tsl-types'
-import { CLIMATE, GRAIN, PATCHES } from '../cpu/surfaceNoise'
-
-const patches = /*#__PURE__*/ fractalSum('welkinPatches', PATCHES)
-const grains = /*#__PURE__*/ fractalSum('welkinGrain', GRAIN)
-const climates = /*#__PURE__*/ fractalSum('welkinClimate', CLIMATE)
+import { grainAt, type GrainPlace } from './grain'
 
 /** Height of stones and tufts over the ground about them [m]. */
 const GRAIN_HEIGHT = 0.035
@@ -35,28 +29,27 @@ export interface GroundSurface {
   readonly grain: Vec3
 }
 
+/** A place of the ground, as pages have it. */
+export interface GroundPlace extends GrainPlace {
+  /** Height of the ground, that of the sea's floor under water [m]. */
+  readonly height: Float
+  /** Patchiness and climate, noise about 0. */
+  readonly patch: Float
+  readonly climate: Float
+  /** Geodetic up, ECEF axes. */
+  readonly up: Vec3
+  /** Cosine of the ground's slope. */
+  readonly cosSlope: Float
+}
+
 /**
  * Rock, scree, grass, forest, sand, snow and sea, by height, slope, latitude and noise.
  *
- * @param height - Height of the ground, that of the sea's floor under water [m].
- * @param up - Geodetic up, ECEF axes.
- * @param cosSlope - Cosine of the ground's slope.
- * @param shortest - Shortest wavelength to show [m].
  * @param seaLevel - [m]
  */
-export function groundSurface(
-  point: SurfacePoint,
-  height: Float,
-  up: Vec3,
-  cosSlope: Float,
-  shortest: Float,
-  seaLevel: Float
-): GroundSurface {
-  const { reference, offset } = point
-  const zero = float(0)
-  const patch = patches(reference, offset, shortest, zero).w.toConst('patchiness')
-  const grain = grains(reference, offset, shortest, zero).toConst('grain')
-  const climate = climates(reference, offset, shortest, zero).w.toConst('climate')
+export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurface {
+  const { height, patch, climate, up, cosSlope } = place
+  const grain = grainAt(place)
   const sinLatitude = up.z.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
 
@@ -66,7 +59,7 @@ export function groundSurface(
   const steepness = cosSlope
     .oneMinus()
     .add(patch.mul(0.05))
-    .add(grain.w.mul(0.02))
+    .add(grain.value.mul(0.02))
     .toConst('steepness')
 
   const dryness = smoothstep(0.12, 0.4, sinLatitude)
@@ -76,7 +69,7 @@ export function groundSurface(
     .add(climate.mul(1.4))
     .clamp(0, 1)
     .toConst('dryness')
-  const tone = patch.mul(0.9).add(grain.w.mul(0.7)).toConst('tone')
+  const tone = patch.mul(0.9).add(grain.value.mul(0.7)).toConst('tone')
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1))
   const meadow = mix(
     color(GRASS),
@@ -97,7 +90,7 @@ export function groundSurface(
   const snow = smoothstep(-150, 250, height.sub(snowLine).add(patch.mul(420)))
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
-  const wet = smoothstep(0, 1.2, overSea.add(grain.w.mul(0.3))).toConst('wet')
+  const wet = smoothstep(0, 1.2, overSea.add(grain.value.mul(0.3))).toConst('wet')
   const isSea = overSea.lessThan(0).select(1, 0)
   const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
   const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1))
@@ -107,6 +100,6 @@ export function groundSurface(
   return {
     color: mix(dry, water, isSea),
     roughness: mix(rough, float(0.22), isSea),
-    grain: grain.xyz.mul(GRAIN_HEIGHT).mul(height01)
+    grain: grain.gradient.mul(GRAIN_HEIGHT).mul(height01)
   }
 }

@@ -1,5 +1,6 @@
-import { attribute, positionGeometry } from 'three/tsl'
-import type { HeightSource } from '../../heights/HeightSource'
+import { attribute, ivec2, mix, positionGeometry, texture, vec2, vec3, vec4 } from 'three/tsl'
+import type { Texture } from 'three'
+import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { faceAxes, unitDifference } from './cubeSphere'
@@ -7,16 +8,24 @@ import { faceAxes, unitDifference } from './cubeSphere'
 /** Part of a level's range at which its tiles begin to morph: beyond it no finer neighbour is. */
 export const morphStart = (detail: number): number => (detail + 1) / (2 * detail)
 
+/** Depth of skirts that are deeper than a cell, at most [m]. */
+const DEEPEST_SKIRT = 2e4
+
 /** Vertex of a tile. */
 export interface TileVertex {
   /** Viewer to the vertex, ECEF axes [m]. */
   readonly position: Vec3
-  /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m]. */
-  readonly offset: Vec3
+  /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m] (xyz), and height of the ground [m] (w). */
+  readonly place: Vec4
+  /** Texels of the pixels' atlas: in the tile's own page (xy), and in that of the tile that it is a quarter of (zw). */
+  readonly texels: Vec4
+  /** Share of the parent's page (x), climate (y) and face of the cube (z). */
+  readonly blend: Vec3
 }
 
 /**
- * Vertex of a tile on the ground, morphed by distance between its own grid and that of half its resolution.
+ * Vertex of a tile on the ground, morphed by distance between its own grid and that of half its resolution, and between its own
+ * page and its parent's: wholly morphed it is where the coarser neighbour has it.
  *
  * Positions come from differences to the tile's centre, and heights from the difference to the ground below the
  * viewer, which are small where the viewer stands: float32 keeps millimetres there on a planet.
@@ -26,15 +35,17 @@ export interface TileVertex {
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3.4
  */
 export function tileVertex(
-  source: HeightSource,
+  { heights, columns, heightSide, surfaceSide, density }: PageAtlas,
   uniforms: TerrainUniforms,
   resolution: number,
   detail: number
 ): TileVertex {
-  const base = attribute('tileBase', 'vec4') as unknown as Vec4
-  const tileOffset = attribute('tileOffset', 'vec4') as unknown as Vec4
-  const tileCube = attribute('tileCube', 'vec4') as unknown as Vec4
-  const { radii, stretch, reference, datum, groundHeight, seaLevel } = uniforms
+  const instance = (name: string): Vec4 => attribute(name, 'vec4')
+  const base = instance('tileBase')
+  const tileOffset = instance('tileOffset')
+  const tileCube = instance('tileCube')
+  const { x: own, y: parent, z: quarter, w: fade } = instance('tilePage')
+  const { radii, stretch, datum, groundHeight, seaLevel, skirt: skirtScale } = uniforms
   const { first, second } = faceAxes(tileCube.w)
   const cube = tileCube.xyz
   const extent = tileOffset.w
@@ -44,38 +55,62 @@ export function tileVertex(
     return first.mul(place.x).add(second.mul(place.y)).mul(extent).toConst()
   }
   const fromCenter = (delta: Vec3): Vec3 => unitDifference(cube, delta).mul(radii).toConst()
-  const distance = (fromTile: Vec3): Float =>
-    tileOffset.xyz.add(fromTile).sub(datum).length().toConst()
 
   const cells = positionGeometry.xy as unknown as Vec2
-  const odd = cells.sub(cells.mul(0.5).floor().mul(2))
+  const even = cells.mul(0.5).floor().mul(2).toConst('even') as Vec2
   const start = morphStart(detail)
-  const range = base.w
-  const morph = distance(fromCenter(alongCube(cells)))
-    .div(range)
+  const distance = tileOffset.xyz
+    .add(fromCenter(alongCube(cells)))
+    .sub(datum)
+    .length()
+  const morph = distance
+    .div(base.w)
     .sub(start)
     .div(1 - start)
     .clamp(0, 1)
+    .max(fade)
+    .toConst('morph')
 
-  const delta = alongCube(cells.sub(odd.mul(morph)))
+  /** First texel of a page. */
+  const pageAt = (slot: Float, side: number): Vec2 => {
+    const row = slot.add(0.5).div(columns).floor().toConst()
+    return vec2(slot.sub(row.mul(columns)), row)
+      .mul(side)
+      .toConst()
+  }
+  const inParent = vec2(quarter.mod(2), quarter.mul(0.5).floor()).mul(resolution).toConst()
+  const vertexAt = (slot: Float, cell: Vec2): Vec2 =>
+    load(heights.texture, pageAt(slot, heightSide).add(cell))
+  const mixed = mix(
+    vertexAt(own, cells),
+    vertexAt(parent, even.add(inParent).mul(0.5)),
+    morph
+  ).toConst('mixed') as Vec2
+
+  const moved = mix(cells, even, morph).toConst('moved') as Vec2
+  const delta = alongCube(moved)
   const subpoint = fromCenter(delta)
-  const offset = tileOffset.xyz.add(subpoint).toConst('offset')
-  // Two cells of the coarsest tile at that distance.
-  const shortest = distance(subpoint).mul(shortestPerDistance(resolution, detail))
-  const height = source.sample({ reference, offset }, shortest).w.max(seaLevel)
+  const height = mixed.x.max(seaLevel)
   const up = cube.add(delta).mul(stretch).normalize().toConst('up')
   const tilt = unitDifference(cube.mul(stretch), delta.mul(stretch))
-  const skirt = positionGeometry.z
-    .mul(extent)
-    .mul(radii.x)
-    .mul(2 / resolution)
+  const cell = extent.mul(radii.x).mul(2 / resolution)
+  const skirt = positionGeometry.z.mul(cell.max(cell.mul(skirtScale).min(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)
     .add(tilt.mul(groundHeight))
     .add(up.mul(height.sub(groundHeight).sub(skirt)))
-  return { position, offset }
+  const texelAt = (slot: Float, steps: Vec2): Vec2 => pageAt(slot, surfaceSide).add(steps).add(0.5)
+  return {
+    position,
+    place: vec4(tileOffset.xyz.add(subpoint), mixed.x),
+    texels: vec4(
+      texelAt(own, moved.mul(density)),
+      texelAt(parent, moved.add(inParent).mul(density / 2))
+    ),
+    blend: vec3(morph, mixed.y, tileCube.w)
+  }
 }
 
-/** Shortest wavelength that vertices show, per distance: two cells where they are the largest [–]. */
-export const shortestPerDistance = (resolution: number, detail: number): number =>
-  Math.SQRT2 / (detail * resolution)
+/** Height and climate at a texel. */
+const load = (heights: Texture, texel: Vec2): Vec2 =>
+  (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).xy

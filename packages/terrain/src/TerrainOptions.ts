@@ -1,0 +1,52 @@
+import type { Camera } from 'three'
+import { checkFinite, fail } from '@welkin/geo'
+import type { HeightSource } from './heights/HeightSource'
+import { isPageSource, type PageSource } from './pages/PageSource'
+
+/** Options of `Terrain`. */
+export interface TerrainOptions {
+  /** Cells along a tile's edge, even, in [4, 128], default 32. */
+  resolution?: number
+  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
+  detail?: number
+  /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
+  seaLevel?: number
+  /** Distance within which ground out of view casts shadows into it, default 3,000 [m]. */
+  shadowDistance?: number
+  /** Camera that tiles are chosen for; null, the default, for each one that draws. */
+  camera?: Camera | null
+  /** Most memory of pages on the GPU, in [4, 1000], default 128 [MB]; room for 64 pages is taken at least. */
+  pageMemory?: number
+  /** Pages drawn in a frame, ≥ 1; the default, 1 at a resolution of 32, goes with its inverse square. */
+  pagesPerFrame?: number
+}
+
+/** Options that may change later. */
+export const SETTINGS = ['seaLevel', 'shadowDistance', 'camera', 'pagesPerFrame'] as const
+
+/** Cells of tiles whose pages are drawn in a frame: a page of 32² cells takes about 1 ms of a slow graphics unit. */
+const CELLS_PER_FRAME = 32 ** 2
+
+/** Options that are left out. */
+export function defaultsFor({ resolution = 32 }: TerrainOptions): Required<TerrainOptions> {
+  return {
+    resolution,
+    detail: 1.5,
+    seaLevel: 0,
+    shadowDistance: 3000,
+    camera: null,
+    pageMemory: 128,
+    pagesPerFrame: Math.max(Math.round(CELLS_PER_FRAME / resolution ** 2), 1)
+  }
+}
+
+/** @throws If it is no source of heights. */
+export function checkSource(where: string, source: HeightSource | PageSource): void {
+  const isSource =
+    typeof source?.sampleAt === 'function' &&
+    typeof source.variation === 'function' &&
+    (isPageSource(source) ? typeof source.loadHeights : typeof source.sample) === 'function'
+  if (!isSource) fail(where, 'source must be a HeightSource', source)
+  checkFinite(where, 'source.lowest', source.lowest)
+  checkFinite(where, 'source.highest', source.highest)
+}

@@ -1,0 +1,246 @@
+import { Vector3 } from 'three'
+import {
+  checkEllipsoid,
+  checkFinite,
+  checkNonNegative,
+  checkOptions,
+  Ellipsoid,
+  fail
+} from '@welkin/geo'
+import type { HeightSample } from '../heights/HeightSource'
+import type { PageRequest, PageSource } from '../pages/PageSource'
+import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
+import { fillHoles, halved, type Raster } from './Raster'
+import { OVERSHOOT, sampleRaster, STEEPENING, type RasterSample } from './RasterSampler'
+
+/** A grid of heights, and options of {@link GridHeights}. */
+export interface GridHeightsOptions {
+  /** Columns from west to east, ≥ 2. */
+  width: number
+  /** Rows from north to south, ≥ 2. */
+  height: number
+  /** Outer edges of the first and last columns [°]; east is more than west, by at most 360. */
+  west: number
+  east: number
+  /** Outer edges of the last and first rows [°]. */
+  south: number
+  north: number
+  /** Value that says that there is none; numbers that are not finite say so, too. */
+  noData?: number
+  /** Factor on the numbers, default 1 [m]. */
+  scale?: number
+  /** Height far outside, default 0 [m]. */
+  outside?: number
+  /** Way beyond the edges on which heights go over to that, ≥ 0, default a tenth of the grid's shorter side [m]. */
+  fade?: number
+  /** Default WGS84; one of revolution. */
+  ellipsoid?: Ellipsoid
+  /** Line that names the data's source, default ''. */
+  attribution?: string
+}
+
+const DEGREE = Math.PI / 180
+
+const place: GeographicPlace = { longitude: 0, latitude: 0 }
+const raster: RasterSample = { value: 0, x: 0, y: 0 }
+const position = new Vector3()
+
+const clamp = (value: number, low: number, high: number): number =>
+  Math.min(Math.max(value, low), high)
+
+/**
+ * Heights of one grid of numbers, such as a digital elevation model, with smooth slopes between them.
+ *
+ * ```ts
+ * const heights = new GridHeights(new Int16Array(await response.arrayBuffer()), {
+ *   width: 403, height: 344, west: -84.414, east: -84.078, south: 36.446, north: 36.733
+ * })
+ * scene.add(new Terrain(atmosphere, heights))
+ * ```
+ *
+ * Coarse pages take averages. Beyond the edges the outermost heights go on and fade to `outside`; holes are filled from about them.
+ */
+export class GridHeights implements PageSource {
+  readonly lowest: number
+  readonly highest: number
+  /** Line that names the data's source. */
+  readonly attribution: string
+  readonly #levels: readonly Raster[]
+  readonly #west: number
+  readonly #north: number
+  /** Width of a column and height of a row [rad], and of the whole grid. */
+  readonly #stepX: number
+  readonly #stepY: number
+  readonly #radii: Vector3
+  /** True of a grid that goes around the planet. */
+  readonly #wraps: boolean
+  readonly #outside: number
+  readonly #fade: number
+  /** Shorter side of a cell at the middle of the grid [m]. */
+  readonly #cell: number
+  readonly #slope: number
+
+  /**
+   * @param values - Heights row by row from the north-west corner; copied.
+   * @throws If an option is missing, unknown or out of its range, or the number of values is another.
+   */
+  constructor(values: ArrayLike<number>, options: GridHeightsOptions) {
+    const where = 'GridHeights'
+    checkOptions(
+      where,
+      options,
+      ...([
+        'width',
+        'height',
+        'west',
+        'east',
+        'south',
+        'north',
+        'noData',
+        'scale',
+        'outside'
+      ] as const),
+      ...(['fade', 'ellipsoid', 'attribution'] as const)
+    )
+    const { width, height, west, east, south, north, noData, scale = 1, outside = 0 } = options
+    const { ellipsoid = Ellipsoid.WGS84, attribution = '' } = options
+    for (const [name, value] of Object.entries({ width, height })) {
+      if (!Number.isInteger(value) || value < 2)
+        fail(where, `${name} must be a whole number ≥ 2`, value)
+    }
+    for (const [name, value] of Object.entries({ west, east, south, north, scale, outside })) {
+      checkFinite(where, name, value)
+    }
+    if (!(east > west && east <= west + 360))
+      fail(where, 'east must be in (west, west + 360]', east)
+    if (!(south >= -90)) fail(where, 'south must be in [−90, 90)', south)
+    if (!(north > south && north <= 90)) fail(where, 'north must be in (south, 90]', north)
+    if (values?.length !== width * height) {
+      fail(where, `values must be ${width * height} numbers`, values?.length)
+    }
+    checkEllipsoid(where, ellipsoid)
+    this.attribution = attribution
+    this.#west = west * DEGREE
+    this.#north = north * DEGREE
+    this.#stepX = ((east - west) / width) * DEGREE
+    this.#stepY = ((north - south) / height) * DEGREE
+    this.#radii = ellipsoid.radii
+    this.#wraps = east - west >= 360 - 1e-9
+    this.#outside = outside
+    const middle = Math.cos(((north + south) / 2) * DEGREE)
+    const cellX = this.#stepX * this.#radii.x * Math.max(middle, 1e-3)
+    const cellY = this.#stepY * ellipsoid.minimumRadius
+    this.#cell = Math.min(cellX, cellY)
+    const { fade = Math.min(cellX * width, cellY * height) / 10 } = options
+    checkNonNegative(where, 'fade', fade)
+    this.#fade = Math.max(fade, 1)
+
+    const numbers = Float32Array.from(values, value => (value === noData ? NaN : value * scale))
+    let level = fillHoles({ width, height, values: numbers }, outside)
+    const levels = [level]
+    while (Math.min(level.width, level.height) >= 4) levels.push((level = halved(level)))
+    this.#levels = levels
+    const { low, high, right, down } = boundsOf(levels[0], this.#wraps)
+    const over = OVERSHOOT * (high - low)
+    this.lowest = Math.min(low - over, outside)
+    this.highest = Math.max(high + over, outside)
+    // Columns are narrowest at the edge nearer to a pole.
+    const narrow = Math.max(Math.cos(Math.max(Math.abs(north), Math.abs(south)) * DEGREE), 1e-3)
+    const slopeX = right / (this.#stepX * this.#radii.x * narrow)
+    const fall = (1.5 * (this.highest - this.lowest)) / this.#fade
+    this.#slope = STEEPENING * Math.hypot(slopeX, down / cellY) + fall
+  }
+
+  /** Rows and columns of the grid. */
+  get size(): { width: number; height: number } {
+    const { width, height } = this.#levels[0]
+    return { width, height }
+  }
+
+  variation(distance: number): number {
+    return Math.min(this.#slope * distance, this.highest - this.lowest)
+  }
+
+  sampleAt(positionECEF: Vector3, target: HeightSample): HeightSample {
+    geographicPlace(positionECEF, this.#radii, place)
+    target.height = this.#sample(place, 0, raster).value
+    const byLongitude = raster.x / this.#stepX
+    const byLatitude = -raster.y / this.#stepY
+    geographicGradient(place, byLongitude, byLatitude, positionECEF, this.#radii, target.gradient)
+    return target
+  }
+
+  loadHeights({ side, spacing, placeOf }: PageRequest): Float32Array {
+    const heights = new Float32Array(side * side)
+    const level = clamp(Math.floor(Math.log2(spacing / this.#cell)), 0, this.#levels.length - 1)
+    for (let row = 0; row < side; row++) {
+      for (let column = 0; column < side; column++) {
+        geographicPlace(placeOf(column, row, position), this.#radii, place)
+        heights[row * side + column] = this.#sample(place, level, raster).value
+      }
+    }
+    return heights
+  }
+
+  /** Height at a place and its slopes per cell of the grid. */
+  #sample(
+    { longitude, latitude }: GeographicPlace,
+    level: number,
+    target: RasterSample
+  ): RasterSample {
+    const { width, height } = this.#levels[0]
+    const grid = this.#levels[level]
+    // In cells from the outer edges; the turn that is nearest to the middle.
+    const middle = this.#west + (this.#stepX * width) / 2
+    const turns = Math.round((longitude - middle) / (2 * Math.PI))
+    const x = (longitude - 2 * Math.PI * turns - this.#west) / this.#stepX
+    const y = (this.#north - latitude) / this.#stepY
+    const insideX = clamp(x, 0, width)
+    const insideY = clamp(y, 0, height)
+    const shrink = 2 ** -level
+    const pixelAt = (column: number, row: number): number => {
+      const inRow = this.#wraps
+        ? (column + grid.width) % grid.width
+        : clamp(column, 0, grid.width - 1)
+      return grid.values[clamp(row, 0, grid.height - 1) * grid.width + inRow]
+    }
+    sampleRaster(pixelAt, insideX * shrink - 0.5, insideY * shrink - 0.5, target)
+    target.x *= shrink
+    target.y *= shrink
+    if (insideX === x && insideY === y) return target
+    this.#fadeOut(x - insideX, y - insideY, Math.cos(latitude), target)
+    return target
+  }
+
+  /** Takes a height of the edge over to that outside, at some cells beyond. */
+  #fadeOut(x: number, y: number, cosLatitude: number, target: RasterSample): void {
+    const wide = this.#stepX * this.#radii.x * cosLatitude
+    const tall = this.#stepY * this.#radii.x
+    const distance = Math.sqrt((x * wide) ** 2 + (y * tall) ** 2)
+    const t = Math.min(distance / this.#fade, 1)
+    const kept = 1 - t * t * (3 - 2 * t)
+    const fall = distance > 0 ? (-6 * t * (1 - t)) / this.#fade / distance : 0
+    const over = target.value - this.#outside
+    target.x = (x === 0 ? target.x * kept : 0) + over * fall * x * wide ** 2
+    target.y = (y === 0 ? target.y * kept : 0) + over * fall * y * tall ** 2
+    target.value = this.#outside + over * kept
+  }
+}
+
+/**
+ * Least and largest values, and largest differences of neighbours.
+ *
+ * @param wraps - True if the first column follows the last.
+ */
+function boundsOf({ width, height, values }: Raster, wraps: boolean) {
+  let [low, high, right, down] = [Infinity, -Infinity, 0, 0]
+  for (let i = 0; i < values.length; i++) {
+    low = Math.min(low, values[i])
+    high = Math.max(high, values[i])
+    const isLast = (i + 1) % width === 0
+    const next = isLast ? i + 1 - width : i + 1
+    if (!isLast || wraps) right = Math.max(right, Math.abs(values[next] - values[i]))
+    if (i < (height - 1) * width) down = Math.max(down, Math.abs(values[i + width] - values[i]))
+  }
+  return { low, high, right, down }
+}

@@ -1,0 +1,68 @@
+/** Value of a raster between its pixels, and its slope along both axes. */
+export interface RasterSample {
+  value: number
+  /** Per pixel to the right. */
+  x: number
+  /** Per pixel downward. */
+  y: number
+}
+
+const weights = new Float64Array(4)
+const slopes = new Float64Array(4)
+const rowValues = new Float64Array(4)
+const rowSlopes = new Float64Array(4)
+
+/** Weights of four neighbours and of the slope, for a place between the second and the third. */
+function setWeights(t: number): void {
+  weights[0] = ((2 - t) * t - 1) * t * 0.5
+  weights[1] = ((3 * t - 5) * t * t + 2) * 0.5
+  weights[2] = ((4 - 3 * t) * t + 1) * t * 0.5
+  weights[3] = (t - 1) * t * t * 0.5
+  slopes[0] = ((4 - 3 * t) * t - 1) * 0.5
+  slopes[1] = (9 * t - 10) * t * 0.5
+  slopes[2] = ((8 - 9 * t) * t + 1) * 0.5
+  slopes[3] = (3 * t - 2) * t * 0.5
+}
+
+/**
+ * Bicubic interpolation through the pixels, with continuous slopes.
+ *
+ * @param pixelAt - Value of a pixel, any column and row: those beyond the edges too.
+ * @param x - Place in pixels: whole numbers are centres.
+ * @see Catmull & Rom 1974, "A class of local interpolating splines", §4: cubic, with tension 1/2
+ */
+export function sampleRaster(
+  pixelAt: (column: number, row: number) => number,
+  x: number,
+  y: number,
+  target: RasterSample
+): RasterSample {
+  const column = Math.floor(x)
+  const row = Math.floor(y)
+  setWeights(x - column)
+  for (let j = 0; j < 4; j++) {
+    let value = 0
+    let slope = 0
+    for (let i = 0; i < 4; i++) {
+      const pixel = pixelAt(column + i - 1, row + j - 1)
+      value += weights[i] * pixel
+      slope += slopes[i] * pixel
+    }
+    rowValues[j] = value
+    rowSlopes[j] = slope
+  }
+  setWeights(y - row)
+  target.value = target.x = target.y = 0
+  for (let j = 0; j < 4; j++) {
+    target.value += weights[j] * rowValues[j]
+    target.x += weights[j] * rowSlopes[j]
+    target.y += slopes[j] * rowValues[j]
+  }
+  return target
+}
+
+/** Most that the interpolation goes beyond the values about it, per difference of the largest and smallest [–]. */
+export const OVERSHOOT = 0.29
+
+/** Bound of its slope along an axis, per largest difference of neighbours on it [–]. */
+export const STEEPENING = 1.6

@@ -1,0 +1,117 @@
+import { tileKey } from './mercator'
+import { sampleRaster, type RasterSample } from './RasterSampler'
+
+/** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
+export interface HeightTile {
+  readonly heights: Float32Array
+  readonly hasHoles: boolean
+}
+
+/** Finds a tile by its key; undefined if it is not there. */
+export type FindTile = (key: number) => HeightTile | undefined
+
+/**
+ * Heights between the pixels of a level of tiles. Where a tile or a pixel is missing, those of coarser levels stand in.
+ */
+export class TilePyramid {
+  #find: FindTile = () => undefined
+  /** Tile that was found last. */
+  #lastZ = -1
+  #lastX = 0
+  #lastY = 0
+  #last: HeightTile | undefined
+
+  /**
+   * @param size - Pixels along a tile's edge.
+   * @param coarsest - Level that ends the search.
+   * @param otherwise - Height where nothing is there [m].
+   */
+  constructor(
+    readonly size: number,
+    readonly coarsest: number,
+    readonly otherwise: number
+  ) {}
+
+  /**
+   * Height at a place.
+   *
+   * @param x - Column in [0, 1), `y` row in [0, 1], of the whole map.
+   * @returns Value [m] and slopes per width of the map.
+   */
+  sample(z: number, x: number, y: number, find: FindTile, target: RasterSample): RasterSample {
+    if (find !== this.#find) this.#lastZ = -1
+    this.#find = find
+    const scale = this.size * 2 ** z
+    const column = x * scale - 0.5
+    const row = y * scale - 0.5
+    sampleRaster(this.#pixelsAbout(z, Math.floor(column), Math.floor(row)), column, row, target)
+    target.x *= scale
+    target.y *= scale
+    return target
+  }
+
+  /** Pixels about a place: straight from its tile, where none of them is of another. */
+  #pixelsAbout(z: number, column: number, row: number): (column: number, row: number) => number {
+    const { size } = this
+    const left = column - Math.floor(column / size) * size
+    const top = row - Math.floor(row / size) * size
+    const isInside = left > 0 && top > 0 && left < size - 2 && top < size - 2
+    const tile = isInside ? this.#tileAt(z, column, row) : undefined
+    if (tile === undefined || tile.hasHoles) return (i, j) => this.#pixelAt(z, i, j)
+    const { heights } = tile
+    const shift = (top - row) * size + left - column
+    return (i, j) => heights[j * size + i + shift]
+  }
+
+  #tileAt(z: number, column: number, row: number): HeightTile | undefined {
+    const x = Math.floor(column / this.size)
+    const y = Math.floor(row / this.size)
+    if (z !== this.#lastZ || x !== this.#lastX || y !== this.#lastY) {
+      this.#lastZ = z
+      this.#lastX = x
+      this.#lastY = y
+      this.#last = this.#find(tileKey(z, x, y))
+    }
+    return this.#last
+  }
+
+  #pixelAt(z: number, column: number, row: number): number {
+    const { size } = this
+    const inMap = Math.min(Math.max(row, 0), size * 2 ** z - 1)
+    const tile = this.#tileAt(z, column, inMap)
+    if (tile !== undefined) {
+      const x = column - Math.floor(column / size) * size
+      const height = tile.heights[(inMap % size) * size + x]
+      if (!Number.isNaN(height)) return height
+    }
+    return this.#coarserAt(z, column + 0.5, inMap + 0.5)
+  }
+
+  /** Height at a place of a level, from the finest coarser level that has one: linear within its tile. */
+  #coarserAt(z: number, column: number, row: number): number {
+    const { size } = this
+    for (let level = z - 1; level >= this.coarsest; level--) {
+      const x = column / 2 ** (z - level)
+      const y = row / 2 ** (z - level)
+      const tile = this.#find(tileKey(level, Math.floor(x / size), Math.floor(y / size)))
+      if (tile === undefined) continue
+      const height = linear(tile.heights, size, x % size, y % size)
+      if (!Number.isNaN(height)) return height
+    }
+    return this.otherwise
+  }
+}
+
+/** Value between the centres of a tile's pixels; NaN beside one that is. */
+function linear(heights: Float32Array, size: number, x: number, y: number): number {
+  const left = Math.min(Math.max(x < 0 ? x + size : x, 0.5), size - 0.5) - 0.5
+  const top = Math.min(Math.max(y, 0.5), size - 0.5) - 0.5
+  const column = Math.min(Math.floor(left), size - 2)
+  const row = Math.min(Math.floor(top), size - 2)
+  const at = (i: number, j: number): number => heights[(row + j) * size + column + i]
+  const right = left - column
+  const down = top - row
+  const upper = at(0, 0) * (1 - right) + at(1, 0) * right
+  const lower = at(0, 1) * (1 - right) + at(1, 1) * right
+  return upper * (1 - down) + lower * down
+}

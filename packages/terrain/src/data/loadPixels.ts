@@ -1,0 +1,41 @@
+import { PermanentFailure } from './TileRequests'
+
+/** Pixels of a picture: RGBA, 8 bits each, row by row from the top. */
+export interface Pixels {
+  readonly width: number
+  readonly height: number
+  readonly data: ArrayLike<number>
+}
+
+/** Answers of a server after which it need not be asked again. */
+const GONE = new Set([204, 400, 401, 403, 404, 410])
+
+/**
+ * Loads the pixels of a picture in a browser, as they stand in the file: no colour profile or alpha is applied to them.
+ *
+ * @returns Pixels, or null where there is no picture: the server says so, or it is corrupt.
+ * @throws If the network or the server fails, or the signal is aborted.
+ */
+export async function loadPixels(url: string, signal: AbortSignal): Promise<Pixels | null> {
+  const response = await fetch(url, { signal })
+  if (GONE.has(response.status)) return null
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`)
+  const blob = await response.blob()
+  let bitmap: ImageBitmap
+  try {
+    bitmap = await createImageBitmap(blob, {
+      colorSpaceConversion: 'none',
+      premultiplyAlpha: 'none'
+    })
+  } catch {
+    return null
+  }
+  const { width, height } = bitmap
+  const context = new OffscreenCanvas(width, height).getContext('2d', {
+    willReadFrequently: true
+  })
+  if (context === null) throw new PermanentFailure('no 2D canvas')
+  context.drawImage(bitmap, 0, 0)
+  bitmap.close()
+  return context.getImageData(0, 0, width, height)
+}

@@ -1,0 +1,29 @@
+/** Latitude at which the square of Web Mercator ends [rad]. */
+export const MERCATOR_LIMIT = Math.atan(Math.sinh(Math.PI))
+
+/** Column of a longitude: 0 at −180°, 1 at 180°. */
+export const mercatorX = (longitude: number): number => 0.5 + longitude / (2 * Math.PI)
+
+/** Row of a geodetic latitude: 0 at 85.05° north, 1 at 85.05° south, where it stays. */
+export function mercatorY(latitude: number): number {
+  const y = 0.5 - Math.asinh(Math.tan(latitude)) / (2 * Math.PI)
+  return Math.min(Math.max(y, 0), 1)
+}
+
+/** Tiles have numbers as keys: exact up to level 23. */
+const LEVELS = 32
+
+/** Key of a tile; columns wrap around the planet, rows end at its edges. */
+export function tileKey(z: number, x: number, y: number): number {
+  const side = 2 ** z
+  const column = ((x % side) + side) % side
+  const row = Math.min(Math.max(y, 0), side - 1)
+  return (row * side + column) * LEVELS + z
+}
+
+/** Level, column and row of a key. */
+export function tileOfKey(key: number): { z: number; x: number; y: number } {
+  const z = key % LEVELS
+  const index = Math.floor(key / LEVELS)
+  return { z, x: index % 2 ** z, y: Math.floor(index / 2 ** z) }
+}

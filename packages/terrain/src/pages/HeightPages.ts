@@ -1,0 +1,227 @@
+import { checkOwner } from '@welkin/atmosphere'
+import { fail, type Ellipsoid } from '@welkin/geo'
+import type { Renderer } from 'three/webgpu'
+import type { HeightSource } from '../heights/HeightSource'
+import type { Tile } from '../tiles/Tile'
+import { PageAtlas } from './PageAtlas'
+import { PageBaker } from './PageBaker'
+import { isPageSource, type PageSource } from './PageSource'
+
+/** Selections after which a page that none came by may be given to another tile: several cameras draw in turn. */
+const KEEP_FOR = 8
+
+/** Selections after which heights that nobody asked for again are not waited for. */
+const WAIT_FOR = 60
+
+/** Selections after which heights that failed are asked for again. */
+const RETRY_AFTER = 300
+
+/** Most requests for heights at once. */
+const MOST_REQUESTS = 12
+
+/** Heights that were asked for. */
+interface Loading {
+  readonly abort: AbortController
+  /** Selection that last asked for them. */
+  wanted: number
+  heights: Float32Array | null
+}
+
+/**
+ * Pages of the ground: heights, slopes and patches of a tile, drawn once on the GPU, or loaded, and kept in a fixed atlas until others
+ * need the room: the least recently used goes first.
+ */
+export class HeightPages {
+  readonly atlas: PageAtlas
+  readonly #source: HeightSource | PageSource
+  readonly #baker: PageBaker
+  #renderer: Renderer | null = null
+  /** Tiles by the place of their page. */
+  readonly #owners: (Tile | null)[]
+  readonly #loading = new Map<Tile, Loading>()
+  /** Selections at which tiles' heights failed. */
+  readonly #failures = new Map<Tile, number>()
+  #error: unknown = null
+  /** Pages drawn since the atlas was made. */
+  drawn = 0
+
+  /**
+   * @param resolution - Cells along a tile's edge.
+   * @param bytes - See {@link PageAtlas}.
+   */
+  constructor(
+    source: HeightSource | PageSource,
+    ellipsoid: Ellipsoid,
+    resolution: number,
+    bytes: number
+  ) {
+    this.#source = source
+    this.atlas = new PageAtlas(resolution, bytes)
+    this.#baker = new PageBaker(source, ellipsoid, this.atlas, resolution)
+    this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
+  }
+
+  /** Number of pages that tiles have. */
+  get count(): number {
+    return this.#owners.reduce((sum, owner) => sum + (owner === null ? 0 : 1), 0)
+  }
+
+  /** Heights that are on their way. */
+  get loading(): number {
+    return this.#loading.size
+  }
+
+  /**
+   * Sees to it that whole faces have pages.
+   *
+   * @returns True if all pages were lost, with another renderer.
+   * @throws If another renderer drew the pages that was not disposed of, or heights are of a wrong number.
+   */
+  begin(renderer: Renderer, roots: readonly Tile[]): boolean {
+    if (this.#error !== null) throw this.#error
+    const isNew = renderer !== this.#renderer
+    if (isNew) {
+      checkOwner('Terrain', this.#renderer, renderer)
+      this.clear()
+      this.#renderer = renderer
+    }
+    const missing = roots.filter(({ slot }) => slot < 0)
+    if (missing.length > 0) this.load(missing, 0, missing.length)
+    for (const root of roots) {
+      // Flat until its heights arrive.
+      if (root.slot < 0) this.#draw(root, this.#flat(), this.#place(0))
+      root.fade = 0
+    }
+    return isNew
+  }
+
+  /** Heights of a face that are still on their way: none. */
+  #flat(): Float32Array {
+    const height = Math.min(Math.max(0, this.#source.lowest), this.#source.highest)
+    return new Float32Array((this.atlas.surfaceSide + 2) ** 2).fill(height)
+  }
+
+  /**
+   * Draws pages, or asks for their heights.
+   *
+   * @param tiles - Without pages, the most urgent first.
+   * @param selection - Number of the selection that they are of.
+   * @param most - Pages to draw.
+   * @returns Number of pages drawn.
+   */
+  load(tiles: readonly Tile[], selection: number, most: number): number {
+    let count = 0
+    for (const tile of tiles) {
+      if (count >= most) break
+      const heights = this.#heightsOf(tile, selection)
+      if (heights === undefined) continue
+      const slot = this.#place(selection)
+      // All pages are in use: the ground stays as coarse as it is.
+      if (slot < 0) break
+      this.#draw(tile, heights, slot)
+      this.#loading.delete(tile)
+      count++
+    }
+    this.#abandon(selection)
+    return count
+  }
+
+  #draw(tile: Tile, heights: Float32Array | null, slot: number): void {
+    const owner = this.#owners[slot]
+    if (owner !== null) owner.slot = -1
+    this.#owners[slot] = tile
+    tile.slot = slot
+    tile.fade = 1
+    this.drawn++
+    this.#baker.bake(this.#renderer!, tile, slot, heights)
+  }
+
+  /** Heights to draw a page with: null for those of a function, undefined while there are none. */
+  #heightsOf(tile: Tile, selection: number): Float32Array | null | undefined {
+    const source = this.#source
+    if (!isPageSource(source)) return null
+    const known = this.#loading.get(tile)
+    if (known !== undefined) {
+      known.wanted = selection
+      return known.heights ?? undefined
+    }
+    const failed = this.#failures.get(tile)
+    if (failed !== undefined && selection - failed < RETRY_AFTER) return undefined
+    if (this.#loading.size >= MOST_REQUESTS) return undefined
+    this.#failures.delete(tile)
+    const abort = new AbortController()
+    const loading: Loading = { abort, wanted: selection, heights: null }
+    this.#loading.set(tile, loading)
+    const finish = (heights: Float32Array | null): void => {
+      if (this.#loading.get(tile) !== loading) return
+      loading.heights = this.#checked(heights)
+      if (loading.heights !== null) return
+      this.#loading.delete(tile)
+      this.#failures.set(tile, loading.wanted)
+    }
+    try {
+      const answer = source.loadHeights(this.#baker.request(tile), abort.signal)
+      if (answer instanceof Float32Array) finish(answer)
+      else answer.then(finish, () => finish(null))
+    } catch {
+      finish(null)
+    }
+    return loading.heights ?? undefined
+  }
+
+  /** Heights that can be drawn; null if one is no number. */
+  #checked(heights: Float32Array | null): Float32Array | null {
+    if (heights === null) return null
+    const length = (this.atlas.surfaceSide + 2) ** 2
+    if (heights.length === length) return heights.every(Number.isFinite) ? heights : null
+    try {
+      fail('Terrain', `source.loadHeights must give ${length} heights`, heights.length)
+    } catch (error) {
+      this.#error = error
+    }
+    return null
+  }
+
+  /** Gives up heights that nobody waits for. */
+  #abandon(selection: number): void {
+    for (const [tile, { wanted, abort }] of this.#loading) {
+      if (selection - wanted <= WAIT_FOR) continue
+      abort.abort()
+      this.#loading.delete(tile)
+    }
+  }
+
+  /** A place for a page: a free one, or that of the tile longest unused; −1 if all are in use. */
+  #place(selection: number): number {
+    let oldest = selection - KEEP_FOR
+    let place = -1
+    for (const [slot, owner] of this.#owners.entries()) {
+      if (owner === null) return slot
+      if (owner.level > 0 && owner.lastDrawn < oldest) {
+        oldest = owner.lastDrawn
+        place = slot
+      }
+    }
+    return place
+  }
+
+  /** Forgets all pages. */
+  clear(): void {
+    for (const { abort } of this.#loading.values()) abort.abort()
+    this.#loading.clear()
+    this.#failures.clear()
+    for (const [slot, owner] of this.#owners.entries()) {
+      if (owner !== null) owner.slot = -1
+      this.#owners[slot] = null
+    }
+    this.drawn = 0
+  }
+
+  /** Frees textures and pipelines; the next drawing begins anew. */
+  dispose(): void {
+    this.clear()
+    this.#renderer = null
+    this.atlas.dispose()
+    this.#baker.dispose()
+  }
+}

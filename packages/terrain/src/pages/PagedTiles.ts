@@ -1,0 +1,90 @@
+import type { Ellipsoid } from '@welkin/geo'
+import type { Renderer } from 'three/webgpu'
+import type { HeightSource } from '../heights/HeightSource'
+import type { Viewer } from '../tiles/cpu/viewer'
+import { noTiles, TileTree } from '../tiles/TileTree'
+import { HeightPages } from './HeightPages'
+import type { PageSource } from './PageSource'
+
+/** Tiles that there is room for. */
+export const CAPACITY = 3000
+
+/** Factor on the pages in a frame until the first picture is full. */
+const FIRST_PAGES = 8
+
+/** Frames in which a page takes the place of its parent's. */
+const FADE_FRAMES = 10
+
+/** Levels that the ground is too coarse by from which on pages do not fade in: after a leap. */
+const LEAP = 4
+
+/** Longest side of a cell of the finest tiles [m]. */
+const FINEST_CELL = 0.15
+
+/** Tiles that a viewer sees, and their pages: those that are missing are drawn, some in a frame. */
+export class PagedTiles {
+  readonly tree: TileTree
+  readonly pages: HeightPages
+  readonly selection = noTiles()
+  /** Pages drawn in a frame. */
+  pagesPerFrame = 1
+  /** True if nothing is missing in the last selection, and all pages have faded in. */
+  isFull = false
+  /** False until a picture was full. */
+  #wasFull = false
+  /** Frame of the renderer, and pages that may still be drawn in it. */
+  #frame = -1
+  #pagesLeft = 0
+
+  /**
+   * @param resolution - Cells along a tile's edge.
+   * @param detail - As of `TileTree`.
+   * @param bytes - Most memory of pages.
+   */
+  constructor(
+    source: HeightSource | PageSource,
+    ellipsoid: Ellipsoid,
+    resolution: number,
+    detail: number,
+    bytes: number
+  ) {
+    const cells = (2 * ellipsoid.maximumRadius) / resolution / FINEST_CELL
+    const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
+    this.tree = new TileTree(ellipsoid, source, finestLevel, detail)
+    this.pages = new HeightPages(source, ellipsoid, resolution, bytes)
+  }
+
+  /**
+   * Chooses tiles for a viewer and draws pages.
+   *
+   * @param most - Pages to draw, default: what is left of `pagesPerFrame` in this frame. Without an end no page fades in.
+   */
+  update(renderer: Renderer, viewer: Viewer, most?: number): void {
+    const { tree, pages, selection } = this
+    if (pages.begin(renderer, tree.roots)) this.#wasFull = false
+    const { frame } = renderer.info
+    if (frame !== this.#frame) {
+      this.#frame = frame
+      this.#pagesLeft = this.pagesPerFrame * (this.#wasFull ? 1 : FIRST_PAGES)
+    }
+    let left = most ?? this.#pagesLeft
+    const isAtOnce = left === Infinity || !this.#wasFull
+    for (let drawn = -1; drawn !== 0;) {
+      tree.select(viewer, CAPACITY, selection)
+      drawn = pages.load(selection.missing, tree.selections, left)
+      left -= drawn
+      const leaps = isAtOnce || selection.lag >= LEAP
+      for (const tile of selection.tiles) tile.show(frame, leaps ? 1 : 1 / FADE_FRAMES)
+      if (!isAtOnce) break
+    }
+    if (most === undefined) this.#pagesLeft = left
+    this.isFull = selection.lag === 0
+    this.#wasFull ||= this.isFull
+  }
+
+  /** Frees pages; the next update begins anew. */
+  dispose(): void {
+    this.pages.dispose()
+    this.#wasFull = this.isFull = false
+  }
+}

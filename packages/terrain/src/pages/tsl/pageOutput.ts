@@ -1,0 +1,147 @@
+import { Fn, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { Texture } from 'three'
+import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
+import { climates, patches } from '../../surface/tsl/groundNoise'
+import { faceAxes, unitDifference } from '../../tiles/tsl/cubeSphere'
+import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+
+/** Tile that a page is drawn for, as uniforms. */
+export interface PageUniforms {
+  /** Point of the cube above the centre, and its face. */
+  readonly cube: Vec3
+  readonly face: Float
+  /** Half width on the cube. */
+  readonly extent: Float
+  /** Point near the centre in whole multiples of 256 m [256 m]. */
+  readonly reference: Vec3
+  /** Reference to centre [m]. */
+  readonly center: Vec3
+  /** Shortest wavelength that vertices show [m]. */
+  readonly shortest: Float
+  readonly radii: Vec3
+  /** Seed of patches and climate. */
+  readonly seed: Float
+}
+
+/** A place of a page. */
+interface PagePlace extends SurfacePoint {
+  /** Centre to the place [m]. */
+  readonly fromCenter: Vec3
+}
+
+/** Axes along a face. */
+type Axes = ReturnType<typeof faceAxes>
+
+/** Column and row of the texel that is drawn. */
+const texelOf = (side: number): Vec2 => (uv() as unknown as Vec2).mul(side).floor().toConst('texel')
+
+/** @param cells - Steps between texels from the tile's first corner. */
+function placeAt(
+  { cube, extent, reference, center, radii }: PageUniforms,
+  { first, second }: Axes,
+  cells: Vec2,
+  side: number
+): PagePlace {
+  const place = cells.mul(2 / (side - 1)).sub(1)
+  const delta = first.mul(place.x).add(second.mul(place.y)).mul(extent)
+  const fromCenter = unitDifference(cube, delta).mul(radii).toConst() as Vec3
+  return { fromCenter, reference, offset: center.add(fromCenter).toConst() }
+}
+
+/** Geodetic up at a place. */
+const upAt = (tile: PageUniforms, { fromCenter }: PagePlace): Vec3 => {
+  const { cube, radii } = tile
+  const center = cube.normalize().mul(radii)
+  return center.add(fromCenter).div(radii.mul(radii)).normalize().toConst()
+}
+
+const patchAt = (tile: PageUniforms, { reference, offset }: PagePlace, shortest: Float): Float =>
+  patches(reference, offset, shortest, tile.seed).w
+
+const climateAt = (tile: PageUniforms, { reference, offset }: PagePlace): Float =>
+  climates(reference, offset, tile.shortest, tile.seed).w
+
+/** Height and climate of a vertex, from a function. */
+export const heightsOf = (source: HeightSource, tile: PageUniforms, side: number): Vec4 =>
+  Fn(() => {
+    const place = placeAt(tile, faceAxes(tile.face), texelOf(side), side)
+    return vec4(source.sample(place, tile.shortest).w, climateAt(tile, place), 0, 1)
+  })()
+
+/** Gradient, height and patchiness for pixels, from a function. */
+export const surfaceOf = (
+  source: HeightSource,
+  tile: PageUniforms,
+  side: number,
+  density: number
+): Vec4 =>
+  Fn(() => {
+    const axes = faceAxes(tile.face)
+    const place = placeAt(tile, axes, texelOf(side), side)
+    const shortest = tile.shortest.div(density).toConst('shortest') as Float
+    const ground = source.sample(place, shortest).toConst('ground') as Vec4
+    const up = upAt(tile, place)
+    const gradient = ground.xyz.sub(up.mul(ground.xyz.dot(up))).toConst('gradient')
+    return vec4(
+      gradient.dot(axes.first),
+      gradient.dot(axes.second),
+      ground.w,
+      patchAt(tile, place, shortest)
+    )
+  })()
+
+/** Heights that were loaded, a step beyond each edge too. */
+const loaded = (heights: Texture, texel: Vec2): Float =>
+  (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).x
+
+/** Height and climate of a vertex, from heights that were loaded. */
+export const loadedHeightsOf = (
+  heights: Texture,
+  tile: PageUniforms,
+  side: number,
+  density: number
+): Vec4 =>
+  Fn(() => {
+    const texel = texelOf(side)
+    const place = placeAt(tile, faceAxes(tile.face), texel, side)
+    return vec4(loaded(heights, texel.mul(density).add(1)), climateAt(tile, place), 0, 1)
+  })()
+
+/** Gradient by central differences, height and patchiness for pixels, from heights that were loaded. */
+export const loadedSurfaceOf = (
+  heights: Texture,
+  tile: PageUniforms,
+  side: number,
+  density: number
+): Vec4 =>
+  Fn(() => {
+    const texel = texelOf(side)
+    const axes = faceAxes(tile.face)
+    const place = placeAt(tile, axes, texel, side)
+    const up = upAt(tile, place)
+    const at = (x: number, y: number): Float => loaded(heights, texel.add(vec2(x + 1, y + 1)))
+    const along = (x: number, y: number): { step: Vec3; rise: Float } => {
+      const [after, before] = [1, -1].map(sign =>
+        placeAt(tile, axes, texel.add(vec2(sign * x, sign * y)) as Vec2, side)
+      )
+      const step = after.fromCenter.sub(before.fromCenter).toConst() as Vec3
+      return { step, rise: at(x, y).sub(at(-x, -y)).toConst() }
+    }
+    const [a, b] = [along(1, 0), along(0, 1)]
+    // The gradient g in the plane of both steps has g·a and g·b equal to the rises.
+    const area = a.step.cross(b.step).toConst('area')
+    const gradient = b.step
+      .cross(area)
+      .mul(a.rise)
+      .add(area.cross(a.step).mul(b.rise))
+      .div(area.dot(area))
+      .toConst('slope')
+    const tangent = gradient.sub(up.mul(gradient.dot(up)))
+    const shortest = tile.shortest.div(float(density))
+    return vec4(
+      tangent.dot(axes.first),
+      tangent.dot(axes.second),
+      at(0, 0),
+      patchAt(tile, place, shortest)
+    )
+  })()
