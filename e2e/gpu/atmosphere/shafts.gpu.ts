@@ -1,4 +1,4 @@
-import type { AirOccluder } from '@welkin/atmosphere'
+import type { AirOccluder, LightShaftsOptions } from '@welkin/atmosphere'
 import { Vector3 } from 'three'
 import { uniform, vec4 } from 'three/tsl'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
@@ -317,7 +317,7 @@ gpuTest('takes light scattered more than once where an occluder dims it', async 
 
 gpuTest('frees its textures', async t => {
   const renderer = await t.createRenderer(size)
-  const { scene, draw, shafts, dispose } = stage(renderer, 15)
+  const { scene, camera, atmosphere, draw, shafts, dispose } = stage(renderer, 15)
   addBox(scene, [0, 200, -600], [200, 500, 40])
   shafts.enabled = false
   await draw()
@@ -329,5 +329,23 @@ gpuTest('frees its textures', async t => {
   shafts.dispose()
   expectTrue(objects.Texture < held, `${held} textures, ${objects.Texture} after dispose`)
   expectSame(await draw(), first, 'used again')
+
+  // The volume of materials is there while they read it.
+  atmosphere.add(shafts)
+  const sizeWith = async (options: LightShaftsOptions): Promise<number> => {
+    shafts.set(options)
+    await nextFrame()
+    await drawForward(renderer, scene, camera, atmosphere)
+    return renderer.info.memory.texturesSize
+  }
+  const least = await sizeWith({ quality: 'high' })
+  const most = await sizeWith({ quality: 'medium' })
+  const off = await sizeWith({ enabled: false })
+  const again = await sizeWith({ enabled: true })
+  const high = await sizeWith({ quality: 'high' })
+  t.note(`${least} B of textures, ${most} with a volume, ${off} while it is off, ${high} after it`)
+  expectTrue(most > off + 1e6, 'the volume takes memory')
+  expectTrue(again === most, 'as much as before')
+  expectTrue(high === least, 'all of it is freed')
   dispose()
 })

@@ -1,4 +1,12 @@
-import { CloudNoise, cloudWorldMap, noiseVolume, type MapBounds } from '@welkin/clouds'
+import { Atmosphere } from '@welkin/atmosphere'
+import {
+  CloudField,
+  CloudLayers,
+  CloudNoise,
+  cloudWorldMap,
+  noiseVolume,
+  type MapBounds
+} from '@welkin/clouds'
 import {
   ClampToEdgeWrapping,
   Data3DTexture,
@@ -103,49 +111,58 @@ gpuTest(
   }
 )
 
-gpuTest('clouds take noise of one’s own, with levels of detail made of it', async t => {
-  const renderer = await t.createRenderer()
-  const size = 32
-  const wave = ({ x, y, z }: Vector3, channel: number): number =>
-    0.5 + 0.3 * Math.sin(2 * Math.PI * (x + channel / 4)) * Math.cos(2 * Math.PI * (y - z))
-  const volume = (channels: number): Data3DTexture => {
-    const bytes = new Uint8Array(channels * size ** 3)
-    for (let i = 0; i < size ** 3; i++) {
-      const place = new Vector3(i % size, Math.floor(i / size) % size, Math.floor(i / size ** 2))
-      place.addScalar(0.5).divideScalar(size)
-      for (let c = 0; c < channels; c++) bytes[channels * i + c] = Math.round(255 * wave(place, c))
+gpuTest(
+  'clouds take noise of one’s own, also by the next renderer, with levels of detail',
+  async t => {
+    const [first, second] = [await t.createRenderer(), await t.createRenderer()]
+    const size = 32
+    const wave = ({ x, y, z }: Vector3, channel: number): number =>
+      0.5 + 0.3 * Math.sin(2 * Math.PI * (x + channel / 4)) * Math.cos(2 * Math.PI * (y - z))
+    const volume = (channels: number): Data3DTexture => {
+      const bytes = new Uint8Array(channels * size ** 3)
+      for (let i = 0; i < size ** 3; i++) {
+        const place = new Vector3(i % size, Math.floor(i / size) % size, Math.floor(i / size ** 2))
+        place.addScalar(0.5).divideScalar(size)
+        for (let c = 0; c < channels; c++)
+          bytes[channels * i + c] = Math.round(255 * wave(place, c))
+      }
+      const texture = new Data3DTexture(bytes, size, size, size)
+      if (channels === 1) texture.format = RedFormat
+      texture.minFilter = texture.magFilter = LinearFilter
+      texture.wrapS = texture.wrapT = texture.wrapR = RepeatWrapping
+      texture.needsUpdate = true
+      return texture
     }
-    const texture = new Data3DTexture(bytes, size, size, size)
-    if (channels === 1) texture.format = RedFormat
-    texture.minFilter = texture.magFilter = LinearFilter
-    texture.wrapS = texture.wrapT = texture.wrapR = RepeatWrapping
-    texture.needsUpdate = true
-    return texture
+    const own = { weather: volume(4), shape: volume(4), detail: volume(1) }
+    const noise = new CloudNoise({
+      weather: noiseVolume(own.weather),
+      shape: noiseVolume(own.shape),
+      detail: noiseVolume(own.detail)
+    })
+    // As clouds of either renderer do, which share the noise.
+    const field = new CloudField(new Atmosphere(), new CloudLayers(), undefined, { noise })
+    const next = random(5)
+    const places = Array.from({ length: 128 }, () => [next(), next(), next()].map(Math.fround))
+    for (const renderer of [first, second]) {
+      field.bake(renderer)
+      for (const name of ['weather', 'shape', 'detail'] as const) {
+        const node = texture3D(noise[name].target.texture) as unknown as LevelTexture<Vec3>
+        const at = (level: number): Promise<Float32Array> =>
+          evaluateOnGpu(renderer, places, p => {
+            const texel = node.sample(p.xyz).level(level)
+            return name === 'detail' ? vec4(texel.x, 0, 0, 0) : texel
+          })
+        const channels = name === 'detail' ? 1 : 4
+        const expected = places.flatMap(([x, y, z]) =>
+          [0, 1, 2, 3].map(c => (c < channels ? wave(new Vector3(x, y, z), c) : 0))
+        )
+        expectClose(await at(0), expected, { relative: 0, absolute: 0.012 })
+        const means = places.flatMap(() => [0, 1, 2, 3].map(c => (c < channels ? 0.5 : 0)))
+        expectClose(await at(7), means, { relative: 0, absolute: 0.01 })
+      }
+      await renderer.dispose()
+    }
+    noise.dispose()
+    for (const texture of Object.values(own)) texture.dispose()
   }
-  const own = { weather: volume(4), shape: volume(4), detail: volume(1) }
-  const noise = new CloudNoise({
-    weather: noiseVolume(own.weather),
-    shape: noiseVolume(own.shape),
-    detail: noiseVolume(own.detail)
-  })
-  noise.update(renderer)
-  const next = random(5)
-  const places = Array.from({ length: 128 }, () => [next(), next(), next()].map(Math.fround))
-  for (const name of ['weather', 'shape', 'detail'] as const) {
-    const node = texture3D(noise[name].target.texture) as unknown as LevelTexture<Vec3>
-    const at = (level: number): Promise<Float32Array> =>
-      evaluateOnGpu(renderer, places, p => {
-        const texel = node.sample(p.xyz).level(level)
-        return name === 'detail' ? vec4(texel.x, 0, 0, 0) : texel
-      })
-    const channels = name === 'detail' ? 1 : 4
-    const expected = places.flatMap(([x, y, z]) =>
-      [0, 1, 2, 3].map(c => (c < channels ? wave(new Vector3(x, y, z), c) : 0))
-    )
-    expectClose(await at(0), expected, { relative: 0, absolute: 0.012 })
-    const means = places.flatMap(() => [0, 1, 2, 3].map(c => (c < channels ? 0.5 : 0)))
-    expectClose(await at(7), means, { relative: 0, absolute: 0.01 })
-  }
-  noise.dispose()
-  for (const texture of Object.values(own)) texture.dispose()
-})
+)

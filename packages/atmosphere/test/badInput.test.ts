@@ -206,6 +206,10 @@ throwsEach('atmospheres, their parameters and nodes', [
     () => new AtmosphereShell(parameters, wrong({ radius: 1 }))
   ],
   [
+    'AtmosphereShell: shafts must be LightShafts of these parameters, for tables, got 3',
+    () => new AtmosphereShell(new AtmosphereParameters(), 1, { shafts: wrong(3) })
+  ],
+  [
     'AtmosphereShell: parameters must be tables.parameters, the same object, got an AtmosphereParameters',
     () =>
       new AtmosphereShell(new AtmosphereParameters({ topRadius: 6_500_000 }), 1, {

@@ -1,12 +1,12 @@
 import type { Camera } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { AirShadows } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
 import type { ViewUniforms } from '../view/ViewUniforms'
+import type { ParallelLight } from './shadowMaps'
 
 /** A point in the air that a camera looks through, as shader nodes. */
 export interface AirPoint {
@@ -32,6 +32,8 @@ export interface ShadowedShafts extends AirShadows {
   readonly atmosphere: Atmosphere
   /** Camera whose picture has the shafts. */
   readonly camera: Camera
+  /** Light whose shadows fall into the air. */
+  readonly light: ParallelLight
   /** Source of the light. */
   readonly source: LightSource
 }
@@ -63,18 +65,4 @@ export interface AirShadow {
 export interface AirOccluder {
   /** Called when it is added. @throws If it cannot be added to these shafts. */
   castInto(shafts: ShadowedShafts): AirShadow
-}
-
-/** @throws If one of them is no occluder, is there twice, or was added before. */
-export function checkOccluders(
-  where: string,
-  occluders: readonly AirOccluder[],
-  added: ReadonlyMap<AirOccluder, AirShadow>
-): void {
-  occluders.forEach((occluder, i) => {
-    if (typeof occluder?.castInto !== 'function')
-      fail(where, 'occluder must be an AirOccluder, such as cloudAirShadow()', occluder)
-    if (added.has(occluder) || occluders.indexOf(occluder) < i)
-      fail(where, 'occluder must not have been added already', occluder)
-  })
 }

@@ -5,6 +5,7 @@ import { checkMatrix, checkOptions, fail } from '@welkin/geo'
 import { sampleLevel0, type Float, type Mat4, type Vec2 } from '../tsl-types'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { AirOccluder, AirPoint, AirShadow, ShadowedShafts } from './AirOccluder'
+import type { ParallelLight } from './shadowMaps'
 import { SweptHeights } from './SweptHeights'
 
 /** Options of {@link HeightFieldShadow}. */
@@ -36,7 +37,7 @@ class HillsInAir implements AirShadow {
   constructor(field: HeightFieldShadow, shafts: ShadowedShafts) {
     this.#field = field
     this.#shafts = shafts
-    this.#swept = field.acquire(shafts.source)
+    this.#swept = field.acquire(shafts.light)
   }
 
   update(view: AtmosphereView, renderer: Renderer): void {
@@ -57,7 +58,7 @@ class HillsInAir implements AirShadow {
   }
 
   dispose(): void {
-    this.#field.release(this.#shafts.source)
+    this.#field.release(this.#shafts.light)
   }
 }
 
@@ -87,7 +88,7 @@ export class HeightFieldShadow implements AirOccluder {
   readonly size: number
   /** Count it up when heights or matrix have changed. */
   version = 0
-  /** Maps by what gives the light, and how many use them. */
+  /** Maps by the source of light, or the light that has none, and how many use them. */
   readonly #swept = new Map<object, { map: SweptHeights; users: number }>()
 
   /** @throws If an argument is of the wrong kind, or an option unknown or out of range. */
@@ -111,19 +112,21 @@ export class HeightFieldShadow implements AirOccluder {
   }
 
   /** Map in a light, shared by all that read it: `release` it after use. */
-  acquire(light: object): SweptHeights {
-    const entry = this.#swept.get(light) ?? { map: new SweptHeights(this), users: 0 }
+  acquire(light: ParallelLight): SweptHeights {
+    const key = light.source ?? light
+    const entry = this.#swept.get(key) ?? { map: new SweptHeights(this), users: 0 }
     entry.users++
-    this.#swept.set(light, entry)
+    this.#swept.set(key, entry)
     return entry.map
   }
 
   /** Frees a light's map when none reads it. */
-  release(light: object): void {
-    const entry = this.#swept.get(light)
+  release(light: ParallelLight): void {
+    const key = light.source ?? light
+    const entry = this.#swept.get(key)
     if (entry === undefined || --entry.users > 0) return
     entry.map.dispose()
-    this.#swept.delete(light)
+    this.#swept.delete(key)
   }
 }
 

@@ -13,12 +13,8 @@ import type { LightSource } from '../view/LightSource'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
-import {
-  checkOccluders,
-  type AirOccluder,
-  type AirShadow,
-  type ShadowedShafts
-} from './AirOccluder'
+import type { AirOccluder, ShadowedShafts } from './AirOccluder'
+import { CastShadows } from './CastShadows'
 import { ScreenShafts } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
 import { qualities, qualityNames, type LightShaftsQuality } from './quality'
@@ -87,8 +83,7 @@ export class LightShafts implements ShadowedShafts {
   readonly #volume: ShaftVolume
   readonly shadowedAir: ShadowedAir
   readonly #shadowedSky: ShadowedAir
-  /** Shadows that were added, by what casts them. */
-  readonly #shadows = new Map<AirOccluder, AirShadow>()
+  readonly #shadows = new CastShadows()
   readonly #toWorld = matrix4()
   #version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -122,7 +117,7 @@ export class LightShafts implements ShadowedShafts {
     this.atmosphere = atmosphere
     this.camera = camera
     this.light = light
-    this.source = (light as { source?: LightSource }).source ?? atmosphere.sun
+    this.source = light.source ?? atmosphere.sun
     this.view = viewNodes(atmosphere, camera, this.source)
     this.#volume = new ShaftVolume(camera)
     const shadows = this.#shadows
@@ -132,7 +127,7 @@ export class LightShafts implements ShadowedShafts {
       frame,
       maximumRho,
       get shadows() {
-        return [...shadows.values()]
+        return shadows.all
       },
       ...mediaIn(media, () => this.source === atmosphere.sun),
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
@@ -161,25 +156,22 @@ export class LightShafts implements ShadowedShafts {
    * @throws If something is no occluder, is there already, or is of another atmosphere; then nothing is added.
    */
   add(...occluders: AirOccluder[]): this {
-    checkOccluders('LightShafts.add', occluders, this.#shadows)
-    const added = occluders.map(occluder => [occluder, occluder.castInto(this)] as const)
-    for (const [occluder, shadow] of added) this.#shadows.set(occluder, shadow)
+    this.#shadows.add(this, occluders)
     return this.#compileAnew()
   }
 
   /** Takes out what was added; what was not is passed over. @returns These shafts. */
   remove(...occluders: AirOccluder[]): this {
-    for (const occluder of occluders) {
-      this.#shadows.get(occluder)?.dispose?.()
-      this.#shadows.delete(occluder)
-    }
+    this.#shadows.remove(occluders)
     return this.#compileAnew()
   }
 
   #compileAnew(): this {
     this.#version++
-    // A layer that comes again has materials compiled anew.
-    if (this.#isLayer) this.atmosphere.remove(this).add(this)
+    // Layers that come again have materials compiled anew: with those after it, each stays where it was.
+    const { atmosphere } = this
+    const after = this.#isLayer ? atmosphere.layers.slice(atmosphere.layers.indexOf(this)) : []
+    if (this.#isLayer) atmosphere.remove(...after).add(...after)
     return this
   }
 
@@ -230,15 +222,15 @@ export class LightShafts implements ShadowedShafts {
     return qualities[this.#quality].spacing
   }
 
-  upTo(depthNode: Node, foreground?: ForegroundLayer): ScreenShadows {
+  upTo(depthNode: Node | null, foreground?: ForegroundLayer): ScreenShadows {
     const screen = new ScreenShafts(this, depthNode, foreground)
     this.#screens.add(screen)
     return screen
   }
 
   /** Called by a picture's shafts that are disposed of. */
-  forget(screen: ScreenShafts): void {
-    this.#screens.delete(screen)
+  forget(screen: object): void {
+    this.#screens.delete(screen as ScreenShafts)
   }
 
   /** True if a foreground layer is drawn, by whose node shafts are. */
@@ -285,22 +277,20 @@ export class LightShafts implements ShadowedShafts {
 
   /** Draws what materials read. */
   #drawVolume(renderer: Renderer, view: AtmosphereView | undefined): void {
-    if (!this.#isLayer || this.#isMarched) return
-    this.#volume.resize(renderer, qualities[this.#quality])
+    const isUsed = this.#isLayer && this.#enabled && this.#setStrength > 0 && !this.#isMarched
+    this.#volume.resize(renderer, isUsed ? qualities[this.#quality] : null)
+    if (!isUsed) return
     if (!this.#isActive || view === undefined) return
     this.view.update(view)
     for (const layer of this.#media) if (isShadowed(layer)) layer.update?.(view)
-    const mapped = this.#shadows.size > 0 ? Infinity : this.#map.maximumRho.value
+    const mapped = this.#shadows.all.length > 0 ? Infinity : this.#map.maximumRho.value
     this.#volume.draw(renderer, this, this.#shadowedSky, mapped)
   }
 
   #updateShadows(view: AtmosphereView, renderer: Renderer): void {
     this.atmosphere.space.displacement(_axes.identity(), _linear)
     this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(view.camera.matrixWorld)
-    for (const shadow of this.#shadows.values()) {
-      shadow.update?.(view, renderer)
-      this.#isActive ||= shadow.isCast ?? true
-    }
+    if (this.#shadows.update(view, renderer)) this.#isActive = true
   }
 
   update({ camera }: AtmosphereView): void {

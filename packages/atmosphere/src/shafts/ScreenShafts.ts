@@ -1,7 +1,7 @@
 import { Vector2 } from 'three'
-import type { Camera, RenderTarget } from 'three'
-import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer, TextureNode, UniformNode } from 'three/webgpu'
+import type { RenderTarget } from 'three'
+import { Fn, If, bool, float, log2, screenUV, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
@@ -21,10 +21,10 @@ import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LayerRay } from '../view/SkyLayer'
-import type { ViewNodes } from '../view/ViewNodes'
 import { isShadowed } from './tsl/lostInMedia'
-import { lostLight, staggered, type ShaftSteps } from './tsl/lostLight'
-import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
+import { lostLight, staggered } from './tsl/lostLight'
+import type { CameraShafts } from './CameraShafts'
+import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR, without } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
 
@@ -47,31 +47,6 @@ const OPAQUE = 0.01
 
 const _size = new Vector2()
 
-/** Light shafts of a camera, as far as a picture of it asks them. */
-export interface CameraShafts {
-  readonly camera: Camera
-  /** The camera's view of the air in the light. */
-  readonly view: ViewNodes
-  readonly shadowedAir: ShadowedAir
-  readonly steps: ShaftSteps
-  /** Pixels from one that is marched to the next. */
-  readonly spacing: number
-  /** True if there are shadows to be drawn, as of the last `prepare`. */
-  readonly isActive: boolean
-  /** Grows whenever its shader changes. */
-  readonly version: number
-  /** True if a foreground layer is drawn, by whose node shafts are. */
-  readonly hasForeground: boolean
-  /** True if materials draw the shafts themselves. */
-  readonly isForward: boolean
-  /** Part of the light that air in shadow loses; 0 where shafts are off. */
-  readonly strengthNow: UniformNode<'float', number>
-  prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
-  update(view: AtmosphereView): void
-  /** Called by a picture's shafts that are disposed of. */
-  forget(screen: ScreenShafts): void
-}
-
 /**
  * Light shafts up to the depth of a picture, for post effects: marched for a grid of pixels, then taken from those around a
  * pixel that are at its depth.
@@ -83,6 +58,8 @@ export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
   readonly target: RenderTarget
   readonly #shafts: CameraShafts
+  /** True for a mesh of air, whose rays end at the planet or nowhere. */
+  readonly #isMesh: boolean
   readonly #rays: DepthRays
   /** Size of the picture, and of either half of the target [pixels]. */
   readonly #size = vector2()
@@ -102,10 +79,11 @@ export class ScreenShafts implements ScreenShadows {
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
 
-  constructor(shafts: CameraShafts, depthNode: Node, foreground?: ForegroundLayer) {
+  constructor(shafts: CameraShafts, depthNode: Node | null, foreground?: ForegroundLayer) {
     this.foreground = foreground
     this.#shafts = shafts
-    this.#rays = new DepthRays(depthNode, shafts.camera)
+    this.#isMesh = depthNode === null
+    this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
     this.#texels = texture(this.target.texture)
   }
@@ -148,13 +126,36 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = shafts.isForward ? 1 : 0
   }
 
-  medium({ direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
-    if (this.#isElsewhere) return air
+  medium(ray: LayerRay | null, air: MediumSegment): MediumSegment {
     const { view } = this.#shafts
+    if (ray === null) return without(air, this.#strength, view, () => this.#lostHere())
+    if (this.#isElsewhere) return air
+    const { direction, cosView, ...to } = ray
     const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
     return without(air, this.#strength, view, () =>
       this.#lostTo({ direction, cosView, cosViewLight, distance: distanceOf(to) })
     )
+  }
+
+  drawIn(frame: NodeFrame, sun: object): void {
+    const { view, camera } = this.#shafts
+    const { atmosphere, source } = view
+    const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
+    const seen = isTheirs ? view.prepare(frame) : undefined
+    this.#strength.value = 0
+    if (seen === undefined) return
+    this.prepare(frame.renderer!, seen, frame)
+    this.update(seen)
+  }
+
+  /** Place of a fragment in the picture: meshes have coordinates of their own. */
+  get #place(): Vec2 {
+    return this.#isMesh ? screenUV : uv()
+  }
+
+  /** Light that the pixel loses, for unit irradiance [1/sr]. */
+  #lostHere(): Vec4 {
+    return Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, this.#place)))()
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
@@ -166,8 +167,7 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     const left = color.toVar()
     If(this.#strength.greaterThan(0), () => {
-      const unlit = Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, uv())))()
-      const lost = unlit.mul(view.source.irradiance).mul(this.#strength).toConst()
+      const lost = this.#lostHere().mul(view.source.irradiance).mul(this.#strength).toConst()
       // Clouds may also give light: a colour has no negative parts, so these are apart.
       const [less, more] = [lost.max(0), lost.negate().max(0)]
       const { uniforms } = view.air
@@ -243,7 +243,9 @@ export class ScreenShafts implements ScreenShadows {
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
   #rayTo(renderer: Renderer, at: Vec2): ShaftRay {
-    const { position, isSky } = this.#rays.at(renderer, at)
+    const { position, isSky } = this.#isMesh
+      ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
+      : this.#rays.at(renderer, at)
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst()
     const length = offset.length().max(1e-3).toConst()
@@ -285,7 +287,7 @@ export class ScreenShafts implements ScreenShadows {
    */
   #lostTo(ray: ShaftRay): Vec4 {
     const size = this.#gridSize
-    const place = uv().mul(this.#size).sub(0.5).mul(this.#density).toConst() as unknown as Vec2
+    const place = this.#place.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
     const read = (texel: Vec2): Vec4 =>
       sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
     const lightAt = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))

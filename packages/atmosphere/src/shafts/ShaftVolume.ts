@@ -21,7 +21,7 @@ import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-typ
 import { number, vector2 } from '../uniforms'
 import { DepthRays } from '../view/DepthRays'
 import type { ViewNodes } from '../view/ViewNodes'
-import type { CameraShafts } from './ScreenShafts'
+import type { CameraShafts } from './CameraShafts'
 import { lostInSlice, type Slice } from './tsl/lostInSlice'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
@@ -107,8 +107,17 @@ export class ShaftVolume {
     })
   }
 
-  /** Sizes its targets: before anything is drawn with them in a frame. */
-  resize(renderer: Renderer, { rays, looks }: VolumeQuality): void {
+  /**
+   * Sizes its targets, before anything is drawn with them in a frame.
+   *
+   * @param quality - Fineness; null while nothing reads them, to free all but a texel.
+   */
+  resize(renderer: Renderer, quality: VolumeQuality | null): void {
+    if (quality === null) {
+      for (const target of [this.#slices, this.#sums]) target.setSize(1, 1)
+      return
+    }
+    const { rays, looks } = quality
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     const step = Math.max(Math.max(width, height) / rays, 1)
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)

@@ -4,7 +4,6 @@ import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 import type { Float, Mat4 } from '../tsl-types'
-import type { LightSource } from '../view/LightSource'
 import { HeightFieldShadow } from './HeightFieldShadow'
 import type { ParallelLight } from './shadowMaps'
 import type { SweptHeights } from './SweptHeights'
@@ -12,7 +11,6 @@ import type { SweptHeights } from './SweptHeights'
 /** A light that comes from where it stands relative to its target, as three's `DirectionalLight`. */
 export type TargetedLight = ParallelLight & {
   readonly target: { readonly matrixWorld: Matrix4 }
-  readonly source?: LightSource
 }
 
 const _toLight = new Vector3()
@@ -29,7 +27,7 @@ const _target = new Vector3()
  * ```
  *
  * It falls on what has `receiveShadow`, the terrain too: what stands no deeper below the heights of the field than light
- * falls over one of its texels is lit. Light shafts of the same light, one with a `source`, read the same map.
+ * falls over one of its texels is lit. Light shafts of the same light read the same map.
  */
 export class TerrainShadowNode extends Node<'float'> {
   static get type(): string {
@@ -61,11 +59,6 @@ export class TerrainShadowNode extends Node<'float'> {
     this.updateBeforeType = NodeUpdateType.RENDER
   }
 
-  /** Light shafts know a light by its source. */
-  get #key(): object {
-    return this.light.source ?? this.light
-  }
-
   override updateBefore({ renderer, camera }: NodeFrame): undefined {
     if (renderer === null || camera === null) return
     const toField = this.#toField.value.copy(this.hills.matrix).invert()
@@ -78,7 +71,7 @@ export class TerrainShadowNode extends Node<'float'> {
 
   override setup(): Node {
     const place = (this.#toField as unknown as Mat4).mul(vec4(positionView, 1)).xyz.toConst()
-    this.#swept ??= this.hills.acquire(this.#key)
+    this.#swept ??= this.hills.acquire(this.light)
     // Raised, so that terrain between texels does not stand in its own shadow.
     const passing = this.#swept.transmittance(place, 1)
     return this.shadowNode === null ? passing : passing.mul(this.shadowNode as Float)
@@ -86,7 +79,7 @@ export class TerrainShadowNode extends Node<'float'> {
 
   /** Lets go of the map, which is freed if nothing else reads it. It can be used again. */
   override dispose(): void {
-    if (this.#swept !== null) this.hills.release(this.#key)
+    if (this.#swept !== null) this.hills.release(this.light)
     this.#swept = null
     super.dispose()
   }

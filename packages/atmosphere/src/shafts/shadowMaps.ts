@@ -3,9 +3,10 @@ import type { Camera, DepthTexture, Light, LightShadow, Matrix4, Scene } from 't
 import { shadow as shadowNodeOf } from 'three/tsl'
 import { ShadowNode } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
+import type { LightSource } from '../view/LightSource'
 
-/** Light of parallel rays: three's `DirectionalLight` or `SunLight`. */
-export type ParallelLight = Light & { shadow?: LightShadow }
+/** Light of parallel rays: three's `DirectionalLight` or `SunLight`, or one of the atmosphere's, which has a source. */
+export type ParallelLight = Light & { shadow?: LightShadow; readonly source?: LightSource }
 
 /** A shadow map as a light has drawn it. */
 export interface ShadowMap {

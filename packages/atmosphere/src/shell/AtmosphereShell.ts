@@ -31,6 +31,7 @@ import { sampleAir, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { singleScatteringLight } from './tsl/singleScattering'
 import type { ViewSegment } from './tsl/viewSegment'
 import type { Bool } from '../tsl-types'
+import type { AirShadows, ScreenShadows } from '../view/AirShadows'
 
 /** Options of {@link AtmosphereShell}. */
 export interface AtmosphereShellOptions {
@@ -50,6 +51,11 @@ export interface AtmosphereShellOptions {
    * own if it is the sun, else those of all shells of that object.
    */
   tables?: AtmosphereTables
+  /**
+   * Shadows in its air for their camera, as `lightShafts` makes them, while their atmosphere is the sun. It has the same
+   * `parameters` object, and its planet is where the body is. For the model `'tables'` alone.
+   */
+  shafts?: AirShadows
   /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
   luminanceScale?: number
 }
@@ -102,7 +108,7 @@ function shellMaterial(): NodeMaterial {
  *
  * View rays end at the body's sphere, not at the scene's depth. Objects in front of the middle of a ray's
  * part in the air, such as a ship or a cockpit, are drawn without haze, objects behind it with all of it.
- * One alpha dims all colours of the background alike. Eclipses of its sun do not dim it.
+ * One alpha dims all colours of the background alike. Eclipses of its sun do not dim it. With `shafts` shadows fall into it.
  *
  * A shell of a body without air is not `visible`, and draws nothing.
  *
@@ -125,6 +131,9 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Sky volumes of its own: relative to its body the camera is elsewhere than in the lender's. */
   #volumes: SkyVolumes | null = null
   #uniforms = new AtmosphereUniforms()
+  readonly #shafts: AirShadows | undefined
+  /** Shadows in its air as pixels have them, while it has a renderer. */
+  #shadows: ScreenShadows | undefined
   /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
   readonly #viewpoint = new ViewpointUniforms()
@@ -146,16 +155,19 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     const where = 'AtmosphereShell'
     checkParameters(where, parameters)
     checkPositive(where, 'bodyRadius', bodyRadius)
-    checkOptions(where, options, 'model', 'tables', ...SETTINGS)
-    const { model = 'tables', tables, ...settings } = options
+    checkOptions(where, options, 'model', 'tables', 'shafts', ...SETTINGS)
+    const { model = 'tables', tables, shafts, ...settings } = options
     checkChoice(where, 'model', model, ['tables', 'single-scattering'])
+    if (shafts && (model !== 'tables' || shafts.atmosphere?.parameters !== parameters))
+      fail(where, 'shafts must be LightShafts of these parameters, for tables', shafts)
     super(
       circumscribedSphere((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
       shellMaterial()
     )
     this.parameters = parameters
     this.bodyRadius = bodyRadius
-    this.set(settings)
+    this.#shafts = shafts
+    this.set({ sun: shafts?.atmosphere, ...settings })
     this.name = 'AtmosphereShell'
     this.renderOrder = 1
     this.visible = !parameters.isAirless
@@ -174,13 +186,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     checkRenderer('AtmosphereShell', renderer)
     this.#release()
     this.#renderer = renderer
-    const tables =
-      this.model === 'single-scattering'
-        ? null
-        : (this.#given ?? sharedTables(this.parameters, renderer))
+    const isBaked = this.model === 'tables'
+    const tables = isBaked ? (this.#given ?? sharedTables(this.parameters, renderer)) : null
     this.#tables = tables
-    if (tables !== null) this.#uniforms = tables.uniforms
-    const uniforms = this.#uniforms
+    const uniforms = (this.#uniforms = tables?.uniforms ?? this.#uniforms)
     // Single scattering reads no table.
     const air: Air = tables?.air ?? { uniforms, transmittance: null as never, diffuse: null }
     this.#volumes =
@@ -191,16 +200,17 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         undefined,
         tables.volumes.segments
       )
+    this.#shadows = this.#shafts?.upTo(null)
     const { color, depth } = shellFragment(air, this.#view, this.#light(air, this.#volumes))
-    this.material.fragmentNode = new ShellNode(this, color)
-    this.material.depthNode = depth
-    this.material.needsUpdate = true
+    const fragmentNode = new ShellNode(this, color)
+    Object.assign(this.material, { fragmentNode, depthNode: depth, needsUpdate: true })
   }
 
   #release(): void {
     this.#volumes?.dispose()
     this.#volumes?.atlas.dispose()
     this.#volumes = null
+    this.#shadows?.dispose?.()
     this.#tables?.release(this)
     this.#tables = null
   }
@@ -215,18 +225,16 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (volumes === null) return segment => singleScatteringLight(air, this.#profile, segment)
     const isMarched = this.#isMarched.greaterThan(0) as Bool
     return segment => {
-      const radiance = vec4(0).toVar()
-      const depth = vec4(0).toVar()
-      If(isMarched, () => {
-        const light = marchedShellLight(air, segment, TABLE_STEPS)
-        radiance.assign(light.radiance)
-        depth.assign(light.depth)
-      }).Else(() => {
-        const light = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
-        radiance.assign(light.radiance)
-        depth.assign(light.depth)
+      const light = { radiance: vec4(0).toVar(), depth: vec4(0).toVar() }
+      const take = ({ radiance, depth }: MediumSegment): void => {
+        light.radiance.assign(radiance)
+        light.depth.assign(depth)
+      }
+      If(isMarched, () => take(marchedShellLight(air, segment, TABLE_STEPS))).Else(() => {
+        const lit = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
+        take(this.#shadows?.medium(null, lit) ?? lit)
       })
-      return { radiance, depth }
+      return light
     }
   }
 
@@ -279,7 +287,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   }
 
   /** Updates uniforms and sky volume for a camera. Drawing does this by itself, after {@link bake}. */
-  update(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera): void {
+  update(renderer: NonNullable<NodeFrame['renderer']>, camera: Camera, frame?: NodeFrame): void {
     const { bottomRadius } = this.parameters
     const scale = bottomRadius / this.bodyRadius
     this.#view.setCamera(renderer, camera, this.matrixWorld, bottomRadius, scale)
@@ -287,6 +295,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (this.#volumes !== null && this.#tables !== null) {
       this.#updateVolume(renderer, camera, this.#volumes, this.#tables.version)
     }
+    if (frame && !this.#isMarched.value) this.#shadows?.drawIn(frame, this.sun)
   }
 
   #updateSun(): void {

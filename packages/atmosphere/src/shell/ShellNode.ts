@@ -8,7 +8,7 @@ type ShellRenderer = NonNullable<NodeFrame['renderer']>
 /** Part of a shell that its node calls before the shell is drawn. */
 interface DrawnShell {
   bake(renderer: ShellRenderer): void
-  update(renderer: ShellRenderer, camera: Camera): void
+  update(renderer: ShellRenderer, camera: Camera, frame: NodeFrame): void
 }
 
 /** Colour of a shell; bakes tables and updates uniforms whenever the shell is drawn. */
@@ -27,10 +27,11 @@ export class ShellNode extends Node<'vec4'> {
     this.updateBeforeType = NodeUpdateType.OBJECT
   }
 
-  override updateBefore({ renderer, camera }: NodeFrame): undefined {
+  override updateBefore(frame: NodeFrame): undefined {
+    const { renderer, camera } = frame
     if (renderer === null) return
     this.#shell.bake(renderer)
-    if (camera !== null) this.#shell.update(renderer, camera)
+    if (camera !== null) this.#shell.update(renderer, camera, frame)
   }
 
   override setup(): Node {

@@ -1,7 +1,9 @@
-import type { Node } from 'three/webgpu'
+import type { Node, NodeFrame } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
+import type { Atmosphere } from '../Atmosphere'
+import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec2, Vec3 } from '../tsl-types'
-import type { SkyLayer } from './SkyLayer'
+import type { LayerRay, SkyLayer } from './SkyLayer'
 
 /** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
 export interface ForegroundLayer {
@@ -19,6 +21,10 @@ export interface ForegroundLayer {
 export interface ScreenShadows extends SkyLayer {
   /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
   dim(color: Vec3): Vec3
+  /** Takes what shadows take from the air of a view ray; null for that of the pixel. */
+  medium(ray: LayerRay | null, air: MediumSegment): MediumSegment
+  /** Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun. */
+  drawIn(frame: NodeFrame, sun: object): void
 }
 
 /**
@@ -26,13 +32,16 @@ export interface ScreenShadows extends SkyLayer {
  * drawn by the nodes that they are given to, after all layers.
  */
 export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'medium'> {
+  /** Atmosphere whose air it is. */
+  readonly atmosphere: Atmosphere
   /**
    * Layer for a post effect, computed once for its pixels and not by every material.
    *
-   * @param depthNode - Depth of the scene, as the renderer writes it.
+   * @param depthNode - Depth of the scene, as the renderer writes it; null for a mesh of air: all of each ray, to the planet
+   *   or out of the air.
    * @param foreground - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.
    */
-  upTo(depthNode: Node, foreground?: ForegroundLayer): ScreenShadows
+  upTo(depthNode: Node | null, foreground?: ForegroundLayer): ScreenShadows
 }
 
 /** Options of nodes that draw air. */

@@ -1,13 +1,16 @@
 import fc from 'fast-check'
 import { DirectionalLight, Matrix4, PerspectiveCamera, PointLight, Texture } from 'three'
 import { float, vec4 } from 'three/tsl'
-import { describe, expect, it } from 'vitest'
+import { describe, expect, it, vi } from 'vitest'
 import {
   aerialPerspective,
   Atmosphere,
+  distanceFog,
   heightFieldShadow,
+  heightFog,
   terrainShadow,
   lightShafts,
+  moon,
   SunDirectionalLight
 } from '@welkin/atmosphere'
 import type { AirOccluder } from '@welkin/atmosphere'
@@ -175,6 +178,44 @@ describe('what is added to light shafts', () => {
     const shafts = lightShafts(atmosphere, camera, light)
     expect(() => shafts.add(occluder, wrong({}))).toThrow('occluder')
     expect(shafts.shadowedAir.shadows).toHaveLength(0)
+    let held = 0
+    const cast: AirOccluder = {
+      castInto: () => {
+        held++
+        return { transmittance: () => () => float(1), dispose: () => held-- }
+      }
+    }
+    const refuses: AirOccluder = {
+      castInto() {
+        throw new Error('another atmosphere')
+      }
+    }
+    const { version } = shafts
+    expect(() => shafts.add(cast, refuses, occluder)).toThrow('another atmosphere')
+    expect([held, shafts.shadowedAir.shadows.length, shafts.version]).toEqual([0, 0, version])
+    shafts.add(occluder, cast)
+    expect(held).toBe(1)
+  })
+
+  it('leaves the layers of the sky in their order', () => {
+    const home = new Atmosphere()
+    const shafts = lightShafts(home, camera, new SunDirectionalLight(home))
+    const layers = [heightFog(), shafts, distanceFog({ density: 1e-4 }), moon()]
+    const { layersVersion } = home.add(...layers)
+    shafts.set({ quality: 'low' }).add(occluder).set({ quality: 'high' }).remove(occluder)
+    expect(home.layers).toEqual(layers)
+    expect(home.layersVersion).toBeGreaterThan(layersVersion)
+  })
+
+  it('shares the map of a height field with the shadow on surfaces, of any light', () => {
+    for (const sun of [light, new DirectionalLight()]) {
+      const field = heightFieldShadow(new Texture(), new Matrix4())
+      const acquire = vi.spyOn(field, 'acquire')
+      lightShafts(atmosphere, camera, sun).add(field)
+      terrainShadow(field, sun).setup()
+      const [inAir, onGround] = acquire.mock.results.map(({ value }) => value as object)
+      expect(inAir).toBe(onGround)
+    }
   })
 })
 
