@@ -158,7 +158,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#camera = value
   }
 
-  /** Pages drawn in a frame, ≥ 1: eight times as many until the first picture is full. */
+  /** Pages drawn in a frame, ≥ 1: twelve times as many until the first picture is full. */
   get pagesPerFrame(): number {
     return this.#tiles.pagesPerFrame
   }

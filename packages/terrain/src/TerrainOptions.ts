@@ -15,7 +15,7 @@ export interface TerrainOptions {
   shadowDistance?: number
   /** Camera that tiles are chosen for; null, the default, for each one that draws. */
   camera?: Camera | null
-  /** Most memory of pages on the GPU, in [4, 1000], default 128 [MB]; room for 64 pages is taken at least. */
+  /** Most memory of pages on the GPU, in [4, 1000], default 190 [MB]; room for 64 pages is taken at least. */
   pageMemory?: number
   /** Pages drawn in a frame, ≥ 1; the default, 1 at a resolution of 32, goes with its inverse square. */
   pagesPerFrame?: number
@@ -35,7 +35,7 @@ export function defaultsFor({ resolution = 32 }: TerrainOptions): Required<Terra
     seaLevel: 0,
     shadowDistance: 3000,
     camera: null,
-    pageMemory: 128,
+    pageMemory: 190,
     pagesPerFrame: Math.max(Math.round(CELLS_PER_FRAME / resolution ** 2), 1)
   }
 }

@@ -15,16 +15,31 @@ const LONGEST = 8192
 /** Bytes of a texel: two float32 of the vertices' texture, four float16 of the pixels'. */
 const TEXEL_BYTES = 8
 
-/** Texels of a page per cell of its tile, for pixels: a texel is two to four pixels wide at 1080 lines from a resolution of 32 on. */
-const densityOf = (resolution: number): number => (resolution > 32 ? 2 : 4)
+/** Pages that a view needs where it needs the most: at eye height, with the horizon in view. */
+const ENOUGH_PAGES = 1100
+
+/** Bytes of a page. */
+const bytesOfPage = (resolution: number, density: number): number =>
+  TEXEL_BYTES * ((resolution + 1) ** 2 + (density * resolution + 1) ** 2)
+
+/**
+ * Texels of a page per cell of its tile, for pixels: a texel is two to four pixels wide at 1080 lines from a resolution of 32 on, or
+ * wider if there is not the memory.
+ */
+const densityOf = (resolution: number, bytes: number): number => {
+  const densities = resolution > 32 ? [2, 1] : [4, 2, 1]
+  const isEnough = (density: number): boolean =>
+    bytes >= ENOUGH_PAGES * bytesOfPage(resolution, density)
+  return densities.find(isEnough) ?? 1
+}
 
 /** Fewest pages: the six faces, and a tile with all that it is a part of, several times over. */
-export const LEAST_PAGES = 64
+const LEAST_PAGES = 64
 
-function target(name: string, side: number, type: TextureDataType): RenderTarget {
+function target(name: string, width: number, height: number, type: TextureDataType): RenderTarget {
   const isFloat = type === FloatType
   const filter = isFloat ? NearestFilter : LinearFilter
-  const made = new RenderTarget(side, side, {
+  const made = new RenderTarget(width, height, {
     type,
     format: (isFloat ? RGFormat : RGBAFormat) as PixelFormat,
     depthBuffer: false,
@@ -36,14 +51,12 @@ function target(name: string, side: number, type: TextureDataType): RenderTarget
   return made
 }
 
-/** Bytes of a page. */
-export const bytesOfPage = (resolution: number): number =>
-  TEXEL_BYTES * ((resolution + 1) ** 2 + (densityOf(resolution) * resolution + 1) ** 2)
-
 /** Two textures with a fixed number of pages: a tile's heights for vertices, and slopes and patches for pixels. */
 export class PageAtlas {
   /** Number of pages that there is room for. */
   readonly capacity: number
+  /** Memory on the GPU [bytes]. */
+  readonly bytes: number
   /** Pages in a row. */
   readonly columns: number
   /** Side of a page for vertices, one texel to a vertex [texels]. */
@@ -63,19 +76,19 @@ export class PageAtlas {
    */
   constructor(resolution: number, bytes: number) {
     this.heightSide = resolution + 1
-    this.density = densityOf(resolution)
+    this.density = densityOf(resolution, bytes)
     this.surfaceSide = this.density * resolution + 1
     const most = Math.floor(LONGEST / this.surfaceSide)
-    const wanted = Math.max(Math.floor(bytes / bytesOfPage(resolution)), LEAST_PAGES)
-    this.columns = Math.min(Math.floor(Math.sqrt(wanted)), most)
-    this.capacity = this.columns ** 2
-    this.heights = target('Welkin.Terrain.heights', this.columns * this.heightSide, FloatType)
-    this.surface = target('Welkin.Terrain.surface', this.columns * this.surfaceSide, HalfFloatType)
-  }
-
-  /** Memory on the GPU [bytes]. */
-  get bytes(): number {
-    return TEXEL_BYTES * (this.heights.width ** 2 + this.surface.width ** 2)
+    const bytesPerPage = bytesOfPage(resolution, this.density)
+    const wanted = Math.max(Math.floor(bytes / bytesPerPage), LEAST_PAGES)
+    this.columns = Math.min(Math.ceil(Math.sqrt(wanted)), most)
+    const rows = Math.min(Math.floor(wanted / this.columns), most)
+    this.capacity = this.columns * rows
+    this.bytes = this.capacity * bytesPerPage
+    const pages = (name: string, side: number, type: TextureDataType): RenderTarget =>
+      target(`Welkin.Terrain.${name}`, this.columns * side, rows * side, type)
+    this.heights = pages('heights', this.heightSide, FloatType)
+    this.surface = pages('surface', this.surfaceSide, HalfFloatType)
   }
 
   /** Has the next drawing go to a page alone. */

@@ -1,4 +1,4 @@
-import { Fn, mix, texture, transformNormalToView, varyingProperty, vec4 } from 'three/tsl'
+import { Fn, mix, texture, transformNormalToView, varyingProperty, vec2, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node, NodeBuilder } from 'three/webgpu'
@@ -56,10 +56,11 @@ export function terrainMaterial(
   })()
 
   const { place: handedPlace, texels, blend } = handed
+  const { width, height } = atlas.surface
   const page = texture(atlas.surface.texture)
   const pageAt = (texel: Vec2): Vec4 =>
     (page as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } })
-      .sample(texel.div(atlas.surface.width))
+      .sample(texel.div(vec2(width, height)))
       .level(0)
   // Gradient along the face's axes, height and patchiness.
   const ground = mix(

@@ -16,6 +16,8 @@ export class Tile {
   readonly normal: Vector3
   /** Distance of the farthest corner from the centre, on the ellipsoid [m]. */
   readonly radius: number
+  /** Unit normals, outward, of the planes through the planet's centre and the four edges. */
+  readonly edges: readonly Vector3[]
   /** Unit vector to the centre where the ellipsoid is the unit sphere. */
   readonly direction: Vector3
   /** Angle at the planet's centre that the tile reaches from its own, in the same space [rad]. */
@@ -66,6 +68,14 @@ export class Tile {
       square = Math.max(square, corner.distanceToSquared(this.center))
     }
     this.radius = Math.sqrt(square)
+    const { radii } = ellipsoid
+    const { x: cubeX, y: cubeY } = this
+    const edge = (axis: Vector3, place: number, sign: number): Vector3 =>
+      axis.clone().addScaledVector(outward, -place).divide(radii).normalize().multiplyScalar(sign)
+    this.edges = [-1, 1].flatMap(sign => [
+      edge(first, cubeX + sign * extent, sign),
+      edge(second, cubeY + sign * extent, sign)
+    ])
     this.direction = this.cube.clone().normalize()
     this.spread = 2 * Math.asin(Math.min(this.radius / ellipsoid.minimumRadius / 2, 1))
     const { lowest, highest } = parent ?? source

@@ -147,9 +147,18 @@ export class TileTree {
   }
 }
 
-/** Lower bound of the distance from a point to a tile on the ellipsoid [m]. */
-export const distanceTo = ({ center, radius }: Tile, point: Vector3): number =>
-  center.distanceTo(point) - radius
+/**
+ * Lower bound of the distance from a point to a tile on the ellipsoid [m]: outside of the sphere about the tile, and of the planes
+ * through the planet's centre and its edges.
+ */
+export function distanceTo({ center, radius, edges }: Tile, point: Vector3): number {
+  let distance = center.distanceTo(point) - radius
+  for (const edge of edges) distance = Math.max(distance, edge.dot(point))
+  return distance
+}
+
+/** Level from which on tiles are flat discs, but for their heights. */
+const FLAT_LEVEL = 4
 
 /**
  * True of a tile whose ground may be in view.
@@ -158,17 +167,20 @@ export const distanceTo = ({ center, radius }: Tile, point: Vector3): number =>
  */
 function isInFrustum(tile: Tile, viewer: Viewer, size: number): boolean {
   const { position, planes, seaLevel } = viewer
-  const { center, normal, radius } = tile
+  const { center, normal, radius, level } = tile
   const lowest = Math.max(tile.lowest, seaLevel)
   const highest = Math.max(tile.highest, seaLevel)
   const middle = (lowest + highest) / 2
   const x = center.x - position.x + normal.x * middle
   const y = center.y - position.y + normal.y * middle
   const z = center.z - position.z + normal.z * middle
-  const swelling = 1 + Math.max(highest, 0) / size
-  const reach = radius * swelling + (highest - lowest) / 2
+  const across = radius * (1 + Math.max(highest, 0) / size)
+  // The ground bends down by its sagitta.
+  const along = (highest - lowest) / 2 + across ** 2 / size
   for (const { normal: n, constant } of planes) {
-    if (n.x * x + n.y * y + n.z * z + constant < -reach) return false
+    const cosine = level < FLAT_LEVEL ? 1 : Math.abs(n.dot(normal))
+    const sine = level < FLAT_LEVEL ? 1 : Math.sqrt(Math.max(1 - cosine ** 2, 0))
+    if (n.x * x + n.y * y + n.z * z + constant < -(across * sine + along * cosine)) return false
   }
   return true
 }
