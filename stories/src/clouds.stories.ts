@@ -142,15 +142,16 @@ export const Cockpit: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** Towers 10 km high among small cumulus, against the sun of the late afternoon. */
+/** A line of storms 10 km high, 30 km off, in the sun of the morning: bases, towers, anvils. */
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    altitude: 2200,
-    heading: 20,
-    pitch: 10,
-    hour: 22.4,
-    exposure: 0.2
+    longitude: -83.9,
+    latitude: 36.62,
+    altitude: 600,
+    heading: 284,
+    pitch: 9,
+    hour: 13.5
   },
   tags: ['screenshot', 'webgpu-only']
 }
