@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { moveCamera } from './globe/places'
@@ -71,8 +71,17 @@ export const VIEWS = {
   }
 } satisfies Record<string, TerrainView>
 
+/** Colours of the ground: its own, or those that tell how it is drawn. */
+export const COLORS = {
+  ground: { label: 'Ground' },
+  levels: { label: 'Levels of detail' },
+  tiles: { label: 'Tiles' },
+  pages: { label: 'Pages: there, fading in, missing' }
+} as const
+
 export interface TerrainArgs extends RendererArgs, TimeArgs {
   view: keyof typeof VIEWS
+  color: keyof typeof COLORS
   wireframe: boolean
 }
 
@@ -102,6 +111,8 @@ export async function createTerrain(
   scene.add(terrain)
   // #endregion
   prepareShadow(air.sun)
+  const groundColor = terrain.material.colorNode
+  let color: keyof typeof COLORS = 'ground'
 
   const { ellipsoid, worldToECEF } = atmosphere
   const ecefToWorld = new Matrix4().copy(worldToECEF).invert()
@@ -135,6 +146,10 @@ export async function createTerrain(
   const apply = (): void => {
     applyTime(renderer, air, current)
     terrain.material.wireframe = current.wireframe
+    if (current.color === color) return
+    color = current.color
+    terrain.material.colorNode = color === 'ground' ? groundColor : terrainView(color)
+    terrain.material.needsUpdate = true
   }
   apply()
   goTo(VIEWS[current.view])

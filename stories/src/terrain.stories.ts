@@ -2,7 +2,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
 import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
-import { createTerrain, VIEWS } from './terrain.scene'
+import { COLORS, createTerrain, VIEWS } from './terrain.scene'
 import type { TerrainArgs } from './terrain.scene'
 
 const meta: Meta<TerrainArgs> = {
@@ -13,12 +13,14 @@ const meta: Meta<TerrainArgs> = {
       name: 'Place',
       ...choiceOf(VIEWS)
     },
+    color: { name: 'Colours', ...choiceOf(COLORS) },
     wireframe: { name: 'Wireframe', control: 'boolean' },
     ...timeArgTypes,
     ...rendererArgTypes
   },
   args: {
     view: 'meadow',
+    color: 'ground',
     wireframe: false,
     day: Date.UTC(2026, 5, 21),
     hour: 15.5,

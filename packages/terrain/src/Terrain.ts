@@ -241,6 +241,8 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    * terrain.update(renderer, camera, Infinity)
    * ```
    *
+   * Heights that are loaded arrive in later frames.
+   *
    * @param camera - With `matrixWorld` and projection up to date.
    * @param most - Pages to draw now, default: what is left of `pagesPerFrame` in this frame. Without an end no page fades in.
    * @throws If another renderer drew the pages that was not disposed of.

@@ -12,6 +12,8 @@ export type { HeightTiles, HeightTilesOptions } from './data/HeightTiles'
 export type { Pixels } from './data/loadPixels'
 export { tileUrl } from './data/tileUrl'
 export type { TileUrl } from './data/tileUrl'
+export { terrainView } from './surface/terrainView'
+export type { TerrainView } from './surface/terrainView'
 export type { PageRequest, PageSource } from './pages/PageSource'
 export type { GroundBounds, HeightSample, HeightSource, SurfacePoint } from './heights/HeightSource'
 

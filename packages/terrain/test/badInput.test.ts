@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { Vector3 } from 'three'
 import { expect, it } from 'vitest'
 
@@ -30,6 +30,7 @@ const cases: [message: string, call: () => unknown][] = [
     'Terrain: source must be a HeightSource',
     () => new Terrain(atmosphere, wrong({ loadHeights: true, ...bounds }))
   ],
+  ['terrainView: view must be one of levels, tiles, pages', () => terrainView(wrong('rocks'))],
   ['Terrain: camera must be a Camera or null', () => (terrain.camera = wrong({}))],
   ['Terrain.heightAt: longitude must be a finite number, got NaN', () => terrain.heightAt(NaN, 0)],
   ['Terrain.heightAt: latitude must be in [-90, 90], got 91', () => terrain.heightAt(0, 91)],

@@ -64,6 +64,28 @@ it('covers every point of the planet once', () => {
   )
 })
 
+it('covers every point once while pages arrive, with a page or that of the coarser tile', () => {
+  const tree = treeOf()
+  const viewer = viewerAt({ longitude: 1, latitude: 47, clearance: 300 })
+  for (const [slot, root] of tree.roots.entries()) Object.assign(root, { slot, fade: 0 })
+  const selection = noTiles()
+  let slots = tree.roots.length
+  let frames = 0
+  for (tree.select(viewer, 1e5, selection); selection.lag > 0; frames++) {
+    const { tiles, missing } = selection
+    expect(tiles.reduce((sum, { extent }) => sum + 4 * extent ** 2, 0)).toBe(24)
+    expect(tiles.every(({ slot, parent }) => slot >= 0 || parent!.slot >= 0)).toBe(true)
+    for (const tile of missing.slice(0, 20)) tile.slot = slots++
+    for (const tile of tiles) tile.show(frames, 0.5)
+    tree.select(viewer, 1e5, selection)
+  }
+  const whole = select(viewer)
+  expect(selection.tiles.length).toBe(whole.length)
+  expect(selection.missing).toEqual([])
+  // Twenty in a frame, and two frames to fade in.
+  expect(frames).toBeLessThan(slots / 20 + 3 * FINEST)
+})
+
 it('lets neighbours meet: the finer one wholly morphed, the coarser one not at all', () => {
   const tree = treeOf()
   fc.assert(

@@ -1,4 +1,4 @@
-import { Vector3 } from 'three'
+import type { Vector3 } from 'three'
 import {
   checkEllipsoid,
   checkFinite,
@@ -10,8 +10,15 @@ import {
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
+import { pagePlaces } from './pagePlaces'
 import { fillHoles, halved, type Raster } from './Raster'
-import { OVERSHOOT, sampleRaster, STEEPENING, type RasterSample } from './RasterSampler'
+import {
+  OVERSHOOT,
+  sampleRaster,
+  STEEPENING,
+  valueInside,
+  type RasterSample
+} from './RasterSampler'
 
 /** A grid of heights, and options of {@link GridHeights}. */
 export interface GridHeightsOptions {
@@ -43,7 +50,7 @@ const DEGREE = Math.PI / 180
 
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const raster: RasterSample = { value: 0, x: 0, y: 0 }
-const position = new Vector3()
+const cell = { x: 0, y: 0 }
 
 const clamp = (value: number, low: number, high: number): number =>
   Math.min(Math.max(value, low), high)
@@ -162,41 +169,65 @@ export class GridHeights implements PageSource {
   }
 
   sampleAt(positionECEF: Vector3, target: HeightSample): HeightSample {
-    geographicPlace(positionECEF, this.#radii, place)
-    target.height = this.#sample(place, 0, raster).value
+    this.#cellOf(positionECEF, cell)
+    target.height = this.#sample(cell.x, cell.y, 0, raster).value
     const byLongitude = raster.x / this.#stepX
     const byLatitude = -raster.y / this.#stepY
     geographicGradient(place, byLongitude, byLatitude, positionECEF, this.#radii, target.gradient)
     return target
   }
 
-  loadHeights({ side, spacing, placeOf }: PageRequest): Float32Array {
-    const heights = new Float32Array(side * side)
+  loadHeights(request: PageRequest): Float32Array {
+    const { side, spacing } = request
+    const places = pagePlaces(request, (at, target) => this.#cellOf(at, target), this.#turn)
     const level = clamp(Math.floor(Math.log2(spacing / this.#cell)), 0, this.#levels.length - 1)
-    for (let row = 0; row < side; row++) {
-      for (let column = 0; column < side; column++) {
-        geographicPlace(placeOf(column, row, position), this.#radii, place)
-        heights[row * side + column] = this.#sample(place, level, raster).value
-      }
+    const { width, height, values } = this.#levels[level]
+    const shrink = 2 ** -level
+    const heights = new Float32Array(side * side)
+    for (let i = 0; i < heights.length; i++) {
+      const x = places.x[i] * shrink - 0.5
+      const y = places.y[i] * shrink - 0.5
+      const isInside = x >= 1 && y >= 1 && x < width - 2 && y < height - 2
+      heights[i] = isInside
+        ? valueInside(values, width, x, y)
+        : this.#sample(places.x[i], places.y[i], level, raster).value
     }
     return heights
   }
 
-  /** Height at a place and its slopes per cell of the grid. */
-  #sample(
-    { longitude, latitude }: GeographicPlace,
-    level: number,
-    target: RasterSample
-  ): RasterSample {
+  /** Columns of a whole turn about the planet. */
+  get #turn(): number {
+    return (2 * Math.PI) / this.#stepX
+  }
+
+  /** Place in cells from the outer edges, of the turn that is nearest to the middle. */
+  #cellOf(positionECEF: Vector3, target: { x: number; y: number }): void {
+    geographicPlace(positionECEF, this.#radii, place)
+    const x = (place.longitude - this.#west) / this.#stepX
+    const turns = Math.round((x - this.#levels[0].width / 2) / this.#turn)
+    target.x = x - turns * this.#turn
+    target.y = (this.#north - place.latitude) / this.#stepY
+  }
+
+  /**
+   * Height at a place and its slopes per cell of the grid.
+   *
+   * @param x - In cells from the outer edges, like `y`.
+   */
+  #sample(x: number, y: number, level: number, target: RasterSample): RasterSample {
     const { width, height } = this.#levels[0]
-    const grid = this.#levels[level]
-    // In cells from the outer edges; the turn that is nearest to the middle.
-    const middle = this.#west + (this.#stepX * width) / 2
-    const turns = Math.round((longitude - middle) / (2 * Math.PI))
-    const x = (longitude - 2 * Math.PI * turns - this.#west) / this.#stepX
-    const y = (this.#north - latitude) / this.#stepY
     const insideX = clamp(x, 0, width)
     const insideY = clamp(y, 0, height)
+    const isInside = insideX === x && insideY === y
+    const wide = this.#stepX * this.#radii.x * Math.cos(this.#north - y * this.#stepY)
+    const tall = this.#stepY * this.#radii.x
+    const distance = isInside ? 0 : Math.hypot((x - insideX) * wide, (y - insideY) * tall)
+    if (distance >= this.#fade) {
+      target.value = this.#outside
+      target.x = target.y = 0
+      return target
+    }
+    const grid = this.#levels[level]
     const shrink = 2 ** -level
     const pixelAt = (column: number, row: number): number => {
       const inRow = this.#wraps
@@ -207,23 +238,16 @@ export class GridHeights implements PageSource {
     sampleRaster(pixelAt, insideX * shrink - 0.5, insideY * shrink - 0.5, target)
     target.x *= shrink
     target.y *= shrink
-    if (insideX === x && insideY === y) return target
-    this.#fadeOut(x - insideX, y - insideY, Math.cos(latitude), target)
-    return target
-  }
-
-  /** Takes a height of the edge over to that outside, at some cells beyond. */
-  #fadeOut(x: number, y: number, cosLatitude: number, target: RasterSample): void {
-    const wide = this.#stepX * this.#radii.x * cosLatitude
-    const tall = this.#stepY * this.#radii.x
-    const distance = Math.sqrt((x * wide) ** 2 + (y * tall) ** 2)
-    const t = Math.min(distance / this.#fade, 1)
+    if (distance === 0) return target
+    // Over to the height outside.
+    const t = distance / this.#fade
     const kept = 1 - t * t * (3 - 2 * t)
-    const fall = distance > 0 ? (-6 * t * (1 - t)) / this.#fade / distance : 0
+    const fall = (-6 * t * (1 - t)) / this.#fade / distance
     const over = target.value - this.#outside
-    target.x = (x === 0 ? target.x * kept : 0) + over * fall * x * wide ** 2
-    target.y = (y === 0 ? target.y * kept : 0) + over * fall * y * tall ** 2
+    target.x = (insideX === x ? target.x * kept : 0) + over * fall * (x - insideX) * wide ** 2
+    target.y = (insideY === y ? target.y * kept : 0) + over * fall * (y - insideY) * tall ** 2
     target.value = this.#outside + over * kept
+    return target
   }
 }
 

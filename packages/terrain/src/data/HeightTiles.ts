@@ -1,11 +1,19 @@
-import { Vector3 } from 'three'
+import type { Vector3 } from 'three'
 import { checkRange, withDefaults } from '@welkin/atmosphere'
 import { checkEllipsoid, checkNonNegative, checkPositive, Ellipsoid, fail } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
 import { loadPixels, type Pixels } from './loadPixels'
-import { MERCATOR_LIMIT, mercatorX, mercatorY, tileKey, tileOfKey } from './mercator'
+import {
+  MERCATOR_LIMIT,
+  mercatorLatitude,
+  mercatorX,
+  mercatorY,
+  tileKey,
+  tileOfKey
+} from './mercator'
+import { pagePlaces, type PagePlaces } from './pagePlaces'
 import { OVERSHOOT, type RasterSample } from './RasterSampler'
 import { TileCache } from './TileCache'
 import { TilePyramid, type FindTile, type HeightTile } from './TilePyramid'
@@ -60,13 +68,16 @@ const DEFAULTS: Required<HeightTilesOptions> = {
   loadPixels
 }
 
-/** Latitude from which on heights go over to those of the coarsest level, whose rows have few tiles [rad]. */
+/** Latitude from which on heights go over to those of the coarsest level, whose rows have few tiles [rad], and its row. */
 const POLAR = MERCATOR_LIMIT - 0.01
+const POLAR_ROW = mercatorY(POLAR)
+
+/** True of a row where that is so. */
+const isPolar = (y: number): boolean => y < POLAR_ROW || y > 1 - POLAR_ROW
 
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const near: RasterSample = { value: 0, x: 0, y: 0 }
 const polar: RasterSample = { value: 0, x: 0, y: 0 }
-const position = new Vector3()
 
 const smooth = (t: number): number => {
   const clamped = Math.min(Math.max(t, 0), 1)
@@ -169,7 +180,7 @@ export class HeightTiles implements PageSource {
     while (z > this.minZoom && this.#cache.peek(keyAt()) === undefined) z--
     this.#cache.get(keyAt())
     // A new function each time: the tiles that were found before may be others now.
-    this.#sample(z, place, key => this.#cache.peek(key), near)
+    this.#sample(z, x, y, key => this.#cache.peek(key), near)
     target.height = near.value
     // Rows are stretched by 1 / cos latitude.
     const byLongitude = near.x / (2 * Math.PI)
@@ -179,21 +190,25 @@ export class HeightTiles implements PageSource {
   }
 
   loadHeights(request: PageRequest, signal: AbortSignal): Float32Array | Promise<Float32Array> {
-    const { radii, maximumRadius } = this.#options.ellipsoid
-    const { side, spacing, placeOf } = request
+    const { maximumRadius } = this.#options.ellipsoid
+    const { side, spacing } = request
     const { size } = this.#pyramid
     // Of the equator everywhere: neighbouring pages shall agree.
     const finest = Math.ceil(Math.log2((2 * Math.PI * maximumRadius) / size / spacing))
     const z = Math.min(Math.max(finest, this.minZoom), this.maxZoom)
-    const places = Array.from({ length: side * side }, (_, i): GeographicPlace => {
-      placeOf(i % side, Math.floor(i / side), position)
-      return geographicPlace(position, radii, { longitude: 0, latitude: 0 })
-    })
-    const keys = this.#keysOf(z, places)
     const held = new Map<number, HeightTile>()
+    const find: FindTile = key => held.get(key) ?? this.#cache.peek(key)
+    const places = pagePlaces(request, (at, target) => this.#project(at, target), 1)
+    const keys = this.#keysOf(z, places)
     const fill = (): Float32Array => {
-      const find: FindTile = key => held.get(key) ?? this.#cache.peek(key)
-      return Float32Array.from(places, at => this.#sample(z, at, find, near).value)
+      const heights = new Float32Array(side * side)
+      for (let i = 0; i < heights.length; i++) {
+        const [x, y] = [places.x[i], places.y[i]]
+        heights[i] = isPolar(y)
+          ? this.#sample(z, x, y, find, near).value
+          : this.#pyramid.valueAt(z, x, y, find)
+      }
+      return heights
     }
     const missing = [...keys].filter(key => {
       const tile = this.#cache.get(key)
@@ -212,25 +227,37 @@ export class HeightTiles implements PageSource {
     this.#version++
   }
 
+  /** Place on the map. */
+  #project(positionECEF: Vector3, target: { x: number; y: number }): void {
+    geographicPlace(positionECEF, this.#options.ellipsoid.radii, place)
+    target.x = mercatorX(place.longitude)
+    target.y = mercatorY(place.latitude)
+  }
+
   /** Tiles of which places need pixels. */
-  #keysOf(z: number, places: readonly GeographicPlace[]): Set<number> {
+  #keysOf(z: number, { x, y }: PagePlaces): Set<number> {
     const { size, coarsest } = this.#pyramid
     const keys = new Set<number>()
-    const add = (level: number, { longitude, latitude }: GeographicPlace): void => {
+    const margin = 2 / size
+    let last = NaN
+    const add = (level: number, column: number, row: number): void => {
       const scale = 2 ** level
-      const x = mercatorX(longitude) * scale
-      const y = mercatorY(latitude) * scale
-      const margin = 2 / size
-      const [left, right] = [Math.floor(x - margin), Math.floor(x + margin)]
-      const [top, bottom] = [Math.floor(y - margin), Math.floor(y + margin)]
-      for (let i = left; i <= right; i++) {
-        for (let j = top; j <= bottom; j++) keys.add(tileKey(level, i, j))
+      const left = Math.floor(column * scale - margin)
+      const right = Math.floor(column * scale + margin)
+      const top = Math.floor(row * scale - margin)
+      const bottom = Math.floor(row * scale + margin)
+      if (left === right && top === bottom) {
+        const key = tileKey(level, left, top)
+        if (key !== last) keys.add((last = key))
+        return
+      }
+      for (const i of [left, right]) {
+        for (const j of [top, bottom]) keys.add(tileKey(level, i, j))
       }
     }
-    for (const at of places) {
-      const latitude = Math.abs(at.latitude)
-      if (latitude < MERCATOR_LIMIT) add(z, at)
-      if (latitude > POLAR) add(coarsest, at)
+    for (let i = 0; i < x.length; i++) {
+      if (y[i] >= 0 && y[i] <= 1) add(z, x[i], y[i])
+      if (isPolar(y[i])) add(coarsest, x[i], y[i])
     }
     return keys
   }
@@ -287,16 +314,15 @@ export class HeightTiles implements PageSource {
   }
 
   /** Height at a place, and its slopes per width of the map. */
-  #sample(z: number, at: GeographicPlace, find: FindTile, target: RasterSample): RasterSample {
-    const latitude = Math.abs(at.latitude)
-    const x = mercatorX(at.longitude)
-    const y = mercatorY(at.latitude)
-    if (latitude < MERCATOR_LIMIT) this.#pyramid.sample(z, x, y, find, target)
-    if (latitude <= POLAR) return target
+  #sample(z: number, x: number, y: number, find: FindTile, target: RasterSample): RasterSample {
+    if (y >= 0 && y <= 1) this.#pyramid.sample(z, x, y, find, target)
+    if (!isPolar(y)) return target
+    const latitude = Math.abs(mercatorLatitude(y))
+    const edge = Math.min(Math.max(y, 0), 1)
     // Towards the pole: the coarsest level, then its mean along the edge of the map.
     const cap = smooth((latitude - MERCATOR_LIMIT) / (Math.PI / 2 - MERCATOR_LIMIT))
-    const mean = cap > 0 ? this.#edgeMean(y, find) : 0
-    this.#pyramid.sample(this.minZoom, x, y, find, polar)
+    const mean = cap > 0 ? this.#edgeMean(edge, find) : 0
+    this.#pyramid.sample(this.minZoom, x, edge, find, polar)
     const value = polar.value + cap * (mean - polar.value)
     const share = latitude < MERCATOR_LIMIT ? smooth((latitude - POLAR) / 0.01) : 1
     if (share === 1) target.value = value

@@ -61,6 +61,44 @@ export function sampleRaster(
   return target
 }
 
+/**
+ * Value alone, where all sixteen pixels about the place are in the raster.
+ *
+ * @param stride - Pixels of a row.
+ */
+export function valueInside(values: Float32Array, stride: number, x: number, y: number): number {
+  const column = Math.floor(x)
+  const row = Math.floor(y)
+  const t = x - column
+  const a = ((2 - t) * t - 1) * t * 0.5
+  const b = ((3 * t - 5) * t * t + 2) * 0.5
+  const c = ((4 - 3 * t) * t + 1) * t * 0.5
+  const d = (t - 1) * t * t * 0.5
+  const u = y - row
+  const i = (row - 1) * stride + column - 1
+  const j = i + stride
+  const k = j + stride
+  const l = k + stride
+  return (
+    ((2 - u) * u - 1) *
+      u *
+      0.5 *
+      (a * values[i] + b * values[i + 1] + c * values[i + 2] + d * values[i + 3]) +
+    ((3 * u - 5) * u * u + 2) *
+      0.5 *
+      (a * values[j] + b * values[j + 1] + c * values[j + 2] + d * values[j + 3]) +
+    ((4 - 3 * u) * u + 1) *
+      u *
+      0.5 *
+      (a * values[k] + b * values[k + 1] + c * values[k + 2] + d * values[k + 3]) +
+    (u - 1) *
+      u *
+      u *
+      0.5 *
+      (a * values[l] + b * values[l + 1] + c * values[l + 2] + d * values[l + 3])
+  )
+}
+
 /** Most that the interpolation goes beyond the values about it, per difference of the largest and smallest [–]. */
 export const OVERSHOOT = 0.29
 

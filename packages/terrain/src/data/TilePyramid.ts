@@ -1,11 +1,13 @@
 import { tileKey } from './mercator'
-import { sampleRaster, type RasterSample } from './RasterSampler'
+import { sampleRaster, valueInside, type RasterSample } from './RasterSampler'
 
 /** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
 export interface HeightTile {
   readonly heights: Float32Array
   readonly hasHoles: boolean
 }
+
+const scratch: RasterSample = { value: 0, x: 0, y: 0 }
 
 /** Finds a tile by its key; undefined if it is not there. */
 export type FindTile = (key: number) => HeightTile | undefined
@@ -48,6 +50,23 @@ export class TilePyramid {
     target.x *= scale
     target.y *= scale
     return target
+  }
+
+  /** Height alone, as of `sample`. */
+  valueAt(z: number, x: number, y: number, find: FindTile): number {
+    const { size } = this
+    if (find !== this.#find) this.#lastZ = -1
+    this.#find = find
+    const scale = size * 2 ** z
+    const column = x * scale - 0.5
+    const row = y * scale - 0.5
+    const left = column - Math.floor(column / size) * size
+    const top = row - Math.floor(row / size) * size
+    if (left >= 1 && top >= 1 && left < size - 2 && top < size - 2) {
+      const tile = this.#tileAt(z, column, row)
+      if (tile?.hasHoles === false) return valueInside(tile.heights, size, left, top)
+    }
+    return this.sample(z, x, y, find, scratch).value
   }
 
   /** Pixels about a place: straight from its tile, where none of them is of another. */

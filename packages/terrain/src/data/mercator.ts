@@ -4,11 +4,12 @@ export const MERCATOR_LIMIT = Math.atan(Math.sinh(Math.PI))
 /** Column of a longitude: 0 at −180°, 1 at 180°. */
 export const mercatorX = (longitude: number): number => 0.5 + longitude / (2 * Math.PI)
 
-/** Row of a geodetic latitude: 0 at 85.05° north, 1 at 85.05° south, where it stays. */
-export function mercatorY(latitude: number): number {
-  const y = 0.5 - Math.asinh(Math.tan(latitude)) / (2 * Math.PI)
-  return Math.min(Math.max(y, 0), 1)
-}
+/** Row of a geodetic latitude: 0 at 85.05° north, 1 at 85.05° south, and finite at the poles. */
+export const mercatorY = (latitude: number): number =>
+  0.5 - Math.asinh(Math.tan(latitude)) / (2 * Math.PI)
+
+/** Geodetic latitude of a row [rad]. */
+export const mercatorLatitude = (y: number): number => Math.atan(Math.sinh(2 * Math.PI * (0.5 - y)))
 
 /** Tiles have numbers as keys: exact up to level 23. */
 const LEVELS = 32

@@ -103,6 +103,13 @@ describe('a grid', () => {
     for (const [i, { longitude, latitude }] of degreesOf(fine).entries()) {
       expect(heights[i]).toBeCloseTo(sampleAt(grid, longitude, latitude).height, 2)
     }
+    // As a terrain asks: between exact places others are linear.
+    const whole = pageAt(10.2, 47.15, 12, 128)
+    const many = grid.loadHeights(whole)
+    for (const [i, { longitude, latitude }] of degreesOf(whole).entries()) {
+      if (i % 37 !== 0) continue
+      expect(Math.abs(many[i] - sampleAt(grid, longitude, latitude).height)).toBeLessThan(1e-3)
+    }
     // Stripes of a cell each are gone from pages with steps of many cells.
     const stripes = make(
       { outside: 50 },
