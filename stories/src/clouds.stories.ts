@@ -142,16 +142,16 @@ export const Cockpit: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** A line of storms 10 km high, 30 km off, in the sun of the morning: bases, towers, anvils. */
+/** Storms up to 11 km high, 20 to 40 km off, in the sun of the afternoon: flat bases, towers, an anvil. */
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    longitude: -83.9,
-    latitude: 36.62,
+    longitude: -84.3,
+    latitude: 36.3,
     altitude: 600,
-    heading: 284,
+    heading: 348,
     pitch: 9,
-    hour: 13.5
+    hour: 21.5
   },
   tags: ['screenshot', 'webgpu-only']
 }

@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
+import { MountainHeights, Terrain, terrainView, Walker } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { moveCamera } from './globe/places'
@@ -125,7 +125,7 @@ export async function createTerrain(
 
   const explorer = args.frame
     ? undefined
-    : new Explorer(camera, canvas, { upAt, heightAt, groundAt })
+    : new Explorer(camera, canvas, { upAt, heightAt, groundAt, walker: new Walker(terrain) })
   const elapsed = frameClock(args.frame)
 
   const goTo = (view: TerrainView): void => {

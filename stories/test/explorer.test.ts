@@ -1,4 +1,6 @@
-import { PerspectiveCamera, Vector3 } from 'three'
+import { Ellipsoid } from '@welkin/geo'
+import { Walker, type Ground } from '@welkin/terrain'
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import { Explorer } from '../src/moving/Explorer'
 import type { ExplorerOptions } from '../src/moving/Explorer'
@@ -234,6 +236,43 @@ describe('walking', () => {
     ground = 100
     run(15)
     expect(camera.position.y).toBeCloseTo(101.7)
+  })
+})
+
+describe('on foot', () => {
+  it('falls to a terrain, jumps, and climbs no cliff', () => {
+    const radius = 6.4e6
+    const worldToECEF = new Matrix4().makeTranslation(0, radius, 0)
+    const cliff = ({ x }: Vector3): number => Math.min(Math.max(5 * (x - 4), 0), 100)
+    const ground: Ground = {
+      atmosphere: { ellipsoid: new Ellipsoid(radius), worldToECEF },
+      seaLevel: -Infinity,
+      source: {
+        lowest: 0,
+        highest: 100,
+        variation: distance => 5 * distance,
+        sampleAt(position, target) {
+          target.height = cliff(position)
+          return target
+        }
+      }
+    }
+    const walker = new Walker(ground)
+    const { camera, press, release, run } = explore({ groundAt: cliff, walker }, 40)
+    press('KeyF')
+    run(6)
+    expect(walker.state).toBe('standing')
+    expect(camera.position.y).toBeCloseTo(1.7, 3)
+    press('Space')
+    run(0.2)
+    release('Space')
+    expect(camera.position.y).toBeGreaterThan(2.2)
+    run(2)
+    press('KeyD')
+    run(4)
+    expect(camera.position.x).toBeGreaterThan(3)
+    expect(camera.position.x).toBeLessThan(4.5)
+    expect(camera.position.y).toBeLessThan(2.5)
   })
 })
 

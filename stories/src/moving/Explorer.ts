@@ -6,7 +6,7 @@ import type { ExplorerState } from './ExplorerState'
 import { Flight } from './Flight'
 import { LocalAxes } from './LocalAxes'
 import type { ViewAngles } from './LocalAxes'
-import { Walk } from './Walk'
+import { EYE_HEIGHT, HIGH, Walk } from './Walk'
 
 export type { ExplorerOptions, ExplorerState }
 
@@ -54,6 +54,9 @@ export class Explorer {
   private readonly velocity = new Vector3()
   private flight?: Flight
   private walk?: Walk
+  private readonly walker: ExplorerOptions['walker']
+  /** Eyes of the walker, as it left them. */
+  private readonly eye = new Vector3()
 
   constructor(camera: PerspectiveCamera, canvas: HTMLElement, options: ExplorerOptions = {}) {
     this.camera = camera
@@ -64,6 +67,7 @@ export class Explorer {
     this.heightAt = options.heightAt ?? (position => position.y * this.metersPerUnit)
     this.pole = options.pole ?? new Vector3(0, 0, -1)
     this.drags = options.drags ?? 'always'
+    this.walker = options.walker
     this.shareDrags()
   }
 
@@ -219,6 +223,7 @@ export class Explorer {
     const { heading } = this.angles()
     const level = this.axes.ahead(heading, after).multiplyScalar(wish.z)
     level.addScaledVector(this.axes.ahead(heading + Math.PI / 2, axis), wish.x)
+    if (this.onFoot(level, seconds)) return
     this.accelerate(level.multiplyScalar(WALKING_SPEED * this.factor), seconds)
     before.copy(position)
     const eye = this.heightAt(position)
@@ -229,6 +234,24 @@ export class Explorer {
       this.velocity.set(0, 0, 0)
     }
     this.setHeight(walk.advance(eye, this.groundAt(position), this.input.isJumping, seconds))
+  }
+
+  /** Has the walker walk along a level vector, if there is one and the ground is near; false if not. */
+  private onFoot(level: Vector3, seconds: number): boolean {
+    const { walker, camera } = this
+    const { position } = camera
+    const height = this.heightAt(position) - EYE_HEIGHT - this.groundAt(position)
+    if (walker === undefined || !(height <= HIGH)) return false
+    // Whoever was moved by others goes on from there.
+    if (!position.equals(this.eye)) walker.moveTo(position)
+    walker.speed = WALKING_SPEED * this.factor
+    const up = this.upAt(position, before)
+    walker.update(level, this.input.isJumping, seconds)
+    walker.eyePosition(position)
+    this.eye.copy(position)
+    quaternion.setFromUnitVectors(up, this.upAt(position, axis))
+    camera.quaternion.premultiply(quaternion)
+    return true
   }
 
   /** Moves along the velocity; the view turns with up. */

@@ -1,3 +1,4 @@
+import type { Walker } from '@welkin/terrain'
 import type { Vector3 } from 'three'
 
 /** Ground and axes of the world that an {@link Explorer} moves in. */
@@ -14,4 +15,6 @@ export interface ExplorerOptions {
   pole?: Vector3
   /** Times at which drags look: 'walking' leaves them to other controls otherwise. Default 'always'. */
   drags?: 'always' | 'walking'
+  /** Someone on foot who knows slopes and water of the ground, and walks from near it on. */
+  walker?: Walker
 }

@@ -9,7 +9,7 @@ const STEP = 0.6
 /** Slope up which one may walk, rise over way. */
 const STEEPEST = 1.5
 /** Height above which one sinks by a share of it per second, not by gravity alone [m]. */
-const HIGH = 20
+export const HIGH = 20
 const SINKING = 1.5
 
 /** The vertical part of walking: gravity, jumps and the ground under the feet. */

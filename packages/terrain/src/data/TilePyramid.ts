@@ -46,7 +46,7 @@ export class TilePyramid {
     const scale = this.size * 2 ** z
     const column = x * scale - 0.5
     const row = y * scale - 0.5
-    sampleRaster(this.#pixelsAbout(z, Math.floor(column), Math.floor(row)), column, row, target)
+    sampleRaster((i, j) => this.#pixelAt(z, i, j), column, row, target)
     target.x *= scale
     target.y *= scale
     return target
@@ -67,19 +67,6 @@ export class TilePyramid {
       if (tile?.hasHoles === false) return valueInside(tile.heights, size, left, top)
     }
     return this.sample(z, x, y, find, scratch).value
-  }
-
-  /** Pixels about a place: straight from its tile, where none of them is of another. */
-  #pixelsAbout(z: number, column: number, row: number): (column: number, row: number) => number {
-    const { size } = this
-    const left = column - Math.floor(column / size) * size
-    const top = row - Math.floor(row / size) * size
-    const isInside = left > 0 && top > 0 && left < size - 2 && top < size - 2
-    const tile = isInside ? this.#tileAt(z, column, row) : undefined
-    if (tile === undefined || tile.hasHoles) return (i, j) => this.#pixelAt(z, i, j)
-    const { heights } = tile
-    const shift = (top - row) * size + left - column
-    return (i, j) => heights[j * size + i + shift]
   }
 
   #tileAt(z: number, column: number, row: number): HeightTile | undefined {

@@ -1,4 +1,4 @@
-import { Fn, mix, texture, transformNormalToView, varyingProperty, vec2, vec4 } from 'three/tsl'
+import { Fn, If, mix, texture, transformNormalToView, varyingProperty, vec2, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node, NodeBuilder } from 'three/webgpu'
@@ -63,11 +63,14 @@ export function terrainMaterial(
       .sample(texel.div(vec2(width, height)))
       .level(0)
   // Gradient along the face's axes, height and patchiness.
-  const ground = mix(
-    pageAt(texels.xy),
-    pageAt((texels as unknown as { zw: Vec2 }).zw),
-    blend.x
-  ).toConst('ground') as Vec4
+  const ground = Fn(() => {
+    const mixed = pageAt(texels.xy).toVar('page') as unknown as Vec4 & { assign(value: Vec4): void }
+    If(blend.x.greaterThan(0), () => {
+      const parent = pageAt((texels as unknown as { zw: Vec2 }).zw)
+      mixed.assign(mix(mixed, parent, blend.x))
+    })
+    return mixed
+  })().toConst('ground') as unknown as Vec4
   const offset = handedPlace.xyz
   const place = reference.mul(REFERENCE_STEP).add(offset)
   const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
