@@ -23,11 +23,12 @@ function imageryDirectory(): string {
   return join(engine, 'Source/Assets/Textures/NaturalEarthII')
 }
 
-/** Files of directories that hold more: pictures of the whole Earth (colours, open water, lights; clouds), simulated clouds. */
+/** Files of directories that hold more: pictures of the whole Earth (colours, open water, lights; clouds), simulated clouds, heights. */
 const PARTS: Record<string, string[]> = {
   earth: ['earth-blue-marble.jpg', 'earth-water.png', 'earth-night.jpg'],
   clouds: ['clouds.png'],
-  simulated: ['simulated-clouds.bin']
+  simulated: ['simulated-clouds.bin'],
+  heights: ['jacksboro-dem.i16.gz', 'jacksboro-dem.json']
 }
 
 function exampleDirectory(name: string): string {
@@ -44,7 +45,7 @@ function filesUnder(directory: string): string[] {
 /**
  * Serves the stories' local data in development and adds it to a build: no network is needed for either.
  *
- * `world-data/simulated/` is in `data/`; `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the
+ * `world-data/simulated/` and `world-data/heights/` are in `data/`; `world-data/earth/` and `world-data/clouds/` are pictures in the `three-globe` package; `world-data/natural-earth/` is the
  * imagery in the `@cesium/engine` package; `world-data/terrain/` is made here from the heights in `data/`, the first time and
  * whenever they or the script change.
  */
@@ -58,6 +59,7 @@ export function worldData(): Plugin {
       directories.set('earth', exampleDirectory('img'))
       directories.set('clouds', exampleDirectory('clouds'))
       directories.set('simulated', DATA)
+      directories.set('heights', DATA)
     },
     configureServer(server) {
       server.middlewares.use((request, response, next) => {

@@ -63,8 +63,16 @@ export interface Village {
   dispose(): void
 }
 
-/** Houses about a church by the lake. */
-export function createVillage(): Village {
+/**
+ * Houses about a church.
+ *
+ * @param heightAt - Height of the ground at a place, default that of the valley [m].
+ * @param middle - Place of the church, default by the valley's lake [m].
+ */
+export function createVillage(
+  heightAt = groundHeight,
+  middle: Readonly<Record<'x' | 'z', number>> = VILLAGE
+): Village {
   const random = randomSequence(5)
   const lit = uniform(0)
   const luminance = uniform(0)
@@ -95,11 +103,11 @@ export function createVillage(): Village {
   for (let i = 0; i < HOUSES; i++) {
     const angle = 2.4 * i
     const distance = 24 + 20 * Math.sqrt(i) + 12 * random()
-    const x = VILLAGE.x + distance * Math.cos(angle)
-    const z = VILLAGE.z + 1.2 * distance * Math.sin(angle)
+    const x = middle.x + distance * Math.cos(angle)
+    const z = middle.z + 1.2 * distance * Math.sin(angle)
     const [width, depth, height] = [8 + 4 * random(), 9 + 5 * random(), 5 + 2 * random()]
     turn.setFromAxisAngle(new Vector3(0, 1, 0), 0.5 * Math.floor(4 * random()) + 0.2 * random())
-    const base = Math.min(groundHeight(x, z), groundHeight(x + 5, z), groundHeight(x, z + 5)) - 0.5
+    const base = Math.min(heightAt(x, z), heightAt(x + 5, z), heightAt(x, z + 5)) - 0.5
     bodies.setMatrixAt(
       i,
       matrix.compose(new Vector3(x, base, z), turn, new Vector3(width, height, depth))
@@ -111,8 +119,8 @@ export function createVillage(): Village {
     bodies.setColorAt(i, color.setHSL(0.09, 0.16 * random(), 0.42 + 0.22 * random()))
     roofs.setColorAt(i, color.setScalar(0.6 + 0.6 * random()))
   }
-  const { x, z } = VILLAGE
-  const base = groundHeight(x, z) - 0.5
+  const { x, z } = middle
+  const base = heightAt(x, z) - 0.5
   const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
   const spire = new Mesh(

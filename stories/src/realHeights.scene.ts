@@ -1,0 +1,207 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { GridHeights, Terrain, TerrariumTiles, tileUrl } from '@welkin/terrain'
+import { PerspectiveCamera, Scene, Vector3 } from 'three'
+import { Air } from './air'
+import { prepareShadow } from './globe/sunShadow'
+import { overlayOn } from './overlay'
+import {
+  applyTime,
+  createRenderer,
+  WARM_UP_FRAMES,
+  type RendererArgs,
+  type SceneHandle,
+  type TimeArgs
+} from './scene'
+import { storyHandle } from './storyHandle'
+import { GroundCamera, type GroundView } from './terrain/GroundCamera'
+import { createVillage } from './valley/village'
+
+/** Middle of the made-up village, on level ground between two ridges [°]. */
+const VILLAGE = { longitude: -84.216, latitude: 36.592 }
+
+export const VIEWS = {
+  village: {
+    label: 'Village, 40 m',
+    longitude: -84.2205,
+    latitude: 36.5885,
+    height: 40,
+    heading: 40,
+    pitch: -3
+  },
+  ridge: {
+    label: 'Ridge, 2 m',
+    longitude: -84.2335,
+    latitude: 36.6035,
+    height: 2,
+    heading: 110,
+    pitch: -12
+  },
+  range: {
+    label: 'Ridges, 1.2 km',
+    longitude: -84.19,
+    latitude: 36.5,
+    height: 1200,
+    heading: 330,
+    pitch: -12
+  },
+  orbit: {
+    label: 'Orbit, 400 km',
+    longitude: -84.2,
+    latitude: 33,
+    height: 4e5,
+    heading: 0,
+    pitch: -35
+  }
+} satisfies Record<string, GroundView>
+
+export interface RealHeightsArgs extends RendererArgs, TimeArgs {
+  view: keyof typeof VIEWS
+  /** Template of Terrarium tiles; empty for the grid that comes with the stories. */
+  url: string
+  wireframe: boolean
+}
+
+/** Cells along a tile's edge in a still: a software renderer draws it. */
+const STILL_RESOLUTION = 16
+
+/** Time in which the first tile must arrive [ms]. */
+const PATIENCE = 6000
+
+/** Description of the grid in `data/`. */
+interface GridFile {
+  readonly rows: number
+  readonly columns: number
+  readonly west: number
+  readonly east: number
+  readonly south: number
+  readonly north: number
+  readonly source: string
+}
+
+async function load(name: string): Promise<Response> {
+  const url = new URL(`world-data/heights/${name}`, document.baseURI)
+  const response = await fetch(url)
+  if (!response.ok || response.body === null) throw new Error(`${url.href}: ${response.status}`)
+  return response
+}
+
+/** Heights measured from space, 28 × 32 km of ridges in Tennessee; a plain about them. */
+async function loadGrid(): Promise<GridHeights> {
+  const file = (await (await load('jacksboro-dem.json')).json()) as GridFile
+  const packed = (await load('jacksboro-dem.i16.gz')).body!
+  const cells = packed.pipeThrough(new DecompressionStream('gzip'))
+  const numbers = await new Response(cells).arrayBuffer()
+  const { columns: width, rows: height, west, east, south, north, source } = file
+  // #region heights
+  const heights = new GridHeights(new Int16Array(numbers), {
+    width,
+    height,
+    west, // edges [°]
+    east,
+    south,
+    north,
+    outside: 300, // a plain, from 6 km beyond the edges on
+    fade: 6000,
+    attribution: source
+  })
+  // #endregion
+  return heights
+}
+
+/** Reason why tiles cannot be used; undefined if the first one arrives. */
+async function problemOf(url: string): Promise<string | undefined> {
+  try {
+    const response = await fetch(tileUrl(url)(0, 0, 0), { signal: AbortSignal.timeout(PATIENCE) })
+    return response.ok ? undefined : `the server answers ${response.status}`
+  } catch (error) {
+    return error instanceof Error ? error.message : String(error)
+  }
+}
+
+/** Heights of the arguments, and a line about them. */
+async function heightsOf({ url }: RealHeightsArgs) {
+  const problem = url === '' ? undefined : await problemOf(url)
+  if (url !== '' && problem === undefined) {
+    const tiles = new TerrariumTiles(url, { maxZoom: 14 })
+    return { heights: tiles, note: `Tiles of ${new URL(url).host}` }
+  }
+  const grid = await loadGrid()
+  const note = problem === undefined ? '' : `No tiles: ${problem}. The local grid instead.\n`
+  return { heights: grid, note: note + grid.attribution }
+}
+
+/** Measured heights around a village; a grid of numbers, or tiles from a server. */
+export async function createRealHeights(
+  canvas: HTMLCanvasElement,
+  args: RealHeightsArgs
+): Promise<SceneHandle<RealHeightsArgs>> {
+  const { heights, note } = await heightsOf(args)
+  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const scene = new Scene()
+  const camera = new PerspectiveCamera(50, 1, 0.2, 1e8)
+  const current = { ...args }
+  const atmosphere = new Atmosphere()
+  atmosphere.place(VILLAGE)
+  const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  const terrain = new Terrain(
+    atmosphere,
+    heights,
+    args.frame ? { resolution: STILL_RESOLUTION } : {}
+  )
+  terrain.castShadow = terrain.receiveShadow = true
+  scene.add(terrain)
+  prepareShadow(air.sun)
+
+  const place = new Vector3()
+  const groundAt = (x: number, z: number): number => terrain.heightBelow(place.set(x, 0, z))
+  const isLocal = !(heights instanceof TerrariumTiles)
+  // On tiles the village's ground is not there yet.
+  const village = isLocal ? createVillage(groundAt, { x: 0, z: 0 }) : undefined
+  if (village !== undefined) scene.add(village.object)
+
+  const ground = new GroundCamera(camera, canvas, terrain, args.frame)
+  const overlay = args.frame ? undefined : overlayOn(canvas)
+  if (overlay !== undefined) overlay.textContent = note
+
+  const apply = (): void => {
+    applyTime(renderer, air, current)
+    terrain.material.wireframe = current.wireframe
+    const evening = Math.min(Math.max((0.1 - atmosphere.sunDirection.y) / 0.15, 0), 1)
+    village?.light(evening, atmosphere.luminanceScale)
+  }
+  apply()
+  ground.goTo(VIEWS[current.view])
+
+  const draw = (): void => {
+    ground.update(air.sun)
+    air.render()
+  }
+
+  return storyHandle<RealHeightsArgs>({
+    renderer,
+    scene,
+    camera,
+    explorer: ground.explorer,
+    current,
+    apply(before) {
+      apply()
+      if (current.view !== before.view) ground.goTo(VIEWS[current.view])
+    },
+    draw,
+    async warmUp() {
+      for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
+        camera.updateMatrixWorld()
+        terrain.update(renderer, camera, Infinity)
+        draw()
+        await new Promise(requestAnimationFrame)
+      }
+    },
+    dispose() {
+      overlay?.remove()
+      village?.dispose()
+      terrain.dispose()
+      if (heights instanceof TerrariumTiles) heights.dispose()
+      air.dispose()
+    }
+  })
+}

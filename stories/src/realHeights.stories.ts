@@ -1,0 +1,48 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { createRealHeights, VIEWS } from './realHeights.scene'
+import type { RealHeightsArgs } from './realHeights.scene'
+import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const meta: Meta<RealHeightsArgs> = {
+  title: 'Real heights',
+  render: mount(
+    createRealHeights,
+    storyCode('realHeights.scene.ts', 'heights'),
+    ({ url }: RealHeightsArgs) => url
+  ),
+  argTypes: {
+    view: { name: 'Place', ...choiceOf(VIEWS) },
+    url: {
+      name: 'Terrarium tiles',
+      control: 'text',
+      description:
+        'Template with {z}, {x} and {y}, such as https://…/{z}/{x}/{y}.png; empty for the local grid'
+    },
+    wireframe: { name: 'Wireframe', control: 'boolean' },
+    ...timeArgTypes,
+    ...rendererArgTypes
+  },
+  args: {
+    view: 'village',
+    url: '',
+    wireframe: false,
+    day: Date.UTC(2026, 5, 21),
+    hour: 22,
+    exposure: 0,
+    forceWebGL: false,
+    path: 'forward',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<RealHeightsArgs>
+
+/** A village between ridges of Tennessee, measured from space. */
+export const Village: Story = { tags: ['screenshot'] }
+
+/** All of the grid, at which a plain begins. */
+export const Range: Story = { args: { view: 'range' } }

@@ -1,0 +1,92 @@
+import type { SunDirectionalLight } from '@welkin/atmosphere'
+import { Walker, type Terrain } from '@welkin/terrain'
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import { moveCamera } from '../globe/places'
+import { aimShadow } from '../globe/sunShadow'
+import { Explorer } from '../moving/Explorer'
+import { frameClock } from '../scene'
+
+/** A view from above the ground of a planet. */
+export interface GroundView {
+  readonly label: string
+  readonly longitude: number
+  readonly latitude: number
+  /** Height above the ground [m]. */
+  readonly height: number
+  readonly heading: number
+  readonly pitch: number
+}
+
+/** Camera above a terrain: it flies and walks, near enough to the ground, with the sun's shadows about it. */
+export class GroundCamera {
+  /** Undefined in a still. */
+  readonly explorer: Explorer | undefined
+  readonly #camera: PerspectiveCamera
+  readonly #terrain: Terrain
+  readonly #elapsed: () => number
+  readonly #ecefToWorld = new Matrix4()
+  readonly #position = new Vector3()
+  readonly #up = new Vector3()
+
+  constructor(
+    camera: PerspectiveCamera,
+    canvas: HTMLCanvasElement,
+    terrain: Terrain,
+    isStill: boolean
+  ) {
+    this.#camera = camera
+    this.#terrain = terrain
+    this.#elapsed = frameClock(isStill)
+    this.#ecefToWorld.copy(terrain.atmosphere.worldToECEF).invert()
+    const groundAt = (place: Vector3): number => terrain.heightBelow(place)
+    const upAt = (place: Vector3, target: Vector3): Vector3 => this.#upAt(place, target)
+    const heightAt = (place: Vector3): number => this.#heightAt(place)
+    const walker = new Walker(terrain)
+    const options = { upAt, heightAt, groundAt, walker }
+    this.explorer = isStill ? undefined : new Explorer(camera, canvas, options)
+  }
+
+  /** Flies to a view, or jumps there where nobody watches. */
+  goTo(view: GroundView): void {
+    const height = this.#terrain.heightAt(view.longitude, view.latitude) + view.height
+    const aim = moveCamera(new PerspectiveCamera(), { ...view, height })
+    aim.applyMatrix4(this.#ecefToWorld)
+    const camera = this.#camera
+    if (this.explorer === undefined || camera.position.lengthSq() === 0) {
+      camera.position.copy(aim.position)
+      camera.quaternion.copy(aim.quaternion)
+      return
+    }
+    aim.updateMatrixWorld()
+    const direction = aim.getWorldDirection(new Vector3())
+    const distance = camera.position.distanceTo(aim.position)
+    void this.explorer.flyTo({ position: aim.position, direction }, 2 + Math.log10(1 + distance))
+  }
+
+  /** Moves on by a frame, and fits the near plane and a sun's shadows to the height above the ground. */
+  update(sun: SunDirectionalLight): void {
+    this.explorer?.update(this.#elapsed())
+    const camera = this.#camera
+    camera.updateMatrixWorld()
+    const { position } = camera
+    const height = Math.max(this.#heightAt(position) - this.#terrain.heightBelow(position), 2)
+    camera.near = Math.min(height / 10, 1e4)
+    camera.updateProjectionMatrix()
+    aimShadow(sun, camera, height, this.#upAt(position, this.#up))
+  }
+
+  #toECEF(place: Vector3): Vector3 {
+    return this.#position.copy(place).applyMatrix4(this.#terrain.atmosphere.worldToECEF)
+  }
+
+  #upAt(place: Vector3, target: Vector3): Vector3 {
+    const { ellipsoid } = this.#terrain.atmosphere
+    return ellipsoid
+      .surfaceNormal(this.#toECEF(place), target)
+      .transformDirection(this.#ecefToWorld)
+  }
+
+  #heightAt(place: Vector3): number {
+    return this.#terrain.atmosphere.ellipsoid.heightAt(this.#toECEF(place))
+  }
+}
