@@ -2,7 +2,7 @@ import { AgXToneMapping, RenderTarget } from 'three'
 import { PassTimes, type PassTime } from '../../stories/src/valley/PassTimes'
 import { openingState } from '../../stories/src/valley/openingState'
 import { sharesOf } from '../../stories/src/valley/shares'
-import { Valley, type ValleyFeatures, type ValleyState } from '../../stories/src/valley/Valley'
+import { Valley, type ValleyState } from '../../stories/src/valley/Valley'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
 import { median } from './statistics'
 
@@ -10,7 +10,7 @@ const WARM_UP = 40
 /** Time between two frames [s]. */
 const STEP = 1 / 60
 
-const PARTS: readonly (keyof ValleyFeatures)[] = [
+const PARTS: readonly (keyof ValleyState)[] = [
   'clouds',
   'shafts',
   'mist',

@@ -27,7 +27,7 @@ export interface ValleyStill {
   name: string
   /** Features to look for. */
   about: string
-  valley: { view: ValleyName } & Partial<Pick<ValleyState, 'hour' | 'weather' | 'season'>>
+  valley: { view: ValleyName } & Partial<ValleyState>
 }
 
 /** The presets from the ground: where to look. */
@@ -158,6 +158,18 @@ const valleys: ValleyStill[] = [
     name: 'valley-above',
     about: 'over broken clouds at noon',
     valley: { view: 'above', hour: 14, weather: 'broken' }
+  },
+  {
+    name: 'valley-effects',
+    about: 'afternoon with all post effects on',
+    valley: {
+      view: 'village',
+      hour: 16,
+      occlusion: true,
+      antialiasing: 'traa',
+      depthOfField: true,
+      motionBlur: true
+    }
   }
 ]
 

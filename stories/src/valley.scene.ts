@@ -3,6 +3,7 @@ import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { HourArc } from './valley/HourArc'
 import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
 import type { ValleyName } from './valley/views'
@@ -40,6 +41,11 @@ export async function createValley(
     ? undefined
     : new Explorer(camera, canvas, { groundAt: place => valley.groundAt(place) })
   const readout = current.frame ? undefined : new Readout(canvas, renderer)
+  const setHour = (hour: number, isLast: boolean): void => {
+    handle.update({ hour })
+    if (isLast) handle.onArgs?.({ hour })
+  }
+  const arc = current.frame ? undefined : new HourArc(canvas, setHour)
   await valley.bake(renderer)
 
   const goTo = (name: ValleyName, seconds: number): void => {
@@ -70,6 +76,7 @@ export async function createValley(
     showHour(delta)
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
+    arc?.update(valley.cycle.hour, current.latitude, current.season)
     readout?.update(camera, ground, valley.cycle.hour, spent)
   }
 
@@ -106,6 +113,7 @@ export async function createValley(
     dispose() {
       explorer?.dispose()
       readout?.dispose()
+      arc?.dispose()
       valley.dispose()
       void renderer.dispose()
     }

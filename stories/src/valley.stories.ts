@@ -5,6 +5,7 @@ import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 import { createValley } from './valley.scene'
 import type { ValleyArgs } from './valley.scene'
+import { ANTIALIASING } from './valley/finish'
 import { openingState } from './valley/openingState'
 import { VIEWS } from './valley/views'
 import { weathers } from './valley/weather'
@@ -16,6 +17,16 @@ ${storyCode('valleyAir.ts', 'everything')}
 ${storyCode('valleyFactors.ts', 'factors')}`
 
 const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
+
+const POST_EFFECTS = { table: { category: 'Post effects' } }
+
+/** Switch of a post effect; the picture is compiled anew. */
+const effect = (name: string, description: string): object => ({
+  name,
+  description,
+  control: 'boolean',
+  ...POST_EFFECTS
+})
 
 /** Slider of an artistic factor. */
 const factor = (name: string, description: string): object => ({
@@ -65,7 +76,11 @@ const meta: Meta<ValleyArgs> = {
     trees: part('Trees'),
     village: part('Village'),
     water: part('Lake'),
-    bloom: part('Bloom'),
+    antialiasing: { name: 'Smooth edges', ...choiceOf(ANTIALIASING), ...POST_EFFECTS },
+    occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),
+    bloom: effect('Bloom', 'A halo about what is bright'),
+    depthOfField: effect('Depth of field', 'Sharp at 40 m'),
+    motionBlur: effect('Motion blur', 'While the camera turns or flies'),
     haze: factor('Haze', 'Optical depth of the air between camera and scene'),
     twilightSaturation: factor('Colour of twilight', 'Saturation; 0 is grey'),
     shaftStrength: factor('Light shafts', 'Light that shadowed air loses'),

@@ -23,10 +23,14 @@ import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@w
 import type { Light, PerspectiveCamera, Scene } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { pass } from 'three/tsl'
+import type { PassNode, TextureNode } from 'three/webgpu'
 
 /** Sky, light, clouds and shadows of a scene, exposed. */
 export interface ValleyAir {
   readonly atmosphere: Atmosphere
+  /** The scene without air, and its depth. */
+  readonly scenePass: PassNode
+  readonly depth: TextureNode
   readonly clouds: CloudsNode
   readonly shafts: LightShafts
   readonly cascades: CSMShadowNode
@@ -84,6 +88,8 @@ export function valleyAir(
   // #endregion
   return {
     atmosphere,
+    scenePass,
+    depth,
     clouds: node,
     shafts,
     cascades,

@@ -214,7 +214,7 @@ gpuTest(
     const next = random(7)
     const post = postPath(renderer, scene, camera, atmosphere)
     // Each case compiles anew, which WebGL2 does slowly.
-    const cases = t.backend === 'webgl' ? 8 : 16
+    const cases = t.backend === 'webgl' ? 4 : 16
     for (let i = 0; i < cases; i++) {
       const height = Math.exp(next() * Math.log(6.4e7))
       const place = { longitude: 360 * next() - 180, latitude: 180 * next() - 90, height }

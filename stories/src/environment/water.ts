@@ -18,6 +18,13 @@ const WAVES = 18
 /** Longest and shortest wave [m]. */
 const LENGTHS = [3.2, 0.12] as const
 const GRAVITY = 9.81
+/** Wave vectors by which ripples stray from straight lines, so that they form no lattice, and how far [rad/m, m]. */
+const STRAY = [
+  [0.23, 0.14, 1.1],
+  [-0.19, 0.26, 1.1],
+  [0.81, -0.47, 0.22],
+  [0.52, 0.83, 0.22]
+] as const
 /** Two texels of the environment, by which to stay clear of the ground below its horizon [rad]. */
 const TEXELS = 0.012
 
@@ -54,14 +61,16 @@ export function createWater(radius: number): Water {
     const [dx, dy] = [at.dFdx().toConst(), at.dFdy().toConst()]
     // Where a pixel covers little across and much along the view, what is long counts.
     const footprint = dx.dot(dx).max(dy.dot(dy)).sqrt().toConst()
+    const strays = STRAY.map(([x, z, by]) => at.x.mul(x).add(at.y.mul(z)).sin().mul(by))
+    const place = at.add(vec2(strays[0].add(strays[2]), strays[1].add(strays[3]))).toConst()
     const slope = vec2(0).toVar()
     const lost = float(0).toVar()
     for (const { k, x, z, phase } of waves) {
       const blur = footprint.mul(k * 0.5)
       const seen = blur.mul(blur).negate().exp().toConst()
-      const angle = at.x
+      const angle = place.x
         .mul(x)
-        .add(at.y.mul(z))
+        .add(place.y.mul(z))
         .sub(time.mul(Math.sqrt(GRAVITY * k)))
         .add(phase)
       slope.addAssign(

@@ -12,12 +12,12 @@ import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
 import { MathUtils, type Mesh, PerspectiveCamera, Quaternion, Scene, Vector3 } from 'three'
-import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { RenderPipeline } from 'three/webgpu'
-import type { Node, WebGPURenderer } from 'three/webgpu'
+import type { WebGPURenderer } from 'three/webgpu'
 import { EYE_HEIGHT } from '../moving/Walk'
 import { disposeMeshes } from '../scene'
 import { valleyAir } from '../valleyAir'
+import { ValleyFinish, type ValleyEffects } from './finish'
 import { createForest, createGrove } from './forest'
 import { applyFactors, type ValleyFactors } from '../valleyFactors'
 import { createGround, groundHeight, LAKE } from './ground'
@@ -36,11 +36,10 @@ export interface ValleyFeatures {
   trees: boolean
   village: boolean
   water: boolean
-  bloom: boolean
 }
 
 /** State of the valley. */
-export interface ValleyState extends ValleyFeatures, ValleyFactors {
+export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactors {
   weather: WeatherName
   /** [degrees] */
   latitude: number
@@ -93,9 +92,6 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
 /** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
 const NIGHT_LIGHTS = 4
 
-/** Strength of the glow around what is bright. */
-const GLOW = 0.02
-
 /** A valley in the mountains with all that Welkin has, at any hour and in any weather. */
 export class Valley {
   readonly scene = new Scene()
@@ -120,8 +116,7 @@ export class Valley {
   readonly #cascades
   readonly #nightLights
   readonly #environment
-  readonly #plain: Node
-  readonly #glowing: Node
+  readonly #finish: ValleyFinish
   readonly #dispose: (() => void)[] = []
   #turbidity = NaN
   #frame = 0
@@ -152,17 +147,15 @@ export class Valley {
     this.#environment = skyEnvironment(atmosphere, { overlay })
     this.#water = createLake(this.#environment, air.directLights)
     scene.add(this.#water.mesh)
-    this.#plain = exposure
-    const halo = bloom(exposure, GLOW, 0.7, 0)
-    this.#glowing = (exposure as unknown as { add(other: unknown): Node }).add(halo)
     this.pipeline = new RenderPipeline(renderer)
+    this.#finish = new ValleyFinish(this.pipeline, scene, camera, air)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
     this.cycle.time = Date.UTC(2026, 5, 21, 12)
     this.cycle.season = state.season
     this.cycle.hour = state.hour
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      ...[halo, exposure, overlay, this.#environment, node, shafts].map(
+      ...[this.#finish, exposure, overlay, this.#environment, node, shafts].map(
         each => () => each.dispose()
       ),
       () => air.dispose(),
@@ -191,7 +184,7 @@ export class Valley {
     this.camera.lookAt(position.add(direction))
   }
 
-  /** Follows its settings: nothing but bloom is compiled anew. */
+  /** Follows its settings: nothing but post effects is compiled anew. */
   set(changes: Partial<ValleyState>, atOnce = false): void {
     const before = { ...this.#state }
     Object.assign(this.#state, changes)
@@ -213,10 +206,7 @@ export class Valley {
     this.#village.object.visible = village
     this.#water.mesh.visible = water
     this.#applyWeather()
-    const output = this.#state.bloom ? this.#glowing : this.#plain
-    if (this.pipeline.outputNode === output) return
-    this.pipeline.outputNode = output
-    this.pipeline.needsUpdate = true
+    this.#finish.set(this.#state)
   }
 
   #applyWeather(): void {

@@ -1,6 +1,6 @@
 import type { ValleyState } from './Valley'
 
-/** State in which the story *Valley, all day* opens, everything on. */
+/** State in which the story *Valley, all day* opens. */
 export const openingState = {
   weather: 'fair' as const,
   latitude: 46,
@@ -16,7 +16,11 @@ export const openingState = {
   trees: true,
   village: true,
   water: true,
+  antialiasing: 'none' as const,
+  occlusion: false,
   bloom: true,
+  depthOfField: false,
+  motionBlur: false,
   haze: 1,
   twilightSaturation: 1,
   shaftStrength: 1,

@@ -148,9 +148,9 @@ export const columnForm = {
   tops: 3.5,
   /**
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
-   * with one, and the least share. Smaller: clouds are too bright at the limb (*World clouds*).
+   * with one, and the least share. Smaller: clouds are darker from above, and too bright at the limb (*World clouds*).
    */
-  hiddenBelow: 0.36,
+  hiddenBelow: 0.32,
   hiddenByAnvil: 0.75,
   leastSeen: 0.3,
   /**

@@ -1,0 +1,148 @@
+import { skyVelocity } from '@welkin/atmosphere'
+import { cloudVelocity } from '@welkin/clouds'
+import type { PerspectiveCamera, Scene } from 'three'
+import { bloom } from 'three/addons/tsl/display/BloomNode.js'
+import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
+import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
+import { ao } from 'three/addons/tsl/display/GTAONode.js'
+import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
+import { smaa } from 'three/addons/tsl/display/SMAANode.js'
+import { traa } from 'three/addons/tsl/display/TRAANode.js'
+import {
+  builtinAOContext,
+  int,
+  mrt,
+  normalView,
+  output,
+  pass,
+  renderOutput,
+  rtt,
+  screenUV,
+  velocity
+} from 'three/tsl'
+import type { Node, PassNode, RenderPipeline } from 'three/webgpu'
+import type { ValleyAir } from '../valleyAir'
+
+/** Ways to smooth edges. */
+export const ANTIALIASING = {
+  none: { label: 'None' },
+  fxaa: { label: 'FXAA' },
+  smaa: { label: 'SMAA' },
+  traa: { label: 'TRAA (over frames)' }
+} as const
+
+/** Post effects of the valley. */
+export interface ValleyEffects {
+  antialiasing: keyof typeof ANTIALIASING
+  /** Occlusion of the light of the sky (GTAO). */
+  occlusion: boolean
+  bloom: boolean
+  depthOfField: boolean
+  motionBlur: boolean
+}
+
+/** Strength of the glow around what is bright. */
+const GLOW = 0.02
+
+/** Reach of ambient occlusion [m]. */
+const OCCLUSION_REACH = 3
+
+/** Distance that is sharp, and depth over which sharpness is lost [m]. */
+const FOCUS = 40
+const FOCAL_DEPTH = 60
+
+type Disposable = { dispose(): void }
+
+/** Post effects over the exposed picture, in the order of a camera: motion, lens, film. */
+export class ValleyFinish {
+  readonly #pipeline: RenderPipeline
+  readonly #scene: Scene
+  readonly #camera: PerspectiveCamera
+  readonly #air: ValleyAir
+  /** Effects that are on, and what is to be freed with them. */
+  #key = ''
+  #used: Disposable[] = []
+
+  constructor(pipeline: RenderPipeline, scene: Scene, camera: PerspectiveCamera, air: ValleyAir) {
+    this.#pipeline = pipeline
+    this.#scene = scene
+    this.#camera = camera
+    this.#air = air
+  }
+
+  /** Has the picture drawn with these effects; compiles if others were on. */
+  set({ antialiasing, occlusion, bloom, depthOfField, motionBlur }: ValleyEffects): void {
+    const effects = { antialiasing, occlusion, bloom, depthOfField, motionBlur }
+    const key = JSON.stringify(effects)
+    if (key === this.#key) return
+    this.#key = key
+    this.dispose()
+    const asShown = antialiasing === 'fxaa' || antialiasing === 'smaa'
+    const picture = this.#picture(effects)
+    this.#pipeline.outputNode = asShown
+      ? this.#keep((antialiasing === 'fxaa' ? fxaa : smaa)(renderOutput(picture)))
+      : picture
+    // FXAA and SMAA work on the picture as it is shown.
+    this.#pipeline.outputColorTransform = !asShown
+    this.#pipeline.needsUpdate = true
+  }
+
+  /** Light of the scene after all that happens in the camera. */
+  #picture(effects: ValleyEffects): Node {
+    const { scenePass, exposure, depth } = this.#air
+    const isMoved = effects.antialiasing === 'traa' || effects.motionBlur
+    const motion = isMoved ? this.#motion() : null
+    scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
+    let picture: Node = exposure
+    if (motion !== null && effects.antialiasing === 'traa') {
+      const smooth = traa(this.#texture(picture), depth, motion, this.#camera)
+      picture = this.#keep(smooth)
+    }
+    if (effects.depthOfField) {
+      const sharp = this.#texture(picture)
+      picture = this.#keep(dof(sharp, scenePass.getViewZNode(), FOCUS, FOCAL_DEPTH, 1.5))
+    }
+    if (motion !== null && effects.motionBlur) {
+      picture = motionBlur(this.#texture(picture), motion, int(12))
+    }
+    if (effects.bloom) {
+      const halo = this.#keep(bloom(picture as never, GLOW, 0.7, 0))
+      picture = (picture as unknown as { add(other: unknown): Node }).add(halo)
+    }
+    return picture
+  }
+
+  /** Motion of ground, clouds and sky over the screen since the last frame. */
+  #motion(): ReturnType<typeof rtt> {
+    const { scenePass, depth, clouds } = this.#air
+    scenePass.setMRT(mrt({ output, velocity }))
+    const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
+    return this.#texture(this.#keep(cloudVelocity(sky, clouds)))
+  }
+
+  #occlusion(): PassNode['contextNode'] {
+    const before = this.#keep(pass(this.#scene, this.#camera, { samples: 0 }))
+    before.setMRT(mrt({ output: normalView }))
+    const occlusion = this.#keep(
+      ao(before.getTextureNode('depth'), before.getTextureNode(), this.#camera)
+    )
+    occlusion.radius.value = OCCLUSION_REACH
+    return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
+  }
+
+  /** A picture that effects read at many places. */
+  #texture(picture: Node): ReturnType<typeof rtt> {
+    return this.#keep(rtt(picture as never))
+  }
+
+  #keep<T extends object>(used: T): T {
+    this.#used.push(used as unknown as Disposable)
+    return used
+  }
+
+  /** Frees what the effects drew with. */
+  dispose(): void {
+    for (const each of this.#used) each.dispose()
+    this.#used = []
+  }
+}
