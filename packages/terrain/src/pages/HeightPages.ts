@@ -4,7 +4,7 @@ import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
 import type { Tile } from '../tiles/Tile'
 import { PageAtlas } from './PageAtlas'
-import { PageBaker } from './PageBaker'
+import { PageBaker, spacingOf } from './PageBaker'
 import { isPageSource, type PageSource } from './PageSource'
 
 /** Selections after which a page that none came by may be given to another tile: several cameras draw in turn. */
@@ -18,6 +18,9 @@ const RETRY_AFTER = 300
 
 /** Most requests for heights at once. */
 const MOST_REQUESTS = 12
+
+/** Steps of a page within which its heights may differ from the ground: coarse pages have means over about as many. */
+const MARGIN_STEPS = 4
 
 /** Heights that were asked for. */
 interface Loading {
@@ -41,9 +44,13 @@ export class HeightPages {
   readonly #loading = new Map<Tile, Loading>()
   /** Selections at which tiles' heights failed. */
   readonly #failures = new Map<Tile, number>()
+  /** Whole faces that are drawn flat until their heights arrive. */
+  readonly #flat = new Set<Tile>()
   #error: unknown = null
   /** Pages drawn since the atlas was made. */
   drawn = 0
+  /** Calls of `load` in a row that drew no page for want of room. */
+  #refused = 0
 
   /**
    * @param resolution - Cells along a tile's edge.
@@ -74,10 +81,11 @@ export class HeightPages {
   /**
    * Sees to it that whole faces have pages.
    *
+   * @param selection - Number of the last selection.
    * @returns True if all pages were lost, with another renderer.
-   * @throws If another renderer drew the pages that was not disposed of, or heights are of a wrong number.
+   * @throws If another renderer drew the pages that was not disposed of, or the source gave something else than heights.
    */
-  begin(renderer: Renderer, roots: readonly Tile[]): boolean {
+  begin(renderer: Renderer, roots: readonly Tile[], selection: number): boolean {
     if (this.#error !== null) throw this.#error
     const isNew = renderer !== this.#renderer
     if (isNew) {
@@ -85,20 +93,40 @@ export class HeightPages {
       this.clear()
       this.#renderer = renderer
     }
-    const missing = roots.filter(({ slot }) => slot < 0)
-    if (missing.length > 0) this.load(missing, 0, missing.length)
     for (const root of roots) {
-      // Flat until its heights arrive.
-      if (root.slot < 0) this.#draw(root, this.#flat(), this.#place(0))
-      root.fade = 0
+      if (root.slot < 0 || this.#flat.has(root)) this.#drawRoot(root, selection)
     }
     return isNew
   }
 
-  /** Heights of a face that are still on their way: none. */
-  #flat(): Float32Array {
-    const height = Math.min(Math.max(0, this.#source.lowest), this.#source.highest)
-    return new Float32Array((this.atlas.surfaceSide + 2) ** 2).fill(height)
+  /** True if no page comes that is missing: its heights fail, or there is no room and stays none. */
+  get isStuck(): boolean {
+    return this.#refused > 0 ? this.#refused > KEEP_FOR : this.#loading.size === 0
+  }
+
+  /** True if a whole face that the last selection came by is still flat. */
+  isFlat(selection: number): boolean {
+    return [...this.#flat].some(({ lastDrawn }) => lastDrawn === selection)
+  }
+
+  /** Draws a whole face: flat until its heights arrive. */
+  #drawRoot(root: Tile, selection: number): void {
+    const heights = this.#heightsOf(root, selection)
+    if (heights !== undefined) {
+      this.#draw(root, heights, root.slot < 0 ? this.#place(selection) : root.slot)
+      this.#flat.delete(root)
+    } else if (root.slot < 0) {
+      const { lowest, highest } = this.#source
+      const flat = new Float32Array(this.#length).fill(Math.min(Math.max(0, lowest), highest))
+      this.#bake(root, flat, this.#place(selection))
+      this.#flat.add(root)
+    }
+    root.fade = 0
+  }
+
+  /** Number of a page's heights. */
+  get #length(): number {
+    return (this.atlas.surfaceSide + 2) ** 2
   }
 
   /**
@@ -111,22 +139,39 @@ export class HeightPages {
    */
   load(tiles: readonly Tile[], selection: number, most: number): number {
     let count = 0
+    let refused = 0
     for (const tile of tiles) {
       if (count >= most) break
       const heights = this.#heightsOf(tile, selection)
       if (heights === undefined) continue
       const slot = this.#place(selection)
       // All pages are in use: the ground stays as coarse as it is.
-      if (slot < 0) break
+      if (slot < 0) {
+        refused = count > 0 ? 1 : this.#refused + 1
+        break
+      }
       this.#draw(tile, heights, slot)
-      this.#loading.delete(tile)
       count++
     }
+    this.#refused = refused
     this.#abandon(selection)
     return count
   }
 
   #draw(tile: Tile, heights: Float32Array | null, slot: number): void {
+    this.#bake(tile, heights, slot)
+    this.#loading.delete(tile)
+    if (heights === null) return
+    const { lowest, highest } = this.#source
+    const spacing = spacingOf(tile, this.#baker.ellipsoid, this.atlas.surfaceSide - 1)
+    const margin = this.#source.variation(MARGIN_STEPS * spacing)
+    const least = heights.reduce((a, b) => Math.min(a, b))
+    const most = heights.reduce((a, b) => Math.max(a, b))
+    tile.lowest = Math.min(Math.max(least - margin, lowest), least)
+    tile.highest = Math.max(Math.min(most + margin, highest), most)
+  }
+
+  #bake(tile: Tile, heights: Float32Array | null, slot: number): void {
     const owner = this.#owners[slot]
     if (owner !== null) owner.slot = -1
     this.#owners[slot] = tile
@@ -152,38 +197,45 @@ export class HeightPages {
     const abort = new AbortController()
     const loading: Loading = { abort, wanted: selection, heights: null }
     this.#loading.set(tile, loading)
-    const finish = (heights: Float32Array | null): void => {
+    const giveUp = (): void => {
       if (this.#loading.get(tile) !== loading) return
-      loading.heights = this.#checked(heights)
-      if (loading.heights !== null) return
       this.#loading.delete(tile)
       this.#failures.set(tile, loading.wanted)
+    }
+    const finish = (answer: unknown): void => {
+      if (this.#loading.get(tile) !== loading) return
+      loading.heights = this.#checked(answer)
+      if (loading.heights === null) giveUp()
     }
     try {
       const answer = source.loadHeights(this.#baker.request(tile), abort.signal)
       if (answer instanceof Float32Array) finish(answer)
-      else answer.then(finish, () => finish(null))
+      else Promise.resolve<unknown>(answer).then(finish, giveUp)
     } catch {
-      finish(null)
+      giveUp()
     }
     return loading.heights ?? undefined
   }
 
-  /** Heights that can be drawn; null if one is no number. */
-  #checked(heights: Float32Array | null): Float32Array | null {
-    if (heights === null) return null
-    const length = (this.atlas.surfaceSide + 2) ** 2
-    if (heights.length === length) return heights.every(Number.isFinite) ? heights : null
+  /** Heights that can be drawn; null if they cannot. */
+  #checked(heights: unknown): Float32Array | null {
+    const length = this.#length
+    const isArray = heights instanceof Float32Array
+    if (isArray && heights.length === length) return heights.every(Number.isFinite) ? heights : null
+    const rule = `source.loadHeights must give a Float32Array of ${length} heights`
     try {
-      fail('Terrain', `source.loadHeights must give ${length} heights`, heights.length)
+      fail('Terrain', rule, isArray ? heights.length : heights)
     } catch (error) {
       this.#error = error
     }
     return null
   }
 
-  /** Gives up heights that nobody waits for. */
+  /** Gives up heights that nobody waits for, and forgets failures that no longer count. */
   #abandon(selection: number): void {
+    for (const [tile, failed] of this.#failures) {
+      if (selection - failed >= RETRY_AFTER) this.#failures.delete(tile)
+    }
     for (const [tile, { wanted, abort }] of this.#loading) {
       if (selection - wanted <= WAIT_FOR) continue
       abort.abort()
@@ -210,6 +262,7 @@ export class HeightPages {
     for (const { abort } of this.#loading.values()) abort.abort()
     this.#loading.clear()
     this.#failures.clear()
+    this.#flat.clear()
     for (const [slot, owner] of this.#owners.entries()) {
       if (owner !== null) owner.slot = -1
       this.#owners[slot] = null
@@ -221,6 +274,7 @@ export class HeightPages {
   dispose(): void {
     this.clear()
     this.#renderer = null
+    this.#error = null
     this.atlas.dispose()
     this.#baker.dispose()
   }

@@ -1,5 +1,5 @@
 import type { Vector3 } from 'three'
-import type { GroundBounds, HeightSource } from '../heights/HeightSource'
+import type { GroundBounds } from '../heights/HeightSource'
 
 /** Heights that a page asks for: a square grid over a tile, and one step beyond each of its edges. */
 export interface PageRequest {
@@ -36,11 +36,11 @@ export interface PageSource extends GroundBounds {
    * Heights of a page [m], row by row, `side`² of them. Neighbouring tiles must get the same heights along their common edge.
    *
    * @param signal - Aborted when nobody needs the page any more.
-   * @returns The heights, or a promise of them; a rejected one is asked for again later.
+   * @returns The heights, or a promise of them. If it is rejected, or a height is not finite, they are asked for again later; anything
+   * else has the terrain's next update throw.
    */
   loadHeights(request: PageRequest, signal: AbortSignal): Float32Array | Promise<Float32Array>
 }
 
 /** True of a source whose heights come as numbers. */
-export const isPageSource = (source: HeightSource | PageSource): source is PageSource =>
-  'loadHeights' in source
+export const isPageSource = (source: GroundBounds): source is PageSource => 'loadHeights' in source

@@ -30,8 +30,8 @@ export class PagedTiles {
   pagesPerFrame = 1
   /** True if nothing is missing in the last selection, and all pages have faded in. */
   isFull = false
-  /** False until a picture was full. */
-  #wasFull = false
+  /** Levels that the ground stayed too coarse by in the last picture that was as full as it gets; null before the first. */
+  #lastLag: number | null = null
   /** Frame of the renderer, and pages that may still be drawn in it. */
   #frame = -1
   #pagesLeft = 0
@@ -61,30 +61,34 @@ export class PagedTiles {
    */
   update(renderer: Renderer, viewer: Viewer, most?: number): void {
     const { tree, pages, selection } = this
-    if (pages.begin(renderer, tree.roots)) this.#wasFull = false
+    if (pages.begin(renderer, tree.roots, tree.selections)) this.#lastLag = null
     const { frame } = renderer.info
     if (frame !== this.#frame) {
       this.#frame = frame
-      this.#pagesLeft = this.pagesPerFrame * (this.#wasFull ? 1 : FIRST_PAGES)
+      this.#pagesLeft = this.pagesPerFrame * (this.#lastLag === null ? FIRST_PAGES : 1)
     }
     let left = most ?? this.#pagesLeft
-    const isAtOnce = left === Infinity || !this.#wasFull
-    for (let drawn = -1; drawn !== 0;) {
+    const isAtOnce = left === Infinity || this.#lastLag === null
+    let drawn = 0
+    do {
       tree.select(viewer, CAPACITY, selection)
       drawn = pages.load(selection.missing, tree.selections, left)
       left -= drawn
-      const leaps = isAtOnce || selection.lag >= LEAP
+      const leaps = isAtOnce || selection.lag - (this.#lastLag ?? 0) >= LEAP
       for (const tile of selection.tiles) tile.show(frame, leaps ? 1 : 1 / FADE_FRAMES)
-      if (!isAtOnce) break
-    }
+    } while (isAtOnce && drawn > 0)
     if (most === undefined) this.#pagesLeft = left
-    this.isFull = selection.lag === 0
-    this.#wasFull ||= this.isFull
+    this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
+    // A lag without a missing page is of pages that fade in.
+    const isFading = selection.lag > 0 && selection.missing.length === 0
+    const isStuck = left > 0 && drawn === 0 && !isFading && pages.isStuck
+    if (this.isFull || isStuck) this.#lastLag = selection.lag
   }
 
   /** Frees pages; the next update begins anew. */
   dispose(): void {
     this.pages.dispose()
-    this.#wasFull = this.isFull = false
+    this.#lastLag = null
+    this.isFull = false
   }
 }

@@ -1,6 +1,7 @@
 import { Vector3 } from 'three'
 import type { Ellipsoid } from '@welkin/geo'
 import type { GroundBounds, HeightSample } from '../heights/HeightSource'
+import { isPageSource } from '../pages/PageSource'
 import { cubeToEllipsoid, faceAxes } from './cpu/cubeSphere'
 
 const sample: HeightSample = { height: 0, gradient: new Vector3() }
@@ -22,9 +23,9 @@ export class Tile {
   readonly direction: Vector3
   /** Angle at the planet's centre that the tile reaches from its own, in the same space [rad]. */
   readonly spread: number
-  /** Bounds of its heights [m]. */
-  readonly lowest: number
-  readonly highest: number
+  /** Bounds of its heights, once they are loaded those of its page [m]. */
+  lowest: number
+  highest: number
   /** Four tiles of half its size; null before any is needed. */
   children: Tile[] | null = null
   /** Number of the last selection that came by. */
@@ -79,6 +80,10 @@ export class Tile {
     this.direction = this.cube.clone().normalize()
     this.spread = 2 * Math.asin(Math.min(this.radius / ellipsoid.minimumRadius / 2, 1))
     const { lowest, highest } = parent ?? source
+    this.lowest = lowest
+    this.highest = highest
+    // Until all data has come, a source of loaded heights may answer with coarse ones.
+    if (isPageSource(source)) return
     const { height } = source.sampleAt(this.center, sample)
     // Of the arc, which is longer than the chord by 11 % at most.
     const variation = source.variation(1.12 * this.radius)
