@@ -215,8 +215,7 @@ export const Shadows: Story = {
     heading: 322,
     pitch: -20,
     timeLapse: 20
-  },
-  tags: ['screenshot', 'webgpu-only']
+  }
 }
 
 /** Each preset over the same land; choose one. */

@@ -94,7 +94,7 @@ export const NightRooftops: Story = {
 export const NightOrbit: Story = {
   name: 'By night: 400 km',
   args: { place: 'orbit', hour: 15 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const NightGlobe: Story = {

@@ -161,7 +161,7 @@ gpuTest(
       expectTrue(most < 1 / 255, `changes by ${most} in a frame`)
       sky.dispose()
     }),
-  // The same passes as in the last two tests, which both backends run.
+  // The same passes as in the test with a pole, which both backends run.
   { backends: ['webgpu'], timeoutSeconds: 300 }
 )
 
@@ -298,5 +298,6 @@ gpuTest(
       sky.dispose()
       fresh.dispose()
     }),
-  { timeoutSeconds: 300 }
+  // Matrices are of the CPU.
+  { backends: ['webgpu'], timeoutSeconds: 300 }
 )

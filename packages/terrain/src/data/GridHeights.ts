@@ -65,7 +65,8 @@ const clamp = (value: number, low: number, high: number): number =>
  * scene.add(new Terrain(atmosphere, heights))
  * ```
  *
- * Coarse pages take averages. Beyond the edges the outermost heights go on and fade to `outside`; holes are filled from about them.
+ * Coarse pages take averages: of 2 × 2 numbers, 4 × 4 and so on, around the planet as far as these divide the number of columns.
+ * Beyond the edges the outermost heights go on and fade to `outside`; holes are filled from about them.
  */
 export class GridHeights implements PageSource {
   readonly lowest: number
@@ -75,11 +76,11 @@ export class GridHeights implements PageSource {
   readonly #levels: readonly Raster[]
   readonly #west: number
   readonly #north: number
-  /** Width of a column and height of a row [rad], and of the whole grid. */
+  /** Width of a column and height of a row [rad]. */
   readonly #stepX: number
   readonly #stepY: number
   readonly #radii: Vector3
-  /** True of a grid that goes around the planet. */
+  /** True if the grid goes around the planet. */
   readonly #wraps: boolean
   readonly #outside: number
   readonly #fade: number
@@ -145,7 +146,10 @@ export class GridHeights implements PageSource {
     const numbers = Float32Array.from(values, value => (value === noData ? NaN : value * scale))
     let level = fillHoles({ width, height, values: numbers }, outside)
     const levels = [level]
-    while (Math.min(level.width, level.height) >= 4) levels.push((level = halved(level)))
+    // Around the planet a level has as many columns as fit: an odd number has no half.
+    while (Math.min(level.width, level.height) >= 4 && !(this.#wraps && level.width % 2 === 1)) {
+      levels.push((level = halved(level)))
+    }
     this.#levels = levels
     const { low, high, right, down } = boundsOf(levels[0], this.#wraps)
     const over = OVERSHOOT * (high - low)

@@ -6,10 +6,12 @@ import type { PageRequest, PageSource } from '../pages/PageSource'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
 import { loadPixels, type Pixels } from './loadPixels'
 import {
+  isPolar,
   MERCATOR_LIMIT,
   mercatorLatitude,
   mercatorX,
   mercatorY,
+  POLAR,
   tileKey,
   tileOfKey
 } from './mercator'
@@ -28,7 +30,7 @@ export interface HeightTilesOptions {
   maxZoom?: number
   /** Pixels along a tile's edge, default 256. */
   size?: number
-  /** Most memory of decoded tiles, > 0, default 64 [MB]. */
+  /** Most memory of decoded tiles, > 0, default 64 [MB]: the coarsest level stays if it takes no more than half of it. */
   memory?: number
   /** Most requests at once, ≥ 1, default 8. */
   concurrency?: number
@@ -36,7 +38,7 @@ export interface HeightTilesOptions {
   retries?: number
   /** Wait before the first of these, doubled each time, ≥ 0, default 0.5 [s]. */
   backOff?: number
-  /** Bounds of what is taken for a height, default −11,500 and 9,000: other pixels are holes [m]. */
+  /** Bounds of what is taken for a height, default −11,500 (Terrain-RGB −9,999) and 9,000: other pixels are holes [m]. */
   lowest?: number
   highest?: number
   /** Steepest slope that the data has, > 0, default 3: rise over way [–]. */
@@ -46,8 +48,8 @@ export interface HeightTilesOptions {
   /** Default WGS84; one of revolution. */
   ellipsoid?: Ellipsoid
   /**
-   * Loads the pixels of a picture, by default with the browser's own means. Null says that there is none; an error, that it
-   * may be tried again.
+   * Loads the pixels of a picture, by default with the browser's own means. Null says that there is none, as do answers 204,
+   * 400, 403, 404 and 410 by default; an error, that it may be tried again.
    */
   loadPixels?: (url: string, signal: AbortSignal) => Promise<Pixels | null>
 }
@@ -68,12 +70,8 @@ const DEFAULTS: Required<HeightTilesOptions> = {
   loadPixels
 }
 
-/** Latitude from which on heights go over to those of the coarsest level, whose rows have few tiles [rad], and its row. */
-const POLAR = MERCATOR_LIMIT - 0.01
-const POLAR_ROW = mercatorY(POLAR)
-
-/** True of a row where that is so. */
-const isPolar = (y: number): boolean => y < POLAR_ROW || y > 1 - POLAR_ROW
+/** Columns of the map's edge whose mean is the height of a pole. */
+const EDGE_COLUMNS = Array.from({ length: 16 }, (_, i) => (i + 0.5) / 16)
 
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const near: RasterSample = { value: 0, x: 0, y: 0 }
@@ -91,7 +89,8 @@ export type DecodeHeight = (red: number, green: number, blue: number) => number
  * Heights that are loaded as pictures in tiles of Web Mercator, as they are needed.
  *
  * What is there is used: a tile that does not exist, or is corrupt, is a hole that shows the coarser one; one that fails is tried
- * again, and its page is left to its parent meanwhile. The tiles of the coarsest level stay.
+ * again, and its page is left to its parent meanwhile. The tiles of the coarsest level stay while all of them take no more than
+ * half of the memory.
  */
 export class HeightTiles implements PageSource {
   readonly lowest: number
@@ -150,7 +149,9 @@ export class HeightTiles implements PageSource {
     this.lowest = lowest - OVERSHOOT * 1000
     this.highest = highest + OVERSHOOT * 1000
     this.#pyramid = new TilePyramid(size, minZoom, Math.min(Math.max(0, lowest), highest))
-    this.#cache = new TileCache(1e6 * memory, key => tileOfKey(key).z === minZoom)
+    const budget = 1e6 * memory
+    const isSmall = 4 ** minZoom * Float32Array.BYTES_PER_ELEMENT * size ** 2 <= budget / 2
+    this.#cache = new TileCache(budget, key => isSmall && tileOfKey(key).z === minZoom)
     this.#requests = new TileRequests((key, signal) => this.#loadTile(key, signal), all)
   }
 
@@ -224,6 +225,7 @@ export class HeightTiles implements PageSource {
     this.#requests.clear()
     this.#cache.clear()
     this.#absent.clear()
+    this.#pyramid.forget()
     this.#version++
   }
 
@@ -255,10 +257,13 @@ export class HeightTiles implements PageSource {
         for (const j of [top, bottom]) keys.add(tileKey(level, i, j))
       }
     }
+    const edges = new Set<number>()
     for (let i = 0; i < x.length; i++) {
       if (y[i] >= 0 && y[i] <= 1) add(z, x[i], y[i])
+      else edges.add(y[i] < 0 ? 0 : 1)
       if (isPolar(y[i])) add(coarsest, x[i], y[i])
     }
+    for (const y of edges) for (const column of EDGE_COLUMNS) add(coarsest, column, y)
     return keys
   }
 
@@ -297,12 +302,12 @@ export class HeightTiles implements PageSource {
       throw new PermanentFailure(`tile ${z}/${x}/${y} is no picture of ${size} × ${size} pixels`)
     }
     const { lowest, highest } = this.#options
+    const { data } = pixels
     const heights = new Float32Array(count)
     let holes = 0
     for (let i = 0; i < count; i++) {
-      const [red, green, blue, alpha] = [0, 1, 2, 3].map(part => pixels.data[4 * i + part])
-      const height = this.#decode(red, green, blue)
-      const isHeight = alpha > 0 && height >= lowest && height <= highest
+      const height = this.#decode(data[4 * i], data[4 * i + 1], data[4 * i + 2])
+      const isHeight = data[4 * i + 3] > 0 && height >= lowest && height <= highest
       heights[i] = isHeight ? height : NaN
       if (!isHeight) holes++
     }
@@ -335,11 +340,10 @@ export class HeightTiles implements PageSource {
 
   /** Mean of the heights along an edge of the map. */
   #edgeMean(y: number, find: FindTile): number {
-    const count = 16
     let sum = 0
-    for (let i = 0; i < count; i++) {
-      sum += this.#pyramid.sample(this.minZoom, (i + 0.5) / count, y, find, polar).value
+    for (const x of EDGE_COLUMNS) {
+      sum += this.#pyramid.sample(this.minZoom, x, y, find, polar).value
     }
-    return sum / count
+    return sum / EDGE_COLUMNS.length
   }
 }

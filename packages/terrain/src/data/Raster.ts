@@ -21,7 +21,7 @@ export function halved({ width, height, values }: Raster): Raster {
   return { ...made, values: means }
 }
 
-/** Mean of the four values that are numbers, of those of 2 × 2; NaN if none is. */
+/** Mean of the values that are numbers; NaN if none is. */
 function meanOfNumbers(values: readonly number[]): number {
   const numbers = values.filter(Number.isFinite)
   return numbers.length > 0 ? numbers.reduce((sum, value) => sum + value, 0) / numbers.length : NaN

@@ -29,7 +29,8 @@ export class TerrariumTiles extends HeightTiles {
 }
 
 /**
- * Heights in tiles of the Terrain-RGB format: (red × 65,536 + green × 256 + blue) / 10 − 10,000 m.
+ * Heights in tiles of the Terrain-RGB format: (red × 65,536 + green × 256 + blue) / 10 − 10,000 m. Black, −10,000 m, says that
+ * there is none: `lowest` is −9,999 by default.
  *
  * @see "Access elevation data", https://docs.mapbox.com/data/tilesets/guides/access-elevation-data/
  */
@@ -41,6 +42,6 @@ export class TerrainRGBTiles extends HeightTiles {
   constructor(url: string | TileUrl, options: HeightTilesOptions = {}) {
     const decode = (red: number, green: number, blue: number): number =>
       (red * 65_536 + green * 256 + blue) / 10 - 10_000
-    super('TerrainRGBTiles', url, decode, { lowest: -9999, ...options })
+    super('TerrainRGBTiles', url, decode, { ...options, lowest: options.lowest ?? -9999 })
   }
 }

@@ -69,6 +69,13 @@ export class TilePyramid {
     return this.sample(z, x, y, find, scratch).value
   }
 
+  /** Forgets the tile that was found last. */
+  forget(): void {
+    this.#find = () => undefined
+    this.#last = undefined
+    this.#lastZ = -1
+  }
+
   #tileAt(z: number, column: number, row: number): HeightTile | undefined {
     const x = Math.floor(column / this.size)
     const y = Math.floor(row / this.size)

@@ -1,8 +1,8 @@
 import type { Vector3 } from 'three'
 
-/** Place on an ellipsoid as angles, with lengths of a degree's worth. */
+/** Place on an ellipsoid as angles. */
 export interface GeographicPlace {
-  /** [rad], in (−π, π]. */
+  /** East, in (−π, π] [rad]. */
   longitude: number
   /** Geodetic [rad]. */
   latitude: number

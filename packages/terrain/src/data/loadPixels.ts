@@ -7,8 +7,11 @@ export interface Pixels {
   readonly data: ArrayLike<number>
 }
 
-/** Answers of a server after which it need not be asked again. */
-const GONE = new Set([204, 400, 401, 403, 404, 410])
+/**
+ * Answers of a server after which it need not be asked again. 403 is among them: storage that nobody may list gives it for
+ * files that do not exist. 401 is not: a name or a key may come later.
+ */
+const GONE = new Set([204, 400, 403, 404, 410])
 
 /**
  * Loads the pixels of a picture in a browser, as they stand in the file: no colour profile or alpha is applied to them.

@@ -1,6 +1,9 @@
 /** Latitude at which the square of Web Mercator ends [rad]. */
 export const MERCATOR_LIMIT = Math.atan(Math.sinh(Math.PI))
 
+/** Latitude from which on heights go over to those of the coarsest level, whose rows have few tiles [rad]. */
+export const POLAR = MERCATOR_LIMIT - 0.01
+
 /** Column of a longitude: 0 at −180°, 1 at 180°. */
 export const mercatorX = (longitude: number): number => 0.5 + longitude / (2 * Math.PI)
 
@@ -10,6 +13,11 @@ export const mercatorY = (latitude: number): number =>
 
 /** Geodetic latitude of a row [rad]. */
 export const mercatorLatitude = (y: number): number => Math.atan(Math.sinh(2 * Math.PI * (0.5 - y)))
+
+const POLAR_ROW = mercatorY(POLAR)
+
+/** True for a row that is nearer to a pole than `POLAR`. */
+export const isPolar = (y: number): boolean => y < POLAR_ROW || y > 1 - POLAR_ROW
 
 /** Tiles have numbers as keys: exact up to level 23. */
 const LEVELS = 32

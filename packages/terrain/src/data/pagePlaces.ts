@@ -7,7 +7,7 @@ const BLOCK = 10
 /** Longest such step between which the others are linear, to 0.1 m at 45° of latitude and 0.5 m at 80° [m]. */
 const LONGEST = 2000
 
-/** Sine of the latitude up to which. */
+/** Sine of the latitude up to which places between exact ones are linear [–]. */
 const LINEAR_TO = 0.98
 
 /** Coordinates of a page's places on a map. */

@@ -12,7 +12,7 @@ export interface WalkerOptions {
   speed?: number
   /** Speed off the ground, ≥ 0, default 4.2: a jump of 0.9 m on Earth [m/s]. */
   jumpSpeed?: number
-  /** Default 9.81, > 0 [m/s²]. */
+  /** Acceleration of falls and slides, > 0, default 9.81 [m/s²]. */
   gravity?: number
   /** Slope on which feet hold, in [5, 80], default 45 [°]. */
   steepest?: number
@@ -144,7 +144,7 @@ export class Walker {
     this.#jumpSpeed = value
   }
 
-  /** > 0 [m/s²]. */
+  /** Acceleration of falls and slides, > 0 [m/s²]. */
   get gravity(): number {
     return this.#gravity
   }

@@ -148,6 +148,25 @@ describe('a grid', () => {
     })
     expect(sampleAt(world, 180 - 1e-7, 10).height).toBeCloseTo(sampleAt(world, -180, 10).height, 4)
   })
+
+  // 22 columns have a half, and that one has none.
+  it.each([22, 24, 25])('has no seam in coarse pages around the planet of %d columns', width => {
+    const height = 64
+    const numbers = Array.from({ length: width * height }, (_, i) => 100 * ((i % width) % 7))
+    const around = { west: -180, east: 180, south: -90, north: 90 }
+    const world = new GridHeights(numbers, { width, height, ...around })
+    const page = { face: 1, level: 0, x: 0, y: 0, side: 2 }
+    for (const spacing of [1e5, 7e5, 1.3e6, 5.3e6, 1e7]) {
+      const heights = world.loadHeights({
+        ...page,
+        spacing,
+        placeOf: (column, row) =>
+          earth.geodeticToECEF({ longitude: 180 + (column - 0.5) * 1e-7, latitude: 20 * row })
+      })
+      expect(heights[0]).toBeCloseTo(heights[1], 3)
+      expect(heights[2]).toBeCloseTo(heights[3], 3)
+    }
+  })
 })
 
 it.each<[string, () => unknown]>([

@@ -100,21 +100,46 @@ describe('heights', () => {
   })
 
   it('are within the bounds that it states, at random places', async () => {
-    const { tiles } = tilesOf()
-    await tiles.loadHeights(pageAt(10, 47, 6), never)
-    fc.assert(
-      fc.property(fc.double({ min: 8, max: 12, noNaN: true }), longitude => {
-        const { height } = sampleAt(tiles, longitude, 47)
-        expect(height).toBeGreaterThan(tiles.lowest)
-        expect(height).toBeLessThan(tiles.highest)
-      })
+    // The hills' own bounds; their steepest slope is 0.0015.
+    const { tiles } = tilesOf(undefined, { lowest: 500, highest: 2500, steepest: 0.002 })
+    await tiles.loadHeights(pageAt(5.6, 45, 6), never)
+    expect([tiles.lowest, tiles.highest]).toEqual([210, 2790])
+    // All of one tile, whose edges are 0° and 11.25° east, 41° and 48.9° north.
+    const anywhere = fc.tuple(
+      fc.double({ min: 1, max: 10, noNaN: true }),
+      fc.double({ min: 42, max: 48, noNaN: true })
     )
-    expect(tiles.variation(10)).toBeCloseTo(30)
+    fc.assert(
+      fc.property(anywhere, anywhere, ([a, b], [c, d]) => {
+        const [first, second] = [sampleAt(tiles, a, b).height, sampleAt(tiles, c, d).height]
+        expect(first).toBeGreaterThan(tiles.lowest)
+        expect(first).toBeLessThan(tiles.highest)
+        expect(Math.abs(first - hills(a, b))).toBeLessThan(1)
+        const distance = earth
+          .geodeticToECEF({ longitude: a, latitude: b })
+          .distanceTo(earth.geodeticToECEF({ longitude: c, latitude: d }))
+        expect(Math.abs(first - second)).toBeLessThanOrEqual(tiles.variation(distance) + 0.01)
+      }),
+      { numRuns: 300 }
+    )
+    expect(tiles.variation(10)).toBeCloseTo(0.02)
     expect(tiles.variation(1e9)).toBeCloseTo(tiles.highest - tiles.lowest)
+  })
+
+  it('about a pole do not depend on what was loaded before', async () => {
+    const options = { minZoom: 3 }
+    // One page in each quarter about it.
+    const [low, high] = [-3 / 64, 3 / 64]
+    const pages = [low, high].flatMap(x => [low, high].map(y => pageOf(4, 6, x, y)))
+    const alone = await tilesOf(undefined, options).tiles.loadHeights(pages[3], never)
+    const { tiles } = tilesOf(undefined, options)
+    for (const page of pages) await tiles.loadHeights(page, never)
+    expect(tiles.loadHeights(pages[3], never)).toEqual(alone)
   })
 
   it('are decoded from Terrain-RGB, too', async () => {
     const tiles = new TerrainRGBTiles((z, x, y) => `${z}/${x}/${y}`, {
+      lowest: undefined,
       size: 2,
       maxZoom: 0,
       // 123.4 m: 101,234 tenths over −10,000 m.
@@ -126,6 +151,7 @@ describe('heights', () => {
     })
     const heights = await tiles.loadHeights(pageAt(0, 0, 0), never)
     expect(heights.every(height => Math.abs(height - 123.4) < 1e-3)).toBe(true)
+    expect(tiles.lowest).toBe(-9999 - 290)
   })
 })
 
@@ -209,6 +235,13 @@ describe('memory and flights', () => {
     expect(asked.filter(url => url === '0/0/0').length).toBe(count)
     tiles.dispose()
     expect(tiles.tiles).toEqual({ count: 0, loading: 0, bytes: 0 })
+  })
+
+  it('keeps to its budget where the coarsest level alone is larger', async () => {
+    const bytes = 4 * SIZE ** 2
+    const { tiles } = tilesOf(undefined, { minZoom: 3, memory: (10 * bytes) / 1e6 })
+    for (let face = 0; face < 6; face++) await tiles.loadHeights(pageOf(face, 0, 0, 0), never)
+    expect(tiles.tiles.bytes).toBe(10 * bytes)
   })
 
   it('gives up what a fast flight has left behind, and ends with what it came to', async () => {

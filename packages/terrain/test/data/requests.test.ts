@@ -1,4 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest'
+import { loadPixels } from '../../src/data/loadPixels'
 import { tileKey, tileOfKey } from '../../src/data/mercator'
 import { TileCache } from '../../src/data/TileCache'
 import { PermanentFailure, TileRequests } from '../../src/data/TileRequests'
@@ -60,18 +61,36 @@ describe('requests', () => {
 
   it('are not made again after a final failure, nor after the end', async () => {
     let count = 0
-    const requests = new TileRequests(async () => {
+    const requests = new TileRequests(async key => {
       count++
-      throw new PermanentFailure('none')
+      throw key === 0 ? new PermanentFailure('none') : new Error('down')
     }, settings)
     await expect(requests.get(0, 0, never)).rejects.toThrow('none')
+    await vi.advanceTimersByTimeAsync(5000)
     expect(count).toBe(1)
+    // One that rests before its next attempt.
     const rest = requests.get(1, 0, never).catch((error: Error) => error.message)
+    await vi.advanceTimersByTimeAsync(100)
+    expect(count).toBe(2)
     requests.clear()
     expect(await rest).toContain('aborted')
     await vi.advanceTimersByTimeAsync(5000)
-    expect(requests.loading).toBe(0)
+    expect([count, requests.loading, requests.size]).toEqual([2, 0, 0])
   })
+})
+
+it('a picture that the server says is not there is none, and any other answer may change', async () => {
+  const answer = vi.fn<typeof fetch>()
+  vi.stubGlobal('fetch', answer)
+  for (const status of [204, 400, 403, 404, 410]) {
+    answer.mockResolvedValueOnce(new Response(null, { status }))
+    expect(await loadPixels('tile', never)).toBeNull()
+  }
+  for (const status of [401, 429, 500, 503]) {
+    answer.mockResolvedValueOnce(new Response(null, { status }))
+    await expect(loadPixels('tile', never)).rejects.toThrow(`tile: ${status}`)
+  }
+  vi.unstubAllGlobals()
 })
 
 it('a cache lets go of what was not used for the longest time', () => {
