@@ -49,7 +49,7 @@ export class HeightPages {
   #error: unknown = null
   /** Pages drawn since the atlas was made. */
   drawn = 0
-  /** Calls of `load` in a row that drew no page for want of room. */
+  /** Pages in a row that there was no room for. */
   #refused = 0
 
   /**
@@ -112,13 +112,14 @@ export class HeightPages {
   /** Draws a whole face: flat until its heights arrive. */
   #drawRoot(root: Tile, selection: number): void {
     const heights = this.#heightsOf(root, selection)
+    const slot = root.slot < 0 ? this.#place(selection) : root.slot
     if (heights !== undefined) {
-      this.#draw(root, heights, root.slot < 0 ? this.#place(selection) : root.slot)
+      this.#draw(root, heights, slot)
       this.#flat.delete(root)
     } else if (root.slot < 0) {
       const { lowest, highest } = this.#source
       const flat = new Float32Array(this.#length).fill(Math.min(Math.max(0, lowest), highest))
-      this.#bake(root, flat, this.#place(selection))
+      this.#bake(root, flat, slot)
       this.#flat.add(root)
     }
     root.fade = 0
@@ -139,7 +140,6 @@ export class HeightPages {
    */
   load(tiles: readonly Tile[], selection: number, most: number): number {
     let count = 0
-    let refused = 0
     for (const tile of tiles) {
       if (count >= most) break
       const heights = this.#heightsOf(tile, selection)
@@ -147,13 +147,13 @@ export class HeightPages {
       const slot = this.#place(selection)
       // All pages are in use: the ground stays as coarse as it is.
       if (slot < 0) {
-        refused = count > 0 ? 1 : this.#refused + 1
+        this.#refused++
         break
       }
+      this.#refused = 0
       this.#draw(tile, heights, slot)
       count++
     }
-    this.#refused = refused
     this.#abandon(selection)
     return count
   }

@@ -1,6 +1,6 @@
 import { DataTexture, FloatType, NearestFilter, RedFormat, Vector3 } from 'three'
 import { FragmentPass } from '@welkin/atmosphere'
-import { fail, type Ellipsoid } from '@welkin/geo'
+import type { Ellipsoid } from '@welkin/geo'
 import { uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
@@ -92,16 +92,11 @@ export class PageBaker {
   /**
    * Draws a page; the renderer is left as it was.
    *
-   * @param heights - Loaded heights, as `request` asked for them; null for a source that is a function.
-   * @throws If their number is another.
+   * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
     const { atlas } = this
     if (this.#loaded !== null && heights !== null) {
-      const { length } = this.#loaded.image.data!
-      if (heights.length !== length) {
-        fail('Terrain', `source.loadHeights must give ${length} heights`, heights.length)
-      }
       ;(this.#loaded.image.data as Float32Array).set(heights)
       this.#loaded.needsUpdate = true
     }

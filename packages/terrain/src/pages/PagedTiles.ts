@@ -79,10 +79,8 @@ export class PagedTiles {
     } while (isAtOnce && drawn > 0)
     if (most === undefined) this.#pagesLeft = left
     this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
-    // A lag without a missing page is of pages that fade in.
-    const isFading = selection.lag > 0 && selection.missing.length === 0
-    const isStuck = left > 0 && drawn === 0 && !isFading && pages.isStuck
-    if (this.isFull || isStuck) this.#lastLag = selection.lag
+    const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
+    if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
   }
 
   /** Frees pages; the next update begins anew. */
