@@ -2,7 +2,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { createLightShafts } from './lightShafts.scene'
 import type { LightShaftsArgs } from './lightShafts.scene'
 import { mount } from './mount'
-import { rendererArgTypes } from './storyArgs'
+import { rendererArgTypes, shaftArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const code = `${storyCode('quickStart.ts', 'quick start')}
@@ -16,37 +16,22 @@ ${storyCode('lightShafts.scene.ts', 'shafts of clouds')}
 ${storyCode('lightShafts.scene.ts', 'exposure under clouds')}`
 
 const { forceWebGL, frame } = rendererArgTypes
+const { strength, turbidity, azimuth, exposure } = shaftArgTypes
 const hidden = { table: { disable: true } }
 
 const meta: Meta<LightShaftsArgs> = {
   title: 'Light shafts',
   render: mount(createLightShafts, code, ({ view }) => view),
   argTypes: {
-    strength: {
-      name: 'Strength',
-      control: { type: 'range', min: 0, max: 3, step: 0.05 },
-      description: 'Part of the light that shadowed air loses: 1 is physical, 0 has no shafts'
-    },
-    turbidity: {
-      name: 'Haze',
-      control: { type: 'range', min: 1, max: 12, step: 0.25 },
-      description: 'Turbidity of the air: 1 is clear, 6 thick haze'
-    },
+    strength,
+    turbidity,
     elevation: {
       name: 'Elevation [°]',
       control: { type: 'range', min: -6, max: 60, step: 0.5 },
       description: 'Of the sun, or of the moon by night'
     },
-    azimuth: {
-      name: 'Azimuth [°]',
-      control: { type: 'range', min: 0, max: 360, step: 1 },
-      description: 'Clockwise from north'
-    },
-    exposure: {
-      name: 'Exposure [stops]',
-      control: { type: 'range', min: -4, max: 4, step: 0.25 },
-      description: '0 as exposureFor says'
-    },
+    azimuth,
+    exposure,
     forceWebGL,
     frame,
     view: hidden,

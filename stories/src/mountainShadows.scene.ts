@@ -18,16 +18,10 @@ import {
 } from 'three'
 import { shadow } from 'three/tsl'
 import { Air } from './air'
-import { aimShadow, prepareShadow } from './globe/sunShadow'
-import { Explorer } from './moving/Explorer'
-import {
-  createRenderer,
-  exposureOf,
-  frameClock,
-  type RendererArgs,
-  type SceneHandle
-} from './scene'
+import { prepareShadow } from './globe/sunShadow'
+import { createRenderer, exposureOf, type RendererArgs, type SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
+import { GroundCamera } from './terrain/GroundCamera'
 
 export interface MountainShadowsArgs extends RendererArgs {
   /** Part of the light that shadowed air loses; 1 is physical, 0 has no shafts. */
@@ -96,15 +90,8 @@ export async function createMountainShadows(
   scene.add(terrain)
   prepareShadow(sun)
 
-  const { ellipsoid, worldToECEF } = atmosphere
-  const ecefToWorld = new Matrix4().copy(worldToECEF).invert()
-  const position = new Vector3()
-  const toECEF = (place: Vector3): Vector3 => position.copy(place).applyMatrix4(worldToECEF)
-  const upAt = (place: Vector3, target: Vector3): Vector3 =>
-    ellipsoid.surfaceNormal(toECEF(place), target).transformDirection(ecefToWorld)
-  const heightAt = (place: Vector3): number => ellipsoid.heightAt(toECEF(place))
-  const groundAt = (place: Vector3): number => terrain.heightBelow(place)
-  const heights = heightsAbovePlane(terrain, heightAt)
+  const ground = new GroundCamera(camera, canvas, terrain, args.frame)
+  const heights = heightsAbovePlane(terrain, place => ground.heightAt(place))
   // #region mountain shadows
   // From the field, whose first texel is in the south-west, to the world: x is east, y up, z south.
   const toWorld = new Matrix4()
@@ -116,11 +103,7 @@ export async function createMountainShadows(
   pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
   // #endregion
 
-  const explorer = args.frame
-    ? undefined
-    : new Explorer(camera, canvas, { upAt, heightAt, groundAt })
-  const elapsed = frameClock(args.frame)
-  camera.position.y = groundAt(camera.position) + HEIGHT
+  camera.position.y = terrain.heightBelow(camera.position) + HEIGHT
   const degree = Math.PI / 180
   camera.rotation.set(PITCH * degree, -HEADING * degree, 0, 'YXZ')
 
@@ -136,14 +119,8 @@ export async function createMountainShadows(
   apply()
   if (args.frame) await atmosphere.bake(renderer) // exposure is that of the tables
 
-  const up = new Vector3()
   const draw = (): void => {
-    explorer?.update(elapsed())
-    camera.updateMatrixWorld()
-    const height = Math.max(heightAt(camera.position) - groundAt(camera.position), 2)
-    camera.near = Math.min(height / 10, 1e4)
-    camera.updateProjectionMatrix()
-    aimShadow(sun, camera, height, upAt(camera.position, up))
+    ground.update(sun)
     atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera)
     pipeline.render()
   }
@@ -152,7 +129,7 @@ export async function createMountainShadows(
     renderer,
     scene,
     camera,
-    explorer,
+    explorer: ground.explorer,
     current,
     apply,
     draw,

@@ -7,7 +7,6 @@ import { overlayOn } from './overlay'
 import {
   applyTime,
   createRenderer,
-  WARM_UP_FRAMES,
   type RendererArgs,
   type SceneHandle,
   type TimeArgs
@@ -188,14 +187,7 @@ export async function createRealHeights(
       if (current.view !== before.view) ground.goTo(VIEWS[current.view])
     },
     draw,
-    async warmUp() {
-      for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-        camera.updateMatrixWorld()
-        terrain.update(renderer, camera, Infinity)
-        draw()
-        await new Promise(requestAnimationFrame)
-      }
-    },
+    warmUp: async () => ground.warmUp(renderer, draw),
     dispose() {
       overlay?.remove()
       village?.dispose()

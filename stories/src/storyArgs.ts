@@ -46,3 +46,27 @@ export const rendererArgTypes: ArgTypes<RendererArgs> = {
     description: 'Draw one reproducible frame, without mouse or animation'
   }
 }
+
+/** Sliders of light shafts, and of what they depend on. */
+export const shaftArgTypes = {
+  strength: {
+    name: 'Strength',
+    control: { type: 'range', min: 0, max: 3, step: 0.05 },
+    description: 'Part of the light that shadowed air loses: 1 is physical, 0 has no shafts'
+  },
+  turbidity: {
+    name: 'Haze',
+    control: { type: 'range', min: 1, max: 12, step: 0.25 },
+    description: 'Turbidity of the air: 1 is clear, 6 thick haze'
+  },
+  azimuth: {
+    name: 'Azimuth [°]',
+    control: { type: 'range', min: 0, max: 360, step: 1 },
+    description: 'Clockwise from north'
+  },
+  exposure: {
+    name: 'Exposure [stops]',
+    control: { type: 'range', min: -4, max: 4, step: 0.25 },
+    description: '0 as exposureFor says'
+  }
+} satisfies ArgTypes

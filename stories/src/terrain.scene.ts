@@ -1,31 +1,17 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { MountainHeights, Terrain, terrainView, Walker } from '@welkin/terrain'
-import { Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
+import { PerspectiveCamera, Scene } from 'three'
 import { Air } from './air'
-import { moveCamera } from './globe/places'
-import { aimShadow, prepareShadow } from './globe/sunShadow'
-import { Explorer } from './moving/Explorer'
+import { prepareShadow } from './globe/sunShadow'
 import {
   applyTime,
   createRenderer,
-  frameClock,
-  WARM_UP_FRAMES,
   type RendererArgs,
   type SceneHandle,
   type TimeArgs
 } from './scene'
 import { storyHandle } from './storyHandle'
-
-/** A view of the made-up planet, above its ground. */
-interface TerrainView {
-  readonly label: string
-  readonly longitude: number
-  readonly latitude: number
-  /** Height above the ground [m]. */
-  readonly height: number
-  readonly heading: number
-  readonly pitch: number
-}
+import { GroundCamera, type GroundView } from './terrain/GroundCamera'
 
 export const VIEWS = {
   meadow: {
@@ -69,7 +55,7 @@ export const VIEWS = {
     heading: 0,
     pitch: -90
   }
-} satisfies Record<string, TerrainView>
+} satisfies Record<string, GroundView>
 
 /** Colours of the ground: its own, or those that tell how it is drawn. */
 export const COLORS = {
@@ -114,34 +100,7 @@ export async function createTerrain(
   const groundColor = terrain.material.colorNode
   let color: keyof typeof COLORS = 'ground'
 
-  const { ellipsoid, worldToECEF } = atmosphere
-  const ecefToWorld = new Matrix4().copy(worldToECEF).invert()
-  const position = new Vector3()
-  const toECEF = (place: Vector3): Vector3 => position.copy(place).applyMatrix4(worldToECEF)
-  const upAt = (place: Vector3, target: Vector3): Vector3 =>
-    ellipsoid.surfaceNormal(toECEF(place), target).transformDirection(ecefToWorld)
-  const heightAt = (place: Vector3): number => ellipsoid.heightAt(toECEF(place))
-  const groundAt = (place: Vector3): number => terrain.heightBelow(place)
-
-  const explorer = args.frame
-    ? undefined
-    : new Explorer(camera, canvas, { upAt, heightAt, groundAt, walker: new Walker(terrain) })
-  const elapsed = frameClock(args.frame)
-
-  const goTo = (view: TerrainView): void => {
-    const height = terrain.heightAt(view.longitude, view.latitude) + view.height
-    const aim = moveCamera(new PerspectiveCamera(), { ...view, height })
-    aim.applyMatrix4(ecefToWorld)
-    if (explorer === undefined || camera.position.lengthSq() === 0) {
-      camera.position.copy(aim.position)
-      camera.quaternion.copy(aim.quaternion)
-      return
-    }
-    aim.updateMatrixWorld()
-    const direction = aim.getWorldDirection(new Vector3())
-    const distance = camera.position.distanceTo(aim.position)
-    void explorer.flyTo({ position: aim.position, direction }, 2 + Math.log10(1 + distance))
-  }
+  const ground = new GroundCamera(camera, canvas, terrain, args.frame)
 
   const apply = (): void => {
     applyTime(renderer, air, current)
@@ -152,16 +111,10 @@ export async function createTerrain(
     terrain.material.needsUpdate = true
   }
   apply()
-  goTo(VIEWS[current.view])
+  ground.goTo(VIEWS[current.view])
 
-  const up = new Vector3()
   const draw = (): void => {
-    explorer?.update(elapsed())
-    camera.updateMatrixWorld()
-    const height = Math.max(heightAt(camera.position) - groundAt(camera.position), 2)
-    camera.near = Math.min(height / 10, 1e4)
-    camera.updateProjectionMatrix()
-    aimShadow(air.sun, camera, height, upAt(camera.position, up))
+    ground.update(air.sun)
     air.render()
   }
 
@@ -169,21 +122,14 @@ export async function createTerrain(
     renderer,
     scene,
     camera,
-    explorer,
+    explorer: ground.explorer,
     current,
     apply(before) {
       apply()
-      if (current.view !== before.view) goTo(VIEWS[current.view])
+      if (current.view !== before.view) ground.goTo(VIEWS[current.view])
     },
     draw,
-    async warmUp() {
-      for (let i = 0; current.frame && i < WARM_UP_FRAMES; i++) {
-        camera.updateMatrixWorld()
-        terrain.update(renderer, camera, Infinity)
-        draw()
-        await new Promise(requestAnimationFrame)
-      }
-    },
+    warmUp: async () => ground.warmUp(renderer, draw),
     dispose() {
       terrain.dispose()
       air.dispose()

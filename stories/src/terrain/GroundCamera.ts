@@ -1,10 +1,11 @@
 import type { SunDirectionalLight } from '@welkin/atmosphere'
 import { Walker, type Terrain } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import type { WebGPURenderer } from 'three/webgpu'
 import { moveCamera } from '../globe/places'
 import { aimShadow } from '../globe/sunShadow'
 import { Explorer } from '../moving/Explorer'
-import { frameClock } from '../scene'
+import { frameClock, WARM_UP_FRAMES } from '../scene'
 
 /** A view from above the ground of a planet. */
 export interface GroundView {
@@ -40,7 +41,7 @@ export class GroundCamera {
     this.#ecefToWorld.copy(terrain.atmosphere.worldToECEF).invert()
     const groundAt = (place: Vector3): number => terrain.heightBelow(place)
     const upAt = (place: Vector3, target: Vector3): Vector3 => this.#upAt(place, target)
-    const heightAt = (place: Vector3): number => this.#heightAt(place)
+    const heightAt = (place: Vector3): number => this.heightAt(place)
     const walker = new Walker(terrain)
     const options = { upAt, heightAt, groundAt, walker }
     this.explorer = isStill ? undefined : new Explorer(camera, canvas, options)
@@ -69,10 +70,25 @@ export class GroundCamera {
     const camera = this.#camera
     camera.updateMatrixWorld()
     const { position } = camera
-    const height = Math.max(this.#heightAt(position) - this.#terrain.heightBelow(position), 2)
+    const height = Math.max(this.heightAt(position) - this.#terrain.heightBelow(position), 2)
     camera.near = Math.min(height / 10, 1e4)
     camera.updateProjectionMatrix()
     aimShadow(sun, camera, height, this.#upAt(position, this.#up))
+  }
+
+  /** Draws the frames before a still, each with all of its ground. */
+  async warmUp(renderer: WebGPURenderer, draw: () => void): Promise<void> {
+    for (let i = 0; this.explorer === undefined && i < WARM_UP_FRAMES; i++) {
+      this.#camera.updateMatrixWorld()
+      this.#terrain.update(renderer, this.#camera, Infinity)
+      draw()
+      await new Promise(requestAnimationFrame)
+    }
+  }
+
+  /** Height of a place of the world above the ellipsoid [m]. */
+  heightAt(place: Vector3): number {
+    return this.#terrain.atmosphere.ellipsoid.heightAt(this.#toECEF(place))
   }
 
   #toECEF(place: Vector3): Vector3 {
@@ -84,9 +100,5 @@ export class GroundCamera {
     return ellipsoid
       .surfaceNormal(this.#toECEF(place), target)
       .transformDirection(this.#ecefToWorld)
-  }
-
-  #heightAt(place: Vector3): number {
-    return this.#terrain.atmosphere.ellipsoid.heightAt(this.#toECEF(place))
   }
 }

@@ -1,4 +1,5 @@
 import { MathUtils } from 'three'
+import { clockOf } from './clock'
 
 /** Size of the arc [px], and elevation of the sun at its upper edge [°]. */
 const WIDTH = 300
@@ -87,8 +88,7 @@ export class HourArc {
     if (latitude !== this.#latitude || season !== this.#season) this.#drawWay(latitude, season)
     this.#hour = hour
     const y = yOf(sunElevation(hour, latitude, season))
-    const minutes = Math.floor((hour % 1) * 60)
-    const clock = `${Math.floor(hour)}:${String(minutes).padStart(2, '0')}`
+    const clock = clockOf(hour)
     const sun = this.#element.querySelector('circle')!
     sun.setAttribute('cx', xOf(hour).toFixed(1))
     sun.setAttribute('cy', y.toFixed(1))

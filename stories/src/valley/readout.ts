@@ -1,6 +1,7 @@
 import type { PerspectiveCamera } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { overlayOn } from '../overlay'
+import { clockOf } from './clock'
 import { PassTimes, type PassTime } from './PassTimes'
 import { sharesOf } from './shares'
 
@@ -43,8 +44,7 @@ export class Readout {
     const elapsed = now - this.#since
     if (elapsed < PERIOD) return
     const { x, y, z } = camera.position
-    const minutes = Math.floor((hour % 1) * 60)
-    const clock = `${Math.floor(hour)}:${String(minutes).padStart(2, '0')}`
+    const clock = clockOf(hour)
     const cpu = (this.#cpu / this.#frames).toFixed(1)
     this.#element.textContent =
       `${clock} · east ${x.toFixed(0)} m, north ${(-z).toFixed(0)} m · ` +

@@ -1,4 +1,4 @@
-import type { Vector3 } from 'three'
+import { MathUtils, type Vector3 } from 'three'
 import {
   checkEllipsoid,
   checkFinite,
@@ -46,14 +46,24 @@ export interface GridHeightsOptions {
   attribution?: string
 }
 
-const DEGREE = Math.PI / 180
+const OPTIONS = [
+  'width',
+  'height',
+  'west',
+  'east',
+  'south',
+  'north',
+  'noData',
+  'scale',
+  'outside',
+  'fade',
+  'ellipsoid',
+  'attribution'
+] as const
 
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const raster: RasterSample = { value: 0, x: 0, y: 0 }
 const cell = { x: 0, y: 0 }
-
-const clamp = (value: number, low: number, high: number): number =>
-  Math.min(Math.max(value, low), high)
 
 /**
  * Heights of one grid of numbers, such as a digital elevation model, with smooth slopes between them.
@@ -94,22 +104,7 @@ export class GridHeights implements PageSource {
    */
   constructor(values: ArrayLike<number>, options: GridHeightsOptions) {
     const where = 'GridHeights'
-    checkOptions(
-      where,
-      options,
-      ...([
-        'width',
-        'height',
-        'west',
-        'east',
-        'south',
-        'north',
-        'noData',
-        'scale',
-        'outside'
-      ] as const),
-      ...(['fade', 'ellipsoid', 'attribution'] as const)
-    )
+    checkOptions(where, options, ...OPTIONS)
     const { width, height, west, east, south, north, noData, scale = 1, outside = 0 } = options
     const { ellipsoid = Ellipsoid.WGS84, attribution = '' } = options
     for (const [name, value] of Object.entries({ width, height })) {
@@ -128,14 +123,14 @@ export class GridHeights implements PageSource {
     }
     checkEllipsoid(where, ellipsoid)
     this.attribution = attribution
-    this.#west = west * DEGREE
-    this.#north = north * DEGREE
-    this.#stepX = ((east - west) / width) * DEGREE
-    this.#stepY = ((north - south) / height) * DEGREE
+    this.#west = west * MathUtils.DEG2RAD
+    this.#north = north * MathUtils.DEG2RAD
+    this.#stepX = ((east - west) / width) * MathUtils.DEG2RAD
+    this.#stepY = ((north - south) / height) * MathUtils.DEG2RAD
     this.#radii = ellipsoid.radii
     this.#wraps = east - west >= 360 - 1e-9
     this.#outside = outside
-    const middle = Math.cos(((north + south) / 2) * DEGREE)
+    const middle = Math.cos(((north + south) / 2) * MathUtils.DEG2RAD)
     const cellX = this.#stepX * this.#radii.x * Math.max(middle, 1e-3)
     const cellY = this.#stepY * ellipsoid.minimumRadius
     this.#cell = Math.min(cellX, cellY)
@@ -156,7 +151,10 @@ export class GridHeights implements PageSource {
     this.lowest = Math.min(low - over, outside)
     this.highest = Math.max(high + over, outside)
     // Columns are narrowest at the edge nearer to a pole.
-    const narrow = Math.max(Math.cos(Math.max(Math.abs(north), Math.abs(south)) * DEGREE), 1e-3)
+    const narrow = Math.max(
+      Math.cos(Math.max(Math.abs(north), Math.abs(south)) * MathUtils.DEG2RAD),
+      1e-3
+    )
     const slopeX = right / (this.#stepX * this.#radii.x * narrow)
     const fall = (1.5 * (this.highest - this.lowest)) / this.#fade
     this.#slope = STEEPENING * Math.hypot(slopeX, down / cellY) + fall
@@ -184,7 +182,11 @@ export class GridHeights implements PageSource {
   loadHeights(request: PageRequest): Float32Array {
     const { side, spacing } = request
     const places = pagePlaces(request, (at, target) => this.#cellOf(at, target), this.#turn)
-    const level = clamp(Math.floor(Math.log2(spacing / this.#cell)), 0, this.#levels.length - 1)
+    const level = MathUtils.clamp(
+      Math.floor(Math.log2(spacing / this.#cell)),
+      0,
+      this.#levels.length - 1
+    )
     const { width, height, values } = this.#levels[level]
     const shrink = 2 ** -level
     const heights = new Float32Array(side * side)
@@ -220,8 +222,8 @@ export class GridHeights implements PageSource {
    */
   #sample(x: number, y: number, level: number, target: RasterSample): RasterSample {
     const { width, height } = this.#levels[0]
-    const insideX = clamp(x, 0, width)
-    const insideY = clamp(y, 0, height)
+    const insideX = MathUtils.clamp(x, 0, width)
+    const insideY = MathUtils.clamp(y, 0, height)
     const isInside = insideX === x && insideY === y
     const wide = this.#stepX * this.#radii.x * Math.cos(this.#north - y * this.#stepY)
     const tall = this.#stepY * this.#radii.x
@@ -236,8 +238,8 @@ export class GridHeights implements PageSource {
     const pixelAt = (column: number, row: number): number => {
       const inRow = this.#wraps
         ? (column + grid.width) % grid.width
-        : clamp(column, 0, grid.width - 1)
-      return grid.values[clamp(row, 0, grid.height - 1) * grid.width + inRow]
+        : MathUtils.clamp(column, 0, grid.width - 1)
+      return grid.values[MathUtils.clamp(row, 0, grid.height - 1) * grid.width + inRow]
     }
     sampleRaster(pixelAt, insideX * shrink - 0.5, insideY * shrink - 0.5, target)
     target.x *= shrink

@@ -1,4 +1,4 @@
-import type { Vector3 } from 'three'
+import { MathUtils, type Vector3 } from 'three'
 import { checkRange, withDefaults } from '@welkin/atmosphere'
 import { checkEllipsoid, checkNonNegative, checkPositive, Ellipsoid, fail } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
@@ -76,11 +76,6 @@ const EDGE_COLUMNS = Array.from({ length: 16 }, (_, i) => (i + 0.5) / 16)
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const near: RasterSample = { value: 0, x: 0, y: 0 }
 const polar: RasterSample = { value: 0, x: 0, y: 0 }
-
-const smooth = (t: number): number => {
-  const clamped = Math.min(Math.max(t, 0), 1)
-  return clamped * clamped * (3 - 2 * clamped)
-}
 
 /** Height of a pixel's colour, each of 0 to 255 [m]. */
 export type DecodeHeight = (red: number, green: number, blue: number) => number
@@ -325,11 +320,11 @@ export class HeightTiles implements PageSource {
     const latitude = Math.abs(mercatorLatitude(y))
     const edge = Math.min(Math.max(y, 0), 1)
     // Towards the pole: the coarsest level, then its mean along the edge of the map.
-    const cap = smooth((latitude - MERCATOR_LIMIT) / (Math.PI / 2 - MERCATOR_LIMIT))
+    const cap = MathUtils.smoothstep(latitude, MERCATOR_LIMIT, Math.PI / 2)
     const mean = cap > 0 ? this.#edgeMean(edge, find) : 0
     this.#pyramid.sample(this.minZoom, x, edge, find, polar)
     const value = polar.value + cap * (mean - polar.value)
-    const share = latitude < MERCATOR_LIMIT ? smooth((latitude - POLAR) / 0.01) : 1
+    const share = MathUtils.smoothstep(latitude, POLAR, MERCATOR_LIMIT)
     if (share === 1) target.value = value
     else target.value += share * (value - target.value)
     // The slope of the changeover itself is below 1 %.

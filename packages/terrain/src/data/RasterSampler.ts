@@ -12,12 +12,16 @@ const slopes = new Float64Array(4)
 const rowValues = new Float64Array(4)
 const rowSlopes = new Float64Array(4)
 
-/** Weights of four neighbours and of the slope, for a place between the second and the third. */
+/** Weights of four neighbours, for a place between the second and the third. */
 function setWeights(t: number): void {
   weights[0] = ((2 - t) * t - 1) * t * 0.5
   weights[1] = ((3 * t - 5) * t * t + 2) * 0.5
   weights[2] = ((4 - 3 * t) * t + 1) * t * 0.5
   weights[3] = (t - 1) * t * t * 0.5
+}
+
+/** Weights of the same for the slope. */
+function setSlopes(t: number): void {
   slopes[0] = ((4 - 3 * t) * t - 1) * 0.5
   slopes[1] = (9 * t - 10) * t * 0.5
   slopes[2] = ((8 - 9 * t) * t + 1) * 0.5
@@ -40,6 +44,7 @@ export function sampleRaster(
   const column = Math.floor(x)
   const row = Math.floor(y)
   setWeights(x - column)
+  setSlopes(x - column)
   for (let j = 0; j < 4; j++) {
     let value = 0
     let slope = 0
@@ -52,6 +57,7 @@ export function sampleRaster(
     rowSlopes[j] = slope
   }
   setWeights(y - row)
+  setSlopes(y - row)
   target.value = target.x = target.y = 0
   for (let j = 0; j < 4; j++) {
     target.value += weights[j] * rowValues[j]
@@ -69,33 +75,22 @@ export function sampleRaster(
 export function valueInside(values: Float32Array, stride: number, x: number, y: number): number {
   const column = Math.floor(x)
   const row = Math.floor(y)
-  const t = x - column
-  const a = ((2 - t) * t - 1) * t * 0.5
-  const b = ((3 * t - 5) * t * t + 2) * 0.5
-  const c = ((4 - 3 * t) * t + 1) * t * 0.5
-  const d = (t - 1) * t * t * 0.5
-  const u = y - row
-  const i = (row - 1) * stride + column - 1
-  const j = i + stride
-  const k = j + stride
-  const l = k + stride
+  setWeights(x - column)
+  const first = (row - 1) * stride + column - 1
+  for (let j = 0; j < 4; j++) {
+    const i = first + j * stride
+    rowValues[j] =
+      weights[0] * values[i] +
+      weights[1] * values[i + 1] +
+      weights[2] * values[i + 2] +
+      weights[3] * values[i + 3]
+  }
+  setWeights(y - row)
   return (
-    ((2 - u) * u - 1) *
-      u *
-      0.5 *
-      (a * values[i] + b * values[i + 1] + c * values[i + 2] + d * values[i + 3]) +
-    ((3 * u - 5) * u * u + 2) *
-      0.5 *
-      (a * values[j] + b * values[j + 1] + c * values[j + 2] + d * values[j + 3]) +
-    ((4 - 3 * u) * u + 1) *
-      u *
-      0.5 *
-      (a * values[k] + b * values[k + 1] + c * values[k + 2] + d * values[k + 3]) +
-    (u - 1) *
-      u *
-      u *
-      0.5 *
-      (a * values[l] + b * values[l + 1] + c * values[l + 2] + d * values[l + 3])
+    weights[0] * rowValues[0] +
+    weights[1] * rowValues[1] +
+    weights[2] * rowValues[2] +
+    weights[3] * rowValues[3]
   )
 }
 

@@ -8,14 +8,12 @@ import type { TerrainUniforms } from '../TerrainUniforms'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { gradientAlong } from './tsl/gradientAlong'
 import { groundSurface } from './tsl/groundSurface'
 
 /** True of the material that three draws shadow maps with. */
 const isShadowPass = (material: object): boolean =>
   (material as { isShadowPassMaterial?: boolean }).isShadowPassMaterial === true
-
-/** Part of a gradient along the ellipsoid. */
-const gradientAlong = (gradient: Vec3, up: Vec3): Vec3 => gradient.sub(up.mul(gradient.dot(up)))
 
 /** A value that vertices assign and pixels read. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>

@@ -1,6 +1,7 @@
 import { Fn, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
+import { gradientAlong } from '../../surface/tsl/gradientAlong'
 import { climates, patches } from '../../surface/tsl/groundNoise'
 import { faceAxes, unitDifference } from '../../tiles/tsl/cubeSphere'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -68,6 +69,20 @@ export const heightsOf = (source: HeightSource, tile: PageUniforms, side: number
     return vec4(source.sample(place, tile.shortest).w, climateAt(tile, place), 0, 1)
   })()
 
+/** Texel for pixels: the gradient along the ellipsoid by a face's axes, height and patchiness. */
+function surfaceTexel(
+  tile: PageUniforms,
+  { first, second }: Axes,
+  place: PagePlace,
+  ground: { gradient: Vec3; height: Float },
+  shortest: Float
+): Vec4 {
+  const up = upAt(tile, place)
+  const gradient = gradientAlong(ground.gradient, up).toConst('gradient')
+  const along = vec2(gradient.dot(first), gradient.dot(second))
+  return vec4(along, ground.height, patchAt(tile, place, shortest))
+}
+
 /** Gradient, height and patchiness for pixels, from a function. */
 export const surfaceOf = (
   source: HeightSource,
@@ -80,14 +95,7 @@ export const surfaceOf = (
     const place = placeAt(tile, axes, texelOf(side), side)
     const shortest = tile.shortest.div(density).toConst('shortest') as Float
     const ground = source.sample(place, shortest).toConst('ground') as Vec4
-    const up = upAt(tile, place)
-    const gradient = ground.xyz.sub(up.mul(ground.xyz.dot(up))).toConst('gradient')
-    return vec4(
-      gradient.dot(axes.first),
-      gradient.dot(axes.second),
-      ground.w,
-      patchAt(tile, place, shortest)
-    )
+    return surfaceTexel(tile, axes, place, { gradient: ground.xyz, height: ground.w }, shortest)
   })()
 
 /** Heights that were loaded, a step beyond each edge too. */
@@ -118,7 +126,6 @@ export const loadedSurfaceOf = (
     const texel = texelOf(side)
     const axes = faceAxes(tile.face)
     const place = placeAt(tile, axes, texel, side)
-    const up = upAt(tile, place)
     const at = (x: number, y: number): Float => loaded(heights, texel.add(vec2(x + 1, y + 1)))
     const along = (x: number, y: number): { step: Vec3; rise: Float } => {
       const [after, before] = [1, -1].map(sign =>
@@ -136,12 +143,6 @@ export const loadedSurfaceOf = (
       .add(area.cross(a.step).mul(b.rise))
       .div(area.dot(area))
       .toConst('slope')
-    const tangent = gradient.sub(up.mul(gradient.dot(up)))
     const shortest = tile.shortest.div(float(density))
-    return vec4(
-      tangent.dot(axes.first),
-      tangent.dot(axes.second),
-      at(0, 0),
-      patchAt(tile, place, shortest)
-    )
+    return surfaceTexel(tile, axes, place, { gradient, height: at(0, 0) }, shortest)
   })()
