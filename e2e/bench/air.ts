@@ -18,7 +18,7 @@ export interface AirCost {
   cpuMs: number
 }
 
-/** What a reader of the figures sees. */
+/** A line of a report. */
 export function airLine({ path, altitude, compositeMs, volumeUpdateMs, sceneMs }: AirCost): string {
   return (
     `${path.padEnd(8)} ${String(altitude).padStart(9)} m   composite ${compositeMs.toFixed(3)} ms` +
