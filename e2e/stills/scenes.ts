@@ -294,6 +294,24 @@ export const stills: readonly AnyStill[] = [
     land: 'planet'
   },
   {
+    name: '3000km',
+    about: 'a fifth of the globe: clusters, bands, clear zones, no grain and no rows',
+    clouds: { preset: 'mixed' },
+    altitude: 3_000_000,
+    sun: { elevation: 45, azimuth: 100 },
+    view: { azimuth: 60, pitch: -60 },
+    land: 'planet'
+  },
+  {
+    name: '12000km',
+    about: 'the globe: weather of a planet without a map of it',
+    clouds: { preset: 'mixed' },
+    altitude: 12_000_000,
+    sun: { elevation: 55, azimuth: 100 },
+    view: { azimuth: 60, pitch: -90 },
+    land: 'planet'
+  },
+  {
     name: 'terminator',
     about: 'from day into night, 400 km up: the lit side keeps its shading, space is black',
     altitude: 400_000,

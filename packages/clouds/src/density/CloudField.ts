@@ -237,7 +237,7 @@ export class CloudField {
     const bend = turbulence * billowForm.bend * periods.shape
     const lattice = (rotation: Quaternion, period: number, from: Vector3, across = 1): number[][] =>
       latticeRows(this.rotations[index], rotation, period, from, across)
-    const { weather, region, shape, detail, fields } = latticeRotations
+    const { weather, mesoscale, region, shape, detail, fields } = latticeRotations
     const vectors = [
       [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.fadeIn, density],
       [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
@@ -252,7 +252,8 @@ export class CloudField {
       [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
       [column.columnDensity, column.insideDensity, column.profileMean, parameters.densityGrowth],
       [1 / edge, coarseness, parameters.anvil, parameters.shadow ? 1 : 0],
-      [1 / periods.weather, 1 / periods.detail, column.fullDensity, parameters.shear]
+      [1 / periods.weather, 1 / periods.detail, column.fullDensity, parameters.shear],
+      ...lattice(mesoscale, noisePeriods.mesoscale, _subpoint)
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))
   }

@@ -26,6 +26,7 @@ function seededTilt(seed: number, tilt: number): Quaternion {
 export const latticeRotations = {
   weather: /*#__PURE__*/ seededTilt(0, 0.22),
   fields: /*#__PURE__*/ seededTilt(4, 0.3),
+  mesoscale: /*#__PURE__*/ seededTilt(6, 0.5),
   region: /*#__PURE__*/ seededRotation(1),
   shape: /*#__PURE__*/ seededRotation(2),
   detail: /*#__PURE__*/ seededRotation(3)

@@ -2,7 +2,7 @@ import type { CloudLayerParameters } from './CloudLayer'
 import { densityForm } from '../density/formConstants'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
-export const LAYER_STRIDE = 23
+export const LAYER_STRIDE = 26
 
 /** Periods of a layer's look-ups of noise, for a layer 1200 m thick. */
 export const noisePeriods = {
@@ -22,10 +22,15 @@ export const noisePeriods = {
    */
   fields: 3 * Math.sqrt(6),
   /**
+   * Period of the weather texture where it holds what gathers fields: clusters and bands of 20 to 200 km [m]. Greater:
+   * seen from orbit, pepper between regions (*World clouds from 12,000 km*, without its map).
+   */
+  mesoscale: 450_000,
+  /**
    * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
    * and clear zones (*World clouds from 12,000 km*, without its map).
    */
-  regions: 2_300_000
+  regions: 4_200_000
 } as const
 
 /**
@@ -34,6 +39,12 @@ export const noisePeriods = {
  * without its map); much greater: clouds are drawn out.
  */
 export const weatherShifts = { fields: 0.25, regions: 0.5 } as const
+
+/**
+ * Shift of the mesoscale by the regions [periods of the mesoscale]: bands bend into arcs and hooks. 0: straight rows (*World
+ * clouds from 12,000 km*, without its map).
+ */
+export const MESOSCALE_WARP = 0.35
 
 /**
  * Shift of a world map's look-up by the fields, for texels of an angle [rad] seen from the planet's centre: half a
@@ -51,7 +62,7 @@ export const waveForm = {
   next: 3.1,
   last: 1.7,
   /**
-   * Shift of the regions by the waves [periods of the regions]. 0: regions repeat every 2,300 km (*World clouds
+   * Shift of the regions by the waves [periods of the regions]. 0: regions repeat every 4,200 km (*World clouds
    * from 12,000 km*, without its map).
    */
   warp: 0.22
@@ -66,10 +77,15 @@ export const scaleWeights = {
   /** Fields of tens of kilometres, of the layer's own weather and of large cells. */
   fields: 0.6,
   cells: 0.5,
-  regions: 0.65,
-  planet: 0.4,
+  /** Clusters and bands of 20 to 200 km. */
+  mesoscale: 0.75,
+  regions: 0.75,
+  planet: 0.45,
   /** Share of finer cells in the regions. 0: their edges have no finer structure. */
-  regionCells: 0.6
+  regionCells: 0.6,
+  /** Share of bands in the mesoscale and in the regions. 0: round clusters alone, no fronts. */
+  bands: 0.7,
+  regionBands: 0.8
 } as const
 
 /** Ratio of length to width of cirrus' noise [–]. Smaller: blobs instead of fibres (*Cirrus*). */
@@ -101,6 +117,14 @@ export function layerPeriods({
     detail: noisePeriods.detail * shape * detailScale
   }
 }
+
+/** Deviation of the regions' channels, over that of one. */
+export const REGION_SIZE = Math.hypot(1, scaleWeights.regionCells, scaleWeights.regionBands)
+
+/** Factor of the mesoscale over that of the regions: the same for all layers. */
+export const MESOSCALE_PER_REGIONS =
+  ((scaleWeights.mesoscale / scaleWeights.regions) * REGION_SIZE) /
+  Math.hypot(1, scaleWeights.bands)
 
 /** Weights of the weather's scales in a layer. */
 export interface WeatherScales {
@@ -136,8 +160,8 @@ export function weatherScales(
     scaleWeights.cells ** 2 +
     2 * scaleWeights.fields * scaleWeights.cells * (unit[2] ?? 0)
   const large = hasMap ? 0 : 1
-  const variance =
-    1 + fieldVariance + large * (scaleWeights.regions ** 2 + scaleWeights.planet ** 2)
+  const { mesoscale, regions, planet } = scaleWeights
+  const variance = 1 + fieldVariance + large * (mesoscale ** 2 + regions ** 2 + planet ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   // From closed cells to open ones by way of cumulus: the variance stays.
@@ -146,8 +170,8 @@ export function weatherScales(
     clouds: [Math.hypot(a, b * Math.sqrt(1 - closed ** 2)), b * closed, c, d],
     fields: scaleWeights.fields,
     cells: scaleWeights.cells * factor,
-    regions: (large * scaleWeights.regions * factor) / Math.hypot(1, scaleWeights.regionCells),
-    planet: (large * scaleWeights.planet) / Math.sqrt(variance),
+    regions: (large * regions * factor) / REGION_SIZE,
+    planet: (large * planet) / Math.sqrt(variance),
     cloudVariance: 1 / variance,
     fieldVariance: fieldVariance / variance
   }

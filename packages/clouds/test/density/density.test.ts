@@ -10,6 +10,8 @@ import { layerRotation } from '../../src/density/lattice'
 import {
   layerForms,
   layerPeriods,
+  MESOSCALE_PER_REGIONS,
+  REGION_SIZE,
   scaleWeights,
   weatherScales
 } from '../../src/layers/layerUniforms'
@@ -236,10 +238,12 @@ describe('layer uniforms', () => {
             (sum, w, i) => sum + (scales.fields * w + (i === 2 ? scales.cells : 0)) ** 2,
             0
           ) / 12
-        const regions = (scales.regions ** 2 * (1 + scaleWeights.regionCells ** 2)) / 12
+        const regions = (scales.regions ** 2 * REGION_SIZE ** 2) / 12
         expect(clouds).toBeCloseTo(scales.cloudVariance)
         expect(fields).toBeCloseTo(scales.fieldVariance)
-        expect(clouds + fields + regions + scales.planet ** 2).toBeCloseTo(1)
+        const mesoscale =
+          ((MESOSCALE_PER_REGIONS * scales.regions) ** 2 * (1 + scaleWeights.bands ** 2)) / 12
+        expect(clouds + fields + mesoscale + regions + scales.planet ** 2).toBeCloseTo(1)
         expect(hasMap ? regions + scales.planet : 0).toBe(0)
       })
     )

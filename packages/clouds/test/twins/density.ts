@@ -3,7 +3,10 @@ import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { billowForm, strengthForm } from '../../src/density/formConstants'
 import { latticeRotations } from '../../src/density/lattice'
 import {
+  MESOSCALE_PER_REGIONS,
+  MESOSCALE_WARP,
   noisePeriods,
+  REGION_SIZE,
   weatherShifts,
   scaleWeights,
   waveForm,
@@ -161,6 +164,16 @@ export function weatherAt(
     regionLevel
   )
   const inLayer = subpoint.clone().applyQuaternion(layerRotation)
+  const mesoscaleLevel = levelOf(footprint, noisePeriods.mesoscale / NOISE_SIZE.weather)
+  const mesoscale = sample(
+    shifted(
+      placeIn(inLayer, latticeRotations.mesoscale, noisePeriods.mesoscale),
+      region,
+      MESOSCALE_WARP
+    ),
+    mesoscaleLevel
+  )
+  const mesoscaleFactor = MESOSCALE_PER_REGIONS * scales.regions
   const fieldPeriod = period * noisePeriods.fields
   const fieldLevel = levelOf(footprint, fieldPeriod / NOISE_SIZE.weather)
   const fields = sample(
@@ -194,12 +207,15 @@ export function weatherAt(
     dot(clouds) +
     scaleWeights.fields * dot(fields) +
     scales.cells * fields[2] +
-    scales.regions * (region[2] + scaleWeights.regionCells * region[0]) +
+    mesoscaleFactor * (mesoscale[0] + scaleWeights.bands * mesoscale[3]) +
+    scales.regions *
+      (region[2] + scaleWeights.regionCells * region[0] + scaleWeights.regionBands * region[3]) +
     (scales.planet * (waves[0] + waves[1] + waves[2])) / Math.sqrt(1.5)
   const lost =
     scales.cloudVariance * lostShare(level - coarseness) +
     scales.fieldVariance * lostShare(fieldLevel - 0.5) +
-    (scales.regions ** 2 * (1 + scaleWeights.regionCells ** 2) * lostShare(regionLevel - 0.8)) / 12
+    (mesoscaleFactor ** 2 * (1 + scaleWeights.bands ** 2) * lostShare(mesoscaleLevel - 0.8)) / 12 +
+    (scales.regions ** 2 * REGION_SIZE ** 2 * lostShare(regionLevel - 0.8)) / 12
   const variance = level > 0 ? lost : 0
   const { edgeSoftness, leastEdgeSoftness, leastVariance } = strengthForm
   const odds = clamp(coverage, 1e-6, 1 - 1e-6)

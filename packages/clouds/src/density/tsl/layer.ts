@@ -2,7 +2,7 @@ import { If, int, vec3, vec4 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
 import { latticeRotations } from '../lattice'
-import { LAYER_STRIDE, noisePeriods } from '../../layers/layerUniforms'
+import { LAYER_STRIDE, MESOSCALE_PER_REGIONS, noisePeriods } from '../../layers/layerUniforms'
 import {
   loop,
   type Bool,
@@ -53,6 +53,7 @@ export interface LayerNodes {
   weights: Vec4
   /** Factors of the weather's other scales: `weatherScales`. */
   cells: Float
+  mesoscale: Float
   regions: Float
   planet: Float
   cloudVariance: Float
@@ -70,6 +71,7 @@ export interface LayerNodes {
   /** Lattices for displacements from the camera's subpoint. */
   weatherLattice: Lattice
   fieldLattice: Lattice
+  mesoscaleLattice: Lattice
   regionLattice: Lattice
   /** Turns directions into the frame that drifts with the layer. */
   directionInLayer: (direction: Vec3) => Vec3
@@ -116,6 +118,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     detailLattice: lattice(6),
     weatherLattice: lattice(9),
     fieldLattice: lattice(12),
+    mesoscaleLattice: lattice(23),
     regionLattice: lattice(15),
     directionInLayer: v => {
       const [x, y, z] = [0, 1, 2].map(row =>
@@ -128,6 +131,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     shearAxis: shear.xyz,
     bend: shear.w,
     cells: kind.x,
+    mesoscale: kind.y.mul(MESOSCALE_PER_REGIONS),
     regions: kind.y,
     planet: kind.z,
     cloudVariance: kind.w,

@@ -1,6 +1,6 @@
 import { If, float, log2, smoothstep } from 'three/tsl'
 import { strengthForm } from '../formConstants'
-import { noisePeriods, scaleWeights } from '../../layers/layerUniforms'
+import { noisePeriods, REGION_SIZE, scaleWeights } from '../../layers/layerUniforms'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import type { Float } from '../../tsl-types'
 import { levelOf } from './billows'
@@ -37,18 +37,22 @@ const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels
 
 /** Variance of the weather's sum that levels of detail have lost: none near by. */
 function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLevel: Float): Float {
-  const regionVariance = layer.regions
-    .mul(layer.regions)
-    .mul((1 + scaleWeights.regionCells ** 2) / 12)
+  const regionVariance = layer.regions.mul(layer.regions).mul(REGION_SIZE ** 2 / 12)
+  const mesoscaleVariance = layer.mesoscale
+    .mul(layer.mesoscale)
+    .mul((1 + scaleWeights.bands ** 2) / 12)
   const fieldVariance = layer.cloudVariance
     .add(layer.planet.mul(layer.planet))
+    .add(mesoscaleVariance)
     .add(regionVariance)
     .oneMinus()
   const fieldLevel = level.sub(Math.log2(noisePeriods.fields)).max(0)
+  const mesoscaleLevel = weatherLevel(footprint, 1 / noisePeriods.mesoscale)
   const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
   return layer.cloudVariance
     .mul(lostShare(cloudLevel))
     .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))
+    .add(mesoscaleVariance.mul(lostShare(mesoscaleLevel.sub(0.8))))
     .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
 }
 

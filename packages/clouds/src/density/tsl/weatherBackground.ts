@@ -1,6 +1,12 @@
 import { int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { noisePeriods, weatherShifts, scaleWeights, waveForm } from '../../layers/layerUniforms'
+import {
+  MESOSCALE_WARP,
+  noisePeriods,
+  scaleWeights,
+  waveForm,
+  weatherShifts
+} from '../../layers/layerUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
@@ -37,20 +43,34 @@ function weatherSystems(
   subpoint: Vec3,
   up: Vec3,
   footprint: Float
-): { regions: Vec3; waves: Vec3 } {
+): { regions: Vec4; waves: Vec3 } {
   const isAlone = field.layers.length === 1
   const systems = isAlone ? layer : layerAt(field, int(0))
   const waves = planetWaves(systems.directionInLayer(up).toConst())
   const regions = field.textures.weather
     .sample(systems.regionLattice(subpoint).add(waves.mul(waveForm.warp)))
     .level(weatherLevel(footprint, 1 / noisePeriods.regions))
-    .xyz.sub(0.5)
-    .toConst() as Vec3
+    .sub(0.5)
+    .toConst() as Vec4
   return { regions, waves }
 }
 
+/** Clusters and bands in which fields gather: a texture read. */
+const mesoscaleAt = (
+  field: CloudField,
+  layer: LayerNodes,
+  subpoint: Vec3,
+  regions: Vec4,
+  footprint: Float
+): Vec4 =>
+  field.textures.weather
+    .sample(layer.mesoscaleLattice(subpoint).add(regions.xyz.mul(MESOSCALE_WARP)))
+    .level(weatherLevel(footprint, 1 / noisePeriods.mesoscale))
+    .sub(0.5)
+    .toConst() as Vec4
+
 /**
- * Looks the background up: two texture reads, and one of the world map.
+ * Looks the background up: three texture reads, and one of the world map.
  *
  * @param subpoint - `subpointOffset` of the sample: the weather is the same all the way up.
  * @param footprint - Width of what the sample stands for [m].
@@ -65,15 +85,22 @@ export function weatherBackground(
   const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, footprint)
   const scale = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
   const fields = field.textures.weather
-    .sample(layer.fieldLattice(subpoint).add(regions.mul(weatherShifts.regions)))
+    .sample(layer.fieldLattice(subpoint).add(regions.xyz.mul(weatherShifts.regions)))
     .level(weatherLevel(footprint, scale))
     .sub(0.5)
     .toConst() as Vec4
+  const mesoscale = mesoscaleAt(field, layer, subpoint, regions, footprint)
   const sum = fields
     .dot(layer.weights)
     .mul(scaleWeights.fields)
     .add(fields.z.mul(layer.cells))
-    .add(regions.z.add(regions.x.mul(scaleWeights.regionCells)).mul(layer.regions))
+    .add(mesoscale.x.add(mesoscale.w.mul(scaleWeights.bands)).mul(layer.mesoscale))
+    .add(
+      regions.z
+        .add(regions.x.mul(scaleWeights.regionCells))
+        .add(regions.w.mul(scaleWeights.regionBands))
+        .mul(layer.regions)
+    )
     .add(
       waves.x
         .add(waves.y)
