@@ -41,7 +41,12 @@ export const strengthForm = {
    * least [–]. Greater: fields of clouds have soft rims from orbit (*World clouds from 12,000 km*).
    */
   edgeSoftness: 0.4,
-  leastEdgeSoftness: 0.05
+  leastEdgeSoftness: 0.05,
+  /**
+   * Contrast of the filtered coverage about ½ [–]: regions are wholly clear and wholly closed. Its distribution has longer
+   * tails than clouds have. Greater: clear zones with hard rims from orbit (*World clouds from 12,000 km*, without its map).
+   */
+  contrast: 1.04
 } as const
 
 /** Constants of the strength that a column needs to reach a height: tsl/heightForm.ts. */

@@ -23,7 +23,7 @@ export function regionalCoverages(
   layer: CloudLayerParameters,
   footprint: number
 ): readonly number[] {
-  const { edgeSoftness, leastEdgeSoftness, fadeLevels } = strengthForm
+  const { edgeSoftness, leastEdgeSoftness, fadeLevels, contrast } = strengthForm
   const { cloudVariance } = weatherScales(layer.weatherWeights, false, layer.openCells)
   const texel = layerPeriods(layer).weather / NOISE_SIZE.weather
   const level = Math.log2(Math.max(footprint / texel, 1)) - layerForms(layer).coarseness
@@ -35,6 +35,6 @@ export function regionalCoverages(
   return Array.from({ length: REGIONS }, (_, i) => {
     const weather = spread * quantile((i + 0.5) / REGIONS)
     const chance = 1 / (1 + Math.exp((-1.702 * (weather + median)) / width))
-    return MathUtils.clamp(0.5 + (chance - 0.5) * 1.002, 0, 1)
+    return MathUtils.clamp(0.5 + (chance - 0.5) * contrast, 0, 1)
   })
 }

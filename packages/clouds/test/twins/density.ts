@@ -225,7 +225,7 @@ export function weatherAt(
   return {
     sum: blurred / Math.sqrt(Math.max(1 - variance, leastVariance)),
     coverage,
-    filteredCoverage: coverage > 0 ? clamp(0.5 + 1.002 * (chance - 0.5), 0, 1) : 0,
+    filteredCoverage: coverage > 0 ? clamp(0.5 + strengthForm.contrast * (chance - 0.5), 0, 1) : 0,
     unresolvedFraction: smoothstep(0.5, 4.5, level - coarseness),
     shift
   }

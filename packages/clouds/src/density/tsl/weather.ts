@@ -21,13 +21,13 @@ export interface CloudWeather {
  * The variance of what is lost is known, which keeps the mean at any distance.
  */
 function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage: Float): Float {
-  const { edgeSoftness, leastEdgeSoftness } = strengthForm
+  const { edgeSoftness, leastEdgeSoftness, contrast } = strengthForm
   const edges = layer.shapeAmount.mul(edgeSoftness).max(leastEdgeSoftness)
   const odds = coverage.clamp(1e-6, 1 - 1e-6).toConst() as Float
   const quantile = odds.div(odds.oneMinus()).log().div(1.702)
   const chance = cumulative(weather.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
   // Neither more nor less than all: the distribution has tails.
-  const all = chance.sub(0.5).mul(1.002).add(0.5).clamp(0, 1)
+  const all = chance.sub(0.5).mul(contrast).add(0.5).clamp(0, 1)
   return coverage.greaterThan(0).select(all, 0)
 }
 
