@@ -20,7 +20,7 @@ gpuTest(
       latitude: 45
     })
     const { baseAltitude, topAltitude } = layers.at(0).parameters
-    const count = 4096
+    const count = 8192
     // A spiral of even density.
     const inputs = Array.from({ length: count }, (_, i) => {
       const z = (2 * i + 1) / count - 1

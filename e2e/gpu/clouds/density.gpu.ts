@@ -102,7 +102,7 @@ gpuTest('puts clouds where float64 does, of a world map and where they blur', as
   const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
   const shapeless = new ShapelessTwin()
   // Their footprints are up to 1.2 km.
-  scene.field.pixelAngle.value = 0.12
+  scene.field.pixelAngle.value = 0.3
   const inputs = offsets(scene.viewpoint, 15, 2000, 7, altitudeIn(layers))
   const results = await evaluateOnGpu(scene.renderer, inputs, input =>
     scene.extinction(input.xyz, input.w, false)

@@ -29,7 +29,7 @@ const PER_POSITION = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
 
 /**
  * Weather's background of all layers around a camera's subpoint, drawn anew for each frame: rays that look it up
- * there take one texture read in place of two that wait for each other.
+ * there take one texture read in place of three that wait for each other.
  *
  * Each layer has a tile, one above the other. Positions are displacements in the plane that touches the sphere at
  * the subpoint, at ρ / (ρ + EVEN) for a distance ρ from it.

@@ -46,7 +46,7 @@ export const strengthForm = {
    * Contrast of the filtered coverage about ½ [–]: regions are wholly clear and wholly closed. Its distribution has longer
    * tails than clouds have. Greater: clear zones with hard rims from orbit (*World clouds from 12,000 km*, without its map).
    */
-  contrast: 1.04
+  contrast: 1.002
 } as const
 
 /** Constants of the strength that a column needs to reach a height: tsl/heightForm.ts. */
@@ -150,13 +150,13 @@ export const columnForm = {
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
    */
-  tops: 3.5,
+  tops: 1.8,
   /**
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
    * with one, and the least share. Smaller: clouds are darker from above, and too bright at the limb (*World clouds*).
    */
-  hiddenBelow: 0.32,
-  hiddenByAnvil: 0.75,
+  hiddenBelow: 0.26,
+  hiddenByAnvil: 1,
   leastSeen: 0.3,
   /**
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds

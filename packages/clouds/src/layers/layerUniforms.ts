@@ -22,15 +22,15 @@ export const noisePeriods = {
    */
   fields: 3 * Math.sqrt(6),
   /**
-   * Period of the weather texture where it holds what gathers fields: clusters and bands of 20 to 200 km [m]. Greater:
+   * Period of the weather texture where it holds what gathers fields: clusters and bands of 15 to 170 km [m]. Greater:
    * seen from orbit, pepper between regions (*World clouds from 12,000 km*, without its map).
    */
-  mesoscale: 450_000,
+  mesoscale: 380_000,
   /**
    * Period of the weather texture where it holds the systems of whole regions [m]. Greater: broader fronts
    * and clear zones (*World clouds from 12,000 km*, without its map).
    */
-  regions: 4_200_000
+  regions: 2_300_000
 } as const
 
 /**
@@ -62,7 +62,7 @@ export const waveForm = {
   next: 3.1,
   last: 1.7,
   /**
-   * Shift of the regions by the waves [periods of the regions]. 0: regions repeat every 4,200 km (*World clouds
+   * Shift of the regions by the waves [periods of the regions]. 0: regions repeat every 2,300 km (*World clouds
    * from 12,000 km*, without its map).
    */
   warp: 0.22
@@ -77,10 +77,10 @@ export const scaleWeights = {
   /** Fields of tens of kilometres, of the layer's own weather and of large cells. */
   fields: 0.6,
   cells: 0.5,
-  /** Clusters and bands of 20 to 200 km. */
-  mesoscale: 0.75,
-  regions: 0.75,
-  planet: 0.45,
+  /** Clusters and bands of 15 to 170 km. */
+  mesoscale: 0.65,
+  regions: 0.65,
+  planet: 0.4,
   /** Share of finer cells in the regions. 0: their edges have no finer structure. */
   regionCells: 0.6,
   /** Share of bands in the mesoscale and in the regions. 0: round clusters alone, no fronts. */
