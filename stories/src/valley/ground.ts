@@ -81,6 +81,8 @@ function groundMaterial(): VertexLitMaterial {
   // Sheared, so that cliffs have rock on them and no streaks.
   const sheared = place.add(positionWorld.y.mul(vec2(0.83, 0.57))).toVar()
   const picture = createNoiseTexture()
+  // Each of its many scales is blurred far away: there are coarser ones.
+  picture.anisotropy = 1
   material.addEventListener('dispose', () => picture.dispose())
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned.
   const noise = (period: number): Node<'float'> => {
@@ -175,6 +177,10 @@ export function createGround(quads: number): Group {
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))
     const mesh = new Mesh(tile, material)
+    // Tiles at their places are drawn from near to far, so that hills hide what is behind them.
+    tile.computeBoundingSphere()
+    mesh.position.copy(tile.boundingSphere!.center)
+    tile.translate(...mesh.position.clone().negate().toArray())
     mesh.castShadow = mesh.receiveShadow = true
     ground.add(mesh)
   }
