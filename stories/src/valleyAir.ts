@@ -22,8 +22,9 @@ import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clou
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { Light, PerspectiveCamera, Scene } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { pass } from 'three/tsl'
-import type { PassNode, TextureNode } from 'three/webgpu'
+import { pass, rtt, vec4 } from 'three/tsl'
+import type { Node, PassNode, TextureNode } from 'three/webgpu'
+import { SKY_DEPTH } from './valley/LakeMirror'
 
 /** Sky, light, clouds and shadows of a scene, exposed. */
 export interface ValleyAir {
@@ -38,10 +39,18 @@ export interface ValleyAir {
   readonly directLights: readonly Light[]
   /** Lights of moon and night sky. */
   readonly nightLights: readonly Light[]
-  /** The finished picture. */
+  /** The finished picture, with the distance along the camera's axis in alpha. */
+  readonly picture: TextureNode
+  /** The finished picture, exposed. */
   readonly exposure: AutoExposureNode
   /** Frees the lights and their shadows. */
   dispose(): void
+}
+
+/** Draws a picture to a texture, with the distance along the camera's axis in alpha: of the sky, the greatest. */
+function withDepth(picture: Node, scenePass: PassNode): TextureNode {
+  const depth = scenePass.getViewZNode().negate().min(SKY_DEPTH)
+  return rtt(vec4((picture as Node<'vec4'>).rgb, depth))
 }
 
 /** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */
@@ -84,7 +93,8 @@ export function valleyAir(
   cloudSkyLight(sky, node)
   cloudSkyLight(night, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-  const exposure = autoExposure(node, atmosphere) // as bright as what the camera sees
+  const picture = withDepth(node, scenePass) // drawn once, for exposure and the lake's mirror
+  const exposure = autoExposure(picture, atmosphere) // as bright as what the camera sees
   // #endregion
   return {
     atmosphere,
@@ -95,6 +105,7 @@ export function valleyAir(
     cascades,
     directLights: [sun, moonlight],
     nightLights: [moonlight, moonlitSky, night],
+    picture,
     exposure,
     dispose() {
       for (const light of [sun, sky, moonlight, moonlitSky, night]) light.dispose()

@@ -23,6 +23,7 @@ import { applyFactors, type ValleyFactors } from '../valleyFactors'
 import { CascadeTurns } from './CascadeTurns'
 import { createGround, groundHeight, LAKE } from './ground'
 import { createLake } from './lake'
+import { LakeMirror } from './LakeMirror'
 import { setLit } from './VertexLitMaterial'
 import { createVillage } from './village'
 import { VIEWS, type ValleyName } from './views'
@@ -102,6 +103,7 @@ export class Valley {
   readonly #ground
   readonly #trees
   readonly #village = createVillage()
+  readonly #mirror: LakeMirror
   readonly #water
   readonly #node
   readonly #shafts
@@ -134,7 +136,8 @@ export class Valley {
     this.exposure = exposure
     const overlay = cloudEnvironment(node)
     this.#environment = skyEnvironment(atmosphere, { overlay })
-    this.#water = createLake(this.#environment, air.directLights)
+    this.#mirror = new LakeMirror(air.picture)
+    this.#water = createLake(this.#environment, this.#mirror, air.directLights)
     scene.add(this.#water.mesh)
     this.pipeline = new RenderPipeline(renderer)
     this.#finish = new ValleyFinish(this.pipeline, scene, camera, air)
@@ -223,6 +226,7 @@ export class Valley {
     for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
     this.#village.light(share, luminanceScale)
     this.pipeline.render()
+    this.#mirror.update(this.camera)
   }
 
   /** Time of the water's waves and the clouds' drift [s]. */
