@@ -21,9 +21,10 @@ import type {
 import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { Light, PerspectiveCamera, Scene } from 'three'
-import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
+import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { pass, rtt, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
+import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
 
 /** Sky, light, clouds and shadows of a scene, exposed. */
@@ -75,7 +76,7 @@ export function valleyAir(
   sun.shadow.mapSize.setScalar(2048)
   sun.shadow.camera.far = 40_000 // as deep as cascades are wide, and the mountains before them
 
-  const cascades = new CSMShadowNode(sun, {
+  const cascades = new Cascades(sun, {
     cascades: 3,
     maxFar: 9000,
     lightMargin: 8000,
