@@ -1,3 +1,4 @@
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import { Matrix4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import {
@@ -14,11 +15,12 @@ import {
   smoothstep,
   texture,
   uniform,
+  uv,
   vec2,
   vec3,
   vec4
 } from 'three/tsl'
-import type { Node, TextureNode } from 'three/webgpu'
+import type { Node, Renderer, TextureNode } from 'three/webgpu'
 
 /** Places along a mirrored ray at which the picture is asked, and the distances of the first and the last [m]. */
 const STEPS = 26
@@ -32,7 +34,7 @@ export const SKY_DEPTH = 60_000
 /** Distance beyond the picture's edges, over its size, at which the mirror image has faded. */
 const FADE = 0.08
 
-/** Direction as a mirror shows it, which does not go down into the water. */
+/** Least rise of a mirrored direction, which does not go down into the water. */
 const LEAST_RISE = 0.004
 
 type Vec2 = Node<'vec2'>
@@ -44,6 +46,10 @@ type Vec4 = Node<'vec4'>
  */
 export class LakeMirror {
   readonly #picture: TextureNode
+  /** The picture before, at half its size. */
+  readonly #target = tableTarget('LakeMirror', 1, 1)
+  readonly #image = texture(this.#target.texture)
+  readonly #pass: FragmentPass
   readonly #toScreen = uniform(new Matrix4())
   /** Part of the screen's height that a radian covers, and 1 once there is a picture. */
   readonly #scale = uniform(1)
@@ -52,10 +58,20 @@ export class LakeMirror {
   /** @param picture - Light of the last frame, and distance along the camera's axis in alpha, up to {@link SKY_DEPTH}. */
   constructor(picture: TextureNode) {
     this.#picture = texture(picture.value)
+    const light = this.#picture.sample(uv()).level(float(0)) as unknown as Vec4
+    this.#pass = new FragmentPass('LakeMirror', light)
   }
 
-  /** Remembers the camera of the picture that was just drawn. */
-  update(camera: PerspectiveCamera): void {
+  /** Makes the texture that the water reads, before its first frame. */
+  prepare(renderer: Renderer): void {
+    renderer.initRenderTarget(this.#target)
+  }
+
+  /** Keeps the picture that was just drawn, and its camera. */
+  update(renderer: Renderer, camera: PerspectiveCamera): void {
+    const { width, height } = this.#picture.value.image as { width: number; height: number }
+    this.#target.setSize(Math.ceil(width / 2), Math.ceil(height / 2))
+    this.#pass.render(renderer, this.#target)
     this.#toScreen.value.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
     this.#scale.value = camera.projectionMatrix.elements[5] / 2
     this.#isDrawn.value = 1
@@ -121,7 +137,13 @@ export class LakeMirror {
   }
 
   #read(place: Vec2): Vec4 {
-    return this.#picture.sample(place).level(float(0))
+    return this.#image.sample(place).level(float(0))
+  }
+
+  /** Frees the picture. */
+  dispose(): void {
+    this.#target.dispose()
+    this.#pass.dispose()
   }
 
   /** Place on the screen of a point in clip space, from the top left. */

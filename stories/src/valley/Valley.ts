@@ -93,6 +93,7 @@ export class Valley {
   readonly cycle: DayCycle
   readonly exposure
   readonly pipeline: RenderPipeline
+  readonly #renderer: WebGPURenderer
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
@@ -139,6 +140,7 @@ export class Valley {
     this.#mirror = new LakeMirror(air.picture)
     this.#water = createLake(this.#environment, this.#mirror, air.directLights)
     scene.add(this.#water.mesh)
+    this.#renderer = renderer
     this.pipeline = new RenderPipeline(renderer)
     this.#finish = new ValleyFinish(this.pipeline, scene, camera, air)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
@@ -226,7 +228,7 @@ export class Valley {
     for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
     this.#village.light(share, luminanceScale)
     this.pipeline.render()
-    this.#mirror.update(this.camera)
+    this.#mirror.update(this.#renderer, this.camera)
   }
 
   /** Time of the water's waves and the clouds' drift [s]. */
@@ -237,6 +239,7 @@ export class Valley {
 
   /** Makes all that the first frame needs. */
   async bake(renderer: WebGPURenderer): Promise<void> {
+    this.#mirror.prepare(renderer)
     await this.#node.bake(renderer)
   }
 
@@ -246,5 +249,6 @@ export class Valley {
     for (const each of this.#trees) each.dispose()
     this.#village.dispose()
     this.#water.dispose()
+    this.#mirror.dispose()
   }
 }
