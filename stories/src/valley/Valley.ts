@@ -218,7 +218,8 @@ export class Valley {
   render(deltaSeconds: number): void {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
     this.camera.updateMatrixWorld()
-    for (const each of this.#trees) each.update(this.camera.position)
+    const isSorted = this.#trees.map(each => each.update(this.camera)).includes(true)
+    if (isSorted) this.#cascadeTurns.reset()
     this.cycle.update(deltaSeconds)
     const { sunDirection, luminanceScale } = this.atmosphere
     this.#cascadeTurns.update(this.camera, sunDirection)
