@@ -8,6 +8,7 @@ import type { CloudShadows } from '../../../packages/clouds/src/shadow/tsl/sampl
 import { QualityUniforms, cloudQualities } from '../../../packages/clouds/src/march/quality'
 import { litClouds } from '../../../packages/clouds/src/march/tsl/shadePoints'
 import { number } from '../../../packages/clouds/src/uniforms'
+import { mean } from '../harness/cloud-scene'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { readPicture } from '../harness/picture'
@@ -85,22 +86,21 @@ gpuTest('clouds are as bright, resolved one by one or not', async t => {
   /** Mean light and opacity over all places. */
   const meanLight = async (pixelAngle: number): Promise<[number, number]> => {
     field.pixelAngle.value = pixelAngle
-    const pictures: Float32Array[] = []
+    const [radiances, through] = [[] as number[], [] as number[]]
     for (const place of PLACES) {
-      const camera = geodesicDestination(place, SUN_AZIMUTH, groundDistance(tilt.value))
-      atmosphere.place({ ...camera, height: HEIGHT })
+      const below = geodesicDestination(place, SUN_AZIMUTH, groundDistance(tilt.value))
+      atmosphere.place({ longitude: below.longitude, latitude: below.latitude, height: HEIGHT })
       update()
       renderer.setRenderTarget(target)
       quad.render(renderer)
       renderer.setRenderTarget(null)
-      pictures.push((await readPicture(renderer, target)).data as Float32Array)
+      const { data } = await readPicture(renderer, target)
+      for (let i = 0; i < data.length; i += 4) {
+        radiances.push(data[i])
+        through.push(data[i + 1])
+      }
     }
-    const mean = (channel: number): number =>
-      pictures
-        .flatMap(data => [...data])
-        .reduce((sum, value, i) => (i % 4 === channel ? sum + value : sum), 0) /
-      (size ** 2 * PLACES.length)
-    return [mean(0), 1 - mean(1)]
+    return [mean(radiances), 1 - mean(through)]
   }
 
   const misses: string[] = []

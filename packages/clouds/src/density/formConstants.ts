@@ -150,12 +150,12 @@ export const columnForm = {
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
    */
-  tops: 1.8,
+  tops: 1.7,
   /**
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
    * with one, and the least share. Smaller: clouds are darker from above, and too bright at the limb (*World clouds*).
    */
-  hiddenBelow: 0.26,
+  hiddenBelow: 0.31,
   hiddenByAnvil: 1,
   leastSeen: 0.3,
   /**

@@ -108,7 +108,7 @@ describe('windRotation', () => {
   it('carries clouds with the wind', () => {
     const wind = { east: 12, north: -5 }
     // Those that lean do so by the wind where the camera is.
-    const before = stateOf({ coverage: 0.9, shear: 0 })
+    const before = stateOf({ coverage: 0.97, shear: 0 })
     const altitude = 1300
     const after: CloudState = {
       ...before,

@@ -65,6 +65,11 @@ function cloudyColumns(parameters: CloudLayerParameters, count: number): Sample[
 
 describe('meanColumn', () => {
   it('lets as much light through as columns of the field do', () => {
+    const layer = new CloudLayer({ ...plain, coverage: 0.5, density: 1 })
+    // Extinction is in proportion to the density.
+    const means = cloudyColumns(layer.parameters, 6000).map(samples =>
+      samples.reduce((part, sample) => part + sample.extinction / STEPS, 0)
+    )
     for (const [density, depthScale] of [
       [0.1, 1],
       [0.005, 1],
@@ -72,11 +77,10 @@ describe('meanColumn', () => {
       [0.0005, 1]
     ]) {
       const { parameters } = new CloudLayer({ ...plain, coverage: 0.5, density })
-      const columns = cloudyColumns(parameters, 2400)
-      const passing = columns.reduce((sum, samples) => {
-        const extinction = samples.reduce((part, sample) => part + sample.extinction / STEPS, 0)
-        return sum + Math.exp(-depthScale * 1200 * extinction) / columns.length
-      }, 0)
+      const passing = means.reduce(
+        (sum, mean) => sum + Math.exp(-depthScale * 1200 * density * mean) / means.length,
+        0
+      )
       const { columnDensity } = meanColumn(parameters, depthScale)
       const expected = Math.exp(-density * 1200 * depthScale * columnDensity)
       expect(Math.abs(passing - expected), `${passing} for ${expected}`).toBeLessThan(0.02)

@@ -67,7 +67,7 @@ const mesoscaleAt = (
     .sample(layer.mesoscaleLattice(subpoint).add(regions.xyz.mul(MESOSCALE_WARP)))
     .level(weatherLevel(footprint, 1 / noisePeriods.mesoscale))
     .sub(0.5)
-    .toConst() as Vec4
+    .toConst()
 
 /**
  * Looks the background up: three texture reads, and one of the world map.
