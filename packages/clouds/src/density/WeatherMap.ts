@@ -1,12 +1,15 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { Vector3 } from 'three'
+import { RGFormat, type Vector3 } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Float, Int, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { vector3 } from '../uniforms'
 import type { CloudField } from './CloudField'
 import { layerAt, type LayerNodes } from './tsl/layer'
-import { weatherBackground, type PackedBackground } from './tsl/weatherBackground'
+import { resolutionAt } from './tsl/resolution'
+import { columnStrength } from './tsl/strength'
+import { cloudWeather } from './tsl/weather'
+import { unpackBackground, weatherBackground, type PackedBackground } from './tsl/weatherBackground'
 
 /** Texels along an edge of a layer's map. */
 const SIZE = 256
@@ -18,14 +21,47 @@ const SIZE = 256
 const MAXIMUM_DISTANCE = 30_000
 const EVEN = 12_000
 
-/** Position of that distance in the map, from its middle: ρ / (ρ + EVEN). */
-const RIM = MAXIMUM_DISTANCE / (MAXIMUM_DISTANCE + EVEN)
+/** Texels along an edge of a layer's map of columns: 29 m wide below the camera, 0.2 km at the rim. */
+const COLUMNS_SIZE = 512
+
+/**
+ * Greatest distance over the ground from the camera up to which columns are known [m]. Wider: small clouds are missed
+ * far away (*Cumulus*).
+ */
+export const COLUMNS_DISTANCE = 20_000
+
+/** Strength of columns of which nothing is known [–]. */
+const UNKNOWN = 1e3
 
 /** Texels at each edge that bilinear look-ups must not leave. */
 const MARGIN = 0.5
 
-/** Texture coordinates of a layer's tile per unit of position, from its middle. */
-const PER_POSITION = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
+/** Form of a map. */
+interface MapForm {
+  /** Texture coordinates of a layer's tile per unit of position, from its middle. */
+  readonly perPosition: number
+}
+
+/** Form of a map with a rim at a distance [m]: its position is ρ / (ρ + EVEN). */
+const mapForm = (size: number, distance: number): MapForm => {
+  const rim = distance / (distance + EVEN)
+  return { perPosition: (size - 2 * MARGIN) / (2 * rim * size) }
+}
+
+const backgroundForm = /*#__PURE__*/ mapForm(SIZE, MAXIMUM_DISTANCE)
+const columnsForm = /*#__PURE__*/ mapForm(COLUMNS_SIZE, COLUMNS_DISTANCE)
+
+/** Place that a texel of a layer's map stands for. */
+interface MappedPlace {
+  readonly index: Int
+  readonly layer: LayerNodes
+  /** `subpointOffset` of its samples [m]. */
+  readonly subpoint: Vec3
+  /** Zenith there. */
+  readonly up: Vec3
+  /** Width of what samples at the layer's base stand for [m]. */
+  readonly footprint: Float
+}
 
 /**
  * Weather's background of all layers around a camera's subpoint, drawn anew for each frame: rays that look it up
@@ -39,6 +75,9 @@ export class WeatherMap {
   readonly #target
   readonly #pass: FragmentPass
   readonly #map: LevelTexture<Vec2>
+  readonly #columnsTarget
+  readonly #columnsPass: FragmentPass
+  readonly #columns: LevelTexture<Vec2>
   /** Two directions along the ground at the subpoint, in the mapped space. */
   readonly #axes: readonly [ReturnType<typeof vector3>, ReturnType<typeof vector3>] = [
     vector3(),
@@ -51,26 +90,53 @@ export class WeatherMap {
     this.#target = tableTarget('Welkin.CloudsWeather', SIZE, SIZE * length)
     this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#pass = new FragmentPass('Welkin.CloudsWeather', this.#draw())
+    this.#columnsTarget = tableTarget('Welkin.CloudsColumns', COLUMNS_SIZE, COLUMNS_SIZE * length)
+    this.#columnsTarget.texture.format = RGFormat
+    this.#columns = texture(this.#columnsTarget.texture) as unknown as LevelTexture<Vec2>
+    this.#columnsPass = new FragmentPass('Welkin.CloudsColumns', this.#drawColumns())
   }
 
-  #draw(): Vec4 {
+  /** Place that a texel stands for. To be called inside of a shader function. */
+  #placeAt({ perPosition }: MapForm): MappedPlace {
     const field = this.#field
     const { view, radius } = field
     const [x, y] = this.#axes
+    const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
+    const index = at.y.floor().toInt().toConst() as Int
+    const layer = layerAt(field, index)
+    const position = vec2(at.x, at.y.fract()).sub(0.5).div(perPosition).toConst() as Vec2
+    const far = position.length().min(0.98).toConst() as Float
+    const flat = position.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
+    const square = flat.dot(flat).toConst() as Float
+    // What the sphere falls short of the plane.
+    const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
+    const subpoint = x.mul(flat.x).add(y.mul(flat.y)).sub(view.up.mul(drop)).toConst() as Vec3
+    const up = subpoint.div(radius).add(view.up).normalize().toConst() as Vec3
+    const rise = layer.baseAltitude.sub(view.height)
+    const footprint = square.add(rise.mul(rise)).sqrt().mul(field.pixelAngle).toConst() as Float
+    return { index, layer, subpoint, up, footprint }
+  }
+
+  #draw(): Vec4 {
     return Fn(() => {
-      const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
-      const layer = layerAt(field, at.y.floor().toInt().toConst())
-      const position = vec2(at.x, at.y.fract()).sub(0.5).div(PER_POSITION).toConst() as Vec2
-      const far = position.length().min(0.98).toConst() as Float
-      const flat = position.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
-      const square = flat.dot(flat).toConst() as Float
-      // What the sphere falls short of the plane.
-      const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
-      const subpoint = x.mul(flat.x).add(y.mul(flat.y)).sub(view.up.mul(drop)).toConst() as Vec3
-      const up = subpoint.div(radius).add(view.up).normalize().toConst() as Vec3
-      const rise = layer.baseAltitude.sub(view.height)
-      const footprint = square.add(rise.mul(rise)).sqrt().mul(field.pixelAngle).toConst() as Float
-      return weatherBackground(field, layer, subpoint, { up }, footprint)
+      const { layer, subpoint, up, footprint } = this.#placeAt(backgroundForm)
+      return weatherBackground(this.#field, layer, subpoint, { up }, footprint)
+    })()
+  }
+
+  #drawColumns(): Vec4 {
+    const field = this.#field
+    return Fn(() => {
+      const { index, layer, subpoint, up, footprint } = this.#placeAt(columnsForm)
+      const packed = this.sample(layer, index, subpoint, up, footprint)
+      const background = unpackBackground(packed)
+      const resolution = resolutionAt(layer, footprint)
+      const still = vec2(0, 0) as Vec2
+      const where = 'where unresolved'
+      const weather = cloudWeather(field, layer, background, subpoint, still, resolution, where)
+      const strength = columnStrength(layer, weather, background.coverage, resolution)
+      const isResolved = resolution.unresolvedFraction.equal(0)
+      return vec4(isResolved.select(strength, UNKNOWN), background.coverage, 0, 1)
     })()
   }
 
@@ -82,6 +148,28 @@ export class WeatherMap {
     x.value.cross(up).normalize()
     y.value.copy(up).cross(x.value)
     this.#pass.render(renderer, this.#target)
+    this.#columnsPass.render(renderer, this.#columnsTarget)
+  }
+
+  /** Texture coordinates of a place in a map [m]. */
+  #coordinates({ perPosition }: MapForm, index: Int, flat: Vec2, distance: Float): Vec2 {
+    const inTile = flat.div(distance.add(EVEN)).mul(perPosition).add(0.5).toConst() as Vec2
+    return vec2(inTile.x, inTile.y.add(float(index)).div(this.#field.layers.length))
+  }
+
+  /**
+   * Strength of the column on a place of the ground, without billows and turbulence, and coverage there. Where it is not
+   * known, the strength is beyond all bounds.
+   *
+   * @param subpoint - `subpointOffset` of the sample, less `leanAt`.
+   */
+  columnAt(index: Int, subpoint: Vec3): Vec2 {
+    const [x, y] = this.#axes
+    const flat = vec2(subpoint.dot(x), subpoint.dot(y)).toConst() as Vec2
+    const distance = flat.length().toConst() as Float
+    const at = this.#coordinates(columnsForm, index, flat, distance)
+    const found = this.#columns.sample(at).level(0).xy.toConst() as Vec2
+    return distance.lessThan(COLUMNS_DISTANCE).select(found, vec2(UNKNOWN, 0)).toConst()
   }
 
   /**
@@ -99,15 +187,14 @@ export class WeatherMap {
     up: Vec3,
     footprint: Float
   ): PackedBackground {
-    const { layers } = this.#field
     const [x, y] = this.#axes
     const flat = vec2(subpoint.dot(x), subpoint.dot(y)).toConst() as Vec2
     const distance = flat.length().toConst() as Float
     const found = vec4(0).toVar() as Vec4
     If(distance.lessThan(MAXIMUM_DISTANCE), () => {
-      const inTile = flat.div(distance.add(EVEN)).mul(PER_POSITION).add(0.5)
-      const row = inTile.y.add(float(index)).div(layers.length)
-      found.assign(this.#map.sample(vec2(inTile.x, row)).level(0))
+      found.assign(
+        this.#map.sample(this.#coordinates(backgroundForm, index, flat, distance)).level(0)
+      )
     }).Else(() => {
       found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint))
     })
@@ -116,7 +203,7 @@ export class WeatherMap {
 
   /** Frees the map. */
   dispose(): void {
-    this.#target.dispose()
-    this.#pass.dispose()
+    for (const target of [this.#target, this.#columnsTarget]) target.dispose()
+    for (const pass of [this.#pass, this.#columnsPass]) pass.dispose()
   }
 }
