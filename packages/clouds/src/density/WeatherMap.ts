@@ -11,24 +11,21 @@ import { columnStrength } from './tsl/strength'
 import { cloudWeather } from './tsl/weather'
 import { unpackBackground, weatherBackground, type PackedBackground } from './tsl/weatherBackground'
 
-/** Texels along an edge of a layer's map. */
-const SIZE = 256
+/**
+ * Map of the background: texels along an edge of a layer's tile; the greatest distance over the ground from the camera [m]; and
+ * that within which texels are about as wide: 0.15 km below the camera, 1.5 km at the rim. Wider: clouds shift as one
+ * flies towards them (*Cockpit*).
+ */
+const BACKGROUND = { size: 384, reach: 90_000, even: 40_000 } as const
 
 /**
- * Greatest distance over the ground from the camera that the map has [m], and that within which its texels are about
- * as wide: 100 m below the camera, 1.1 km at its rim. Wider: clouds shift as one flies towards them (*Cockpit*).
+ * Map of columns: texels are 29 m wide below the camera, 0.2 km at the rim. Wider: small clouds are missed far away
+ * (*Cumulus*).
  */
-const MAXIMUM_DISTANCE = 30_000
-const EVEN = 12_000
+const COLUMNS = { size: 512, reach: 20_000, even: 12_000 } as const
 
-/** Texels along an edge of a layer's map of columns: 29 m wide below the camera, 0.2 km at the rim. */
-const COLUMNS_SIZE = 512
-
-/**
- * Greatest distance over the ground from the camera up to which columns are known [m]. Wider: small clouds are missed
- * far away (*Cumulus*).
- */
-export const COLUMNS_DISTANCE = 20_000
+/** Greatest distance over the ground from the camera up to which columns are known [m]. */
+export const COLUMNS_DISTANCE = COLUMNS.reach
 
 /** Strength of columns of which nothing is known [–]. */
 const UNKNOWN = 1e3
@@ -38,18 +35,19 @@ const MARGIN = 0.5
 
 /** Form of a map. */
 interface MapForm {
+  /** Distance in the middle of positions [m]: that of ρ is ρ / (ρ + even). */
+  readonly even: number
   /** Texture coordinates of a layer's tile per unit of position, from its middle. */
   readonly perPosition: number
 }
 
-/** Form of a map with a rim at a distance [m]: its position is ρ / (ρ + EVEN). */
-const mapForm = (size: number, distance: number): MapForm => {
-  const rim = distance / (distance + EVEN)
-  return { perPosition: (size - 2 * MARGIN) / (2 * rim * size) }
-}
+const mapForm = ({ size, reach, even }: Record<'size' | 'reach' | 'even', number>): MapForm => ({
+  even,
+  perPosition: ((size - 2 * MARGIN) / (2 * size)) * ((reach + even) / reach)
+})
 
-const backgroundForm = /*#__PURE__*/ mapForm(SIZE, MAXIMUM_DISTANCE)
-const columnsForm = /*#__PURE__*/ mapForm(COLUMNS_SIZE, COLUMNS_DISTANCE)
+const backgroundForm = /*#__PURE__*/ mapForm(BACKGROUND)
+const columnsForm = /*#__PURE__*/ mapForm(COLUMNS)
 
 /** Place that a texel of a layer's map stands for. */
 interface MappedPlace {
@@ -68,7 +66,7 @@ interface MappedPlace {
  * there take one texture read in place of two that wait for each other.
  *
  * Each layer has a tile, one above the other. Positions are displacements in the plane that touches the sphere at
- * the subpoint, at ρ / (ρ + EVEN) for a distance ρ from it.
+ * the subpoint.
  */
 export class WeatherMap {
   readonly #field: CloudField
@@ -87,17 +85,17 @@ export class WeatherMap {
   constructor(field: CloudField) {
     this.#field = field
     const { length } = field.layers
-    this.#target = tableTarget('Welkin.CloudsWeather', SIZE, SIZE * length)
+    this.#target = tableTarget('Welkin.CloudsWeather', BACKGROUND.size, BACKGROUND.size * length)
     this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#pass = new FragmentPass('Welkin.CloudsWeather', this.#draw())
-    this.#columnsTarget = tableTarget('Welkin.CloudsColumns', COLUMNS_SIZE, COLUMNS_SIZE * length)
+    this.#columnsTarget = tableTarget('Welkin.CloudsColumns', COLUMNS.size, COLUMNS.size * length)
     this.#columnsTarget.texture.format = RGFormat
     this.#columns = texture(this.#columnsTarget.texture) as unknown as LevelTexture<Vec2>
     this.#columnsPass = new FragmentPass('Welkin.CloudsColumns', this.#drawColumns())
   }
 
   /** Place that a texel stands for. To be called inside of a shader function. */
-  #placeAt({ perPosition }: MapForm): MappedPlace {
+  #placeAt({ even, perPosition }: MapForm): MappedPlace {
     const field = this.#field
     const { view, radius } = field
     const [x, y] = this.#axes
@@ -106,7 +104,7 @@ export class WeatherMap {
     const layer = layerAt(field, index)
     const position = vec2(at.x, at.y.fract()).sub(0.5).div(perPosition).toConst() as Vec2
     const far = position.length().min(0.98).toConst() as Float
-    const flat = position.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
+    const flat = position.mul(float(even).div(far.oneMinus())).toConst() as Vec2
     const square = flat.dot(flat).toConst() as Float
     // What the sphere falls short of the plane.
     const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
@@ -152,8 +150,8 @@ export class WeatherMap {
   }
 
   /** Texture coordinates of a place in a map [m]. */
-  #coordinates({ perPosition }: MapForm, index: Int, flat: Vec2, distance: Float): Vec2 {
-    const inTile = flat.div(distance.add(EVEN)).mul(perPosition).add(0.5).toConst() as Vec2
+  #coordinates({ even, perPosition }: MapForm, index: Int, flat: Vec2, distance: Float): Vec2 {
+    const inTile = flat.div(distance.add(even)).mul(perPosition).add(0.5).toConst() as Vec2
     return vec2(inTile.x, inTile.y.add(float(index)).div(this.#field.layers.length))
   }
 
@@ -191,7 +189,7 @@ export class WeatherMap {
     const flat = vec2(subpoint.dot(x), subpoint.dot(y)).toConst() as Vec2
     const distance = flat.length().toConst() as Float
     const found = vec4(0).toVar() as Vec4
-    If(distance.lessThan(MAXIMUM_DISTANCE), () => {
+    If(distance.lessThan(BACKGROUND.reach), () => {
       found.assign(
         this.#map.sample(this.#coordinates(backgroundForm, index, flat, distance)).level(0)
       )
