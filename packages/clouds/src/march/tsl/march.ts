@@ -1,20 +1,12 @@
 import { Break, If, float, int, vec4 } from 'three/tsl'
 import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
-import { COLUMNS_DISTANCE } from '../../density/WeatherMap'
-import { clearColumns } from '../../density/tsl/clearColumns'
 import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
-import { advance, clearStep, columnTrust, enterSteps, nextSteps, skip, stepState } from './steps'
-
-/** Most clear columns that are skipped before the next pair of samples: so that no ray goes on for ever. */
-const MOST_COLUMNS = 12
-
-/** Distance up to which columns are looked for [m]: rays that end over the map's rim are a little longer. */
-const MOST_DISTANCE = 1.2 * COLUMNS_DISTANCE
+import { advance, enterSteps, nextSteps, stepState } from './steps'
 
 /** A ray from the camera, in the mapped space. */
 export interface CloudRay {
@@ -41,8 +33,8 @@ const segmentState = () => ({
 })
 
 /**
- * Marches a ray through all layers, from boundary to boundary: jumps where no layer is, skips clear columns, goes by
- * likely distances through other clear air, and ends where nothing more is seen. Steps go in pairs.
+ * Marches a ray through all layers, from boundary to boundary: jumps where no layer is, goes by likely
+ * distances through clear air, and ends where nothing more is seen. Steps go in pairs.
  *
  * To be called inside of a shader function.
  */
@@ -66,25 +58,6 @@ export function marchClouds(
   /** Distance of the first layer; 0 before. */
   const entry = float(0).toVar()
 
-  const skipClearColumns = (): void => {
-    // Clouds of one's own have no columns.
-    if (weatherMap === undefined || field.extinction) return
-    loop('clearColumn', MOST_COLUMNS, () => {
-      const isBeyond = position.greaterThanEqual(segment.end.min(MOST_DISTANCE))
-      If(state.isFine.or(isBeyond), () => {
-        Break()
-      })
-      const sample = sampleAt(position)
-      const trust = columnTrust(quality)
-      const distance = clearColumns(field, weatherMap, clear, sample, segment.range, trust)
-      If(distance.lessThan(clearStep(state, quality, position)), () => {
-        Break()
-      })
-      skip(state)
-      position.addAssign(distance.min(segment.end.sub(position)))
-    })
-  }
-
   loop('cloudPair', quality.pairs, () => {
     If(position.greaterThanEqual(end).or(seen.transmittance.lessThan(LEAST_TRANSMITTANCE)), () => {
       Break()
@@ -107,20 +80,17 @@ export function marchClouds(
         entry.assign(position.max(1))
       })
     }).Else(() => {
-      skipClearColumns()
-      If(position.lessThan(segment.end), () => {
-        const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
-        const { length } = pair
-        const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
-        const middle = sampleAt(position.add(length))
-        const { range } = segment
-        const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
-        const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
-        const accept = (): void => {
-          addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
-        }
-        position.addAssign(advance(state, pair, quality, found, accept))
-      })
+      const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
+      const { length } = pair
+      const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
+      const middle = sampleAt(position.add(length))
+      const { range } = segment
+      const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
+      const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
+      const accept = (): void => {
+        addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
+      }
+      position.addAssign(advance(state, pair, quality, found, accept))
     })
   })
   const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY)) as Float

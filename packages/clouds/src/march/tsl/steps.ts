@@ -21,7 +21,7 @@ const LEAST_STEPS = 4
  * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
  * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
  */
-const CLEAR_GROWTH = 4
+const CLEAR_GROWTH = 6
 
 /**
  * Steps through clear air longer than this many in clouds go back where they find one. Greater: near edges
@@ -34,12 +34,6 @@ const LOOK_BACK = 1.6
  * insides of thin clouds get coarse, also while one turns (*Cirrus*).
  */
 const HIDDEN_GROWTH = 2
-
-/**
- * Growth of steps with the distance from which on columns are trusted: a march with shorter steps goes shorter ways by them [–].
- * Smaller: faster at fine qualities, and what columns miss is missed there as well (*Cumulus*).
- */
-const TRUSTED_GROWTH = 0.003
 
 /** State of the step policy. */
 export interface StepState {
@@ -111,40 +105,22 @@ export function enterSteps(
 const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float =>
   quality.depthStep.div(density.max(1e-6)).max(quality.shortestStep).min(longest)
 
-/** Length of a step through clear air [m]. */
-export function clearStep(
-  { finest, longest, likely }: StepState,
-  quality: QualityUniforms,
-  position: Float
-): Float {
-  const least = finest.max(position.mul(quality.stepGrowth).mul(CLEAR_GROWTH)).min(longest)
-  return likely.mul(CAUTION).clamp(least, longest).toConst()
-}
-
-/** Part of the likely distance of columns that is gone by, in [0, 1]. */
-export const columnTrust = ({ stepGrowth }: QualityUniforms): Float =>
-  stepGrowth.div(TRUSTED_GROWTH).min(1)
-
-/** Goes on behind clear air of which no samples were taken. */
-export function skip({ before }: StepState): void {
-  before.assign(0)
-}
-
 /**
  * The next two steps: they grow with the distance and with what hides them, and end at the end of the segment.
  *
  * @param transmittance - Share of the light from there that reaches the camera, in [0, 1].
  */
 export function nextSteps(
-  state: StepState,
+  { isFine, finest, longest, likely, part }: StepState,
   quality: QualityUniforms,
   position: Float,
   end: Float,
   transmittance: Float
 ): StepPair {
-  const { isFine, finest, longest, part } = state
-  const fine = finest.max(position.mul(quality.stepGrowth)).min(longest).toConst() as Float
-  const clear = clearStep(state, quality, position)
+  const growing = position.mul(quality.stepGrowth).toConst() as Float
+  const fine = finest.max(growing).min(longest).toConst() as Float
+  const least = fine.max(growing.mul(CLEAR_GROWTH)).min(longest).toConst() as Float
+  const clear = likely.mul(CAUTION).clamp(least, longest)
   const left = end.sub(position).mul(0.5)
   const hidden = transmittance.oneMinus().mul(HIDDEN_GROWTH).add(1)
   const whole = isFine.select(fine.mul(hidden).min(longest), clear) as Float
