@@ -14,7 +14,7 @@ const LIKELY = 0.012
  * Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. Greater:
  * faster, and small clouds are missed here and there, as grain (*Cumulus*).
  */
-export const CAUTION = 0.55
+export const CAUTION = 0.45
 
 /**
  * Likely distance of a layer's clouds: strength is too wild for a distance that is sure, so a march that goes

@@ -21,7 +21,7 @@ const LEAST_STEPS = 4
  * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
  * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
  */
-const CLEAR_GROWTH = 6
+const CLEAR_GROWTH = 4
 
 /**
  * Steps through clear air longer than this many in clouds go back where they find one. Greater: near edges
