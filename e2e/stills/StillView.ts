@@ -3,6 +3,8 @@ import {
   aerialPerspective,
   Atmosphere,
   autoExposure,
+  droplets,
+  heightFog,
   lightShafts,
   marsParameters,
   milkyWay,
@@ -21,6 +23,8 @@ import {
 import {
   cloudAirShadow,
   cloudPreset,
+  CloudLightTable,
+  cloudParticles,
   clouds,
   cloudShadow,
   cloudSkyLight,
@@ -120,6 +124,10 @@ export class StillView {
       scene.add(this.#landscape)
     }
 
+    if (still.fog !== undefined) {
+      const { dropletRadius: radius, ...fog } = still.fog
+      atmosphere.add(heightFog({ ...fog, droplets: droplets({ radius }) }))
+    }
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
     const shafts = still.shafts && lightShafts(atmosphere, camera, sun)
@@ -130,7 +138,10 @@ export class StillView {
       const { preset, coverage } = still.clouds
       const layers = cloudPreset(preset)
       if (coverage !== undefined) layers.at(0).set({ coverage })
-      const node = clouds(air, depth, camera, atmosphere, layers, { quality })
+      const { dropletRadius } = still
+      const particles = dropletRadius === undefined ? null : cloudParticles({ dropletRadius })
+      const light = new CloudLightTable({ particles })
+      const node = clouds(air, depth, camera, atmosphere, layers, { quality, light })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))

@@ -9,6 +9,10 @@ export interface Still {
   about: string
   /** Preset of clouds; default: a clear sky. */
   clouds?: { preset: CloudPresetName; coverage?: number }
+  /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
+  dropletRadius?: number
+  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
+  fog?: { density: number; falloff: number; dropletRadius: number }
   /** Light shafts, of hills and clouds. */
   shafts?: true
   planet?: 'mars'
@@ -127,6 +131,42 @@ const shafts: Still[] = [
   }
 ]
 
+/** Bows and rings of droplets. */
+const optics: Still[] = [
+  {
+    name: 'optics-glory',
+    about:
+      'from an aeroplane over a deck, the sun behind: coloured rings of 1 to 3° about the middle, a pale cloudbow 40° from it',
+    clouds: { preset: 'stratocumulus', coverage: 0.97 },
+    dropletRadius: 9,
+    altitude: 2600,
+    sun: { elevation: 30, azimuth: 210 },
+    view: { azimuth: 30, pitch: -27 },
+    land: 'hills'
+  },
+  {
+    name: 'optics-fogbow',
+    about:
+      'a broad white bow, 38° from the point opposite the sun, outside a little red, in mist on hills',
+    fog: { density: 0.004, falloff: 60, dropletRadius: 9 },
+    altitude: 12,
+    sun: { elevation: 18, azimuth: 180 },
+    view: { azimuth: 0, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: 'optics-corona',
+    about:
+      'the sun behind thin clouds: an aureole of 2°, white and then brown at its edge, pale rings around',
+    clouds: { preset: 'altocumulus', coverage: 0.6 },
+    dropletRadius: 6,
+    altitude: 2,
+    sun: { elevation: 28, azimuth: 30 },
+    view: { azimuth: 34, pitch: 24 },
+    land: 'hills'
+  }
+]
+
 /** The valley, at hours and in weathers that differ much. */
 const valleys: ValleyStill[] = [
   {
@@ -177,6 +217,7 @@ const valleys: ValleyStill[] = [
 export const stills: readonly (Still | ValleyStill)[] = [
   ...fromTheGround,
   ...shafts,
+  ...optics,
   ...valleys,
   {
     name: 'among',

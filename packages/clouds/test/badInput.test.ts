@@ -11,6 +11,7 @@ import {
   cloudAirShadow,
   cloudEnvironment,
   cloudLayersFromMETAR,
+  cloudParticles,
   cloudPreset,
   clouds,
   cloudsDebug,
@@ -74,6 +75,22 @@ const cases: [message: string, call: () => unknown][] = [
   [
     "cloudLayersFromMETAR: unknown option 'stationElevaton', did you mean 'stationElevation'?",
     () => cloudLayersFromMETAR('CAVOK', wrong({ stationElevaton: 0 }))
+  ],
+  [
+    "CloudParticles: unknown option 'radius', there are dropletRadius, crystals",
+    () => cloudParticles(wrong({ radius: 8 }))
+  ],
+  [
+    'CloudParticles: dropletRadius must be in [3, 30], got 31',
+    () => cloudParticles({ dropletRadius: 31 })
+  ],
+  [
+    'CloudParticles: crystals must be iceCrystals() or null, got true',
+    () => cloudParticles({ crystals: wrong(true) })
+  ],
+  [
+    'CloudLightTable: particles must be cloudParticles() or null, got 8',
+    () => new CloudLightTable({ particles: wrong(8) })
   ],
   [
     "CloudLightTable: unknown option 'forwardAsymetry', did you mean 'forwardAsymmetry'?",
@@ -252,6 +269,23 @@ describe('settings are properties', () => {
     expect([table.phase.forwardAsymmetry, table.forwardAsymmetry, table.forwardShare]).toEqual([
       0.7, 0.7, 0.8
     ])
+  })
+
+  it('of the light table follow those of its particles', () => {
+    const particles = cloudParticles({ dropletRadius: 5 })
+    const table = new CloudLightTable({ particles, scatteringAlbedo: 0.9 })
+    table.bake()
+    const { forwardAsymmetry, forwardShare, backwardAsymmetry } = table
+    // The asymmetry of droplets of 5 µm.
+    const asymmetry = forwardShare * forwardAsymmetry + (1 - forwardShare) * backwardAsymmetry
+    expect(asymmetry).toBeCloseTo(0.85, 2)
+    expect(table.scatteringAlbedo).toBe(0.9)
+    particles.dropletRadius = 20
+    expect(table.isDirty).toBe(true)
+    table.bake()
+    expect(table.isDirty).toBe(false)
+    expect(table.forwardAsymmetry).toBeGreaterThan(forwardAsymmetry)
+    particles.dispose()
   })
 
   it('free a probe for other clouds', () => {

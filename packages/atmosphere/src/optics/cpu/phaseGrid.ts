@@ -1,0 +1,29 @@
+const QUARTER = Math.PI / 2
+
+/** Samples of a stored phase function: from the light to a quarter turn, and from the point opposite to it. */
+export interface PhaseGrid {
+  readonly forward: number
+  readonly backward: number
+}
+
+/** Grid of stored droplets. */
+export const dropletGrid: PhaseGrid = { forward: 64, backward: 96 }
+
+/**
+ * Distance of a sample from the light or from the point opposite, w² π/2: samples crowd where aureole, corona and
+ * glory are.
+ *
+ * @param w - In [0, 1].
+ * @returns [rad].
+ */
+export const angleAt = (w: number): number => QUARTER * w * w
+
+/** Place w of an angle from the light or from the point opposite: inverse of `angleAt`. @param angle - [rad]. */
+export const placeOf = (angle: number): number => Math.sqrt(angle / QUARTER)
+
+/** Angles of a grid's samples from their ends, and if that is the point opposite the light [rad]. */
+export function gridAngles({ forward, backward }: PhaseGrid): { angle: number; isBack: boolean }[] {
+  return [forward, backward].flatMap((count, i) =>
+    Array.from({ length: count }, (_, k) => ({ angle: angleAt(k / (count - 1)), isBack: i > 0 }))
+  )
+}
