@@ -24,8 +24,7 @@ import {
 } from '@welkin/atmosphere'
 import type { AutoExposureNode, LightShafts } from '@welkin/atmosphere'
 import {
-  CloudLightTable,
-  cloudParticles,
+  DropletLightTable,
   cloudAirShadow,
   cloudEnvironment,
   cloudPreset,
@@ -138,7 +137,7 @@ class World {
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
       quality: coarse,
       worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null,
-      light: new CloudLightTable({ particles: cloudParticles() })
+      light: new DropletLightTable()
     })
     this.#clouds.time = 0
     shafts.add(cloudAirShadow(this.#clouds))

@@ -23,9 +23,8 @@ import {
 import {
   cloudAirShadow,
   cloudPreset,
-  CloudLightTable,
-  cloudParticles,
   clouds,
+  DropletLightTable,
   cloudShadow,
   cloudSkyLight,
   type CloudQuality,
@@ -139,8 +138,8 @@ export class StillView {
       const layers = cloudPreset(preset)
       if (coverage !== undefined) layers.at(0).set({ coverage })
       const { dropletRadius } = still
-      const particles = dropletRadius === undefined ? null : cloudParticles({ dropletRadius })
-      const light = new CloudLightTable({ particles })
+      const light =
+        dropletRadius === undefined ? undefined : new DropletLightTable({ dropletRadius })
       const node = clouds(air, depth, camera, atmosphere, layers, { quality, light })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)

@@ -1,4 +1,4 @@
-import { CloudLightTable, cloudParticles } from '@welkin/clouds'
+import { CloudLightTable, DropletLightTable } from '@welkin/clouds'
 import { float, vec4 } from 'three/tsl'
 import * as twin from '../../../packages/clouds/test/twins/cloudLight'
 import { solveCloudLight } from '../../../packages/clouds/test/twins/cloudLightTable'
@@ -105,15 +105,14 @@ gpuTest('has the phase function of its float64 twin, in the aureole too', async 
 gpuTest('has bow and glory of droplets like the float64 twin', async t => {
   const renderer = await t.createRenderer()
   const radius = 9
-  const particles = cloudParticles({ dropletRadius: radius })
-  const light = new CloudLightTable({ particles })
+  const light = new DropletLightTable({ dropletRadius: radius })
   const { depthScale } = scalePhase(light.phase)
   const inputs = rows(300, i => {
     const angle = Math.PI * spread(i, 2)
     return [depthAt(spread(i, 0)), 0.3 * depthAt(spread(i, 1)), Math.cos(angle)]
   })
   const results = await evaluateOnGpu(renderer, inputs, input =>
-    particles.fineStructure(light.nodes, {
+    light.nodes.fineStructure!({
       depthToLight: input.x,
       depthToCamera: input.y,
       cosViewLight: input.z,
@@ -129,7 +128,6 @@ gpuTest('has bow and glory of droplets like the float64 twin', async t => {
     expectClose(results[4 * i + 2], expected, { absolute: 3e-4, relative: 0.02 }, label)
   })
   light.dispose()
-  particles.dispose()
 })
 
 gpuTest('scatters light of sky and ground like its float64 twin', async t => {

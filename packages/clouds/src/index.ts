@@ -10,15 +10,9 @@ export type { CloudNoiseOptions, NoiseFunction } from './noise/CloudNoise'
 export { noiseVolume } from './noise/noiseVolume'
 export { cloudPreset, cloudPresetNames, type CloudPresetName } from './layers/presets'
 export { CloudLightTable } from './light/CloudLightTable'
-export type {
-  CloudLight,
-  CloudLightOptions,
-  FineSampleNodes,
-  LightScatterers
-} from './light/CloudLightTable'
-export { CloudParticles, cloudParticles } from './light/CloudParticles'
-export type { CloudParticlesOptions } from './light/CloudParticles'
-export type { CloudLobes, CloudPhaseParameters } from './light/cpu/cloudPhase'
+export type { CloudLight, FineSampleNodes } from './light/CloudLightTable'
+export { DropletLightTable, type DropletLightOptions } from './light/DropletLightTable'
+export type { CloudPhaseParameters } from './light/cpu/cloudPhase'
 export { CloudsNode, clouds, type CloudsOptions } from './march/CloudsNode'
 export { CloudVelocityNode, cloudVelocity } from './temporal/CloudVelocityNode'
 export { CloudsDebugNode, cloudsDebug, type CloudsDebug } from './march/CloudsDebugNode'

@@ -11,7 +11,7 @@ import {
   cloudAirShadow,
   cloudEnvironment,
   cloudLayersFromMETAR,
-  cloudParticles,
+  DropletLightTable,
   cloudPreset,
   clouds,
   cloudsDebug,
@@ -77,20 +77,20 @@ const cases: [message: string, call: () => unknown][] = [
     () => cloudLayersFromMETAR('CAVOK', wrong({ stationElevaton: 0 }))
   ],
   [
-    "CloudParticles: unknown option 'radius', there are dropletRadius, crystals",
-    () => cloudParticles(wrong({ radius: 8 }))
+    "DropletLightTable: unknown option 'radius', there are dropletRadius, crystals",
+    () => new DropletLightTable(wrong({ radius: 8 }))
   ],
   [
-    'CloudParticles: dropletRadius must be in [3, 30], got 31',
-    () => cloudParticles({ dropletRadius: 31 })
+    'DropletLightTable: dropletRadius must be in [3, 30], got 31',
+    () => new DropletLightTable({ dropletRadius: 31 })
   ],
   [
-    'CloudParticles: crystals must be iceCrystals() or null, got true',
-    () => cloudParticles({ crystals: wrong(true) })
+    'DropletLightTable: crystals must be a ScatteringPhase or null, got true',
+    () => new DropletLightTable({ crystals: wrong(true) })
   ],
   [
-    'CloudLightTable: particles must be cloudParticles() or null, got 8',
-    () => new CloudLightTable({ particles: wrong(8) })
+    "DropletLightTable: unknown option 'forwardShare', there are dropletRadius",
+    () => (new DropletLightTable().forwardShare = 0.5)
   ],
   [
     "CloudLightTable: unknown option 'forwardAsymetry', did you mean 'forwardAsymmetry'?",
@@ -271,21 +271,21 @@ describe('settings are properties', () => {
     ])
   })
 
-  it('of the light table follow those of its particles', () => {
-    const particles = cloudParticles({ dropletRadius: 5 })
-    const table = new CloudLightTable({ particles, scatteringAlbedo: 0.9 })
+  it('of a light table of droplets, whose lobes follow', () => {
+    const table = new DropletLightTable({ dropletRadius: 5, scatteringAlbedo: 0.9 })
     table.bake()
     const { forwardAsymmetry, forwardShare, backwardAsymmetry } = table
     // The asymmetry of droplets of 5 µm.
     const asymmetry = forwardShare * forwardAsymmetry + (1 - forwardShare) * backwardAsymmetry
     expect(asymmetry).toBeCloseTo(0.85, 2)
     expect(table.scatteringAlbedo).toBe(0.9)
-    particles.dropletRadius = 20
+    table.set({ dropletRadius: 20 })
+    expect([table.dropletRadius, table.scatteringAlbedo]).toEqual([20, 0.9])
     expect(table.isDirty).toBe(true)
     table.bake()
     expect(table.isDirty).toBe(false)
     expect(table.forwardAsymmetry).toBeGreaterThan(forwardAsymmetry)
-    particles.dispose()
+    table.dispose()
   })
 
   it('free a probe for other clouds', () => {

@@ -2,11 +2,9 @@ import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray 
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { withDefaults, type ScatteringAngles } from '@welkin/atmosphere'
-import { fail } from '@welkin/geo'
 import { checkRanges } from '../check'
 import { parameterProperties } from '../parameterProperties'
-import { fairWeatherPhase, scalePhase } from './cpu/cloudPhase'
-import type { CloudLobes, CloudPhaseParameters } from './cpu/cloudPhase'
+import { fairWeatherPhase, scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { slabTableForm } from './cpu/slabTableForm'
 import { fillCloudLight } from './cpu/cloudLightTable'
 import type { Float, LevelTexture, Vec3, Vec4 } from '../tsl-types'
@@ -32,8 +30,11 @@ export interface CloudLight {
   readonly forwardAsymmetry: UniformNode<'float', number>
   readonly backwardAsymmetry: UniformNode<'float', number>
   readonly forwardShare: UniformNode<'float', number>
-  /** Particles whose fine structure comes on top of the lobes; null for none. */
-  readonly particles: LightScatterers | null
+  /**
+   * Light of particles on top of what the lobes scatter once, if they have fine structure: radiance per scaled extinction, for unit
+   * irradiance above the cloud, at the four wavelengths [1/sr]. To be called inside of a shader function.
+   */
+  fineStructure?(sample: FineSampleNodes): Vec4
 }
 
 /** Sample in a cloud whose fine structure is asked for; depths are scaled optical depths τ′ = `depthScale` τ. */
@@ -44,28 +45,6 @@ export interface FineSampleNodes extends ScatteringAngles {
   readonly depthToCamera: Float
   /** Altitude of the sample [m]. */
   readonly altitude: Float
-}
-
-/** Particles that give clouds a phase function: `cloudParticles()`. */
-export interface LightScatterers {
-  /** Counts changes. */
-  readonly version: number
-  /** Lobes that stand for them in light that is scattered more than once. */
-  readonly lobes: CloudLobes
-  /**
-   * Radiance on top of what the lobes give, per scaled extinction and unit irradiance above the cloud, at the four
-   * wavelengths [1/sr]; to be called inside of a shader function.
-   */
-  fineStructure(light: CloudLight, sample: FineSampleNodes): Vec4
-}
-
-/** Options of {@link CloudLightTable}: a phase function, by its lobes or by particles. */
-export interface CloudLightOptions extends Partial<CloudPhaseParameters> {
-  /**
-   * Droplets of a size and crystals, `cloudParticles({ dropletRadius: 8 })`, in place of lobes, which follow from them. Shared, not
-   * owned. Default: null.
-   */
-  particles?: LightScatterers | null
 }
 
 /**
@@ -89,8 +68,6 @@ export class CloudLightTable {
   declare forwardShare: CloudPhaseParameters['forwardShare']
   declare scatteringAlbedo: CloudPhaseParameters['scatteringAlbedo']
   #phase: CloudPhaseParameters
-  /** Version of the particles that the phase function is of. */
-  #particlesVersion?: number
   /** Steps left until the table is that of the phase function. */
   #steps: Generator<void, void, void> | null = null
 
@@ -99,13 +76,10 @@ export class CloudLightTable {
   }
 
   /**
-   * @param options - Differences from lobes of fair-weather clouds, or particles.
+   * @param phase - Differences from droplets of fair-weather clouds.
    * @throws Error naming the parameter and its value when one is out of its range.
    */
-  constructor({ particles = null, ...phase }: CloudLightOptions = {}) {
-    if (particles !== null && typeof particles.fineStructure !== 'function') {
-      fail('CloudLightTable', 'particles must be cloudParticles() or null', particles)
-    }
+  constructor(phase: Partial<CloudPhaseParameters> = {}) {
     const { positions, thicknesses, layers } = slabTableForm
     const texels = new Uint16Array(4 * positions * thicknesses * layers)
     this.texture = new Data3DTexture(texels, positions, thicknesses, layers)
@@ -120,8 +94,7 @@ export class CloudLightTable {
       oneMinusAsymmetry: number(),
       forwardAsymmetry: number(),
       backwardAsymmetry: number(),
-      forwardShare: number(),
-      particles
+      forwardShare: number()
     }
     this.#phase = fairWeatherPhase
     this.set(phase)
@@ -133,14 +106,9 @@ export class CloudLightTable {
     return this.#phase
   }
 
-  /** Particles that the phase function is of; shared, not owned. */
-  get particles(): LightScatterers | null {
-    return this.nodes.particles
-  }
-
   /** True while the table is not yet that of the phase function. */
   get isDirty(): boolean {
-    return this.#steps !== null || this.particles?.version !== this.#particlesVersion
+    return this.#steps !== null
   }
 
   /** True once there is a table, of this phase function or the one before. */
@@ -149,17 +117,15 @@ export class CloudLightTable {
   }
 
   /**
-   * Changes the phase function, but for lobes that follow from particles; nothing changes when the result would not be valid. Light follows when
+   * Changes the phase function; nothing changes when the result would not be valid. Light follows when
    * the table is solved.
    *
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   set(changes: Partial<CloudPhaseParameters>): this {
-    const { particles } = this
-    const phase = withDefaults('CloudLightTable', this.#phase, changes)
+    const phase = Object.freeze(withDefaults('CloudLightTable', this.#phase, changes))
     checkRanges('CloudLightTable', phase, ranges)
-    this.#phase = Object.freeze({ ...phase, ...particles?.lobes })
-    this.#particlesVersion = particles?.version
+    this.#phase = phase
     this.#steps = this.#solve()
     return this
   }
@@ -192,7 +158,6 @@ export class CloudLightTable {
    * @param steps - Most steps to take, of 29: one for each of 28 thicknesses, and the upload.
    */
   update(steps = Infinity): void {
-    if (this.particles?.version !== this.#particlesVersion) this.set({})
     for (let i = 0; i < steps && this.#steps !== null; i++) this.#steps.next()
   }
 

@@ -10,9 +10,6 @@ export interface CloudPhaseParameters {
   readonly scatteringAlbedo: number
 }
 
-/** Its lobes alone. */
-export type CloudLobes = Omit<CloudPhaseParameters, 'scatteringAlbedo'>
-
 /** Droplets of fair-weather clouds: a strong forward peak and a weak broad back lobe. */
 export const fairWeatherPhase: CloudPhaseParameters = {
   forwardAsymmetry: 0.8,

@@ -1,4 +1,4 @@
-import type { CloudLobes } from './cloudPhase'
+import type { CloudPhaseParameters } from './cloudPhase'
 
 /** Asymmetry of the second lobe of droplets: their light from 100° on, but for bow and glory. */
 const BACK = -0.3
@@ -8,7 +8,9 @@ const BACK = -0.3
  *
  * @param moments - Legendre coefficients χ₁ to χ₃.
  */
-export function dropletLobes(moments: readonly [number, number, number]): CloudLobes {
+export function dropletLobes(
+  moments: readonly [number, number, number]
+): Omit<CloudPhaseParameters, 'scatteringAlbedo'> {
   const [first, , third] = moments
   const shareOf = (g: number): number => (first - BACK) / (g - BACK)
   let [low, high] = [first, 0.95]

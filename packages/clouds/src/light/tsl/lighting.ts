@@ -57,7 +57,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosViewLight
   }
   const direct = cloudSource(light, lit)
-  const fine = light.particles?.fineStructure(light, { ...lit, altitude: sample.altitude })
+  const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
   const ambient = cloudAmbientShares(light, {
     depthAbove: depths.above.mul(scale),
     depthBelow: depths.below.mul(scale),
