@@ -4,12 +4,14 @@ import { join } from 'node:path'
 import { parseArgs } from 'node:util'
 import { PNG } from 'pngjs'
 import { AgXToneMapping } from 'three'
+import type { WebGPURenderer } from 'three/webgpu'
 import { cloudReference } from '../bench/clouds'
 import { median } from '../bench/statistics'
 import { tonesOf, type Tones } from '../harness/tones'
 import { gpuMilliseconds, HeadlessDevice, nextFrame } from '../headless/device'
-import { selectStills, stills } from './scenes'
+import { selectStills, stills, type AnyStill } from './scenes'
 import { StillView } from './StillView'
+import { TerrainView } from './TerrainView'
 import { ValleyView } from './ValleyView'
 
 const { values, positionals } = parseArgs({
@@ -73,16 +75,22 @@ function encode(name: string, pixels: Uint8Array): Buffer {
   return PNG.sync.write(png)
 }
 
+function viewOf(
+  renderer: Parameters<typeof gpuMilliseconds>[0],
+  still: AnyStill
+): StillView | ValleyView | TerrainView {
+  if ('terrain' in still) return new TerrainView(renderer, still, size)
+  if ('valley' in still) return new ValleyView(renderer, still, size, quality)
+  return new StillView(renderer, still, size, quality)
+}
+
 async function take(
   renderer: Parameters<typeof gpuMilliseconds>[0],
-  still: (typeof stills)[number]
+  still: AnyStill
 ): Promise<Taken> {
-  const view =
-    'valley' in still
-      ? new ValleyView(renderer, still, size, quality)
-      : new StillView(renderer, still, size, quality)
+  const view = viewOf(renderer, still)
   try {
-    if (view instanceof ValleyView) await view.bake()
+    if (!(view instanceof StillView)) await view.bake()
     const times: number[] = []
     for (let frame = 0; frame < frames; frame++) {
       nextFrame()
@@ -101,17 +109,27 @@ async function take(
   }
 }
 
+/** @param isPlanet - True if it shows metres and a planet at once. */
+async function rendererOf(device: HeadlessDevice, isPlanet: boolean): Promise<WebGPURenderer> {
+  const renderer = await device.renderer(...size, { reversedDepthBuffer: isPlanet })
+  renderer.highPrecision = isPlanet
+  renderer.toneMapping = AgXToneMapping
+  renderer.shadowMap.enabled = true
+  return renderer
+}
+
 async function takeAll(): Promise<void> {
   mkdirSync(values.out, { recursive: true })
   const device = await HeadlessDevice.open()
   console.log(`device: ${device.name}, ${values.size}, quality ${values.quality}, to ${values.out}`)
-  const renderer = await device.renderer(...size)
-  renderer.toneMapping = AgXToneMapping
-  renderer.shadowMap.enabled = true
   const taken: Taken[] = []
+  const renderers = new Map<boolean, Promise<WebGPURenderer>>()
   for (const still of selected) {
+    const isPlanet = 'terrain' in still
     try {
-      const result = await take(renderer, still)
+      const renderer = renderers.get(isPlanet) ?? rendererOf(device, isPlanet)
+      renderers.set(isPlanet, renderer)
+      const result = await take(await renderer, still)
       taken.push(result)
       const { gpuMs, luminance, tones } = result
       console.log(

@@ -34,6 +34,27 @@ export interface ValleyStill {
   valley: { view: ValleyName } & Partial<ValleyState>
 }
 
+/** A still of the made-up planet of `@welkin/terrain`. */
+export interface TerrainStill {
+  name: string
+  /** Features to look for. */
+  about: string
+  terrain: {
+    /** Place of the camera [°], and height above the ground [m]. */
+    longitude: number
+    latitude: number
+    height: number
+    /** Azimuth, clockwise from north, and pitch of the camera [°]. */
+    heading: number
+    pitch: number
+    /** Elevation and azimuth of the sun, clockwise from north [°]. */
+    sun: { elevation: number; azimuth: number }
+  }
+}
+
+/** A still of any kind. */
+export type AnyStill = Still | ValleyStill | TerrainStill
+
 /** The presets from the ground: where to look. */
 const presets: Record<CloudPresetName, { azimuth: number; pitch: number }> = {
   fairWeather: { azimuth: 330, pitch: 14 },
@@ -213,12 +234,43 @@ const valleys: ValleyStill[] = [
   }
 ]
 
+/** The made-up planet: at one's feet, among its mountains, and from far above. */
+const terrains: TerrainStill[] = (
+  [
+    ['grass', 'a meadow: blades and tufts, no repetition', [0.886377, 47.171687, 1.7], [60, -12]],
+    [
+      'feet',
+      "the same meadow before one's feet: detail to 1 cm",
+      [0.886377, 47.171687, 1.7],
+      [60, -50]
+    ],
+    ['scree', 'stones between meadow and rock', [0.979909, 46.485055, 1.7], [150, -12]],
+    ['snow', 'snow and rock about a summit', [1.246555, 46.250288, 1.7], [240, -8]],
+    ['shore', 'sand, wet where the sea begins', [0.763649, 46.111121, 1.7], [10, -10]],
+    ['1km', 'slopes, valleys and cliffs in low sun', [1, 47, 1e3], [0, -12]],
+    ['10km', 'ranges without shimmer or grid', [1, 46.2, 1e4], [0, -12]],
+    ['400km', 'ranges from orbit: no net', [1, 44, 4e5], [0, -25]]
+  ] as const
+).map(([name, about, [longitude, latitude, height], [heading, pitch]]) => ({
+  name: `terrain-${name}`,
+  about,
+  terrain: {
+    longitude,
+    latitude,
+    height,
+    heading,
+    pitch,
+    sun: { elevation: 28, azimuth: heading + 100 }
+  }
+}))
+
 /** All stills, by name. */
-export const stills: readonly (Still | ValleyStill)[] = [
+export const stills: readonly AnyStill[] = [
   ...fromTheGround,
   ...shafts,
   ...optics,
   ...valleys,
+  ...terrains,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',
@@ -364,7 +416,7 @@ export const stills: readonly (Still | ValleyStill)[] = [
  *
  * @throws Error with the list if a word matches none.
  */
-export function selectStills(words: readonly string[]): readonly (Still | ValleyStill)[] {
+export function selectStills(words: readonly string[]): readonly AnyStill[] {
   if (words.length === 0) return stills
   const wanted = words.map(word => {
     const named = stills.filter(({ name }) => name === word)
