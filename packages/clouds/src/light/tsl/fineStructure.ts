@@ -31,13 +31,10 @@ export function fineStructure(
   const { cosViewLight, depthToLight, depthToCamera } = sample
   const depth = depthToLight.add(depthToCamera).div(light.depthScale).toConst() as Float
   // The march counts scaled depths to the camera by itself.
-  const once = depthToCamera.sub(depth).exp().toConst() as Float
-  const all = depthToCamera
-    .sub(depth.mul(1 - DIFFRACTED))
-    .exp()
-    .toConst() as Float
+  const left = depthToCamera.sub(depth.mul(1 - DIFFRACTED)).exp()
+  const once = depth.mul(-DIFFRACTED).exp()
   const phase = particles.phase(sample)
   const blurred = particles.diffracted?.(sample) ?? phase
-  const fine = mix(blurred, phase, once.div(all)).sub(lobes(light, cosViewLight))
-  return fine.mul(all.mul(light.scatteringScale))
+  const fine = mix(blurred, phase, once).sub(lobes(light, cosViewLight))
+  return fine.mul(left.mul(light.scatteringScale))
 }
