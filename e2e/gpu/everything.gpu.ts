@@ -12,6 +12,7 @@ import {
   distanceFog,
   droplets,
   heightFog,
+  iceCrystals,
   lightShafts,
   milkyWay,
   moon,
@@ -137,7 +138,7 @@ class World {
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
       quality: coarse,
       worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null,
-      light: new DropletLightTable()
+      light: new DropletLightTable({ crystals: iceCrystals() })
     })
     this.#clouds.time = 0
     shafts.add(cloudAirShadow(this.#clouds))

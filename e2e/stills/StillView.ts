@@ -5,6 +5,7 @@ import {
   autoExposure,
   droplets,
   heightFog,
+  iceCrystals,
   lightShafts,
   marsParameters,
   milkyWay,
@@ -139,7 +140,9 @@ export class StillView {
       if (coverage !== undefined) layers.at(0).set({ coverage })
       const { dropletRadius } = still
       const light =
-        dropletRadius === undefined ? undefined : new DropletLightTable({ dropletRadius })
+        dropletRadius === undefined
+          ? undefined
+          : new DropletLightTable({ dropletRadius, crystals: iceCrystals() })
       const node = clouds(air, depth, camera, atmosphere, layers, { quality, light })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)

@@ -188,6 +188,21 @@ const optics: Still[] = [
   }
 ]
 
+/** Halos of crystals, at a winter noon. */
+const halos: Still[] = [
+  {
+    name: 'optics-halo',
+    about:
+      'thin cirrus about a sun of 22°: a ring of 22°, dark and sharp inside with a red edge, sun dogs at its sides',
+    clouds: { preset: 'cirrus', coverage: 0.9 },
+    dropletRadius: 10,
+    altitude: 2,
+    sun: { elevation: 22, azimuth: 20 },
+    view: { azimuth: 20, pitch: 18 },
+    land: 'snow'
+  }
+]
+
 /** The valley, at hours and in weathers that differ much. */
 const valleys: ValleyStill[] = [
   {
@@ -269,6 +284,7 @@ export const stills: readonly AnyStill[] = [
   ...fromTheGround,
   ...shafts,
   ...optics,
+  ...halos,
   ...valleys,
   ...terrains,
   {

@@ -91,6 +91,8 @@ export { DistanceFog, distanceFog } from './fog/DistanceFog'
 export type { DistanceFogOptions } from './fog/DistanceFog'
 export { Droplets, droplets } from './optics/Droplets'
 export type { DropletsOptions } from './optics/Droplets'
+export { IceCrystals, iceCrystals } from './optics/IceCrystals'
+export type { IceCrystalsOptions } from './optics/IceCrystals'
 export type { ScatteringAngles, ScatteringPhase } from './optics/ScatteringPhase'
 
 // For shaders of one's own; `AtmosphereNode` has an example.

@@ -1,5 +1,5 @@
 /** Angular radius of the sun's disc [°]. */
-const SUN_RADIUS = 0.2665
+export const SUN_RADIUS = 0.2665
 
 const RINGS = 6
 const SPOKES = 24

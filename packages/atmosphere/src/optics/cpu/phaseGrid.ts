@@ -9,6 +9,9 @@ export interface PhaseGrid {
 /** Grid of stored droplets. */
 export const dropletGrid: PhaseGrid = { forward: 64, backward: 96 }
 
+/** Grid of stored crystals: halos are on the light's side. */
+export const crystalGrid: PhaseGrid = { forward: 200, backward: 24 }
+
 /**
  * Distance of a sample from the light or from the point opposite, w² π/2: samples crowd where aureole, corona and
  * glory are.
