@@ -16,15 +16,15 @@ interface View {
   readonly label: string
   /** Null for mist about the ground. */
   readonly clouds: CloudPresetName | null
-  /** Of the camera [m]. */
+  /** Altitude of the camera [m]. */
   readonly altitude: number
-  /** Of the camera, which looks north [°]. */
+  /** Pitch of the camera, which looks north [°]. */
   readonly pitch: number
   /** Azimuth of the sun: behind the camera or before it [°]. */
   readonly azimuth: 0 | 180
 }
 
-/** What shines where. */
+/** Skies, and where the camera looks. */
 export const VIEWS = {
   glory: {
     label: 'Glory on a deck',

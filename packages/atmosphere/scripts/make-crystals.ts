@@ -16,14 +16,10 @@ import { encodePhases } from './optics/encodePhases'
 import { iceIndex } from './optics/refraction'
 import { overSunDisc, SUN_RADIUS } from './optics/sunDisc'
 import { wavelengths } from './spectra'
-import { crystalGrid, gridAngles, placeOf } from '../src/optics/cpu/phaseGrid'
-import {
-  DOG_ELEVATIONS,
-  DOG_SAMPLES,
-  dogAzimuth,
-  leastDogAzimuth,
-  PLATE_TILT
-} from '../src/optics/cpu/sunDogs'
+import { gridAngles } from './optics/gridAngles'
+import { dogAzimuth, leastDogAzimuth, PLATE_TILT } from './optics/sunDogs'
+import { crystalGrid, placeOf } from '../src/optics/cpu/phaseGrid'
+import { DOG_ELEVATIONS, DOG_SAMPLES } from '../src/optics/cpu/sunDogs'
 
 const RAYS = Number(process.argv[2] ?? 1_500_000)
 const DOG_RAYS = RAYS / 6

@@ -2,13 +2,14 @@
 // Run it with: npx tsx packages/atmosphere/scripts/make-droplets.ts
 import { writeFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
+import { gridAngles } from './optics/gridAngles'
 import { encodePhases } from './optics/encodePhases'
 import { sunlitColor } from './optics/colors'
 import { mieAngles, mieSphere } from './optics/mieSphere'
 import { waterIndex } from './optics/refraction'
 import { overSunDisc } from './optics/sunDisc'
 import { wavelengths } from './spectra'
-import { angleAt, dropletGrid, gridAngles, placeOf } from '../src/optics/cpu/phaseGrid'
+import { angleAt, dropletGrid, placeOf } from '../src/optics/cpu/phaseGrid'
 import { DROPLET_RADII } from '../src/optics/cpu/dropletRadii'
 
 /** Effective variance of the droplets' sizes, of a gamma distribution (Hansen & Travis 1974, eq. 2.56). */

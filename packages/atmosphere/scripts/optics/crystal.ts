@@ -59,7 +59,7 @@ function pointOn(face: number, { halfLength }: Prism, random: () => number): Vec
 /**
  * Reflectance of unpolarised light.
  *
- * @param cosine - Of the angle of incidence, > 0.
+ * @param cosine - Cosine of the angle of incidence, > 0.
  * @param ratio - Refractive index on the near side over that on the far side.
  * @returns And the cosine of the refracted ray; 1 and 0 for total reflection.
  * @see Born & Wolf 1999, "Principles of optics", 7th ed., §1.5.2
@@ -80,7 +80,7 @@ const MOST_REFLECTIONS = 30
  * Direction in which a ray of light leaves a prism: reflected and refracted at its faces by chance, as often as light is.
  *
  * @param index - Refractive index.
- * @param direction - Of the light, unit length; points are spread over the prism's shadow.
+ * @param direction - Direction of the light, unit length; points are spread over the prism's shadow.
  */
 export function traceRay(
   prism: Prism,

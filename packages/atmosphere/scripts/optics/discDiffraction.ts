@@ -16,7 +16,7 @@ function besselJ1(x: number): number {
  * Phase function of light that crystals diffract, as discs of their size do [1/sr].
  *
  * @param wavelength - [µm].
- * @returns Of the angle from the light [°].
+ * @returns Function of the angle from the light [°].
  * @see Born & Wolf 1999, "Principles of optics", 7th ed., §8.5.2, eq. 14
  */
 export function discDiffraction(wavelength: number): (degrees: number) => number {

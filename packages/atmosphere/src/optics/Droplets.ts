@@ -24,7 +24,7 @@ export interface DropletsOptions {
  * Sizes follow a gamma distribution of effective variance 0.04 (Hansen & Travis 1974); colours are those of sunlight at 35 wavelengths,
  * over the sun's disc. Larger droplets: a narrower, brighter bow, a smaller glory and corona. One object may serve many media.
  *
- * @see Bohren & Huffman 1983, "Absorption and scattering of light by small particles", ch. 4
+ * @see Bohren & Huffman 1983, "Absorption and scattering of light by small particles", chapter 4
  */
 export class Droplets implements ScatteringPhase {
   readonly #texture = new PhaseTexture('Droplets', 2)

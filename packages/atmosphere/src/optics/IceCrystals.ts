@@ -27,8 +27,6 @@ const NAMES = ['regular', 'level'] as const
  *
  * Phase functions are by ray tracing, with the diffraction of discs of 20 to 80 µm; colours are those of sunlight at 35 wavelengths
  * over the sun's disc. Sun dogs stand at the sun's elevation while it is below 60°; what they have comes on top, at most 3 % of the light.
- *
- * @see Takano & Liou 1989, "Solar radiative transfer in cirrus clouds. Part I: single-scattering and optical properties of hexagonal ice crystals", J. Atmos. Sci. 46, 3
  */
 export class IceCrystals implements ScatteringPhase {
   readonly #texture = new PhaseTexture('IceCrystals', 1 + DOG_ELEVATIONS.length)

@@ -4,7 +4,8 @@ import { randomAxes, shadowArea, toCrystal, traceRay } from '../../scripts/optic
 import { iceIndex } from '../../scripts/optics/refraction'
 import { crystalRows } from '../../src/optics/cpu/crystalRows'
 import { HALF_TEXELS, texelCosine } from '../../src/optics/cpu/phaseRow'
-import { DOG_ELEVATIONS, dogAzimuth, leastDogAzimuth } from '../../src/optics/cpu/sunDogs'
+import { dogAzimuth, leastDogAzimuth } from '../../scripts/optics/sunDogs'
+import { DOG_ELEVATIONS } from '../../src/optics/cpu/sunDogs'
 import { throwsEach, wrong } from '../harness/wrong'
 
 const TEXELS = 2 * HALF_TEXELS

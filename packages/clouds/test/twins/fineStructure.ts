@@ -21,7 +21,7 @@ function at(texels: Float32Array, cosine: number): number {
 /**
  * Fine structure of droplets at the third wavelength: what was scattered once, and diffracted n times before or after. Twin of the shader function.
  *
- * @param radius - Of the droplets [µm].
+ * @param radius - Radius of the droplets [µm].
  * @param depth - Optical depth from the light to the sample and on to the camera, not scaled.
  * @param depthToCamera - Its part from the sample to the camera, scaled.
  */

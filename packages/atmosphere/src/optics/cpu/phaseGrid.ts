@@ -23,10 +23,3 @@ export const angleAt = (w: number): number => QUARTER * w * w
 
 /** Place w of an angle from the light or from the point opposite: inverse of `angleAt`. @param angle - [rad]. */
 export const placeOf = (angle: number): number => Math.sqrt(angle / QUARTER)
-
-/** Angles of a grid's samples from their ends, and if that is the point opposite the light [rad]. */
-export function gridAngles({ forward, backward }: PhaseGrid): { angle: number; isBack: boolean }[] {
-  return [forward, backward].flatMap((count, i) =>
-    Array.from({ length: count }, (_, k) => ({ angle: angleAt(k / (count - 1)), isBack: i > 0 }))
-  )
-}

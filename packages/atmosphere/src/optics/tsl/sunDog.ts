@@ -13,8 +13,10 @@ const LEAST_COSINE = Math.cos(60 * DEGREES)
 /**
  * Sun dogs [1/sr]: light that level plates scatter aside, at the elevation of their light. Twin: test/twins/optics/sunDog.ts
  *
+ * They begin at the least deviation Δ in a prism of 60° that stands upright: sin(½(Δ + 60°)) = ½ n′ with Bravais's index
+ * n′ = √(n² − sin² h)/cos h for light of elevation h.
+ *
  * @param table - Rows of `crystalRows`.
- * @see Tricker 1970, "Introduction to meteorological optics", ch. 4
  */
 export function sunDog(
   table: TextureNode,

@@ -1,11 +1,7 @@
 import { crystalRows } from '../../../src/optics/cpu/crystalRows'
 import { HALF_TEXELS, texelCosine } from '../../../src/optics/cpu/phaseRow'
-import {
-  DOG_ELEVATIONS,
-  DOG_SPREAD,
-  dogAzimuth,
-  leastDogAzimuth
-} from '../../../src/optics/cpu/sunDogs'
+import { dogAzimuth, leastDogAzimuth } from '../../../scripts/optics/sunDogs'
+import { DOG_ELEVATIONS, DOG_SPREAD } from '../../../src/optics/cpu/sunDogs'
 
 const RADIANS = Math.PI / 180
 const TEXELS = 2 * HALF_TEXELS
@@ -19,9 +15,9 @@ const smooth = (from: number, to: number, x: number): number => {
 /**
  * Green light of crystals at the third wavelength [1/sr], from angles: crystals all ways, and sun dogs beside the sun.
  *
- * @param viewElevation - Of the view ray [°].
+ * @param viewElevation - Elevation of the view ray [°].
  * @param sunElevation - [°].
- * @param azimuth - Between both [°].
+ * @param azimuth - Angle between both on the horizon [°].
  */
 export function crystalPhase(
   regular: number,

@@ -19,8 +19,8 @@ export function lobes(light: CloudLight, cosScatter: Float): Float {
 }
 
 /**
- * What a phase function has over the lobes, in light that was scattered once and diffracted any number of times on its
- * way: of exactly once scattered light as it is, of the rest blurred by one diffraction. Depths are not delta-scaled here, τ = τ′/`depthScale`;
+ * Fine structure: what a phase function has over the lobes, in light that was scattered once and diffracted any number of times
+ * on its way; as it is in light scattered exactly once, in the rest blurred by one diffraction. Depths are not delta-scaled here, τ = τ′/`depthScale`;
  * all scattering but diffraction dims it. Per scaled extinction, as `cloudSource`. Twin: test/twins/fineStructure.ts
  */
 export function fineStructure(
