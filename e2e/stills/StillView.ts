@@ -13,6 +13,7 @@ import {
   MoonDirectionalLight,
   NightLightProbe,
   planetGround,
+  raindrops,
   SkyLightProbe,
   standardEarthParameters,
   stars,
@@ -127,6 +128,10 @@ export class StillView {
     if (still.fog !== undefined) {
       const { dropletRadius: radius, ...fog } = still.fog
       atmosphere.add(heightFog({ ...fog, droplets: droplets({ radius }) }))
+    }
+    if (still.rain !== undefined) {
+      const rain = raindrops({ rate: still.rain })
+      atmosphere.add(heightFog({ density: rain.extinction, falloff: 250, droplets: rain }))
     }
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')

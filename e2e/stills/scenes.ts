@@ -13,6 +13,8 @@ export interface Still {
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
   fog?: { density: number; falloff: number; dropletRadius: number }
+  /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */
+  rain?: number
   /** Light shafts, of hills and clouds. */
   shafts?: true
   planet?: 'mars'
@@ -188,6 +190,20 @@ const optics: Still[] = [
   }
 ]
 
+/** Rain, with the sun behind. */
+const rainbows: Still[] = [
+  {
+    name: 'optics-rainbow',
+    about:
+      'red outside at 42°, violet inside, bright within; a fainter bow of 51°, reversed, the sky dark between them',
+    rain: 8,
+    altitude: 10,
+    sun: { elevation: 14, azimuth: 180 },
+    view: { azimuth: 0, pitch: 18 },
+    land: 'hills'
+  }
+]
+
 /** Halos of crystals, at a winter noon. */
 const halos: Still[] = [
   {
@@ -285,6 +301,7 @@ export const stills: readonly AnyStill[] = [
   ...shafts,
   ...optics,
   ...halos,
+  ...rainbows,
   ...valleys,
   ...terrains,
   {

@@ -1,4 +1,4 @@
-import { droplets, heightFog, iceCrystals, planetGround } from '@welkin/atmosphere'
+import { droplets, heightFog, iceCrystals, planetGround, raindrops } from '@welkin/atmosphere'
 import { cloudPreset, clouds, cloudSkyLight, DropletLightTable } from '@welkin/clouds'
 import type { CloudPresetName } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
@@ -34,6 +34,7 @@ export const VIEWS = {
     azimuth: 180
   },
   fogbow: { label: 'Fogbow', clouds: null, altitude: 30, pitch: 12, azimuth: 180 },
+  rainbow: { label: 'Rainbow', clouds: null, altitude: 10, pitch: 18, azimuth: 180 },
   halo: { label: 'Halo and sun dogs', clouds: 'cirrus', altitude: 2, pitch: 20, azimuth: 0 }
 } as const satisfies Record<string, View>
 
@@ -72,11 +73,14 @@ export async function createHalos(
   atmosphere.add(planetGround())
   // #region droplets
   const drops = droplets()
+  const rain = raindrops({ rate: 8 }) // mm/h
   const crystals = iceCrystals()
   const light = new DropletLightTable({ crystals })
   const layers = cloudPreset(view.clouds ?? 'fairWeather')
   if (view.clouds === null) {
-    atmosphere.add(heightFog({ falloff: 150, density: 0.004, droplets: drops }))
+    const mist = { density: 0.004, falloff: 150, droplets: drops }
+    const shower = { density: rain.extinction, falloff: 250, droplets: rain }
+    atmosphere.add(heightFog(args.view === 'rainbow' ? shower : mist))
     layers.at(0).coverage = 0
   }
   const node = clouds(color, depth, camera, atmosphere, layers, { light })
@@ -121,6 +125,7 @@ export async function createHalos(
       light.dispose()
       crystals.dispose()
       drops.dispose()
+      rain.dispose()
       air.dispose()
     }
   })

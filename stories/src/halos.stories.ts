@@ -66,5 +66,8 @@ export const Glory: Story = {
   args: { view: 'glory', sun: 28, exposure: -0.5 }
 }
 
+/** A light shower all about, the sun behind one's back: both bows, and the dark band between them. */
+export const Rainbow: Story = { args: { view: 'rainbow', sun: 14 } }
+
 /** The sun behind one's back, and mist before one. */
 export const Fogbow: Story = { args: { view: 'fogbow', sun: 15 } }

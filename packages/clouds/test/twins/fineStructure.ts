@@ -2,7 +2,7 @@ import { diffractedRow } from '../../../atmosphere/src/optics/cpu/diffractedRow'
 import { dropletRow } from '../../../atmosphere/src/optics/cpu/dropletRow'
 import { HALF_TEXELS, texelCosine } from '../../../atmosphere/src/optics/cpu/phaseRow'
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
-import { cloudPhase } from './cloudPhase'
+import { aureolePhase, cloudPhase } from './cloudPhase'
 
 /** Green of a phase function between its texels, by a search for the angle. */
 function at(texels: Float32Array, cosine: number): number {
@@ -33,10 +33,14 @@ export function fineStructure(
   depthToCamera: number
 ): number {
   const { texels } = dropletRow(radius)
-  const over = (row: Float32Array): number => at(row, cosine) - cloudPhase(phase, cosine)
+  const { depthScale } = scalePhase(phase)
+  const lobes = cloudPhase(phase, cosine)
+  const towards = Math.min(Math.max(10 * cosine - 9, 0), 1)
+  const smooth = lobes + (aureolePhase(phase, cosine, depth * depthScale) - lobes) * towards
+  const over = (row: Float32Array): number => at(row, cosine) - smooth
   // Poisson: none, and at least one diffraction among the other half of events that did not happen.
   const none = Math.exp(-depth)
   const some = Math.exp(-depth / 2) * (1 - Math.exp(-depth / 2))
   const source = none * over(texels) + some * over(diffractedRow(texels, radius))
-  return (source * phase.scatteringAlbedo * Math.exp(depthToCamera)) / scalePhase(phase).depthScale
+  return (source * phase.scatteringAlbedo * Math.exp(depthToCamera)) / depthScale
 }

@@ -2,7 +2,7 @@ import type { ScatteringPhase } from '@welkin/atmosphere'
 import { mix } from 'three/tsl'
 import type { CloudLight, FineSampleNodes } from '../CloudLightTable'
 import type { Float, Vec4 } from '../../tsl-types'
-import { henyeyGreenstein } from './cloudPhase'
+import { singlePhase } from './cloudPhase'
 
 /**
  * Share of scattered light that is only diffracted, by large particles.
@@ -11,17 +11,11 @@ import { henyeyGreenstein } from './cloudPhase'
  */
 const DIFFRACTED = 0.5
 
-/** Both lobes [1/sr]. @param cosScatter - Cosine of the scattering angle. Twin: test/twins/cloudPhase.ts (`cloudPhase`) */
-export function lobes(light: CloudLight, cosScatter: Float): Float {
-  const { forwardAsymmetry, backwardAsymmetry, forwardShare } = light
-  const back = henyeyGreenstein(backwardAsymmetry, cosScatter)
-  return mix(back, henyeyGreenstein(forwardAsymmetry, cosScatter), forwardShare)
-}
-
 /**
- * Fine structure: what a phase function has over the lobes, in light that was scattered once and diffracted any number of times
- * on its way; as it is in light scattered exactly once, in the rest blurred by one diffraction. Depths are not delta-scaled here, τ = τ′/`depthScale`;
- * all scattering but diffraction dims it. Per scaled extinction, as `cloudSource`. Twin: test/twins/fineStructure.ts
+ * Fine structure: what a phase function has over the lobes, in light that was scattered once and diffracted any number of
+ * times on its way; as it is in light scattered exactly once, in the rest blurred by one diffraction. The lobes are those of
+ * `cloudSource`, broadened about the light. Depths are not delta-scaled here, τ = τ′/`depthScale`; all scattering but diffraction dims it.
+ * Radiance per scaled extinction, for unit irradiance above the cloud [1/sr]. Twin: test/twins/fineStructure.ts
  */
 export function fineStructure(
   light: CloudLight,
@@ -29,12 +23,13 @@ export function fineStructure(
   sample: FineSampleNodes
 ): Vec4 {
   const { cosViewLight, depthToLight, depthToCamera } = sample
-  const depth = depthToLight.add(depthToCamera).div(light.depthScale).toConst() as Float
+  const scaled = depthToLight.add(depthToCamera).toConst() as Float
+  const depth = scaled.div(light.depthScale).toConst() as Float
   // The march counts scaled depths to the camera by itself.
   const left = depthToCamera.sub(depth.mul(1 - DIFFRACTED)).exp()
   const once = depth.mul(-DIFFRACTED).exp()
   const phase = particles.phase(sample)
   const blurred = particles.diffracted?.(sample) ?? phase
-  const fine = mix(blurred, phase, once).sub(lobes(light, cosViewLight))
+  const fine = mix(blurred, phase, once).sub(singlePhase(light, cosViewLight, scaled))
   return fine.mul(left.mul(light.scatteringScale))
 }
