@@ -71,22 +71,23 @@ export async function createHalos(
   const { atmosphere, sky } = air
   const { pipeline, color, depth } = air.post!
   atmosphere.add(planetGround())
-  // #region droplets
-  const drops = droplets()
-  const rain = raindrops({ rate: 8 }) // mm/h
-  const crystals = iceCrystals()
-  const light = new DropletLightTable({ crystals })
   const layers = cloudPreset(view.clouds ?? 'fairWeather')
-  if (view.clouds === null) {
-    const mist = { density: 0.004, falloff: 150, droplets: drops }
-    const shower = { density: rain.extinction, falloff: 250, droplets: rain }
-    atmosphere.add(heightFog(args.view === 'rainbow' ? shower : mist))
-    layers.at(0).coverage = 0
-  }
+  // #region droplets
+  const crystals = iceCrystals() // halo and sun dogs, in cirrus
+  const light = new DropletLightTable({ crystals }) // glory, cloudbow and corona
   const node = clouds(color, depth, camera, atmosphere, layers, { light })
   pipeline.outputNode = node
   cloudSkyLight(sky, node)
+
+  const drops = droplets() // fogbow
+  const mist = heightFog({ density: 0.004, falloff: 150, droplets: drops })
+  const rain = raindrops({ rate: 8 }) // rainbow; mm/h
+  const shower = heightFog({ density: rain.extinction, falloff: 250, droplets: rain })
   // #endregion
+  if (view.clouds === null) {
+    atmosphere.add(args.view === 'rainbow' ? shower : mist)
+    layers.at(0).coverage = 0
+  }
   if (view.clouds === 'stratocumulus') layers.at(0).coverage = 0.97
   if (view.clouds === 'cirrus') layers.at(0).set({ coverage: 0.9, density: 0.0015 })
   if (args.frame) {
