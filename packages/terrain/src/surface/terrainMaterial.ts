@@ -42,7 +42,7 @@ export function terrainMaterial(
   const handed = {
     place: handedOn<Vec4>('vec4', 'Place'),
     texels: handedOn<Vec4>('vec4', 'Texels'),
-    blend: handedOn<Vec3>('vec3', 'Blend')
+    blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, resolution, detail)
@@ -113,7 +113,7 @@ export function terrainMaterial(
     isShadowPass(drawn) ? vec4(1) : vec4(surface.color, 1)
   )()
   material.roughnessNode = surface.roughness
-  material.aoNode = surface.occlusion
+  material.aoNode = surface.occlusion.mul(blend.w)
   material.normalNode = transformNormalToView(normal.sub(surface.grain).normalize())
   return material
 }

@@ -44,8 +44,8 @@ type Variable = Vec4 & { assign(value: Vec4): void }
 export function grainAt(place: GrainPlace): Grain {
   const { grain, offset, first, second, normal } = place
   // Derivatives are taken out of branches.
-  const across = dFdx(offset).toConst('across') as Vec3
-  const along = dFdy(offset).toConst('along') as Vec3
+  const across = dFdx(offset).toConst() as Vec3
+  const along = dFdy(offset).toConst() as Vec3
   const footprint = across.length().max(along.length()).toConst('footprint')
   const { tangent, bitangent } = frameOf(normal, first, second)
   const tiling: TilingPlace = {
@@ -64,7 +64,7 @@ export function grainAt(place: GrainPlace): Grain {
         total.assign(stochasticTiling(grain, tiling, side, cells).mul(kept))
       })
       return total
-    })().toConst(`${name}Layer`) as unknown as Vec4
+    })().toConst(`${name}Layer`)
   const coarse = layer(COARSE, 'coarseGrain')
   const fine = layer(FINE, 'fineGrain')
   return {

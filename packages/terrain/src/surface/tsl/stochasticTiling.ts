@@ -58,7 +58,7 @@ export function stochasticTiling(
   ].map(vertex => vertex.toConst()) as unknown as Vec4[]
   const sorted = (a: Vec4, b: Vec4): [Vec4, Vec4] => {
     const isFirst = step(b.w, a.w).toConst()
-    return [mix(b, a, isFirst).toConst() as Vec4, mix(a, b, isFirst).toConst() as Vec4]
+    return [mix(b, a, isFirst).toConst(), mix(a, b, isFirst).toConst()]
   }
   const [a, b] = sorted(vertices[0], vertices[1])
   const [c, d] = sorted(vertices[2], vertices[3])
@@ -82,7 +82,7 @@ export function stochasticTiling(
   const share = ({ w }: Vec4): Float => w.sub(left.w).pow(2).toConst()
   const [first, other2] = [share(nearest), share(next)]
   const scale = first.mul(first).add(other2.mul(other2)).max(1e-9).inverseSqrt()
-  return read(nearest).mul(first).add(read(next).mul(other2)).mul(scale).toConst() as Vec4
+  return read(nearest).mul(first).add(read(next).mul(other2)).mul(scale).toConst()
 }
 
 /** Orthonormal vectors along a surface. @param axis - Which the first follows; another one where it points out of the surface. */
@@ -93,5 +93,5 @@ export function frameOf(normal: Vec3, axis: Vec3, spare: Vec3): { tangent: Vec3;
     .sub(normal.mul(guide.dot(normal)))
     .normalize()
     .toConst() as Vec3
-  return { tangent, bitangent: normal.cross(tangent).toConst() as Vec3 }
+  return { tangent, bitangent: normal.cross(tangent).toConst() }
 }

@@ -3,6 +3,7 @@ import type { Texture } from 'three'
 import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { unpacked } from '../../pages/tsl/packing'
 import { faceAxes, unitDifference } from './cubeSphere'
 
 /** Part of a level's range at which its tiles begin to morph: beyond it no finer neighbour is. */
@@ -19,8 +20,8 @@ export interface TileVertex {
   readonly place: Vec4
   /** Texels from the first one of a page for pixels (xy), and places of the tile's page and of its parent's (zw). */
   readonly texels: Vec4
-  /** Share of the parent's page (x), climate (y), face of the cube and six times the quarter of the parent (z). */
-  readonly blend: Vec3
+  /** Share of the parent's page (x), climate (y), face of the cube and six times the quarter of the parent (z), and share of the sky (w). */
+  readonly blend: Vec4
 }
 
 /**
@@ -72,13 +73,13 @@ export function tileVertex(
     .toConst('morph')
 
   const inParent = quarterOf(quarter).mul(resolution).toConst()
-  const vertexAt = (slot: Float, cell: Vec2): Vec2 =>
+  const vertexAt = (slot: Float, cell: Vec2): Vec3 =>
     load(heights.texture, firstTexel(slot, columns, heightSide).add(cell))
   const mixed = mix(
     vertexAt(own, cells),
     vertexAt(parent, even.add(inParent).mul(0.5)),
     morph
-  ).toConst('mixed') as Vec2
+  ).toConst('mixed') as Vec3
 
   const moved = mix(cells, even, morph).toConst('moved') as Vec2
   const delta = alongCube(moved)
@@ -96,7 +97,7 @@ export function tileVertex(
     position,
     place: vec4(tileOffset.xyz.add(subpoint), mixed.x),
     texels: vec4(moved.mul(density), own, parent),
-    blend: vec3(morph, mixed.y, tileCube.w.add(quarter.mul(6)))
+    blend: vec4(morph, mixed.y, tileCube.w.add(quarter.mul(6)), mixed.z)
   }
 }
 
@@ -111,6 +112,9 @@ export function firstTexel(slot: Float, columns: number, side: number): Vec2 {
 /** Column and row of a quarter of a tile. */
 export const quarterOf = (quarter: Float): Vec2 => vec2(quarter.mod(2), quarter.mul(0.5).floor())
 
-/** Height and climate at a texel. */
-const load = (heights: Texture, texel: Vec2): Vec2 =>
-  (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).xy
+/** Height, climate and share of the sky at a texel. */
+function load(heights: Texture, texel: Vec2): Vec3 {
+  const node = texture(heights) as unknown as { load(at: unknown): Vec4 }
+  const { x, y } = node.load(ivec2(texel as never)).toConst() as Vec4
+  return vec3(x, unpacked(y))
+}
