@@ -9,14 +9,13 @@ export const GRAIN_SLOPE = 2
 /** Height of stones that is 1 in blue [texels]. */
 const STONE_HEIGHT = 12
 
-/** Radii of stones, the largest first [texels], and the share of the ground that each class covers. */
-const STONES: readonly (readonly [number, number])[] = [
-  [34, 0.08],
-  [20, 0.14],
-  [12, 0.24],
-  [7, 0.4],
-  [4, 0.5]
-]
+/** Largest and smallest radius of stones [texels], and their number: of those that are larger than some size as its inverse square. */
+const LARGEST = 30
+const SMALLEST = 3
+const STONES = 6500
+
+/** Sides of a stone. */
+const SIDES = 6
 
 /** Blades of grass, and their lengths: the least, and the rest [texels]. */
 const BLADES = 9000
@@ -34,24 +33,28 @@ function randomNumbers(seed: number): () => number {
 /** Number of a texel on the plane that the picture repeats on. */
 const texel = (x: number, y: number): number => (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1))
 
-/** Raises the ground to a stone: an ellipse with a dome that a tilted plane cuts off. */
+/** Raises the ground to a stone: a block with slanting sides, under a tilted top. */
 function addStone(heights: Float32Array, radius: number, random: () => number): void {
   const [x, y] = [random() * SIZE, random() * SIZE]
-  const [turn, lean] = [random() * Math.PI, 2 * Math.PI * random()]
-  const squash = 1.1 + 0.7 * random()
-  const height = radius * (0.45 + 0.4 * random())
-  const tilt = [0.3 * Math.cos(lean), 0.3 * Math.sin(lean)]
-  const top = height * (0.55 + 0.35 * random())
-  for (let j = Math.floor(y - radius); j <= y + radius; j++) {
-    for (let i = Math.floor(x - radius); i <= x + radius; i++) {
+  const sides = Array.from({ length: SIDES }, (_, side) => {
+    const turn = ((side + random()) * 2 * Math.PI) / SIDES
+    const away = radius * (0.55 + 0.45 * random())
+    return [Math.cos(turn), Math.sin(turn), away, 0.7 + 0.9 * random()] as const
+  })
+  const lean = 2 * Math.PI * random()
+  const tilt = 0.15 + 0.3 * random()
+  const [tiltX, tiltY] = [tilt * Math.cos(lean), tilt * Math.sin(lean)]
+  const top = radius * (0.25 + 0.35 * random())
+  const reach = 1.2 * radius
+  for (let j = Math.floor(y - reach); j <= y + reach; j++) {
+    for (let i = Math.floor(x - reach); i <= x + reach; i++) {
       const [dx, dy] = [i - x, j - y]
-      const along = dx * Math.cos(turn) + dy * Math.sin(turn)
-      const across = squash * (dy * Math.cos(turn) - dx * Math.sin(turn))
-      const rest = 1 - (along ** 2 + across ** 2) / radius ** 2
-      if (rest <= 0) continue
-      const cut = top + dx * tilt[0] + dy * tilt[1]
+      let height = top + dx * tiltX + dy * tiltY
+      for (const [cosine, sine, away, steepness] of sides) {
+        height = Math.min(height, (away - dx * cosine - dy * sine) * steepness)
+      }
       const n = texel(i, j)
-      heights[n] = Math.max(heights[n], Math.min(height * Math.sqrt(rest), cut))
+      heights[n] = Math.max(heights[n], height)
     }
   }
 }
@@ -88,9 +91,10 @@ function center(values: Float32Array): Float32Array {
 export function grainTexture(): DataTexture {
   const random = randomNumbers(311)
   const raised = new Float32Array(SIZE ** 2)
-  for (const [radius, share] of STONES) {
-    const count = (share * SIZE ** 2) / (2 * radius ** 2)
-    for (let n = 0; n < count; n++) addStone(raised, radius * (0.75 + 0.5 * random()), random)
+  for (let n = 0; n < STONES; n++) {
+    // As many per size as there are of pieces when rock breaks: small ones fill the gaps.
+    const share = random() * (1 / SMALLEST ** 2 - 1 / LARGEST ** 2) + 1 / LARGEST ** 2
+    addStone(raised, share ** -0.5, random)
   }
   const light = new Float32Array(SIZE ** 2)
   for (let n = 0; n < BLADES; n++) addBlade(light, random)

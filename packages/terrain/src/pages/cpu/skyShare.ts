@@ -1,8 +1,8 @@
 /** Azimuths in which horizons are looked for. */
-export const AZIMUTHS = 5
+export const AZIMUTHS = 4
 
 /** Distances at which: so many, from the nearest on, each so many times as far [m]. */
-export const DISTANCES = { count: 3, nearest: 90, factor: 5.5 }
+export const DISTANCES = { count: 2, nearest: 150, factor: 8 }
 
 /** Shortest detail that counts, per distance. */
 export const FINENESS = 0.3

@@ -34,6 +34,8 @@ export interface Grain {
   /** The same for metres. */
   readonly boulder: Float
   readonly tuft: Float
+  /** Longer side of the pixel on the ground [m]. */
+  readonly footprint: Float
   /** Share of the slopes that are smaller than a pixel. */
   readonly lost: Float
 }
@@ -76,6 +78,7 @@ export function grainAt(place: GrainPlace): Grain {
     blade: fine.w,
     boulder: coarse.z,
     tuft: coarse.w,
+    footprint,
     lost: footprint.div(FINE.gone / 4).min(1)
   }
 }

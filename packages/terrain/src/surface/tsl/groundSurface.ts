@@ -5,6 +5,10 @@ import { grainAt, type GrainPlace } from './grain'
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
 
+/** Differences of height within a pixel, to its size on the ground, and at most [m]. */
+const SPREAD = 0.4
+const MOST_SPREAD = 900
+
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
 const ROCK = [0.2, 0.178, 0.157]
 const DARK_ROCK = [0.105, 0.098, 0.092]
@@ -56,8 +60,13 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const sinLatitude = up.z.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
 
-  // Snow lies above 4,900 m at the equator, 2,200 m in the Alps, and at sea level near the poles.
-  const snowLine = float(4900).sub(sinLatitude.mul(sinLatitude).mul(5000)).toConst('snowLine')
+  // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
+  const square = sinLatitude.mul(sinLatitude).toConst('square')
+  const snowLine = float(5200)
+    .sub(square.mul(square.mul(3600).add(2000)))
+    .toConst('snowLine')
+  // A pixel that shows much ground shows its heights, too.
+  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
   const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
   const relief = stone.mul(0.6).add(boulder.mul(0.5)).toConst('relief')
   const steepness = cosSlope
@@ -93,14 +102,22 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
   // Stones come through grass where they are highest.
-  const bareness = smoothstep(-50, 450, overTrees.add(relief.mul(260))).toConst('bareness')
+  const bareness = smoothstep(
+    spread.add(50).negate(),
+    spread.add(450),
+    overTrees.add(relief.mul(260))
+  ).toConst('bareness')
   const alpine = mix(soil, scree, bareness)
   const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
   const sand = color(SAND).mul(blade.mul(0.12).add(stone.mul(0.1)).add(1))
   const shore = mix(sand, alpine, inland)
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
   const land = mix(shore, rock, bare)
-  const snow = smoothstep(-150, 250, height.sub(snowLine).add(patch.mul(420)).sub(relief.mul(160)))
+  const snow = smoothstep(
+    spread.add(150).negate(),
+    spread.add(250),
+    height.sub(snowLine).add(patch.mul(420)).sub(relief.mul(160))
+  )
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
@@ -108,8 +125,8 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
   const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1))
 
-  // Stones stand out of rock and scree, less out of grass, hardly out of sand and snow.
-  const stones = mix(bareness.mul(0.5).add(dryness.mul(0.2)).add(0.3), float(0.9), bare)
+  // Stones stand out of rock and scree, hardly out of grass, sand and snow.
+  const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
   const bump = mix(float(0.12), stones, inland.max(bare))
     .mul(snow.mul(-0.85).add(1))
     .mul(isSea.oneMinus())
@@ -122,7 +139,7 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
       .mul(grain.lost)
       .mul(2 * GRAIN_VARIANCE)
   )
-  const hollow = stone.add(boulder.mul(0.5)).add(blade.mul(0.5)).min(0).mul(bump)
+  const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.4))
   return {
     color: mix(dry, water, isSea),
     roughness: mix(alpha.pow(0.25).min(1), float(0.22), isSea),
