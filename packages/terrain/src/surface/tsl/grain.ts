@@ -31,7 +31,7 @@ export interface Grain {
   /** Height of stones of centimetres, and light of blades, about 0. */
   readonly stone: Float
   readonly blade: Float
-  /** The same for metres. */
+  /** Height of stones of metres, and light of tufts, about 0. */
   readonly boulder: Float
   readonly tuft: Float
   /** Longer side of the pixel on the ground [m]. */

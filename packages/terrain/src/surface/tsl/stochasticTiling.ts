@@ -23,13 +23,13 @@ const sum = ({ x, y, z }: Vec3): Float => x.add(y).add(z)
  *
  * Space is filled with tetrahedra of a lattice fixed to the planet. Each vertex has a piece of the picture, moved at random and laid
  * along the surface through the vertex: so nothing is stretched on cliffs, and no plane meets another. Of the four vertices about a place the two
- * nearest count, by how much they exceed the third: what is left out had no share. The blend keeps the variance.
+ * nearest count, by how much they exceed the third: what is left out had no share. As in Heitz and Neyret's by-example noise (2018), the blend keeps
+ * the variance.
  *
- * @param picture - Of mean 0, at half of its bytes' range; it repeats.
+ * @param picture - Repeats; its mean is half of its bytes' range.
  * @param side - Length of its side [m].
  * @param cells - Cells of the lattice in 256 m, a multiple of 3.
  * @returns Its four channels in about [−1, 1].
- * @see Gustavson 2005, "Simplex noise demystified"; Heitz & Neyret 2018, "High-performance by-example noise", §3.1
  */
 export function stochasticTiling(
   picture: Texture,
@@ -85,7 +85,7 @@ export function stochasticTiling(
   return read(nearest).mul(first).add(read(next).mul(other2)).mul(scale).toConst()
 }
 
-/** Orthonormal vectors along a surface. @param axis - Which the first follows; another one where it points out of the surface. */
+/** Orthonormal vectors along a surface: the first follows an axis, or a spare one where that points out of the surface. */
 export function frameOf(normal: Vec3, axis: Vec3, spare: Vec3): { tangent: Vec3; bitangent: Vec3 } {
   const isAlong = step(normal.dot(axis).abs(), 0.9)
   const guide = mix(spare, axis, isAlong).toConst() as Vec3
