@@ -135,11 +135,12 @@ async function timeCase(
   return costs
 }
 
-/** Cost of clouds in every case, and how near each comes to the reference. */
+/** Cost of clouds in every case, and how near each comes to the reference; `tell` gets each at once. */
 export async function timeClouds(
   device: HeadlessDevice,
   size: readonly [number, number],
-  frames: number
+  frames: number,
+  tell: (cost: CloudCost) => void
 ): Promise<CloudCost[]> {
   const renderer = await device.renderer(...size)
   const costs: CloudCost[] = []
@@ -147,7 +148,9 @@ export async function timeClouds(
   for (const preset of presets) {
     const bench = new CloudBench(renderer, size, preset && cloudPreset(preset))
     for (const timed of cloudCases.filter(other => other.preset === preset)) {
-      costs.push(...(await timeCase(bench, timed, frames)))
+      const timings = await timeCase(bench, timed, frames)
+      timings.forEach(tell)
+      costs.push(...timings)
     }
     bench.dispose()
   }
