@@ -79,7 +79,10 @@ const meta: Meta<ValleyArgs> = {
     antialiasing: { name: 'Smooth edges', ...choiceOf(ANTIALIASING), ...POST_EFFECTS },
     occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),
     bloom: effect('Bloom', 'A halo about what is bright'),
-    depthOfField: effect('Depth of field', 'Sharp at 40 m'),
+    depthOfField: effect(
+      'Depth of field',
+      'Sharp in the middle; the nearer that is, the more is blurred'
+    ),
     motionBlur: effect('Motion blur', 'While the camera turns or flies'),
     haze: factor('Haze', 'Optical depth of the air between camera and scene'),
     twilightSaturation: factor('Colour of twilight', 'Saturation; 0 is grey'),

@@ -21,9 +21,11 @@ import type {
 import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { Light, PerspectiveCamera, Scene } from 'three'
-import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { pass } from 'three/tsl'
-import type { PassNode, TextureNode } from 'three/webgpu'
+import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
+import { pass, rtt, vec4 } from 'three/tsl'
+import type { Node, PassNode, TextureNode } from 'three/webgpu'
+import { Cascades } from './valley/Cascades'
+import { SKY_DEPTH } from './valley/LakeMirror'
 
 /** Sky, light, clouds and shadows of a scene, exposed. */
 export interface ValleyAir {
@@ -38,10 +40,18 @@ export interface ValleyAir {
   readonly directLights: readonly Light[]
   /** Lights of moon and night sky. */
   readonly nightLights: readonly Light[]
-  /** The finished picture. */
+  /** The finished picture, with the distance along the camera's axis in alpha. */
+  readonly picture: TextureNode
+  /** The finished picture, exposed. */
   readonly exposure: AutoExposureNode
   /** Frees the lights and their shadows. */
   dispose(): void
+}
+
+/** Draws a picture to a texture, with the distance along the camera's axis in alpha: of the sky, the greatest. */
+function withDepth(picture: Node, scenePass: PassNode): TextureNode {
+  const depth = scenePass.getViewZNode().negate().min(SKY_DEPTH)
+  return rtt(vec4((picture as Node<'vec4'>).rgb, depth))
 }
 
 /** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */
@@ -66,7 +76,7 @@ export function valleyAir(
   sun.shadow.mapSize.setScalar(2048)
   sun.shadow.camera.far = 40_000 // as deep as cascades are wide, and the mountains before them
 
-  const cascades = new CSMShadowNode(sun, {
+  const cascades = new Cascades(sun, {
     cascades: 3,
     maxFar: 9000,
     lightMargin: 8000,
@@ -84,7 +94,8 @@ export function valleyAir(
   cloudSkyLight(sky, node)
   cloudSkyLight(night, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-  const exposure = autoExposure(node, atmosphere) // as bright as what the camera sees
+  const picture = withDepth(node, scenePass) // drawn once, for exposure and the lake's mirror
+  const exposure = autoExposure(picture, atmosphere) // as bright as what the camera sees
   // #endregion
   return {
     atmosphere,
@@ -95,6 +106,7 @@ export function valleyAir(
     cascades,
     directLights: [sun, moonlight],
     nightLights: [moonlight, moonlitSky, night],
+    picture,
     exposure,
     dispose() {
       for (const light of [sun, sky, moonlight, moonlitSky, night]) light.dispose()

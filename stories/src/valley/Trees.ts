@@ -1,5 +1,5 @@
 import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
-import type { BufferGeometry, Matrix4 } from 'three'
+import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
 import { positionGeometry, sin, vec3 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
@@ -11,10 +11,19 @@ export interface Tree {
   readonly color: Color
 }
 
-/** Distance that the camera moves before trees are sorted by distance anew [m]. */
+/** Distance that the camera moves, and cosine of its turn, before trees are sorted by distance anew [m]. */
 const STEP = 10
+const COS_TURN = Math.cos(0.3)
+
+/**
+ * Cosine of the angle from the direction of view beyond which trees of the last level are left out: the picture's corners
+ * are 51° from it. Of a view that is steeper than this sine, none are.
+ */
+const COS_ASIDE = Math.cos(1.3)
+const STEEP = 0.6
 
 const _place = new Vector3()
+const _direction = new Vector3()
 
 /** Brightness of leaves and the gaps between them, about 1. */
 function mottled(): Node<'float'> {
@@ -30,6 +39,7 @@ export class Trees extends Group {
   readonly #distances: readonly number[]
   readonly #levels: readonly InstancedMesh[]
   readonly #sortedAt = new Vector3(Infinity, 0, 0)
+  readonly #sortedTowards = new Vector3()
 
   /**
    * @param geometries - Finest to coarsest, with vertex colours.
@@ -57,14 +67,27 @@ export class Trees extends Group {
     this.add(...this.#levels)
   }
 
-  /** Sorts the trees by distance if the camera has moved far enough. */
-  update(camera: Vector3): void {
-    if (camera.distanceTo(this.#sortedAt) < STEP) return
-    this.#sortedAt.copy(camera)
+  /**
+   * Sorts the trees by distance if the camera has moved or turned far enough.
+   *
+   * @returns True if it did: other trees are drawn now.
+   */
+  update(camera: PerspectiveCamera): boolean {
+    const { position } = camera
+    camera.getWorldDirection(_direction)
+    const isTurned = _direction.dot(this.#sortedTowards) < COS_TURN
+    if (position.distanceTo(this.#sortedAt) < STEP && !isTurned) return false
+    this.#sortedAt.copy(position)
+    this.#sortedTowards.copy(_direction)
+    const isSteep = Math.abs(_direction.y) > STEEP
+    const last = this.#distances.length
     for (const level of this.#levels) level.count = 0
     for (const { matrix, color } of this.#trees) {
-      const distance = _place.setFromMatrixPosition(matrix).distanceTo(camera)
-      const level = this.#levels[this.#distances.filter(from => distance >= from).length]
+      _place.setFromMatrixPosition(matrix).sub(position)
+      const distance = _place.length()
+      const index = this.#distances.filter(from => distance >= from).length
+      if (index === last && !isSteep && _place.dot(_direction) < COS_ASIDE * distance) continue
+      const level = this.#levels[index]
       level.setMatrixAt(level.count, matrix)
       level.setColorAt(level.count, color)
       level.count++
@@ -74,6 +97,7 @@ export class Trees extends Group {
       level.instanceMatrix.needsUpdate = true
       level.instanceColor!.needsUpdate = true
     }
+    return true
   }
 
   override dispose(): void {

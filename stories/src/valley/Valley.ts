@@ -11,7 +11,7 @@ import {
 import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
-import { MathUtils, type Mesh, PerspectiveCamera, Quaternion, Scene, Vector3 } from 'three'
+import { MathUtils, type Mesh, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { EYE_HEIGHT } from '../moving/Walk'
@@ -20,8 +20,10 @@ import { valleyAir } from '../valleyAir'
 import { ValleyFinish, type ValleyEffects } from './finish'
 import { createForest, createGrove } from './forest'
 import { applyFactors, type ValleyFactors } from '../valleyFactors'
+import { CascadeTurns } from './CascadeTurns'
 import { createGround, groundHeight, LAKE } from './ground'
 import { createLake } from './lake'
+import { LakeMirror } from './LakeMirror'
 import { setLit } from './VertexLitMaterial'
 import { createVillage } from './village'
 import { VIEWS, type ValleyName } from './views'
@@ -72,15 +74,6 @@ const TREES: Readonly<Record<CloudQualityName, number>> = {
 /** Elevations of the sun between which lamps are lit [degrees]. */
 const LAMPS = [3, -2] as const
 
-/** Frames at the start in which all shadows are drawn: stills have few. */
-const WHOLE_FRAMES = 10
-
-/** Turn of the camera by which all shadows are drawn at once [rad]. */
-const TURN = 0.01
-
-/** Distance by which receivers of shadows are moved along their normals [texels]. */
-const SHADOW_BIAS = 1.2
-
 /** Fineness of light shafts, by that of clouds. */
 const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
   low: 'low',
@@ -100,6 +93,7 @@ export class Valley {
   readonly cycle: DayCycle
   readonly exposure
   readonly pipeline: RenderPipeline
+  readonly #renderer: WebGPURenderer
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
@@ -110,18 +104,16 @@ export class Valley {
   readonly #ground
   readonly #trees
   readonly #village = createVillage()
+  readonly #mirror: LakeMirror
   readonly #water
   readonly #node
   readonly #shafts
-  readonly #cascades
+  readonly #cascadeTurns: CascadeTurns
   readonly #nightLights
   readonly #environment
   readonly #finish: ValleyFinish
   readonly #dispose: (() => void)[] = []
   #turbidity = NaN
-  #frame = 0
-  /** Attitude of the camera for which all shadows were drawn last. */
-  readonly #shadowed = new Quaternion()
 
   constructor(renderer: WebGPURenderer, state: ValleyState) {
     this.#state = { ...state }
@@ -133,7 +125,7 @@ export class Valley {
     const sky = [...this.#glows, this.#moon] as const
     const air = valleyAir(scene, camera, this.#layers, state.quality, sky)
     const { atmosphere, clouds: node, shafts, exposure } = air
-    this.#cascades = air.cascades
+    this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#nightLights = air.nightLights
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
@@ -145,8 +137,10 @@ export class Valley {
     this.exposure = exposure
     const overlay = cloudEnvironment(node)
     this.#environment = skyEnvironment(atmosphere, { overlay })
-    this.#water = createLake(this.#environment, air.directLights)
+    this.#mirror = new LakeMirror(air.picture)
+    this.#water = createLake(this.#environment, this.#mirror, air.directLights)
     scene.add(this.#water.mesh)
+    this.#renderer = renderer
     this.pipeline = new RenderPipeline(renderer)
     this.#finish = new ValleyFinish(this.pipeline, scene, camera, air)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
@@ -205,6 +199,7 @@ export class Valley {
     for (const each of this.#trees) each.visible = trees
     this.#village.object.visible = village
     this.#water.mesh.visible = water
+    if (trees !== before.trees || village !== before.village) this.#cascadeTurns.reset()
     this.#applyWeather()
     this.#finish.set(this.#state)
   }
@@ -219,36 +214,22 @@ export class Valley {
     this.#turbidity = stepped
   }
 
-  /** Draws the cascades of shadows by turns, or all of them while the camera turns. */
-  #updateShadows(): void {
-    const { lights } = this.#cascades
-    const { quaternion } = this.camera
-    this.#frame++
-    const isWhole = this.#frame < WHOLE_FRAMES || quaternion.angleTo(this.#shadowed) > TURN
-    if (isWhole) this.#shadowed.copy(quaternion)
-    for (const [i, { shadow }] of lights.entries()) {
-      if (shadow === undefined) continue
-      const { left, right } = shadow.camera
-      shadow.normalBias = (SHADOW_BIAS * (right - left)) / shadow.mapSize.x
-      shadow.autoUpdate = isWhole
-      if (this.#frame % lights.length === i) shadow.needsUpdate = true
-    }
-  }
-
   /** Draws the next frame. */
   render(deltaSeconds: number): void {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
     this.camera.updateMatrixWorld()
-    for (const each of this.#trees) each.update(this.camera.position)
-    this.#updateShadows()
+    const isSorted = this.#trees.map(each => each.update(this.camera)).includes(true)
+    if (isSorted) this.#cascadeTurns.reset()
     this.cycle.update(deltaSeconds)
     const { sunDirection, luminanceScale } = this.atmosphere
+    this.#cascadeTurns.update(this.camera, sunDirection)
     const [from, to] = LAMPS
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
     for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
     this.#village.light(share, luminanceScale)
     this.pipeline.render()
+    this.#mirror.update(this.#renderer, this.camera)
   }
 
   /** Time of the water's waves and the clouds' drift [s]. */
@@ -259,6 +240,7 @@ export class Valley {
 
   /** Makes all that the first frame needs. */
   async bake(renderer: WebGPURenderer): Promise<void> {
+    this.#mirror.prepare(renderer)
     await this.#node.bake(renderer)
   }
 
@@ -268,5 +250,6 @@ export class Valley {
     for (const each of this.#trees) each.dispose()
     this.#village.dispose()
     this.#water.dispose()
+    this.#mirror.dispose()
   }
 }

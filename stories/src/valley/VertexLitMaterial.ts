@@ -1,3 +1,4 @@
+import { cloudShadow, CloudShadowNode } from '@welkin/clouds'
 import type { Light } from 'three'
 import { Fn, If, uniform, varying, vec3 } from 'three/tsl'
 import { MeshLambertNodeMaterial, PhongLightingModel } from 'three/webgpu'
@@ -31,6 +32,17 @@ function litOf(light: Light): UniformNode<'float', number> {
 /** Turns a light on or off for {@link VertexLitMaterial}, at no cost where it is off; nothing is compiled. */
 export function setLit(light: Light, isLit: boolean): void {
   litOf(light).value = isLit ? 1 : 0
+}
+
+/** Shadows of clouds without those that they are multiplied with. */
+const _ofCloudsAlone = new WeakMap<CloudShadowNode, CloudShadowNode>()
+
+function ofCloudsAlone(shadow: CloudShadowNode): CloudShadowNode {
+  let alone = _ofCloudsAlone.get(shadow)
+  if (alone === undefined) {
+    _ofCloudsAlone.set(shadow, (alone = cloudShadow(shadow.clouds, null, shadow.source)))
+  }
+  return alone
 }
 
 /** A colour at the vertices, black where its light is off. */
@@ -71,15 +83,24 @@ class VertexLightingModel extends PhongLightingModel {
       super.direct(input, builder)
       return
     }
-    const color = atVertices(light, baseColorNode ?? (input.lightColor as Vec3))
+    const base = baseColorNode ?? (input.lightColor as Vec3)
+    if (shadowNode instanceof CloudShadowNode && shadowNode.shadowNode !== null) {
+      // Shadows of clouds are soft: they are found at the vertices, too.
+      const color = atVertices(light, base.mul(ofCloudsAlone(shadowNode)))
+      const lightColor = color.mul(shadowNode.shadowNode as Vec3)
+      super.direct({ ...input, lightColor }, builder)
+      return
+    }
+    const color = atVertices(light, base)
     const lightColor = baseColorNode === null ? color : color.mul(shadowNode as Vec3)
     super.direct({ ...input, lightColor }, builder)
   }
 }
 
 /**
- * A matte material for dense meshes: light of sky and night, and the colour that the air gives to sun and moon, are found
- * at the vertices, where they differ little from one to the next; what faces the sun and what lies in shadow, at each pixel.
+ * A matte material for dense meshes: light of sky and night, the colour that the air gives to sun and moon, and shadows of
+ * clouds are found at the vertices, where they differ little from one to the next; what faces the sun and what lies in the
+ * shadow of things, at each pixel.
  */
 export class VertexLitMaterial extends MeshLambertNodeMaterial {
   static override get type(): string {

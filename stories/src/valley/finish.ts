@@ -15,13 +15,14 @@ import {
   normalView,
   output,
   pass,
-  renderOutput,
   rtt,
   screenUV,
   velocity
 } from 'three/tsl'
 import type { Node, PassNode, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
+import { lensOn } from './lens'
+import { ToneTable } from './ToneTable'
 
 /** Ways to smooth edges. */
 export const ANTIALIASING = {
@@ -47,10 +48,6 @@ const GLOW = 0.02
 /** Reach of ambient occlusion [m]. */
 const OCCLUSION_REACH = 3
 
-/** Distance that is sharp, and depth over which sharpness is lost [m]. */
-const FOCUS = 40
-const FOCAL_DEPTH = 60
-
 type Disposable = { dispose(): void }
 
 /** Post effects over the exposed picture, in the order of a camera: motion, lens, film. */
@@ -68,6 +65,8 @@ export class ValleyFinish {
     this.#scene = scene
     this.#camera = camera
     this.#air = air
+    // The table has the colours of the display.
+    pipeline.outputColorTransform = false
   }
 
   /** Has the picture drawn with these effects; compiles if others were on. */
@@ -77,13 +76,9 @@ export class ValleyFinish {
     if (key === this.#key) return
     this.#key = key
     this.dispose()
-    const asShown = antialiasing === 'fxaa' || antialiasing === 'smaa'
-    const picture = this.#picture(effects)
-    this.#pipeline.outputNode = asShown
-      ? this.#keep((antialiasing === 'fxaa' ? fxaa : smaa)(renderOutput(picture)))
-      : picture
-    // FXAA and SMAA work on the picture as it is shown.
-    this.#pipeline.outputColorTransform = !asShown
+    const shown = this.#keep(new ToneTable()).shown(this.#picture(effects))
+    const smooth = { fxaa, smaa }[antialiasing as string]
+    this.#pipeline.outputNode = smooth === undefined ? shown : this.#keep(smooth(shown))
     this.#pipeline.needsUpdate = true
   }
 
@@ -100,7 +95,9 @@ export class ValleyFinish {
     }
     if (effects.depthOfField) {
       const sharp = this.#texture(picture)
-      picture = this.#keep(dof(sharp, scenePass.getViewZNode(), FOCUS, FOCAL_DEPTH, 1.5))
+      const { focus, range, blur } = lensOn(this.#air.picture)
+      const lens = [focus, range, blur] as unknown as number[]
+      picture = this.#keep(dof(sharp, scenePass.getViewZNode(), lens[0], lens[1], lens[2]))
     }
     if (motion !== null && effects.motionBlur) {
       picture = motionBlur(this.#texture(picture), motion, int(12))

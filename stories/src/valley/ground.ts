@@ -40,6 +40,22 @@ const lakeDistance = (x: number, z: number): number => {
   return Math.hypot((x - LAKE.x - bend) / LAKE.halfWidth, (z - LAKE.z) / LAKE.halfLength)
 }
 
+/** Distance of grid lines from the middle over the land's half width, for lines of even numbers in [−1, 1]. */
+const stretch = (t: number): number => 0.045 * t + 0.955 * t ** 3
+
+/** Grid lines of the middle quality along half a side, and widths of quads that a ridge needs. */
+const LINES = 256
+const FINEST = 1.6
+
+/** Width of quads at a distance from the middle [m]. */
+function spacingAt(distance: number): number {
+  const part = Math.min(distance / EXTENT, 1)
+  const t = Math.cbrt(part)
+  // One step of Newton's method from the cube root, which is a little more than the line's number.
+  const line = t - (stretch(t) - part) / (0.045 + 2.865 * t * t)
+  return (EXTENT * (0.045 + 2.865 * line * line)) / LINES
+}
+
 /** Height of the land above the water of the lake, on a plane [m]: a valley between mountains. */
 function flatHeight(x: number, z: number): number {
   const across = Math.abs(x - valleyAt(z))
@@ -49,7 +65,8 @@ function flatHeight(x: number, z: number): number {
   const rise = MathUtils.clamp((wall - width) / 3400, 0, 1)
   const knolls = 14 * smoothNoise(x / 260, z / 260) + 3 * smoothNoise(x / 55, z / 55)
   const floor = 7 + 0.012 * Math.max(wall - 250, 0) + knolls * smooth(120, 700, wall)
-  const height = floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200))
+  const finest = FINEST * spacingAt(Math.max(Math.abs(x), Math.abs(z)))
+  const height = floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200, finest / 5200))
   const basin = smooth(1.25, 0.8, lakeDistance(x, z))
   return height + (-14 - height) * basin * smooth(150, 50, height)
 }
@@ -81,6 +98,8 @@ function groundMaterial(): VertexLitMaterial {
   // Sheared, so that cliffs have rock on them and no streaks.
   const sheared = place.add(positionWorld.y.mul(vec2(0.83, 0.57))).toVar()
   const picture = createNoiseTexture()
+  // Each of its many scales is blurred far away: there are coarser ones.
+  picture.anisotropy = 1
   material.addEventListener('dispose', () => picture.dispose())
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned.
   const noise = (period: number): Node<'float'> => {
@@ -159,10 +178,9 @@ export function createGround(quads: number): Group {
   geometry.deleteAttribute('uv')
   const positions = geometry.attributes.position as BufferAttribute
   const cover = new Float32Array(2 * positions.count)
-  const stretch = (t: number): number => EXTENT * (0.045 * t + 0.955 * t ** 3)
   for (let i = 0; i < positions.count; i++) {
-    const x = stretch(positions.getX(i))
-    const z = stretch(positions.getZ(i))
+    const x = EXTENT * stretch(positions.getX(i))
+    const z = EXTENT * stretch(positions.getZ(i))
     positions.setXYZ(i, x, groundHeight(x, z), z)
     cover[2 * i] = forestAt(x, z)
     cover[2 * i + 1] = fieldAt(x, z)
@@ -175,6 +193,10 @@ export function createGround(quads: number): Group {
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))
     const mesh = new Mesh(tile, material)
+    // Tiles at their places are drawn from near to far, so that hills hide what is behind them.
+    tile.computeBoundingSphere()
+    mesh.position.copy(tile.boundingSphere!.center)
+    tile.translate(...mesh.position.clone().negate().toArray())
     mesh.castShadow = mesh.receiveShadow = true
     ground.add(mesh)
   }

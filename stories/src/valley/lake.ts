@@ -7,10 +7,22 @@ import {
   RepeatWrapping
 } from 'three'
 import type { Light } from 'three'
-import { atan, float, lights, mix, reflectVector, smoothstep, texture, vec2 } from 'three/tsl'
+import {
+  atan,
+  float,
+  lights,
+  mix,
+  normalView,
+  positionViewDirection,
+  reflectVector,
+  smoothstep,
+  texture,
+  vec2
+} from 'three/tsl'
 import type { MeshPhysicalNodeMaterial, Node } from 'three/webgpu'
 import { createWater, type Water } from '../environment/water'
 import { groundHeight, LAKE } from './ground'
+import { waterReflectance, type LakeMirror } from './LakeMirror'
 
 /** Directions and distances in which the skyline is looked for, and the nearest and farthest of these [m]. */
 const AZIMUTHS = 128
@@ -23,7 +35,7 @@ const MIRRORED_LAND = 0.22
 const BLUR = 0.03
 
 /** Mean square slope of the ripples. */
-const SLOPE = 0.0006
+const SLOPE = 0.0002
 
 /** Tangent of the skyline's elevation about the lake, by azimuth. */
 function skyline(): DataTexture {
@@ -46,12 +58,17 @@ function skyline(): DataTexture {
 }
 
 /**
- * The lake: it mirrors sky and clouds, and the mountains as dark as they are before them.
+ * The lake: it mirrors what is in the picture, and beside it sky and clouds, and mountains as dark as they are before them.
  *
  * @param environment - Sky and clouds.
+ * @param mirror - Image of the picture in the lake.
  * @param directLights - Lights that glitter on it. Others light what is matte, which water is not.
  */
-export function createLake(environment: Node, directLights: readonly Light[]): Water {
+export function createLake(
+  environment: Node,
+  mirror: LakeMirror,
+  directLights: readonly Light[]
+): Water {
   const water = createWater(2400)
   water.mesh.position.set(LAKE.x, LAKE.height, LAKE.z)
   water.setSlope(SLOPE)
@@ -64,7 +81,11 @@ export function createLake(environment: Node, directLights: readonly Light[]): W
   const elevation = y.div(vec2(x, z).length().max(1e-4))
   const height = texture(heights, vec2(azimuth.add(0.5), 0.5)).level(float(0)).r
   const isSky = smoothstep(height.sub(BLUR), height.add(BLUR), elevation)
-  material.specularIntensityNode = mix(float(MIRRORED_LAND), float(1), isSky)
+  const image = mirror.sample()
+  const beside = mix(float(MIRRORED_LAND), float(1), isSky)
+  material.specularIntensityNode = beside.mul(image.a.oneMinus())
+  const cosView = normalView.dot(positionViewDirection)
+  material.emissiveNode = image.rgb.mul(image.a.mul(waterReflectance(cosView)))
   return {
     ...water,
     dispose() {

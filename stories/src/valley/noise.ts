@@ -25,12 +25,19 @@ export function smoothNoise(x: number, y: number): number {
   return lerp(near, far, smootherstep(v, 0, 1))
 }
 
+/** Mean height of a ridge of unit height. */
+const MEAN_RIDGE = 0.6
+
+/** Height over which mountains are rounded off, so that none is cut flat. */
+const ROUNDED = 0.72
+
 /**
  * Mountains of unit width, in [0, 1]: ridges whose finer ones stand on the coarser.
  *
+ * @param finest - Width of the finest ridges: on a coarse grid, finer ones are streaks.
  * @see Musgrave 1993, "Methods for realistic landscape imaging" §2.3.2, ridged multifractal
  */
-export function ridges(x: number, y: number): number {
+export function ridges(x: number, y: number, finest: number): number {
   const u = x + 0.22 * smoothNoise(1.7 * x + 5, 1.7 * y)
   const v = y + 0.22 * smoothNoise(1.7 * x, 1.7 * y + 9)
   let sum = 0
@@ -40,10 +47,13 @@ export function ridges(x: number, y: number): number {
   for (let octave = 0; octave < 8; octave++) {
     const ridge =
       (1 - Math.abs(1.4 * smoothNoise(u * scale + 17 * octave, v * scale - 9 * octave))) ** 2
-    sum += amplitude * weight * ridge
+    const isShown = clamp(1 / (finest * scale) - 1, 0, 1)
+    // The mean of ridges that are left out stays.
+    sum += amplitude * weight * lerp(MEAN_RIDGE, ridge, isShown)
     weight = clamp(1.6 * ridge * weight, 0, 1)
     amplitude *= 0.5
     scale *= 2.03
   }
-  return Math.min(sum, 1)
+  const above = Math.max(sum - ROUNDED, 0) / (1 - ROUNDED)
+  return Math.min(sum, ROUNDED) + (1 - ROUNDED) * (1 - Math.exp(-above))
 }

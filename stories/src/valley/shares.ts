@@ -6,6 +6,7 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Welkin.CloudEnvironment', 'mirrored sky'],
   ['SkyEnvironment', 'mirrored sky'],
   ['PMREM', 'mirrored sky'],
+  ['LakeMirror', 'mirrored sky'],
   ['Welkin.CloudShadows', "clouds' shadows"],
   ['Welkin.Cloud', 'clouds'],
   ['Welkin.LightShafts', 'light shafts'],

@@ -20,7 +20,7 @@ import {
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { LayerRay } from '../view/SkyLayer'
+import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
@@ -70,6 +70,8 @@ export class ScreenShafts implements ScreenShadows {
   readonly #texelSize = vector2()
   /** Longest mean free path in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge at sunrise*). */
   readonly #freePath = number(1)
+  /** 1 if there is a medium, such as fog, in the light of the shafts. */
+  readonly #hasMedia = number()
   readonly #texels: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
@@ -104,13 +106,12 @@ export class ScreenShafts implements ScreenShadows {
     shafts.view.update(view)
     const { parameters, layers } = shafts.view.atmosphere
     const air = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
-    let here = Math.max(Math.min(...air), 1e-12)
-    for (const layer of layers) {
-      if (!isShadowed(layer)) continue
-      layer.update?.(view)
-      here += layer.extinction ?? 0
-    }
-    this.#freePath.value = 1 / here
+    const media = layers.filter(isShadowed)
+    for (const layer of media) layer.update?.(view)
+    const fog = media.reduce((sum, { extinction = 0 }) => sum + extinction, 0)
+    const isFog = (layer: SkyLayer): boolean => 'shadowed' in layer && layer.extinction !== 0
+    this.#hasMedia.value = Number(media.some(isFog))
+    this.#freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
     if (this.#compiled !== shafts.version) this.#pass?.dispose()
     if (this.#compiled !== shafts.version || this.#pass === null) {
       this.#pass = new FragmentPass('Welkin.LightShafts', this.#draw())
@@ -120,10 +121,9 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   update(view: AtmosphereView): void {
-    const shafts = this.#shafts
-    shafts.update(view)
-    this.#strength.value = this.#isElsewhere ? 0 : shafts.strengthNow.value
-    this.#isForward.value = shafts.isForward ? 1 : 0
+    this.#shafts.update(view)
+    this.#strength.value = this.#isElsewhere ? 0 : this.#shafts.strengthNow.value
+    this.#isForward.value = Number(this.#shafts.isForward)
   }
 
   medium(ray: LayerRay | null, air: MediumSegment): MediumSegment {
@@ -262,15 +262,18 @@ export class ScreenShafts implements ScreenShadows {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
-    const { uniforms } = air
     const at = [cosView, cosViewLight, limits, distance] as const
-    const { radiance } = sampleVolume(uniforms, volume, viewpoint, ...at)
+    const { radiance } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
     const scale = this.#growth(distance)
       .reciprocal()
       .mul(LIGHT_SCALE / 4)
-    const light = this.#shafts.shadowedAir
-      .mediaOn({ view: this.#shafts.view, ...ray })
-      .reduce((sum, medium) => sum.mul(medium.transmittance).add(medium.singleScattered), radiance)
+    const light = radiance.toVar()
+    If(this.#hasMedia.greaterThan(0), () => {
+      const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
+      for (const { transmittance, singleScattered } of media) {
+        light.assign(light.mul(transmittance).add(singleScattered))
+      }
+    })
     return light.dot(vec4(scale)).clamp(1e-5, MOST).toConst()
   }
 

@@ -50,12 +50,12 @@ const STRIPS = 4
 
 /**
  * Changes for which a cascade is drawn anew: moves of its middle [texels], moves of layers against each
- * other [texels], and of the light's direction, which move the far end of its rays by a tenth of a texel.
+ * other [texels], and of the light's direction [rad], which move the shadow of a cloud 3 km away by a third of a texel.
  * Greater: shadows jump instead of drifting (*Shadows*, which has "Time lapse"); smaller: they are drawn in every frame.
  */
 const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
-const STALE_LIGHT = 6e-4
+const STALE_LIGHT = 4.8e-3
 
 /** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
 export const TABLE_COLUMNS = 32

@@ -158,6 +158,9 @@ test('follows a camera in flight, and the sun', () => {
   }
   sky.sun.x += 0.001
   sky.sun.normalize()
+  expect(sky.frames(50, 0)).toBe(0)
+  sky.sun.x += 0.007
+  sky.sun.normalize()
   expect(sky.frames(50, 0)).toBe(3)
   sky.sun.x += 0.1
   sky.sun.normalize()
