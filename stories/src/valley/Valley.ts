@@ -135,7 +135,8 @@ export class Valley {
     this.#node = node
     this.#shafts = shafts
     this.exposure = exposure
-    const overlay = cloudEnvironment(node)
+    // Coarse: the lake mirrors the picture itself where it can.
+    const overlay = cloudEnvironment(node, { size: 128 })
     this.#environment = skyEnvironment(atmosphere, { overlay })
     this.#mirror = new LakeMirror(air.picture)
     this.#water = createLake(this.#environment, this.#mirror, air.directLights)
