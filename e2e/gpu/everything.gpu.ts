@@ -10,7 +10,9 @@ import {
   airglow,
   autoExposure,
   distanceFog,
+  droplets,
   heightFog,
+  iceCrystals,
   lightShafts,
   milkyWay,
   moon,
@@ -23,6 +25,7 @@ import {
 } from '@welkin/atmosphere'
 import type { AutoExposureNode, LightShafts } from '@welkin/atmosphere'
 import {
+  DropletLightTable,
   cloudAirShadow,
   cloudEnvironment,
   cloudPreset,
@@ -61,7 +64,7 @@ const size = { width: 32, height: 18 }
 /** Textures that a stage may sample on WebGPU's default limits and on WebGL2. */
 const LIMIT = 16
 /** Most that a pass of Welkin's own may sample, so that users have room. */
-const OWN_LIMIT = 14
+const OWN_LIMIT = 15
 /** Name of the material that lights and shadows fall on. */
 const LIT = 'lit'
 
@@ -118,7 +121,11 @@ class World {
     )
     // A moon has a source of light once it is in an atmosphere.
     atmosphere.add(
-      heightFog({ density: 1e-4, sources: [luna.source] }),
+      heightFog({
+        density: 1e-4,
+        sources: [luna.source],
+        droplets: isMapped ? droplets() : null
+      }),
       distanceFog({ density: 1e-5 })
     )
     const depth = this.#pass.getTextureNode('depth')
@@ -130,7 +137,8 @@ class World {
     layers.at(3).set({ baseAltitude: 6000, topAltitude: 6500, coverage: 0.3 })
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
       quality: coarse,
-      worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null
+      worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null,
+      light: new DropletLightTable({ crystals: iceCrystals() })
     })
     this.#clouds.time = 0
     shafts.add(cloudAirShadow(this.#clouds))
@@ -256,7 +264,7 @@ const situations = [
 ] as const
 
 gpuTest(
-  'all that there is draws light at once, and no pass samples more than 14 textures',
+  'all that there is draws light at once, and no pass samples more than 15 textures',
   async t => {
     const renderer = await t.createRenderer(size)
     const shaders = watchFragmentShaders(renderer)

@@ -3,6 +3,9 @@ import {
   aerialPerspective,
   Atmosphere,
   autoExposure,
+  droplets,
+  heightFog,
+  iceCrystals,
   lightShafts,
   marsParameters,
   milkyWay,
@@ -10,6 +13,7 @@ import {
   MoonDirectionalLight,
   NightLightProbe,
   planetGround,
+  raindrops,
   SkyLightProbe,
   standardEarthParameters,
   stars,
@@ -22,6 +26,7 @@ import {
   cloudAirShadow,
   cloudPreset,
   clouds,
+  DropletLightTable,
   cloudShadow,
   cloudSkyLight,
   type CloudQuality,
@@ -120,6 +125,14 @@ export class StillView {
       scene.add(this.#landscape)
     }
 
+    if (still.fog !== undefined) {
+      const { dropletRadius: radius, ...fog } = still.fog
+      atmosphere.add(heightFog({ ...fog, droplets: droplets({ radius }) }))
+    }
+    if (still.rain !== undefined) {
+      const rain = raindrops({ rate: still.rain })
+      atmosphere.add(heightFog({ density: rain.extinction, falloff: 250, droplets: rain }))
+    }
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
     const shafts = still.shafts && lightShafts(atmosphere, camera, sun)
@@ -130,7 +143,12 @@ export class StillView {
       const { preset, coverage } = still.clouds
       const layers = cloudPreset(preset)
       if (coverage !== undefined) layers.at(0).set({ coverage })
-      const node = clouds(air, depth, camera, atmosphere, layers, { quality })
+      const { dropletRadius } = still
+      const light =
+        dropletRadius === undefined
+          ? undefined
+          : new DropletLightTable({ dropletRadius, crystals: iceCrystals() })
+      const node = clouds(air, depth, camera, atmosphere, layers, { quality, light })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))

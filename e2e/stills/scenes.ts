@@ -9,6 +9,12 @@ export interface Still {
   about: string
   /** Preset of clouds; default: a clear sky. */
   clouds?: { preset: CloudPresetName; coverage?: number }
+  /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
+  dropletRadius?: number
+  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
+  fog?: { density: number; falloff: number; dropletRadius: number }
+  /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */
+  rain?: number
   /** Light shafts, of hills and clouds. */
   shafts?: true
   planet?: 'mars'
@@ -148,6 +154,71 @@ const shafts: Still[] = [
   }
 ]
 
+/** Bows and rings of droplets. */
+const optics: Still[] = [
+  {
+    name: 'optics-glory',
+    about:
+      'from an aeroplane over a deck, the sun behind: coloured rings of 1 to 3° about the middle, a pale cloudbow 40° from it',
+    clouds: { preset: 'stratocumulus', coverage: 0.97 },
+    dropletRadius: 9,
+    altitude: 2600,
+    sun: { elevation: 30, azimuth: 210 },
+    view: { azimuth: 30, pitch: -27 },
+    land: 'hills'
+  },
+  {
+    name: 'optics-fogbow',
+    about:
+      'a broad white bow, 38° from the point opposite the sun, outside a little red, in mist on hills',
+    fog: { density: 0.004, falloff: 60, dropletRadius: 9 },
+    altitude: 12,
+    sun: { elevation: 18, azimuth: 180 },
+    view: { azimuth: 0, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: 'optics-corona',
+    about:
+      'the sun behind thin clouds: an aureole of 2°, white and then brown at its edge, pale rings around',
+    clouds: { preset: 'altocumulus', coverage: 0.6 },
+    dropletRadius: 6,
+    altitude: 2,
+    sun: { elevation: 28, azimuth: 30 },
+    view: { azimuth: 34, pitch: 24 },
+    land: 'hills'
+  }
+]
+
+/** Rain, with the sun behind. */
+const rainbows: Still[] = [
+  {
+    name: 'optics-rainbow',
+    about:
+      'red outside at 42°, violet inside, bright within; a fainter bow of 51°, reversed, the sky dark between them',
+    rain: 8,
+    altitude: 10,
+    sun: { elevation: 14, azimuth: 180 },
+    view: { azimuth: 0, pitch: 18 },
+    land: 'hills'
+  }
+]
+
+/** Halos of crystals, at a winter noon. */
+const halos: Still[] = [
+  {
+    name: 'optics-halo',
+    about:
+      'thin cirrus about a sun of 22°: a ring of 22°, dark and sharp inside with a red edge, sun dogs at its sides',
+    clouds: { preset: 'cirrus', coverage: 0.9 },
+    dropletRadius: 10,
+    altitude: 2,
+    sun: { elevation: 22, azimuth: 20 },
+    view: { azimuth: 20, pitch: 18 },
+    land: 'snow'
+  }
+]
+
 /** The valley, at hours and in weathers that differ much. */
 const valleys: ValleyStill[] = [
   {
@@ -228,6 +299,9 @@ const terrains: TerrainStill[] = (
 export const stills: readonly AnyStill[] = [
   ...fromTheGround,
   ...shafts,
+  ...optics,
+  ...halos,
+  ...rainbows,
   ...valleys,
   ...terrains,
   {

@@ -61,8 +61,7 @@ export const Sunrise: Story = { tags: ['screenshot'] }
 
 /** Inside the mist. */
 export const Inside: Story = {
-  args: { view: 'floor', base: 342, density: 8, falloff: 25, hour: 12.5 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { view: 'floor', base: 342, density: 8, falloff: 25, hour: 12.5 }
 }
 
 /** Valley by the post effect. */

@@ -48,8 +48,8 @@ const PITCH = 3
 const FIELD = 110_000
 const TEXELS = 256
 
-/** Cells along a tile's edge in a still: a software renderer draws it. */
-const STILL_RESOLUTION = 16
+/** Fewer cells and texels in a still: a software renderer draws it. */
+const STILL = { resolution: 16, pageMemory: 100 }
 
 /** Heights over the plane through the world's origin, of places in rows from south to north [m]. */
 function heightsAbovePlane(terrain: Terrain, altitudeOf: (place: Vector3) => number): DataTexture {
@@ -81,11 +81,7 @@ export async function createMountainShadows(
   const air = new Air(renderer, scene, camera, 'post', atmosphere)
   const { sun, post } = air
   if (post === undefined) throw new Error('createMountainShadows: there must be a post effect')
-  const terrain = new Terrain(
-    atmosphere,
-    new MountainHeights({ seed: 1 }),
-    args.frame ? { resolution: STILL_RESOLUTION } : {}
-  )
+  const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 1 }), args.frame ? STILL : {})
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
   prepareShadow(sun)

@@ -60,8 +60,8 @@ export interface RealHeightsArgs extends RendererArgs, TimeArgs {
   wireframe: boolean
 }
 
-/** Cells along a tile's edge in a still: a software renderer draws it. */
-const STILL_RESOLUTION = 16
+/** Fewer cells and texels in a still: a software renderer draws it. */
+const STILL = { resolution: 16, pageMemory: 100 }
 
 /** Time in which the first tile must arrive [ms]. */
 const PATIENCE = 6000
@@ -142,11 +142,7 @@ export async function createRealHeights(
   const atmosphere = new Atmosphere()
   atmosphere.place(VILLAGE)
   const air = new Air(renderer, scene, camera, args.path, atmosphere)
-  const terrain = new Terrain(
-    atmosphere,
-    heights,
-    args.frame ? { resolution: STILL_RESOLUTION } : {}
-  )
+  const terrain = new Terrain(atmosphere, heights, args.frame ? STILL : {})
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
   prepareShadow(air.sun)

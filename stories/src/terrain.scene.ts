@@ -74,8 +74,8 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
 /** Place of the world's origin [°]. */
 const ORIGIN = { longitude: 0.43, latitude: 47.12 }
 
-/** Cells along a tile's edge in a still: a software renderer draws it. */
-const STILL_RESOLUTION = 16
+/** Fewer cells and texels in a still: a software renderer draws it. */
+const STILL = { resolution: 16, pageMemory: 100 }
 
 /** A made-up planet from a walker's feet to orbit: one mesh, without a byte of data. */
 export async function createTerrain(
@@ -89,7 +89,7 @@ export async function createTerrain(
   const atmosphere = new Atmosphere()
   atmosphere.place(ORIGIN)
   const air = new Air(renderer, scene, camera, args.path, atmosphere)
-  const options = args.frame ? { resolution: STILL_RESOLUTION } : {}
+  const options = args.frame ? STILL : {}
   // #region terrain
   const heights = new MountainHeights({ seed: 1 }) // a function: nothing is loaded
   const terrain = new Terrain(atmosphere, heights, options)

@@ -1,4 +1,11 @@
-import { airStyle, Atmosphere, distanceFog, heightFog, skyBackground } from '@welkin/atmosphere'
+import {
+  airStyle,
+  Atmosphere,
+  distanceFog,
+  droplets,
+  heightFog,
+  skyBackground
+} from '@welkin/atmosphere'
 import {
   BoxGeometry,
   Mesh,
@@ -6,7 +13,8 @@ import {
   MeshLambertMaterial,
   PerspectiveCamera,
   PlaneGeometry,
-  Scene
+  Scene,
+  Vector3
 } from 'three'
 import { float } from 'three/tsl'
 import * as twin from '../../../packages/atmosphere/test/twins/fog/heightFog'
@@ -102,7 +110,8 @@ gpuTest('is the same in front of things by both paths, at any height and time', 
   camera.fov = 20
   camera.updateProjectionMatrix()
   const atmosphere = new Atmosphere()
-  const mist = heightFog({ base: 0, falloff: 20, density: 0.01 })
+  // Droplets have structure in all directions.
+  const mist = heightFog({ base: 0, falloff: 20, density: 0.01, droplets: droplets() })
   atmosphere.add(distanceFog({ density: 1e-4 }), mist)
   const post = postPath(renderer, scene, camera, atmosphere)
   const cases = [
@@ -130,6 +139,53 @@ gpuTest('is the same in front of things by both paths, at any height and time', 
   post.dispose()
   atmosphere.dispose()
 })
+
+gpuTest(
+  'of droplets has a bow 38° from the point opposite the sun',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const scene = new Scene()
+    const camera = new PerspectiveCamera(90, size.width / size.height, 0.5, 1e5)
+    camera.position.y = 30
+    camera.rotation.x = 0.3
+    camera.updateMatrixWorld()
+    const atmosphere = new Atmosphere().setSunAngles(12, 180)
+    const drops = droplets({ radius: 10 })
+    const fog = { falloff: 200, density: 2e-3 }
+    const mist = heightFog({ ...fog, droplets: drops })
+    const smooth = heightFog({ ...fog, asymmetry: drops.asymmetry })
+    const opposite = atmosphere.sunDirection.clone().negate()
+    atmosphere.add(mist)
+    const drawn = await drawForward(renderer, scene, camera, atmosphere)
+    expectLight(drawn, 'bow')
+    atmosphere.remove(mist).add(smooth)
+    const without = await drawForward(renderer, scene, camera, atmosphere)
+    const point = new Vector3()
+    /** Light over that of smooth fog, 2 to 25° above the horizon, between angles from the point opposite the sun [°]. */
+    const mean = (from: number, to: number): number => {
+      let [sum, count] = [0, 0]
+      for (let y = 0; y < size.height; y++) {
+        for (let x = 0; x < size.width; x++) {
+          point.set((2 * x + 1) / size.width - 1, 1 - (2 * y + 1) / size.height, 0.5)
+          point.unproject(camera).sub(camera.position).normalize()
+          const angle = (point.angleTo(opposite) * 180) / Math.PI
+          if (point.y < 0.035 || point.y > 0.42 || angle < from || angle > to) continue
+          sum += luminance(drawn.at(x, y)) / luminance(without.at(x, y))
+          count++
+        }
+      }
+      expectTrue(count > 5, `${count} pixels from ${from} to ${to}°`)
+      return sum / count
+    }
+    const [inside, bow, outside] = [mean(28, 32), mean(36, 40), mean(44, 48)]
+    t.note(`${inside.toFixed(3)} inside, ${bow.toFixed(3)} in it, ${outside.toFixed(3)} outside`)
+    expectTrue(bow > 1.03 * inside && bow > 1.1 * outside, `${inside}, ${bow}, ${outside}`)
+    drops.dispose()
+    atmosphere.dispose()
+  },
+  // What is read, and the sums with it, other tests hold on both.
+  { backends: ['webgpu'] }
+)
 
 gpuTest('thickens towards the ground, and hides what is far away in its own light', async t => {
   const renderer = await t.createRenderer(size)

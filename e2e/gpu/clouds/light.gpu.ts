@@ -1,9 +1,13 @@
-import { CloudLightTable } from '@welkin/clouds'
+import { CloudLightTable, DropletLightTable } from '@welkin/clouds'
 import { float, vec4 } from 'three/tsl'
 import * as twin from '../../../packages/clouds/test/twins/cloudLight'
 import { solveCloudLight } from '../../../packages/clouds/test/twins/cloudLightTable'
 import { aureolePhase, cloudPhase } from '../../../packages/clouds/test/twins/cloudPhase'
-import type { CloudPhaseParameters } from '../../../packages/clouds/src/light/cpu/cloudPhase'
+import { fineStructure } from '../../../packages/clouds/test/twins/fineStructure'
+import {
+  scalePhase,
+  type CloudPhaseParameters
+} from '../../../packages/clouds/src/light/cpu/cloudPhase'
 import { cloudAmbientShares, cloudSource } from '../../../packages/clouds/src/light/tsl/cloudLight'
 import { singlePhase } from '../../../packages/clouds/src/light/tsl/cloudPhase'
 import { inFog, middle } from '../harness/cloud-view'
@@ -95,6 +99,34 @@ gpuTest('has the phase function of its float64 twin, in the aureole too', async 
     expected,
     { absolute: 1e-5, relative: 2e-3 }
   )
+  light.dispose()
+})
+
+gpuTest('has bow and glory of droplets like the float64 twin', async t => {
+  const renderer = await t.createRenderer()
+  const radius = 9
+  const light = new DropletLightTable({ dropletRadius: radius })
+  const { depthScale } = scalePhase(light.phase)
+  const inputs = rows(300, i => {
+    const angle = Math.PI * spread(i, 2)
+    return [depthAt(spread(i, 0)), 0.3 * depthAt(spread(i, 1)), Math.cos(angle)]
+  })
+  const results = await evaluateOnGpu(renderer, inputs, input =>
+    light.nodes.fineStructure!({
+      depthToLight: input.x,
+      depthToCamera: input.y,
+      cosViewLight: input.z,
+      cosView: float(0),
+      cosLight: float(0),
+      altitude: float(1000)
+    })
+  )
+  inputs.forEach(([toLight, toCamera, cosine], i) => {
+    const depth = (toLight + toCamera) / depthScale
+    const expected = fineStructure(light.phase, radius, cosine, depth, toCamera)
+    const label = `cosine ${cosine}, depth ${depth}`
+    expectClose(results[4 * i + 2], expected, { absolute: 3e-4, relative: 0.02 }, label)
+  })
   light.dispose()
 })
 

@@ -9,6 +9,8 @@ import {
 import { Color, Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { positionView, vec3, vec4, float } from 'three/tsl'
 import type { Node } from 'three/webgpu'
+import { skyShare } from '../../../packages/terrain/src/pages/cpu/skyShare'
+import { heightAndSky } from '../../../packages/terrain/src/pages/tsl/skyShare'
 import type { GpuContext } from '../harness/context'
 import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
@@ -162,6 +164,49 @@ gpuTest('the ground 2 m away is drawn where the CPU finds it, within 1 cm', asyn
   if (count < 2000) throw new Error(`only ${count} points of ground`)
   if (worst > 0.01) throw new Error(`the drawn ground is ${worst} m off`)
   terrain.dispose()
+})
+
+gpuTest('a shader sees as much of the sky as the CPU does', async t => {
+  const { ellipsoid } = new Atmosphere()
+  const subpoint = ellipsoid.geodeticToECEF({ longitude: 1.02, latitude: 47.01 })
+  const reference = subpoint.clone().divideScalar(256).round()
+  const origin = subpoint.clone().addScaledVector(reference, -256)
+  const up = ellipsoid.surfaceNormal(subpoint)
+  const east = new Vector3(0, 1e-4, 1).cross(up).normalize()
+  const north = up.clone().cross(east)
+  // A tilted bowl, flatter to the east.
+  const [bowl, tilt] = [2e-4, 0.3]
+  const node = ({ x, y, z }: Vector3) => vec3(x, y, z)
+  const source = {
+    sample({ offset }: { offset: Node<'vec3'> }) {
+      const away = offset.sub(node(origin)).toConst()
+      const [x, y] = [away.dot(node(east)), away.dot(node(north))]
+      const slope = node(east)
+        .mul(x.mul(bowl).add(tilt))
+        .add(node(north).mul(y.mul(4 * bowl)))
+      const height = x
+        .mul(x)
+        .mul(bowl / 2)
+        .add(x.mul(tilt))
+        .add(y.mul(y).mul(2 * bowl))
+      return vec4(slope, height)
+    }
+  }
+  const inputs = Array.from({ length: 40 }, (_, i) => [50 * i - 1000, 700 - 31 * i])
+  const results = await t.evaluate(inputs, input => {
+    const place = node(origin).add(node(east).mul(input.x)).add(node(north).mul(input.y))
+    const point = { reference: node(reference), offset: place.toConst() }
+    return heightAndSky(source as unknown as HeightSource, point, node(up), float(1))
+  })
+  let worst = 0
+  for (const [i, [x, y]] of inputs.entries()) {
+    const heightAt = (e: number, n: number): number =>
+      ((x + e) ** 2 * bowl) / 2 + (x + e) * tilt + 2 * bowl * (y + n) ** 2
+    const expected = skyShare(heightAt, x * bowl + tilt, 4 * bowl * y)
+    worst = Math.max(worst, Math.abs(results[4 * i + 1] - expected))
+  }
+  t.note(`share within ${worst.toExponential(1)}`)
+  if (worst > 2e-3) throw new Error(`shares of the sky differ by ${worst}`)
 })
 
 /** Looks for pixels without ground from cameras anywhere. */

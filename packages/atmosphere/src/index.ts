@@ -89,6 +89,13 @@ export { HeightFog, heightFog } from './fog/HeightFog'
 export type { HeightFogOptions } from './fog/HeightFog'
 export { DistanceFog, distanceFog } from './fog/DistanceFog'
 export type { DistanceFogOptions } from './fog/DistanceFog'
+export { Droplets, droplets } from './optics/Droplets'
+export type { DropletsOptions } from './optics/Droplets'
+export { Raindrops, raindrops } from './optics/Raindrops'
+export type { RaindropsOptions } from './optics/Raindrops'
+export { IceCrystals, iceCrystals } from './optics/IceCrystals'
+export type { IceCrystalsOptions } from './optics/IceCrystals'
+export type { ScatteringAngles, ScatteringPhase } from './optics/ScatteringPhase'
 
 // For shaders of one's own; `AtmosphereNode` has an example.
 export { AtmosphereNode } from './view/AtmosphereNode'

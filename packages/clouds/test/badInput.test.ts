@@ -11,6 +11,7 @@ import {
   cloudAirShadow,
   cloudEnvironment,
   cloudLayersFromMETAR,
+  DropletLightTable,
   cloudPreset,
   clouds,
   cloudsDebug,
@@ -74,6 +75,22 @@ const cases: [message: string, call: () => unknown][] = [
   [
     "cloudLayersFromMETAR: unknown option 'stationElevaton', did you mean 'stationElevation'?",
     () => cloudLayersFromMETAR('CAVOK', wrong({ stationElevaton: 0 }))
+  ],
+  [
+    "DropletLightTable: unknown option 'radius', there are dropletRadius, crystals",
+    () => new DropletLightTable(wrong({ radius: 8 }))
+  ],
+  [
+    'DropletLightTable: dropletRadius must be in [3, 30], got 31',
+    () => new DropletLightTable({ dropletRadius: 31 })
+  ],
+  [
+    'DropletLightTable: crystals must be a ScatteringPhase or null, got true',
+    () => new DropletLightTable({ crystals: wrong(true) })
+  ],
+  [
+    "DropletLightTable: unknown option 'forwardShare', there are dropletRadius",
+    () => (new DropletLightTable().forwardShare = 0.5)
   ],
   [
     "CloudLightTable: unknown option 'forwardAsymetry', did you mean 'forwardAsymmetry'?",
@@ -252,6 +269,23 @@ describe('settings are properties', () => {
     expect([table.phase.forwardAsymmetry, table.forwardAsymmetry, table.forwardShare]).toEqual([
       0.7, 0.7, 0.8
     ])
+  })
+
+  it('of a light table of droplets, whose lobes follow', () => {
+    const table = new DropletLightTable({ dropletRadius: 5, scatteringAlbedo: 0.9 })
+    table.bake()
+    const { forwardAsymmetry, forwardShare, backwardAsymmetry } = table
+    // The asymmetry of droplets of 5 µm.
+    const asymmetry = forwardShare * forwardAsymmetry + (1 - forwardShare) * backwardAsymmetry
+    expect(asymmetry).toBeCloseTo(0.85, 2)
+    expect(table.scatteringAlbedo).toBe(0.9)
+    table.set({ dropletRadius: 20 })
+    expect([table.dropletRadius, table.scatteringAlbedo]).toEqual([20, 0.9])
+    expect(table.isDirty).toBe(true)
+    table.bake()
+    expect(table.isDirty).toBe(false)
+    expect(table.forwardAsymmetry).toBeGreaterThan(forwardAsymmetry)
+    table.dispose()
   })
 
   it('free a probe for other clouds', () => {

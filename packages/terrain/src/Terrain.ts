@@ -25,7 +25,7 @@ import { distanceToGround } from './rays/distanceToGround'
 import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
 import { terrainMaterial } from './surface/terrainMaterial'
-import { checkSource, defaultsFor, SETTINGS, type TerrainOptions } from './TerrainOptions'
+import { checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
 import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
@@ -90,8 +90,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     checkAtmosphere(where, atmosphere)
     if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     checkSource(where, source)
-    const defaults = defaultsFor(options)
-    const { resolution, detail, pageMemory, ...settings } = withDefaults(where, defaults, options)
+    const { resolution, detail, pageMemory, ...settings } = withDefaults(where, DEFAULTS, options)
     checkRange(where, 'resolution', resolution, 4, 128)
     if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
     checkRange(where, 'detail', detail, 1.2, 4)

@@ -5,7 +5,7 @@ import { isPageSource, type PageSource } from './pages/PageSource'
 
 /** Options of `Terrain`. */
 export interface TerrainOptions {
-  /** Cells along a tile's edge, even, in [4, 128], default 32. */
+  /** Cells along a tile's edge, even, in [4, 128], default 24. */
   resolution?: number
   /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
   detail?: number
@@ -17,27 +17,22 @@ export interface TerrainOptions {
   camera?: Camera | null
   /** Most memory of pages on the GPU, in [4, 1000], default 190 [MB]; room for 64 pages is taken at least. */
   pageMemory?: number
-  /** Pages drawn in a frame, ≥ 1; the default, 1 at a resolution of 32, goes with its inverse square. */
+  /** Pages drawn in a frame, ≥ 1, default 1. */
   pagesPerFrame?: number
 }
 
 /** Options that may change later. */
 export const SETTINGS = ['seaLevel', 'shadowDistance', 'camera', 'pagesPerFrame'] as const
 
-/** Cells of tiles whose pages are drawn in a frame: a page of 32² cells takes about 1 ms of a slow graphics unit. */
-const CELLS_PER_FRAME = 32 ** 2
-
 /** Options that are left out. */
-export function defaultsFor({ resolution = 32 }: TerrainOptions): Required<TerrainOptions> {
-  return {
-    resolution,
-    detail: 1.5,
-    seaLevel: 0,
-    shadowDistance: 3000,
-    camera: null,
-    pageMemory: 190,
-    pagesPerFrame: Math.max(Math.round(CELLS_PER_FRAME / resolution ** 2), 1)
-  }
+export const DEFAULTS: Required<TerrainOptions> = {
+  resolution: 24,
+  detail: 1.5,
+  seaLevel: 0,
+  shadowDistance: 3000,
+  camera: null,
+  pageMemory: 190,
+  pagesPerFrame: 1
 }
 
 /** @throws If it is no source of heights. */

@@ -85,6 +85,9 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
 /** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
 const NIGHT_LIGHTS = 4
 
+/** Altitude of the lake's water [m]. */
+const ALTITUDE = 600
+
 /** A valley in the mountains with all that Welkin has, at any hour and in any weather. */
 export class Valley {
   readonly scene = new Scene()
@@ -98,7 +101,7 @@ export class Valley {
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #style = airStyle()
-  readonly #mist = heightFog({ base: 6, falloff: 28, density: 0 })
+  readonly #mist = heightFog({ base: ALTITUDE + 6, falloff: 22, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #ground
@@ -128,14 +131,15 @@ export class Valley {
     this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#nightLights = air.nightLights
     this.atmosphere = atmosphere
-    atmosphere.place({ longitude: 10, latitude: state.latitude, height: 600 })
+    atmosphere.place({ longitude: 10, latitude: state.latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
     scene.add(this.#ground, ...this.#trees, this.#village.object)
 
     this.#node = node
     this.#shafts = shafts
     this.exposure = exposure
-    const overlay = cloudEnvironment(node)
+    // Coarse: the lake mirrors the picture itself where it can.
+    const overlay = cloudEnvironment(node, { size: 128 })
     this.#environment = skyEnvironment(atmosphere, { overlay })
     this.#mirror = new LakeMirror(air.picture)
     this.#water = createLake(this.#environment, this.#mirror, air.directLights)

@@ -2,11 +2,12 @@ import type { Vector4 } from 'three'
 import { Vector3 } from 'three'
 import { If, exp, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { checkOptions } from '@welkin/geo'
+import { checkOptions, fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
 import { checkSources, type LightSource } from '../view/LightSource'
+import type { ScatteringPhase } from '../optics/ScatteringPhase'
 import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -29,8 +30,13 @@ export interface HeightFogOptions {
   base?: number
   /** Single-scattering albedo of the droplets at the four wavelengths, in [0, 1]. */
   albedo?: Spectrum
-  /** Asymmetry g of the droplets' phase function, in [0, 0.95]. */
+  /** Asymmetry g of the droplets' phase function, in [0, 0.95]; without effect if there are `droplets`. */
   asymmetry?: number
+  /**
+   * Droplets of a size, `droplets({ radius: 8 })`, with fogbow, glory and corona; shared, not owned. Null,
+   * the default, for the smooth phase function of `asymmetry`.
+   */
+  droplets?: ScatteringPhase | null
   /** Light sources besides the sun, such as the moon's `source`. */
   sources?: readonly LightSource[]
   /** Altitudes of the camera between which the fog fades away, rising [m]. */
@@ -62,6 +68,8 @@ export class HeightFog implements SkyLayer {
   declare albedo: Spectrum
   declare asymmetry: number
   declare fade: readonly [number, number]
+  /** Droplets that it is made of, if given; shared. */
+  readonly droplets: ScatteringPhase | null
   readonly #density = number(0)
   readonly #falloff = number(1)
   readonly #height = number(0)
@@ -87,6 +95,7 @@ export class HeightFog implements SkyLayer {
   /** @throws If an option is out of range. */
   constructor(options: HeightFogOptions = {}) {
     this.#options = checked(DEFAULTS, options)
+    this.droplets = this.#options.droplets
     this.#lights = this.#options.sources.map(source => ({
       source,
       directionMapped: vector3(),
@@ -106,17 +115,17 @@ export class HeightFog implements SkyLayer {
 
   /** See {@link SkyLayer.version}. */
   get version(): number {
-    return this.#version
+    return this.#version + (this.droplets?.version ?? 0)
   }
 
   /**
-   * Changes settings other than `sources`; no shader is compiled.
+   * Changes settings other than `sources` and `droplets`; no shader is compiled.
    *
    * @throws If one is unknown or out of range; then nothing has changed.
    */
-  set(settings: Omit<HeightFogOptions, 'sources'>): this {
+  set(settings: Omit<HeightFogOptions, 'sources' | 'droplets'>): this {
     checkOptions('HeightFog', settings, ...SETTINGS)
-    const values = (): string => JSON.stringify({ ...this.#options, sources: [] })
+    const values = (): string => JSON.stringify({ ...this.#options, sources: [], droplets: null })
     const before = values()
     this.#options = checked(this.#options, settings)
     if (values() !== before) this.#version++
@@ -131,7 +140,7 @@ export class HeightFog implements SkyLayer {
     this.#falloff.value = falloff
     // In float64: float32 of a camera high above sea level has no millimetres.
     this.#height.value = view.height - base
-    this.#asymmetry.value = asymmetry
+    this.#asymmetry.value = this.droplets?.asymmetry ?? asymmetry
     this.#albedo.value.set(...albedo)
     _position.setFromMatrixPosition(view.camera.matrixWorld)
     for (const { source, directionMapped, irradiance } of this.#lights) {
@@ -250,9 +259,14 @@ export class HeightFog implements SkyLayer {
     const total = above.max(vertical).toConst() as Float
     const slant = airMass(radius.div(this.#falloff), cosLight.max(0))
     const cosSlant = slant.reciprocal().toConst() as Float
-    const once = henyeyGreenstein(cosViewLight, this.#asymmetry).mul(
-      above.mul(slant).negate().exp()
-    )
+    const scaled = above.mul(slant).toConst()
+    const smooth = henyeyGreenstein(cosViewLight, this.#asymmetry).toConst()
+    let once = vec4(smooth.mul(scaled.negate().exp())) as Vec4
+    if (this.droplets !== null) {
+      // What light scattered exactly once has of fine structure: depths unscaled.
+      const sharp = this.droplets.phase({ cosViewLight, cosView, cosLight }).sub(smooth)
+      once = once.add(sharp.mul(scaled.div(this.#asymmetry.oneMinus()).negate().exp()))
+    }
     const often = multipleScattering(above, total, cosSlant)
     const light = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).toConst()
     const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
@@ -280,6 +294,7 @@ const DEFAULTS: Required<HeightFogOptions> = {
   base: 0,
   albedo: [1, 1, 1, 1],
   asymmetry: 0.75,
+  droplets: null,
   sources: [],
   fade: [5000, 15_000]
 }
@@ -296,7 +311,7 @@ function checked(
   given: HeightFogOptions
 ): Required<HeightFogOptions> {
   const options = withDefaults('HeightFog', before, given)
-  const { density, falloff, base, albedo, asymmetry, sources, fade } = options
+  const { density, falloff, base, albedo, asymmetry, droplets, sources, fade } = options
   checkRange('HeightFog', 'density', density, 0, 100)
   checkRange('HeightFog', 'falloff', falloff, 0.1, 1e5)
   checkRange('HeightFog', 'base', base, -1e5, 1e6)
@@ -304,6 +319,9 @@ function checked(
   checkSpectrum('HeightFog', 'albedo', albedo, 1)
   checkSources('HeightFog', sources)
   checkFade('HeightFog', fade)
+  if (droplets !== null && typeof droplets?.phase !== 'function') {
+    fail('HeightFog', 'droplets must be droplets() or null', droplets)
+  }
   return { ...options, albedo: [...albedo], sources: [...sources], fade: [...fade] }
 }
 

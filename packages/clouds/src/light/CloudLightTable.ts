@@ -1,13 +1,13 @@
 import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray } from 'three'
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
-import { withDefaults } from '@welkin/atmosphere'
+import { withDefaults, type ScatteringAngles } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
 import { parameterProperties } from '../parameterProperties'
 import { fairWeatherPhase, scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
 import { slabTableForm } from './cpu/slabTableForm'
 import { fillCloudLight } from './cpu/cloudLightTable'
-import type { LevelTexture, Vec3 } from '../tsl-types'
+import type { Float, LevelTexture, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 
 const ranges = {
@@ -30,6 +30,21 @@ export interface CloudLight {
   readonly forwardAsymmetry: UniformNode<'float', number>
   readonly backwardAsymmetry: UniformNode<'float', number>
   readonly forwardShare: UniformNode<'float', number>
+  /**
+   * Light of particles on top of what the lobes scatter once, if they have fine structure: radiance per scaled extinction, for unit
+   * irradiance above the cloud, at the four wavelengths [1/sr]. To be called inside of a shader function.
+   */
+  fineStructure?(sample: FineSampleNodes): Vec4
+}
+
+/** Sample in a cloud whose fine structure is asked for; depths are scaled optical depths τ′ = `depthScale` τ. */
+export interface FineSampleNodes extends ScatteringAngles {
+  /** Depth from the sample to the light. */
+  readonly depthToLight: Float
+  /** Depth from the camera to the sample. */
+  readonly depthToCamera: Float
+  /** Altitude of the sample [m]. */
+  readonly altitude: Float
 }
 
 /**

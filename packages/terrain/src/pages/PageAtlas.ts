@@ -22,15 +22,14 @@ const ENOUGH_PAGES = 1100
 const bytesOfPage = (resolution: number, density: number): number =>
   TEXEL_BYTES * ((resolution + 1) ** 2 + (density * resolution + 1) ** 2)
 
-/**
- * Texels of a page per cell of its tile, for pixels: a texel is two to four pixels wide at 1080 lines from a resolution of 32 on, or
- * wider if there is not the memory.
- */
-const densityOf = (resolution: number, bytes: number): number => {
-  const densities = resolution > 32 ? [2, 1] : [4, 2, 1]
-  const isEnough = (density: number): boolean =>
-    bytes >= ENOUGH_PAGES * bytesOfPage(resolution, density)
-  return densities.find(isEnough) ?? 1
+/** Texels of a page along its edge, for pixels: one is two to four pixels wide at 1080 lines. */
+const FINEST_TEXELS = 128
+
+/** Texels of a page per cell of its tile, for pixels: fewer if there is not the memory. */
+function densityOf(resolution: number, bytes: number): number {
+  let density = Math.max(Math.round(FINEST_TEXELS / resolution), 1)
+  while (density > 1 && bytes < ENOUGH_PAGES * bytesOfPage(resolution, density)) density >>= 1
+  return density
 }
 
 /** Fewest pages: the six faces, and a tile with all that it is a part of, several times over. */

@@ -1,68 +1,116 @@
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping } from 'three'
 
 /** Side of the texture [texels]. */
-const SIZE = 256
+const SIZE = 512
 
-/** Waves of the longest octave along a side. */
-export const GRAIN_WAVES = 8
+/** Largest slope that bytes can hold. */
+export const GRAIN_SLOPE = 2
 
-const OCTAVES = 4
+/** Height of stones that is 1 in blue [texels]. */
+const STONE_HEIGHT = 12
 
-/** Amplitude of an octave per that of the one before. */
-const GAIN = 0.62
+/** Largest and smallest radius of stones [texels], and their number: of those that are larger than some size as its inverse square. */
+const LARGEST = 30
+const SMALLEST = 3
+const STONES = 6500
 
-/** Largest value and slope per wave that bytes can hold. */
-export const GRAIN_VALUE = 1.5
-export const GRAIN_SLOPE = 8
+/** Sides of a stone. */
+const SIDES = 6
 
-/** Adds gradient noise with so many waves along a side, which repeats. */
-function addNoise(values: Float32Array, waves: number, amplitude: number, seed: number): void {
+/** Blades of grass, and their lengths: the least, and the rest [texels]. */
+const BLADES = 9000
+const BLADE_LENGTH = [10, 26] as const
+
+/** Repeatable random numbers in [0, 1). */
+function randomNumbers(seed: number): () => number {
   let state = seed
-  const turns = Float32Array.from({ length: waves ** 2 }, () => {
+  return () => {
     state = (Math.imul(state, 1664525) + 1013904223) >>> 0
-    return (state / 2 ** 32) * 2 * Math.PI
+    return state / 2 ** 32
+  }
+}
+
+/** Number of a texel on the plane that the picture repeats on. */
+const texel = (x: number, y: number): number => (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1))
+
+/** Raises the ground to a stone: a block with slanting sides, under a tilted top. */
+function addStone(heights: Float32Array, radius: number, random: () => number): void {
+  const [x, y] = [random() * SIZE, random() * SIZE]
+  const sides = Array.from({ length: SIDES }, (_, side) => {
+    const turn = ((side + random()) * 2 * Math.PI) / SIDES
+    const away = radius * (0.55 + 0.45 * random())
+    return [Math.cos(turn), Math.sin(turn), away, 0.7 + 0.9 * random()] as const
   })
-  const [cosines, sines] = [turns.map(Math.cos), turns.map(Math.sin)]
-  const blend = (t: number): number => t ** 3 * (t * (t * 6 - 15) + 10)
-  for (let row = 0; row < SIZE; row++) {
-    const y = ((row + 0.5) * waves) / SIZE
-    const j = Math.floor(y)
-    for (let column = 0; column < SIZE; column++) {
-      const x = ((column + 0.5) * waves) / SIZE
-      const i = Math.floor(x)
-      const corner = (a: number, b: number): number => {
-        const n = ((j + b) % waves) * waves + ((i + a) % waves)
-        return cosines[n] * (x - i - a) + sines[n] * (y - j - b)
+  const lean = 2 * Math.PI * random()
+  const tilt = 0.15 + 0.3 * random()
+  const [tiltX, tiltY] = [tilt * Math.cos(lean), tilt * Math.sin(lean)]
+  const top = radius * (0.25 + 0.35 * random())
+  const reach = 1.2 * radius
+  for (let j = Math.floor(y - reach); j <= y + reach; j++) {
+    for (let i = Math.floor(x - reach); i <= x + reach; i++) {
+      const [dx, dy] = [i - x, j - y]
+      let height = top + dx * tiltX + dy * tiltY
+      for (const [cosine, sine, away, steepness] of sides) {
+        height = Math.min(height, (away - dx * cosine - dy * sine) * steepness)
       }
-      const across = blend(x - i)
-      const lower = corner(0, 0) + across * (corner(1, 0) - corner(0, 0))
-      const upper = corner(0, 1) + across * (corner(1, 1) - corner(0, 1))
-      values[row * SIZE + column] += amplitude * (lower + blend(y - j) * (upper - lower))
+      const n = texel(i, j)
+      heights[n] = Math.max(heights[n], height)
     }
   }
 }
 
+/** Lays a blade of grass over darker ones: a bent stroke, light at its tip. */
+function addBlade(light: Float32Array, random: () => number): void {
+  let [x, y] = [random() * SIZE, random() * SIZE]
+  let turn = 2 * Math.PI * random()
+  const bend = (random() - 0.5) * 0.12
+  const brightness = random()
+  const length = BLADE_LENGTH[0] + BLADE_LENGTH[1] * random()
+  for (let step = 0; step < length; step++) {
+    x += Math.cos(turn)
+    y += Math.sin(turn)
+    turn += bend
+    const value = brightness * (0.45 + (0.55 * step) / length)
+    const [i, j] = [Math.floor(x), Math.floor(y)]
+    for (const n of [texel(i, j), texel(i + 1, j), texel(i, j + 1)]) {
+      light[n] = Math.max(light[n], value)
+    }
+  }
+}
+
+/** Takes the mean off, so that levels of detail fade to 0. */
+function center(values: Float32Array): Float32Array {
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length
+  return values.map(value => value - mean)
+}
+
 /**
- * Stones and tufts as a picture that repeats: slope along both sides per wave of the longest octave (red and green, of
- * `GRAIN_SLOPE`) and value (blue, of `GRAIN_VALUE`), 0 in the middle of a byte's range. Its levels of detail fade to 0.
+ * Stones and grass as a picture that repeats, with 0 in the middle of a byte's range, to which its levels of detail fade: slope of
+ * stones along both sides (red and green, of `GRAIN_SLOPE`), their height (blue), and light of blades (alpha).
  */
 export function grainTexture(): DataTexture {
-  const values = new Float32Array(SIZE ** 2)
-  for (let octave = 0; octave < OCTAVES; octave++) {
-    addNoise(values, GRAIN_WAVES << octave, GAIN ** octave, 311 + octave)
+  const random = randomNumbers(311)
+  const raised = new Float32Array(SIZE ** 2)
+  for (let n = 0; n < STONES; n++) {
+    // As many per size as there are of pieces when rock breaks: small ones fill the gaps.
+    const share = random() * (1 / SMALLEST ** 2 - 1 / LARGEST ** 2) + 1 / LARGEST ** 2
+    addStone(raised, share ** -0.5, random)
   }
-  const at = (x: number, y: number): number => values[(y & (SIZE - 1)) * SIZE + (x & (SIZE - 1))]
+  const light = new Float32Array(SIZE ** 2)
+  for (let n = 0; n < BLADES; n++) addBlade(light, random)
+  const stones = center(raised)
+  const blades = center(light)
   const bytes = new Uint8Array(4 * SIZE ** 2)
   const encode = (value: number, most: number): number =>
     Math.round(127.5 + 127.5 * Math.min(Math.max(value / most, -1), 1))
-  // Of central differences: texels per wave, over two texels.
-  const perWave = SIZE / GRAIN_WAVES / 2
   for (let n = 0; n < SIZE ** 2; n++) {
     const [x, y] = [n % SIZE, Math.floor(n / SIZE)]
-    bytes[4 * n] = encode((at(x + 1, y) - at(x - 1, y)) * perWave, GRAIN_SLOPE)
-    bytes[4 * n + 1] = encode((at(x, y + 1) - at(x, y - 1)) * perWave, GRAIN_SLOPE)
-    bytes[4 * n + 2] = encode(values[n], GRAIN_VALUE)
-    bytes[4 * n + 3] = 255
+    const rise = (i: number, j: number): number =>
+      (stones[texel(x + i, y + j)] - stones[texel(x - i, y - j)]) / 2
+    bytes[4 * n] = encode(rise(1, 0), GRAIN_SLOPE)
+    bytes[4 * n + 1] = encode(rise(0, 1), GRAIN_SLOPE)
+    bytes[4 * n + 2] = encode(stones[n], STONE_HEIGHT)
+    bytes[4 * n + 3] = encode(blades[n], 1)
   }
   const texture = new DataTexture(bytes, SIZE, SIZE)
   texture.name = 'Welkin.Terrain.grain'

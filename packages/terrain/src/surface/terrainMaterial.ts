@@ -6,9 +6,8 @@ import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
-import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
+import { firstTexel, quarterOf, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { gradientAlong } from './tsl/gradientAlong'
 import { groundSurface } from './tsl/groundSurface'
 
 /** True of the material that three draws shadow maps with. */
@@ -43,7 +42,7 @@ export function terrainMaterial(
   const handed = {
     place: handedOn<Vec4>('vec4', 'Place'),
     texels: handedOn<Vec4>('vec4', 'Texels'),
-    blend: handedOn<Vec3>('vec3', 'Blend')
+    blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, resolution, detail)
@@ -55,6 +54,12 @@ export function terrainMaterial(
 
   const { place: handedPlace, texels, blend } = handed
   const { width, height } = atlas.surface
+  const { columns, surfaceSide } = atlas
+  const face = blend.z.add(0.5).mod(6).floor().toConst('face') as Float
+  // Samples at a tile's edge may lie beyond it, where another page is.
+  const inPage = texels.xy.clamp(0, surfaceSide - 1).toConst('inPage') as Vec2
+  const texelIn = (slot: Float, steps: Vec2): Vec2 =>
+    firstTexel(slot.round(), columns, surfaceSide).add(steps).add(0.5)
   const page = texture(atlas.surface.texture)
   const pageAt = (texel: Vec2): Vec4 =>
     (page as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } })
@@ -62,9 +67,13 @@ export function terrainMaterial(
       .level(0)
   // Gradient along the face's axes, height and patchiness.
   const ground = Fn(() => {
-    const mixed = pageAt(texels.xy).toVar('page') as unknown as Vec4 & { assign(value: Vec4): void }
+    const mixed = pageAt(texelIn(texels.z, inPage)).toVar('page') as unknown as Vec4 & {
+      assign(value: Vec4): void
+    }
     If(blend.x.greaterThan(0), () => {
-      const parent = pageAt((texels as unknown as { zw: Vec2 }).zw)
+      const quarter = quarterOf(blend.z.add(0.5).div(6).floor())
+      const steps = inPage.add(quarter.mul(surfaceSide - 1)).mul(0.5) as unknown as Vec2
+      const parent = pageAt(texelIn(texels.w, steps))
       mixed.assign(mix(mixed, parent, blend.x))
     })
     return mixed
@@ -72,7 +81,7 @@ export function terrainMaterial(
   const offset = handedPlace.xyz
   const place = reference.mul(REFERENCE_STEP).add(offset)
   const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
-  const { first, second } = faceAxes(blend.z.round())
+  const { first, second } = faceAxes(face)
   const isLand = ground.z.greaterThan(seaLevel).select(1, 0) as unknown as Float
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')
@@ -82,10 +91,13 @@ export function terrainMaterial(
     .mul(isLand)
     .toConst('gradient') as Vec3
   const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst('cosSlope') as Float
+  const normal = up.sub(gradient).normalize().toConst('groundNormal') as Vec3
   const surface = groundSurface(
     {
       grain,
+      reference,
       offset,
+      normal,
       first,
       second,
       height: ground.z,
@@ -101,7 +113,7 @@ export function terrainMaterial(
     isShadowPass(drawn) ? vec4(1) : vec4(surface.color, 1)
   )()
   material.roughnessNode = surface.roughness
-  const tilt = gradient.add(gradientAlong(surface.grain, up))
-  material.normalNode = transformNormalToView(up.sub(tilt).normalize())
+  material.aoNode = surface.occlusion.mul(blend.w)
+  material.normalNode = transformNormalToView(normal.sub(surface.grain).normalize())
   return material
 }

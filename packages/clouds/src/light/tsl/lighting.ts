@@ -21,6 +21,8 @@ export interface CloudShares {
   /** Shares of the mean radiance of the upper and of the lower hemisphere [1]. */
   sky: Float
   ground: Float
+  /** Bows and rings of droplets and crystals, at the four wavelengths: comes on top of `direct` [1/sr]. */
+  fine?: Vec4
 }
 
 /** The light of a place: the moon where it is night, or else the sun. */
@@ -44,23 +46,25 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const scale = light.depthScale
   const layered = shaded.layers.layered.toConst() as Float
   const depthThrough = depths.through.mul(scale).toConst() as Float
-  const direct = cloudSource(light, {
-    depthToLight: depths.toLight.mul(scale).toConst(),
+  const lit = {
+    depthToLight: depths.toLight.mul(scale).toConst() as Float,
     depthThrough,
     depthAcross: depthThrough,
-    depthToCamera: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst(),
+    depthToCamera: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst() as Float,
     layered,
     cosLight: source.cosine,
     cosView,
     cosViewLight
-  })
+  }
+  const direct = cloudSource(light, lit)
+  const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
   const ambient = cloudAmbientShares(light, {
     depthAbove: depths.above.mul(scale),
     depthBelow: depths.below.mul(scale),
     layered,
     cosView
   })
-  return { direct, sky: ambient.sky, ground: ambient.ground }
+  return { direct, sky: ambient.sky, ground: ambient.ground, fine }
 }
 
 /**
@@ -68,14 +72,22 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
  * irradiance above the air [1/sr].
  *
  * @param shares - Sums of `CloudShares`.
+ * @param fine - Sum of their fine structure, if there is any.
  */
-export function shade(field: CloudField, { altitude, up }: CloudSample, shares: Vec3): Vec4 {
+export function shade(
+  field: CloudField,
+  { altitude, up }: CloudSample,
+  shares: Vec3,
+  fine?: Vec4
+): Vec4 {
   const { view } = field
   const { uniforms, transmittance, diffuse } = view.air
   const { night } = field
   const litFrom = (direction: Vec3): { cosine: Float; light: Vec4 } => {
     const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
-    const direct = transmittanceToLight(uniforms, transmittance, altitude, cosine).mul(shares.x)
+    const arriving = transmittanceToLight(uniforms, transmittance, altitude, cosine)
+    const scattered = fine === undefined ? shares.x : fine.add(shares.x).max(0)
+    const direct = arriving.mul(scattered) as Vec4
     if (diffuse === null) return { cosine, light: direct }
     const irradiance = horizontalIrradiance(uniforms, diffuse, altitude, cosine)
     const ambient = irradiance.up.mul(shares.y).add(irradiance.down.mul(shares.z))

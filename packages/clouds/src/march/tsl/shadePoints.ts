@@ -41,8 +41,9 @@ export function shadePoints(
       const weather = weatherCacheAt(field, sample, layers.range, context.weatherMap)
       const transmittance = seenBefore.add(share.mul(0.5)).oneMinus().toConst() as Float
       const shaded = { sample, weather, direction, transmittance, layers }
-      const { direct, sky, ground } = sourceAt(context, shaded)
-      radiance.addAssign(shade(field, sample, vec3(direct, sky, ground).mul(share).toConst()))
+      const { direct, sky, ground, fine } = sourceAt(context, shaded)
+      const shares = vec3(direct, sky, ground).mul(share).toConst()
+      radiance.addAssign(shade(field, sample, shares, fine?.mul(share).toConst()))
       seenBefore.addAssign(share)
     })
   })

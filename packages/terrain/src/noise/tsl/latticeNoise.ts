@@ -27,7 +27,7 @@ type UVariable = Record<'x' | 'y' | 'z', UInt & { addAssign(n: Node): void; assi
  * @param cell - Indices, two's complement.
  * @see Jarzynski & Olano 2020, "Hash functions for GPU rendering", JCGT 9 (3), supplement: pcg3d. Twin: ../cpu/latticeNoise.ts
  */
-const latticeGradient = /*#__PURE__*/ Fn(
+export const latticeGradient = /*#__PURE__*/ Fn(
   ([cell]: [UVec3]) => {
     const v = cell.mul(uint(1664525)).add(uint(1013904223)).toVar() as never as UVariable
     const mix = (): void => {

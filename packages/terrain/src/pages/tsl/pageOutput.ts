@@ -1,6 +1,8 @@
 import { Fn, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
+import { heightAndSky } from './skyShare'
+import { packed } from './packing'
 import { gradientAlong } from '../../surface/tsl/gradientAlong'
 import { climates, patches } from '../../surface/tsl/groundNoise'
 import { faceAxes, unitDifference } from '../../tiles/tsl/cubeSphere'
@@ -62,11 +64,12 @@ const patchAt = (tile: PageUniforms, { reference, offset }: PagePlace, shortest:
 const climateAt = (tile: PageUniforms, { reference, offset }: PagePlace): Float =>
   climates(reference, offset, tile.shortest, tile.seed).w
 
-/** Height and climate of a vertex, from a function. */
+/** Height, and climate with the share of the sky, of a vertex, from a function. */
 export const heightsOf = (source: HeightSource, tile: PageUniforms, side: number): Vec4 =>
   Fn(() => {
     const place = placeAt(tile, faceAxes(tile.face), texelOf(side), side)
-    return vec4(source.sample(place, tile.shortest).w, climateAt(tile, place), 0, 1)
+    const ground = heightAndSky(source, place, upAt(tile, place), tile.shortest).toConst('ground')
+    return vec4(ground.x, packed(climateAt(tile, place), ground.y), 0, 1)
   })()
 
 /** Texel for pixels: the gradient along the ellipsoid by a face's axes, height and patchiness. */
@@ -102,7 +105,7 @@ export const surfaceOf = (
 const loaded = (heights: Texture, texel: Vec2): Float =>
   (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).x
 
-/** Height and climate of a vertex, from heights that were loaded. */
+/** Height and climate of a vertex, from heights that were loaded: all of the sky is seen. */
 export const loadedHeightsOf = (
   heights: Texture,
   tile: PageUniforms,
@@ -112,7 +115,12 @@ export const loadedHeightsOf = (
   Fn(() => {
     const texel = texelOf(side)
     const place = placeAt(tile, faceAxes(tile.face), texel, side)
-    return vec4(loaded(heights, texel.mul(density).add(1)), climateAt(tile, place), 0, 1)
+    return vec4(
+      loaded(heights, texel.mul(density).add(1)),
+      packed(climateAt(tile, place), float(1)),
+      0,
+      1
+    )
   })()
 
 /** Gradient by central differences, height and patchiness for pixels, from heights that were loaded. */

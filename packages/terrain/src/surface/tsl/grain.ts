@@ -1,66 +1,84 @@
-import { Fn, If, dFdx, dFdy, float, texture, vec2, vec3 } from 'three/tsl'
+import { Fn, If, dFdx, dFdy, float, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
-import type { Float, Vec2, Vec3 } from '../../tsl-types'
-import { GRAIN_SLOPE, GRAIN_VALUE, GRAIN_WAVES } from '../grainTexture'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import { GRAIN_SLOPE } from '../grainTexture'
+import { frameOf, stochasticTiling, type TilingPlace } from './stochasticTiling'
 
-/** Sides of the picture on the ground: a part of the 256 m that references step by, so that it does not jump [m]. */
-const COARSE_SIDE = 16
+/** Sides of the picture on the ground [m], cells that it is moved in per 256 m, and longer side of a pixel's footprint at which nothing is left [m]. */
+const COARSE = { side: 17, cells: 24, gone: 2 }
+const FINE = { side: 2.1, cells: 192, gone: 0.3 }
 
-/** The finer one is turned by (3, 4)/5, and five times as small: whole numbers of sides in 256 m too. */
-const TURN = [3, 4] as const
-const FINE_GAIN = 0.3
-
-/** Longer side of a pixel's footprint at which grain is gone, and the share of that in which it goes [m]. */
-const GONE = 6
+/** Part of `gone` at which a picture begins to go. */
 const FADE = 0.5
 
-/** Place in a face's plane, and the face's axes. */
+/** Place in a face's plane, and the ground there. */
 export interface GrainPlace {
   readonly grain: Texture
-  /** Reference to the place [m]. */
+  /** As of `latticeNoise`. */
+  readonly reference: Vec3
   readonly offset: Vec3
+  /** The face's axes. */
   readonly first: Vec3
   readonly second: Vec3
+  /** Normal of the ground. */
+  readonly normal: Vec3
 }
 
-type Variable = Vec3 & { assign(value: Vec3): void }
+/** Stones and blades of grass at a place. */
+export interface Grain {
+  /** Gradient of stones, those of centimetres and of metres by a factor each, along the ground [–]. */
+  readonly gradient: (fine: Float, coarse: Float) => Vec3
+  /** Height of stones of centimetres, and light of blades, about 0. */
+  readonly stone: Float
+  readonly blade: Float
+  /** Height of stones of metres, and light of tufts, about 0. */
+  readonly boulder: Float
+  readonly tuft: Float
+  /** Longer side of the pixel on the ground [m]. */
+  readonly footprint: Float
+  /** Share of the slopes that are smaller than a pixel. */
+  readonly lost: Float
+}
 
-/** Gradient [1/m] and value of stones and tufts, from 2 m to 2 cm; 0 where they are smaller than pixels. */
-export function grainAt({ grain, offset, first, second }: GrainPlace): {
-  gradient: Vec3
-  value: Float
-} {
-  const [c, s] = TURN
-  const turned = ({ x, y }: Vec2): Vec2 => vec2(x.mul(c).add(y.mul(s)), y.mul(c).sub(x.mul(s)))
-  const sum = Fn(() => {
-    const at = vec2(offset.dot(first), offset.dot(second)).div(COARSE_SIDE).toConst() as Vec2
-    // Sampled in a branch: most of a view is too far away.
-    const across = dFdx(at).toConst() as Vec2
-    const along = dFdy(at).toConst() as Vec2
-    const footprint = across
-      .length()
-      .max(along.length())
-      .mul(COARSE_SIDE / GONE)
-    const kept = float(1).sub(footprint).div(FADE).min(1).toConst('kept')
-    const total = vec3(0).toVar('grain') as unknown as Variable
-    If(kept.greaterThan(0), () => {
-      const sample = (place: Vec2, dx: Vec2, dy: Vec2): Vec3 => {
-        const node = texture(grain, place) as unknown as {
-          grad(dx: Vec2, dy: Vec2): { rgb: Vec3 }
-        }
-        return node.grad(dx, dy).rgb.mul(2).sub(1).toConst()
-      }
-      const coarse = sample(at, across, along)
-      const fine = sample(turned(at), turned(across), turned(along))
-      // The transposed matrix takes gradients back.
-      const back = vec3(fine.x.mul(c).sub(fine.y.mul(s)), fine.x.mul(s).add(fine.y.mul(c)), fine.z)
-      total.assign(coarse.add(back.mul(FINE_GAIN)).mul(kept))
-    })
-    return total
-  })().toConst() as unknown as Vec3
-  const slope = sum.xy.mul((GRAIN_SLOPE * GRAIN_WAVES) / COARSE_SIDE).toConst()
+type Variable = Vec4 & { assign(value: Vec4): void }
+
+/** Stones and grass from 3 m to 1 cm; 0 where they are smaller than pixels. */
+export function grainAt(place: GrainPlace): Grain {
+  const { grain, offset, first, second, normal } = place
+  // Derivatives are taken out of branches.
+  const across = dFdx(offset).toConst() as Vec3
+  const along = dFdy(offset).toConst() as Vec3
+  const footprint = across.length().max(along.length()).toConst('footprint')
+  const { tangent, bitangent } = frameOf(normal, first, second)
+  const tiling: TilingPlace = {
+    reference: place.reference,
+    offset,
+    across,
+    along,
+    tangent,
+    bitangent
+  }
+  const layer = ({ side, cells, gone }: typeof FINE, name: string): Vec4 =>
+    Fn(() => {
+      const total = vec4(0).toVar(name) as unknown as Variable
+      const kept = float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
+      If(kept.greaterThan(0), () => {
+        total.assign(stochasticTiling(grain, tiling, side, cells).mul(kept))
+      })
+      return total
+    })().toConst(`${name}Layer`)
+  const coarse = layer(COARSE, 'coarseGrain')
+  const fine = layer(FINE, 'fineGrain')
   return {
-    gradient: first.mul(slope.x).add(second.mul(slope.y)),
-    value: sum.z.mul(GRAIN_VALUE).toConst()
+    gradient(fineGain, coarseGain) {
+      const slope = fine.xy.mul(fineGain).add(coarse.xy.mul(coarseGain)).mul(GRAIN_SLOPE).toConst()
+      return tangent.mul(slope.x).add(bitangent.mul(slope.y))
+    },
+    stone: fine.z,
+    blade: fine.w,
+    boulder: coarse.z,
+    tuft: coarse.w,
+    footprint,
+    lost: footprint.div(FINE.gone / 4).min(1)
   }
 }

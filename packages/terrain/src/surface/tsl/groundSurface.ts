@@ -2,8 +2,12 @@ import { float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import { grainAt, type GrainPlace } from './grain'
 
-/** Height of stones and tufts over the ground about them [m]. */
-const GRAIN_HEIGHT = 0.035
+/** Mean square of the slopes of stones. */
+const GRAIN_VARIANCE = 0.3
+
+/** Differences of height within a pixel, to its size on the ground, and at most [m]. */
+const SPREAD = 0.4
+const MOST_SPREAD = 900
 
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
 const ROCK = [0.2, 0.178, 0.157]
@@ -25,8 +29,10 @@ export interface GroundSurface {
   readonly color: Vec3
   /** Roughness as of three's materials. */
   readonly roughness: Float
-  /** Gradient of stones and tufts, to add to that of the ground [–]. */
+  /** Gradient of stones, along the ground [–]. */
   readonly grain: Vec3
+  /** Share of the sky's light that reaches between stones and blades. */
+  readonly occlusion: Float
 }
 
 /** A place of the ground, as pages have it. */
@@ -50,16 +56,23 @@ export interface GroundPlace extends GrainPlace {
 export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurface {
   const { height, patch, climate, up, cosSlope } = place
   const grain = grainAt(place)
+  const { stone, blade, boulder, tuft } = grain
   const sinLatitude = up.z.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
 
-  // Snow lies above 4,900 m at the equator, 2,200 m in the Alps, and at sea level near the poles.
-  const snowLine = float(4900).sub(sinLatitude.mul(sinLatitude).mul(5000)).toConst('snowLine')
+  // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
+  const square = sinLatitude.mul(sinLatitude).toConst('square')
+  const snowLine = float(5200)
+    .sub(square.mul(square.mul(3600).add(2000)))
+    .toConst('snowLine')
+  // A pixel that shows much ground shows its heights, too.
+  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
   const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
+  const relief = stone.mul(0.6).add(boulder.mul(0.5)).toConst('relief')
   const steepness = cosSlope
     .oneMinus()
     .add(patch.mul(0.05))
-    .add(grain.value.mul(0.02))
+    .add(relief.mul(0.03))
     .toConst('steepness')
 
   const dryness = smoothstep(0.12, 0.4, sinLatitude)
@@ -69,37 +82,68 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     .add(climate.mul(1.4))
     .clamp(0, 1)
     .toConst('dryness')
-  const tone = patch.mul(0.9).add(grain.value.mul(0.7)).toConst('tone')
-  const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1))
+  const tone = patch.mul(0.9).add(relief.mul(0.35)).toConst('tone')
+  // Dark between stones, and between blades.
+  const stony = stone.mul(0.45).add(1).toConst('stony')
+  const light = blade.mul(1.5).add(tuft.mul(0.35)).toConst('light')
+  const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   const meadow = mix(
     color(GRASS),
     color(STRAW),
-    smoothstep(-0.3, 0.6, tone)
+    smoothstep(-0.3, 0.6, patch.mul(0.9).add(light.mul(0.5)))
       .mul(0.55)
       .add(smoothstep(-900, 200, overTrees).mul(0.35))
-  )
-  const woods = smoothstep(-0.12, 0.1, patch.sub(dryness))
+  ).mul(light.add(1).max(0.2))
+  const woods = smoothstep(-0.12, 0.1, patch.sub(dryness).add(tuft.mul(0.12)))
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
     .mul(smoothstep(15, 60, overSea))
-  const green = mix(meadow, color(FOREST), woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
-  const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)), dryness)
-  const alpine = mix(soil, color(SCREE).mul(tone.mul(0.4).add(1)), smoothstep(-50, 450, overTrees))
-  const shore = mix(color(SAND), alpine, smoothstep(2, 9, overSea.add(patch.mul(4))))
+  const floor = color(FOREST).mul(light.add(1).max(0.3))
+  const green = mix(meadow, floor, woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
+  const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
+  const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
+  // Stones come through grass where they are highest.
+  const bareness = smoothstep(
+    spread.add(50).negate(),
+    spread.add(450),
+    overTrees.add(relief.mul(260))
+  ).toConst('bareness')
+  const alpine = mix(soil, scree, bareness)
+  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
+  const sand = color(SAND).mul(blade.mul(0.12).add(stone.mul(0.1)).add(1))
+  const shore = mix(sand, alpine, inland)
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
   const land = mix(shore, rock, bare)
-  const snow = smoothstep(-150, 250, height.sub(snowLine).add(patch.mul(420)))
+  const snow = smoothstep(
+    spread.add(150).negate(),
+    spread.add(250),
+    height.sub(snowLine).add(patch.mul(420)).sub(relief.mul(160))
+  )
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
-  const wet = smoothstep(0, 1.2, overSea.add(grain.value.mul(0.3))).toConst('wet')
+  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
   const isSea = overSea.lessThan(0).select(1, 0)
   const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
   const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1))
 
-  const rough = mix(float(0.95), float(0.75), snow)
-  const height01 = mix(float(1), float(1.8), bare).mul(snow.mul(-0.8).add(1)).mul(isSea.oneMinus())
+  // Stones stand out of rock and scree, hardly out of grass, sand and snow.
+  const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
+  const bump = mix(float(0.12), stones, inland.max(bare))
+    .mul(snow.mul(-0.85).add(1))
+    .mul(isSea.oneMinus())
+    .toConst('bump')
+  const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
+  // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
+  const alpha = rough.pow(4).add(
+    bump
+      .mul(bump)
+      .mul(grain.lost)
+      .mul(2 * GRAIN_VARIANCE)
+  )
+  const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.4))
   return {
     color: mix(dry, water, isSea),
-    roughness: mix(rough, float(0.22), isSea),
-    grain: grain.gradient.mul(GRAIN_HEIGHT).mul(height01)
+    roughness: mix(alpha.pow(0.25).min(1), float(0.22), isSea),
+    grain: grain.gradient(bump, bump.mul(bareness.max(bare).mul(0.6))),
+    occlusion: hollow.mul(0.9).add(1).max(0.3)
   }
 }

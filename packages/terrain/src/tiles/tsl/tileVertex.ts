@@ -3,6 +3,7 @@ import type { Texture } from 'three'
 import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { unpacked } from '../../pages/tsl/packing'
 import { faceAxes, unitDifference } from './cubeSphere'
 
 /** Part of a level's range at which its tiles begin to morph: beyond it no finer neighbour is. */
@@ -17,10 +18,10 @@ export interface TileVertex {
   readonly position: Vec3
   /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m] (xyz), and height of the ground [m] (w). */
   readonly place: Vec4
-  /** Texels of the pixels' atlas: in the tile's own page (xy), and in that of the tile that it is a quarter of (zw). */
+  /** Texels from the first one of a page for pixels (xy), and places of the tile's page and of its parent's (zw). */
   readonly texels: Vec4
-  /** Share of the parent's page (x), climate (y) and face of the cube (z). */
-  readonly blend: Vec3
+  /** Share of the parent's page (x), climate (y), face of the cube and six times the quarter of the parent (z), and share of the sky (w). */
+  readonly blend: Vec4
 }
 
 /**
@@ -35,7 +36,7 @@ export interface TileVertex {
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3.4
  */
 export function tileVertex(
-  { heights, columns, heightSide, surfaceSide, density }: PageAtlas,
+  { heights, columns, heightSide, density }: PageAtlas,
   uniforms: TerrainUniforms,
   resolution: number,
   detail: number
@@ -71,21 +72,14 @@ export function tileVertex(
     .max(fade)
     .toConst('morph')
 
-  /** First texel of a page. */
-  const pageAt = (slot: Float, side: number): Vec2 => {
-    const row = slot.add(0.5).div(columns).floor().toConst()
-    return vec2(slot.sub(row.mul(columns)), row)
-      .mul(side)
-      .toConst()
-  }
-  const inParent = vec2(quarter.mod(2), quarter.mul(0.5).floor()).mul(resolution).toConst()
-  const vertexAt = (slot: Float, cell: Vec2): Vec2 =>
-    load(heights.texture, pageAt(slot, heightSide).add(cell))
+  const inParent = quarterOf(quarter).mul(resolution).toConst()
+  const vertexAt = (slot: Float, cell: Vec2): Vec3 =>
+    load(heights.texture, firstTexel(slot, columns, heightSide).add(cell))
   const mixed = mix(
     vertexAt(own, cells),
     vertexAt(parent, even.add(inParent).mul(0.5)),
     morph
-  ).toConst('mixed') as Vec2
+  ).toConst('mixed') as Vec3
 
   const moved = mix(cells, even, morph).toConst('moved') as Vec2
   const delta = alongCube(moved)
@@ -99,18 +93,28 @@ export function tileVertex(
     .add(subpoint)
     .add(tilt.mul(groundHeight))
     .add(up.mul(height.sub(groundHeight).sub(skirt)))
-  const texelAt = (slot: Float, steps: Vec2): Vec2 => pageAt(slot, surfaceSide).add(steps).add(0.5)
   return {
     position,
     place: vec4(tileOffset.xyz.add(subpoint), mixed.x),
-    texels: vec4(
-      texelAt(own, moved.mul(density)),
-      texelAt(parent, moved.add(inParent).mul(density / 2))
-    ),
-    blend: vec3(morph, mixed.y, tileCube.w)
+    texels: vec4(moved.mul(density), own, parent),
+    blend: vec4(morph, mixed.y, tileCube.w.add(quarter.mul(6)), mixed.z)
   }
 }
 
-/** Height and climate at a texel. */
-const load = (heights: Texture, texel: Vec2): Vec2 =>
-  (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).xy
+/** First texel of a page. */
+export function firstTexel(slot: Float, columns: number, side: number): Vec2 {
+  const row = slot.add(0.5).div(columns).floor().toConst()
+  return vec2(slot.sub(row.mul(columns)), row)
+    .mul(side)
+    .toConst()
+}
+
+/** Column and row of a quarter of a tile. */
+export const quarterOf = (quarter: Float): Vec2 => vec2(quarter.mod(2), quarter.mul(0.5).floor())
+
+/** Height, climate and share of the sky at a texel. */
+function load(heights: Texture, texel: Vec2): Vec3 {
+  const node = texture(heights) as unknown as { load(at: unknown): Vec4 }
+  const { x, y } = node.load(ivec2(texel as never)).toConst() as Vec4
+  return vec3(x, unpacked(y))
+}

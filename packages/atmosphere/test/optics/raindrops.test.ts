@@ -1,0 +1,80 @@
+import { describe, expect, it } from 'vitest'
+import { heightFog, raindrops } from '@welkin/atmosphere'
+import { HALF_TEXELS, texelCosine } from '../../src/optics/cpu/phaseRow'
+import { rainRow } from '../../src/optics/cpu/rainRow'
+import { throwsEach, wrong } from '../harness/wrong'
+
+const TEXELS = 2 * HALF_TEXELS
+
+/** Angle of a texel from the point opposite the sun [°]. */
+const angles = Array.from(
+  { length: TEXELS },
+  (_, i) => 180 - (Math.acos(texelCosine(i)) * 180) / Math.PI
+)
+
+const rates = [0.5, 2, 10, 50]
+
+describe('rain', () => {
+  for (const rate of rates) {
+    const { texels, moments } = rainRow(rate)
+    /** Angle at which a wavelength is brightest over a middle one, between two angles [°]. */
+    const brightest = (wave: number, from: number, to: number): number => {
+      const inside = angles.map((_, i) => i).filter(i => angles[i] >= from && angles[i] <= to)
+      const excess = (i: number): number => texels[4 * i + wave]
+      return angles[inside.reduce((best, i) => (excess(i) > excess(best) ? i : best), inside[0])]
+    }
+    const mean = (from: number, to: number): number => {
+      const inside = angles.map((_, i) => i).filter(i => angles[i] >= from && angles[i] <= to)
+      return inside.reduce((sum, i) => sum + texels[4 * i + 2], 0) / inside.length
+    }
+
+    // Lee & Fraser 2001, "The rainbow bridge", ch. 8: 40.6 to 42.4°, and 50.4 to 53.4° with colours reversed.
+    it(`of ${rate} mm/h has both bows where they are, the outer one reversed`, () => {
+      const [violet, red] = [0, 3].map(wave => brightest(wave, 38, 45))
+      expect(violet).toBeGreaterThan(39.9)
+      expect(violet).toBeLessThan(red)
+      expect(red).toBeGreaterThan(41.4)
+      expect(red).toBeLessThan(42.4)
+      const [outerViolet, outerRed] = [0, 3].map(wave => brightest(wave, 48, 56))
+      expect(outerRed).toBeGreaterThan(50.3)
+      expect(outerRed).toBeLessThan(outerViolet)
+      expect(outerViolet).toBeLessThan(54)
+    })
+
+    it(`of ${rate} mm/h is dark between them, bright inside the first`, () => {
+      expect(mean(30, 38)).toBeGreaterThan(4 * mean(44, 49))
+      expect(mean(41, 42)).toBeGreaterThan(2 * mean(30, 38))
+      expect(mean(51, 53)).toBeGreaterThan(2.5 * mean(44, 49))
+      expect(mean(56, 60)).toBeGreaterThan(1.3 * mean(44, 49))
+    })
+
+    it(`of ${rate} mm/h scatters all light, most of it on`, () => {
+      for (let k = 0; k < 4; k++) {
+        let sum = 0
+        for (let i = 1; i < TEXELS; i++) {
+          const width = texelCosine(i - 1) - texelCosine(i)
+          sum += Math.PI * width * (texels[4 * i + k] + texels[4 * i - 4 + k])
+        }
+        expect(Math.abs(sum - 1)).toBeLessThan(0.03)
+      }
+      expect(moments[0]).toBeGreaterThan(0.86)
+      expect(moments[0]).toBeLessThan(0.92)
+    })
+  }
+
+  it('dims as Atlas found', () => {
+    const rain = raindrops({ rate: 10 })
+    expect(1000 * rain.extinction).toBeCloseTo(1.44, 2)
+    const fog = heightFog({ droplets: rain })
+    const { version } = fog
+    rain.rate = 20
+    expect(fog.version).toBeGreaterThan(version)
+    expect(rain.rate).toBe(20)
+    rain.dispose()
+  })
+
+  throwsEach('rain', [
+    ['Raindrops: rate must be in [0.5, 50], got 0', () => raindrops({ rate: 0 })],
+    ["Raindrops: unknown option 'radius', there are rate", () => raindrops(wrong({ radius: 1 }))]
+  ])
+})

@@ -1,0 +1,37 @@
+/** Azimuths in which horizons are looked for. */
+export const AZIMUTHS = 4
+
+/** Distances at which: so many, from the nearest on, each so many times as far [m]. */
+export const DISTANCES = { count: 2, nearest: 150, factor: 8 }
+
+/** Shortest detail that counts, per distance. */
+export const FINENESS = 0.3
+
+/**
+ * Float64 twin of the share of the sky, by angles in place of slopes.
+ *
+ * @param heightAt - Height at a place east and north of here [m].
+ * @param slopeEast - Slope of the ground here, rise over way, as `slopeNorth`.
+ * @returns In (0, 1].
+ */
+export function skyShare(
+  heightAt: (east: number, north: number) => number,
+  slopeEast: number,
+  slopeNorth: number
+): number {
+  const here = heightAt(0, 0)
+  let sum = 0
+  for (let azimuth = 0; azimuth < AZIMUTHS; azimuth++) {
+    const angle = (2 * Math.PI * azimuth) / AZIMUTHS
+    const [sine, cosine] = [Math.sin(angle), Math.cos(angle)]
+    let elevation = 0
+    for (let ring = 0; ring < DISTANCES.count; ring++) {
+      const distance = DISTANCES.nearest * DISTANCES.factor ** ring
+      const own = (slopeEast * sine + slopeNorth * cosine) * distance
+      const rise = heightAt(distance * sine, distance * cosine) - here - own
+      elevation = Math.max(elevation, Math.atan2(rise, distance))
+    }
+    sum += Math.cos(elevation) ** 2
+  }
+  return sum / AZIMUTHS
+}

@@ -1,0 +1,73 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { createHalos, VIEWS } from './halos.scene'
+import type { HalosArgs } from './halos.scene'
+import { mount } from './mount'
+import { choiceOf, rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('air.ts', 'post effect')}
+
+${storyCode('halos.scene.ts', 'droplets')}`
+
+const { forceWebGL, frame } = rendererArgTypes
+const share = (name: string, description: string) => ({
+  name,
+  description,
+  control: { type: 'range' as const, min: 0, max: 1, step: 0.05 }
+})
+
+const meta: Meta<HalosArgs> = {
+  title: 'Bows and halos',
+  render: mount(createHalos, code, ({ view }) => view),
+  argTypes: {
+    view: { name: 'View', ...choiceOf(VIEWS) },
+    sun: { name: 'Sun [°]', control: { type: 'range', min: 1, max: 60, step: 0.5 } },
+    dropletRadius: {
+      name: 'Droplets [µm]',
+      description: 'Effective radius of the droplets of clouds and mist',
+      control: { type: 'range', min: 3, max: 30, step: 0.5 }
+    },
+    regular: share('Flat crystals', 'Share of the crystals with flat faces: others make no halo'),
+    level: share('Level plates', 'Share of the plates that float level: they make sun dogs'),
+    exposure: { name: 'Exposure [stops]', control: { type: 'range', min: -4, max: 4, step: 0.25 } },
+    forceWebGL,
+    frame,
+    path: { table: { disable: true } }
+  },
+  args: {
+    view: 'halo',
+    sun: 22,
+    dropletRadius: 9,
+    regular: 0.7,
+    level: 0.5,
+    exposure: 0,
+    forceWebGL: false,
+    path: 'post',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<HalosArgs>
+
+/** A winter noon: thin cirrus, a halo of 22° about the sun, and sun dogs beside it. */
+export const Halo: Story = {
+  name: 'Halo and sun dogs',
+  args: { exposure: -1.5 },
+  tags: ['screenshot']
+}
+
+/** The sun behind an aeroplane: coloured rings on the clouds below, and a pale bow far about them. */
+export const Glory: Story = {
+  name: 'Glory from an aeroplane',
+  args: { view: 'glory', sun: 28, exposure: -0.5 }
+}
+
+/** A light shower all about, the sun behind one's back: both bows, and the dark band between them. */
+export const Rainbow: Story = { args: { view: 'rainbow', sun: 14 } }
+
+/** The sun behind one's back, and mist before one. */
+export const Fogbow: Story = { args: { view: 'fogbow', sun: 15 } }
