@@ -21,7 +21,7 @@ import { dogAzimuth, leastDogAzimuth, PLATE_TILT } from './optics/sunDogs'
 import { crystalGrid, placeOf } from '../src/optics/cpu/phaseGrid'
 import { DOG_ELEVATIONS, DOG_SAMPLES } from '../src/optics/cpu/sunDogs'
 
-const RAYS = Number(process.argv[2] ?? 1_500_000)
+const RAYS = Number(process.argv[2] ?? 600_000)
 const DOG_RAYS = RAYS / 6
 
 /** Columns twice as long as wide: half of the crystals. */

@@ -12,7 +12,7 @@ import { wavelengths } from './spectra'
 import { RAIN_RATES, rainGrid } from '../src/optics/cpu/rainRates'
 
 /** Diameters of drops [mm]: even in their logarithm. Smaller ones and larger ones scatter little. */
-const COUNT = Number(process.argv[2] ?? 180)
+const COUNT = Number(process.argv[2] ?? 200)
 const [LEAST, MOST] = [0.1, 3.5]
 const diameters = Array.from(
   { length: COUNT },

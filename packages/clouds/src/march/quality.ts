@@ -58,7 +58,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     steps: 288,
     stepGrowth: 0.0027,
     shortestStep: 4,
-    depthStep: 0.2,
+    depthStep: 0.3,
     layerSteps: 14,
     lightSteps: 4,
     block: 4
@@ -67,7 +67,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     steps: 320,
     stepGrowth: 0.003,
     shortestStep: 4,
-    depthStep: 0.25,
+    depthStep: 0.3,
     layerSteps: 18,
     lightSteps: 4,
     block: 3

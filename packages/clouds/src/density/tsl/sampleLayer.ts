@@ -42,8 +42,9 @@ interface Body {
   readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
-  /** `crumbDensity`. */
-  readonly crumbFactor: Float
+  /** Strength of the column without billows, and what its height needs. */
+  readonly column: Float
+  readonly needed: Float
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
@@ -80,8 +81,7 @@ function bodyAt(
   const fine = shape.fine.mul(amount.fine).mul(rough)
   const strength = body.add(fine.mul(share)).toConst() as Float
   const detailStrength = amount.detail.mul(share).toConst() as Float
-  const crumbFactor = crumbDensity(column, needed)
-  return { sample, height, weather, crumbFactor, body, strength, detailStrength }
+  return { sample, height, weather, column, needed, body, strength, detailStrength }
 }
 
 /**
@@ -131,7 +131,7 @@ export function sampleLayerAt(
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      const full = densityAtHeight(layer, height).mul(body.crumbFactor)
+      const full = densityAtHeight(layer, height).mul(crumbDensity(body.column, body.needed))
       density.assign(densityOf(whole, body.body, edge).mul(full))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {

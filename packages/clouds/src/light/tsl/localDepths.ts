@@ -1,4 +1,5 @@
 import { float, int, smoothstep, vec4 } from 'three/tsl'
+import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
@@ -23,6 +24,9 @@ const LOW_LIGHT = 0.35
 const LOWEST_LIGHT = 0.12
 const LOW_LIGHT_PROBED = 700
 const LOW_LIGHT_STEPS = 2
+
+/** Fewest steps towards the light, from afar [–]. 1: clouds darken suddenly as one leaves (*World clouds*). */
+const FEWEST_STEPS = 2
 
 /**
  * Height at which the cloud above is probed, as a part of the way to the top. Higher: towers count as
@@ -68,8 +72,10 @@ export function localDepths(
     .toConst() as Float
   /** Extinction at the sample, optical depth towards the light, extinction above. */
   const found = vec4(0).toVar() as Vec4
-  const more = lowness.mul(LOW_LIGHT_STEPS).ceil().toInt()
-  const count = quality.lightSteps.add(more).toConst() as Int
+  const asked = float(quality.lightSteps).add(lowness.mul(LOW_LIGHT_STEPS).ceil())
+  // Steps shorter than a pixel see nothing more.
+  const seen = probed.div(footprintOf(field, sample).max(1e-3)).ceil().max(FEWEST_STEPS)
+  const count = asked.min(seen).toInt().toConst() as Int
   // The density function is inlined once for both directions: shaders stay short.
   loop('probe', count.add(int(1)), index => {
     const isUpwards = index.equal(count).toConst()

@@ -33,7 +33,7 @@ const LOOK_BACK = 1.6
  * Steps in clouds of which nothing more is seen, over those at their edges, less 1. Greater: faster, and the
  * insides of thin clouds get coarse, also while one turns (*Cirrus*).
  */
-const HIDDEN_GROWTH = 1
+const HIDDEN_GROWTH = 2
 
 /** State of the step policy. */
 export interface StepState {
