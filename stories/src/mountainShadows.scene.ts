@@ -49,7 +49,7 @@ const FIELD = 110_000
 const TEXELS = 256
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
-const STILL = { resolution: 16, pageMemory: 100 }
+const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
 
 /** Heights over the plane through the world's origin, of places in rows from south to north [m]. */
 function heightsAbovePlane(terrain: Terrain, altitudeOf: (place: Vector3) => number): DataTexture {

@@ -61,7 +61,7 @@ export interface RealHeightsArgs extends RendererArgs, TimeArgs {
 }
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
-const STILL = { resolution: 16, pageMemory: 100 }
+const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
 
 /** Time in which the first tile must arrive [ms]. */
 const PATIENCE = 6000

@@ -75,7 +75,7 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
 const ORIGIN = { longitude: 0.43, latitude: 47.12 }
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
-const STILL = { resolution: 16, pageMemory: 100 }
+const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
 
 /** A made-up planet from a walker's feet to orbit: one mesh, without a byte of data. */
 export async function createTerrain(

@@ -39,7 +39,8 @@ function addStone(heights: Float32Array, radius: number, random: () => number): 
   const sides = Array.from({ length: SIDES }, (_, side) => {
     const turn = ((side + random()) * 2 * Math.PI) / SIDES
     const away = radius * (0.55 + 0.45 * random())
-    return [Math.cos(turn), Math.sin(turn), away, 0.7 + 0.9 * random()] as const
+    const steepness = 0.7 + 0.9 * random()
+    return { cosine: Math.cos(turn), sine: Math.sin(turn), away, steepness }
   })
   const lean = 2 * Math.PI * random()
   const tilt = 0.15 + 0.3 * random()
@@ -49,11 +50,13 @@ function addStone(heights: Float32Array, radius: number, random: () => number): 
   for (let j = Math.floor(y - reach); j <= y + reach; j++) {
     for (let i = Math.floor(x - reach); i <= x + reach; i++) {
       const [dx, dy] = [i - x, j - y]
+      const n = texel(i, j)
       let height = top + dx * tiltX + dy * tiltY
-      for (const [cosine, sine, away, steepness] of sides) {
+      // Most texels are out of the first sides already.
+      for (let side = 0; side < SIDES && height > heights[n]; side++) {
+        const { cosine, sine, away, steepness } = sides[side]
         height = Math.min(height, (away - dx * cosine - dy * sine) * steepness)
       }
-      const n = texel(i, j)
       heights[n] = Math.max(heights[n], height)
     }
   }
