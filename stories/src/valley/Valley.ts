@@ -85,6 +85,9 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
 /** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
 const NIGHT_LIGHTS = 4
 
+/** Longitude of the valley, where the weather has good cumulus [degrees]. */
+const LONGITUDE = 3
+
 /** Altitude of the lake's water [m]. */
 const ALTITUDE = 600
 
@@ -131,7 +134,7 @@ export class Valley {
     this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#nightLights = air.nightLights
     this.atmosphere = atmosphere
-    atmosphere.place({ longitude: 10, latitude: state.latitude, height: ALTITUDE })
+    atmosphere.place({ longitude: LONGITUDE, latitude: state.latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
     scene.add(this.#ground, ...this.#trees, this.#village.object)
 
