@@ -86,7 +86,7 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
 const NIGHT_LIGHTS = 4
 
 /** Longitude of the valley, where the weather has good cumulus [degrees]. */
-const LONGITUDE = 3
+const LONGITUDE = 10
 
 /** Altitude of the lake's water [m]. */
 const ALTITUDE = 600
