@@ -142,12 +142,12 @@ export const Cockpit: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** Storms up to 11 km high, 20 to 40 km off, in the sun of the afternoon: flat bases, towers, an anvil. */
+/** Storms up to 11 km high in the sun of the afternoon: flat bases, towers, an anvil. */
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    longitude: -84.3,
-    latitude: 36.3,
+    longitude: -85.5,
+    latitude: 35.12,
     altitude: 600,
     heading: 348,
     pitch: 9,
