@@ -16,7 +16,7 @@ import { layerForms } from './layerUniforms'
 export interface MeanColumn {
   /** Density of an even column that lets as much light through as cloudy columns do in the mean [–]. */
   readonly columnDensity: number
-  /** Mean density of columns where all is covered [–]. */
+  /** Density of an even column that lets as much diffuse light through as columns where all is covered [–]. */
   readonly fullDensity: number
   /** Mean density inside of clouds, straight up through the middle of strong columns [–]. */
   readonly insideDensity: number
@@ -99,11 +99,31 @@ const BILLOWS = [
   [Math.sqrt(3), 1 / 6]
 ] as const
 
+/** Light that comes through a column, by its scaled optical depth, and the inverse. */
+interface Passing {
+  readonly through: (depth: number) => number
+  readonly depthOf: (through: number) => number
+}
+
+/** Direct light: past the clouds, it falls through gaps. */
+const direct: Passing = {
+  through: depth => Math.exp(-depth),
+  depthOf: through => -Math.log(Math.max(through, 1e-30))
+}
+
+/** Diffuse light, by `eddingtonDiffuse` of environment/cpu/decks.ts for droplets: a closed deck lets nothing else through. */
+const DIFFUSION = 0.5
+const diffuse: Passing = {
+  through: depth => 1 / (1 + DIFFUSION * depth),
+  depthOf: through => (1 / through - 1) / DIFFUSION
+}
+
 /** Density of an even column for a coverage, and the mean density of the strongest columns [–]. */
 function columnAt(
   layer: CloudLayerParameters,
   coverage: number,
-  depth: number
+  depth: number,
+  passing: Passing
 ): { density: number; inside: number } {
   const { strongest, offset, coverageOffset, fullCoverageExcess } = strengthForm
   const { shapeAmount } = layer
@@ -125,10 +145,10 @@ function columnAt(
       }, 0)
       return here * densityAtHeight(layer, height)
     })
-    through += Math.exp(-depth * mean) / COLUMNS
+    through += passing.through(depth * mean) / COLUMNS
     inside = Math.max(inside, mean)
   }
-  return { density: -Math.log(Math.max(through, 1e-30)) / depth, inside }
+  return { density: passing.depthOf(through) / depth, inside }
 }
 
 /** Mean of a function over the heights of a layer. */
@@ -146,10 +166,10 @@ function meanOverHeights(value: (height: number) => number): number {
 export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanColumn {
   const { baseAltitude, topAltitude, coverage, density } = layer
   const depth = Math.max(density * (topAltitude - baseAltitude) * depthScale, 1e-4)
-  const column = columnAt(layer, coverage, depth)
+  const column = columnAt(layer, coverage, depth, direct)
   return {
     columnDensity: column.density,
-    fullDensity: columnAt(layer, 1, depth).density,
+    fullDensity: columnAt(layer, 1, depth, diffuse).density,
     insideDensity: column.inside,
     profileMean: Math.max(
       meanOverHeights(height => seenShare(layer, height)),
