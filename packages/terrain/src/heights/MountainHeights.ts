@@ -3,23 +3,32 @@ import { renderGroup, uniform } from 'three/tsl'
 import { checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Float, Vec4 } from '../tsl-types'
 import {
+  BELT_RIDGES,
+  CHAINS,
   CONTINENTS,
+  HILLS,
+  HILLS_END,
+  HILLS_START,
   LAND_HEIGHT,
   LAND_OFFSET,
+  LAND_WARP,
   MEAN_RIDGE,
   mountains,
-  RANGE_END,
-  RANGE_START,
-  RANGES,
-  RIDGES
+  PLAINS,
+  ridgeAmplitude,
+  RIDGES,
+  RIDGE_WARP,
+  SHORT_CHAINS,
+  UPLIFT,
+  type Belts,
+  type Warp
 } from './cpu/mountains'
-import type { Octaves } from '../noise/cpu/fractalSum'
 import type { HeightSample, HeightSource, SurfacePoint } from './HeightSource'
 import { mountains as mountainNodes } from './tsl/mountains'
 
 /** Options of {@link MountainHeights}. */
 export interface MountainHeightsOptions {
-  /** Height of ridges over the land about them, in (0, 20,000], default 4,200 [m]. */
+  /** Height of ridges over the valleys about them, in (0, 20,000], default 4,200 [m]. */
   relief?: number
   /** Whole number in [0, 1e6], default 0: another one, another planet. */
   seed?: number
@@ -34,25 +43,43 @@ const NOISE_SLOPE = 3
 /** Bound of the slope of an octave of ridges, per wavelength. */
 const RIDGE_SLOPE = 12
 
-/** Bounds of all slopes: of land, and of ridges per metre of relief; in 1e4 places up to 1.3 at a relief of 4,200 m. */
+/** Bounds of all slopes: of land, and of ridges per metre of relief; in 1.5e5 places up to 1.93 at a relief of 4,200 m. */
 const LAND_SLOPE = 0.2
-const STEEPEST = 1.8 / 4200
+const STEEPEST = 2.4 / 4200
 
-/** Sum over octaves, each at most `slope` wavelengths or `most`, in units of the first one's amplitude. */
-const most = (octaves: Octaves, slope: number, limit: number): number => {
+/** Largest change of an octave at a distance of so many wavelengths. */
+const change = (wavelengths: number): number => Math.min(NOISE_SLOPE * wavelengths, 2 * NOISE_BOUND)
+
+/** Factor at most on distances between places that are moved. */
+const stretch = ({ inverse, reach }: Warp): number =>
+  1 + Math.sqrt(3) * NOISE_SLOPE * inverse * reach
+
+/** Sum over the octaves of continents of each one's change. */
+const landChange = (distance: number): number => {
+  const { count, inverse, gain } = CONTINENTS
   let total = 0
-  let amplitude = 1
-  let steepness = slope * octaves.inverse
-  for (let i = 0; i < octaves.count; i++) {
-    total += amplitude * Math.min(steepness, limit)
-    amplitude *= octaves.gain
-    steepness *= 2
+  for (let i = 0; i < count; i++) total += gain ** i * change(distance * inverse * 2 ** i)
+  return total
+}
+
+/** Sum over the octaves of ridges: each changes by at most `RIDGE_SLOPE` per wavelength, or 1. */
+const ridgeChange = (distance: number): number => {
+  let total = 0
+  for (let i = 0; i < RIDGES.count; i++) {
+    total += ridgeAmplitude(i) * Math.min(RIDGE_SLOPE * RIDGES.inverse * 2 ** i * distance, 1)
   }
   return total
 }
 
+/** Largest change of a family of belts. The steepest slope of 1 / (1 + x²)² is 1.04. */
+const beltChange = ({ inverse, width, strength, start, end }: Belts, distance: number): number => {
+  const across = (1.04 / width) * change(inverse * stretch(LAND_WARP) * distance)
+  const along = (1.5 / (end - start)) * change(LAND_WARP.inverse * distance)
+  return strength * Math.min(across + along, 1)
+}
+
 /**
- * Heights of a made-up planet, from a function: continents, mountain ranges, ridges and valleys down to 2 m. Not a byte
+ * Heights of a made-up planet, from a function: continents, belts of mountains, hills and plains, ridges and valleys down to 4 m. Not a byte
  * is loaded, and the CPU knows every height.
  *
  * ```ts
@@ -80,20 +107,22 @@ export class MountainHeights implements HeightSource {
     }
     this.relief = relief
     this.seed = seed
-    const land = LAND_HEIGHT * most(CONTINENTS, Infinity, NOISE_BOUND)
-    this.lowest = LAND_OFFSET - land - relief * most(RIDGES, Infinity, MEAN_RIDGE)
-    this.highest = LAND_OFFSET + land + relief * most(RIDGES, Infinity, 1 - MEAN_RIDGE)
+    const land = (LAND_HEIGHT * landChange(Infinity)) / 2
+    const ridges = (PLAINS + HILLS + BELT_RIDGES) * (1 - MEAN_RIDGE) * ridgeChange(Infinity)
+    this.lowest = LAND_OFFSET - land - relief * ridges
+    this.highest = LAND_OFFSET + land + relief * (ridges + UPLIFT)
     this.#reliefNode = uniform(relief).setGroup(renderGroup)
     this.#seedNode = uniform(seed).setGroup(renderGroup)
   }
 
   variation(distance: number): number {
-    const land = most(CONTINENTS, NOISE_SLOPE * distance, 2 * NOISE_BOUND)
-    const range = most(RANGES, NOISE_SLOPE * distance, 2 * NOISE_BOUND)
-    const mask = Math.min((1.5 * (land + range)) / (RANGE_END - RANGE_START), 1)
-    const ridges = most(RIDGES, RIDGE_SLOPE * distance, 1)
+    const land = landChange(stretch(LAND_WARP) * distance)
+    const lift = Math.min(beltChange(CHAINS, distance) + beltChange(SHORT_CHAINS, distance), 1)
+    const hills = Math.min((1.5 * land) / (HILLS_END - HILLS_START), 1)
+    const mask = (HILLS * hills + BELT_RIDGES * lift) * (1 - MEAN_RIDGE) * ridgeChange(Infinity)
+    const ridges = (PLAINS + HILLS + BELT_RIDGES) * ridgeChange(stretch(RIDGE_WARP) * distance)
     return Math.min(
-      LAND_HEIGHT * land + this.relief * (ridges + mask * most(RIDGES, Infinity, 1)),
+      LAND_HEIGHT * land + this.relief * (UPLIFT * lift + mask + ridges),
       (LAND_SLOPE + STEEPEST * this.relief) * distance
     )
   }

@@ -6,8 +6,12 @@ import { grainAt, type GrainPlace } from './grain'
 const GRAIN_VARIANCE = 0.3
 
 /** Differences of height within a pixel, to its size on the ground, and at most [m]. */
-const SPREAD = 0.4
-const MOST_SPREAD = 900
+const SPREAD = 0.12
+const MOST_SPREAD = 450
+
+/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
+const DRY_SNOW = 500
+const SUNNY_SNOW = 350
 
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
 const ROCK = [0.2, 0.178, 0.157]
@@ -62,8 +66,12 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
 
   // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
   const square = sinLatitude.mul(sinLatitude).toConst('square')
+  // Ground that falls towards the equator has a normal nearer to it than up is.
+  const sunny = up.z.sub(place.normal.z).mul(up.z.sign())
   const snowLine = float(5200)
     .sub(square.mul(square.mul(3600).add(2000)))
+    .add(climate.mul(DRY_SNOW))
+    .add(sunny.mul(SUNNY_SNOW))
     .toConst('snowLine')
   // A pixel that shows much ground shows its heights, too.
   const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
