@@ -85,7 +85,7 @@ const ridgedSum = /*#__PURE__*/ Fn(
       })
       const index = seed.add(float(octave)).add(RIDGES.seed)
       const isMoved = float(octave).lessThan(RIDGES.moved - 0.5)
-      const where = isMoved.select(place.offset, offset).toConst('where') as Vec3
+      const where = isMoved.select(place.offset, offset).toConst('movedPlace') as Vec3
       const plain = latticeNoise(reference, where, inverse, index).mul(STEEPNESS).toConst('plain')
       const noise = isMoved.select(place.back(plain), plain).toConst('noise') as Vec4
       const root = noise.w

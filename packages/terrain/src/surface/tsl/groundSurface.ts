@@ -31,6 +31,8 @@ const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
 export interface GroundSurface {
   /** Reflectance, linear sRGB. */
   readonly color: Vec3
+  /** A vector along the ground that stones are laid by: what they need is known when it is. */
+  readonly frame: Vec3
   /** Roughness as of three's materials. */
   readonly roughness: Float
   /** Gradient of stones, along the ground [–]. */
@@ -141,7 +143,8 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     .toConst('bump')
   const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
-  const alpha = rough.pow(4).add(
+  const roughSquare = rough.mul(rough).toConst('roughSquare')
+  const alpha = roughSquare.mul(roughSquare).add(
     bump
       .mul(bump)
       .mul(grain.lost)
@@ -149,8 +152,9 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   )
   const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.4))
   return {
+    frame: grain.frame,
     color: mix(dry, water, isSea),
-    roughness: mix(alpha.pow(0.25).min(1), float(0.22), isSea),
+    roughness: mix(alpha.sqrt().sqrt().min(1), float(0.22), isSea),
     grain: grain.gradient(bump, bump.mul(bareness.max(bare).mul(0.6))),
     occlusion: hollow.mul(0.9).add(1).max(0.3)
   }
