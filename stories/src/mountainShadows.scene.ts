@@ -37,7 +37,7 @@ export interface MountainShadowsArgs extends RendererArgs {
 }
 
 /** Place of the world's origin [°], and the camera's height above the ground there [m]. */
-const ORIGIN = { longitude: -0.304, latitude: 46.28 }
+const ORIGIN = { longitude: 1.1, latitude: 47.08 }
 const HEIGHT = 250
 
 /** Direction of the camera, clockwise from north, and above the horizontal [°]. */

@@ -4,24 +4,16 @@ import { checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Float, Vec4 } from '../tsl-types'
 import {
   BELT_RIDGES,
-  CHAINS,
   CONTINENTS,
   HILLS,
-  HILLS_END,
-  HILLS_START,
   LAND_HEIGHT,
   LAND_OFFSET,
-  LAND_WARP,
   MEAN_RIDGE,
   mountains,
   PLAINS,
   ridgeAmplitude,
   RIDGES,
-  RIDGE_WARP,
-  SHORT_CHAINS,
-  UPLIFT,
-  type Belts,
-  type Warp
+  UPLIFT
 } from './cpu/mountains'
 import type { HeightSample, HeightSource, SurfacePoint } from './HeightSource'
 import { mountains as mountainNodes } from './tsl/mountains'
@@ -36,47 +28,16 @@ export interface MountainHeightsOptions {
 
 const sum = { x: 0, y: 0, z: 0, value: 0 }
 
-/** Bounds of an octave of noise, and of its slope per wavelength: 0.76 and 2.5 in 3e5 random places. */
+/** Bound of an octave of noise: 0.76 in 3e5 random places. */
 const NOISE_BOUND = 0.9
-const NOISE_SLOPE = 3
-
-/** Bound of the slope of an octave of ridges, per wavelength. */
-const RIDGE_SLOPE = 12
 
 /** Bounds of all slopes: of land, and of ridges per metre of relief; in 1.5e5 places up to 1.93 at a relief of 4,200 m. */
 const LAND_SLOPE = 0.2
 const STEEPEST = 2.4 / 4200
 
-/** Largest change of an octave at a distance of so many wavelengths. */
-const change = (wavelengths: number): number => Math.min(NOISE_SLOPE * wavelengths, 2 * NOISE_BOUND)
-
-/** Factor at most on distances between places that are moved. */
-const stretch = ({ inverse, reach }: Warp): number =>
-  1 + Math.sqrt(3) * NOISE_SLOPE * inverse * reach
-
-/** Sum over the octaves of continents of each one's change. */
-const landChange = (distance: number): number => {
-  const { count, inverse, gain } = CONTINENTS
-  let total = 0
-  for (let i = 0; i < count; i++) total += gain ** i * change(distance * inverse * 2 ** i)
-  return total
-}
-
-/** Sum over the octaves of ridges: each changes by at most `RIDGE_SLOPE` per wavelength, or 1. */
-const ridgeChange = (distance: number): number => {
-  let total = 0
-  for (let i = 0; i < RIDGES.count; i++) {
-    total += ridgeAmplitude(i) * Math.min(RIDGE_SLOPE * RIDGES.inverse * 2 ** i * distance, 1)
-  }
-  return total
-}
-
-/** Largest change of a family of belts. The steepest slope of 1 / (1 + x²)² is 1.04. */
-const beltChange = ({ inverse, width, strength, start, end }: Belts, distance: number): number => {
-  const across = (1.04 / width) * change(inverse * stretch(LAND_WARP) * distance)
-  const along = (1.5 / (end - start)) * change(LAND_WARP.inverse * distance)
-  return strength * Math.min(across + along, 1)
-}
+/** Sum of the amplitudes of octaves. */
+const total = (count: number, amplitude: (octave: number) => number): number =>
+  Array.from({ length: count }, (_, octave) => amplitude(octave)).reduce((a, b) => a + b)
 
 /**
  * Heights of a made-up planet, from a function: continents, belts of mountains, hills and plains, ridges and valleys down to 4 m. Not a byte
@@ -107,24 +68,18 @@ export class MountainHeights implements HeightSource {
     }
     this.relief = relief
     this.seed = seed
-    const land = (LAND_HEIGHT * landChange(Infinity)) / 2
-    const ridges = (PLAINS + HILLS + BELT_RIDGES) * (1 - MEAN_RIDGE) * ridgeChange(Infinity)
-    this.lowest = LAND_OFFSET - land - relief * ridges
-    this.highest = LAND_OFFSET + land + relief * (ridges + UPLIFT)
+    const { count, gain } = CONTINENTS
+    const land = LAND_HEIGHT * NOISE_BOUND * total(count, octave => gain ** octave)
+    const mask = (PLAINS + HILLS + BELT_RIDGES) * (1 - MEAN_RIDGE)
+    const ridges = relief * mask * total(RIDGES.count, ridgeAmplitude)
+    this.lowest = LAND_OFFSET - land - ridges
+    this.highest = LAND_OFFSET + land + ridges + relief * UPLIFT
     this.#reliefNode = uniform(relief).setGroup(renderGroup)
     this.#seedNode = uniform(seed).setGroup(renderGroup)
   }
 
   variation(distance: number): number {
-    const land = landChange(stretch(LAND_WARP) * distance)
-    const lift = Math.min(beltChange(CHAINS, distance) + beltChange(SHORT_CHAINS, distance), 1)
-    const hills = Math.min((1.5 * land) / (HILLS_END - HILLS_START), 1)
-    const mask = (HILLS * hills + BELT_RIDGES * lift) * (1 - MEAN_RIDGE) * ridgeChange(Infinity)
-    const ridges = (PLAINS + HILLS + BELT_RIDGES) * ridgeChange(stretch(RIDGE_WARP) * distance)
-    return Math.min(
-      LAND_HEIGHT * land + this.relief * (UPLIFT * lift + mask + ridges),
-      (LAND_SLOPE + STEEPEST * this.relief) * distance
-    )
+    return Math.min((LAND_SLOPE + STEEPEST * this.relief) * distance, this.highest - this.lowest)
   }
 
   sampleAt({ x, y, z }: Vector3, target: HeightSample): HeightSample {

@@ -54,7 +54,7 @@ function warped(
   }) as unknown as Vec4[]
   const [x, y, z] = moves
   return {
-    offset: offset.add(vec3(x.w, y.w, z.w).mul(reach)).toConst() as Vec3,
+    offset: offset.add(vec3(x.w, y.w, z.w).mul(reach)).toConst(),
     moves,
     back: sum => {
       const turn = x.xyz.mul(sum.x).add(y.xyz.mul(sum.y)).add(z.xyz.mul(sum.z))
