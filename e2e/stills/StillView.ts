@@ -29,9 +29,12 @@ import {
   DropletLightTable,
   cloudShadow,
   cloudSkyLight,
+  precipitationShafts,
+  type CloudLayers,
   type CloudQuality,
   type CloudQualityName,
-  type CloudsNode
+  type CloudsNode,
+  type PrecipitationShafts
 } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
@@ -87,6 +90,14 @@ function cameraOf({ altitude, view, land }: Still, aspect: number): PerspectiveC
   return camera
 }
 
+/** Rain with its bows and snow under layers that have any. */
+function fallOf(layers: CloudLayers): PrecipitationShafts | undefined {
+  const rate = Math.max(...[...layers].map(layer => layer.precipitation?.rate ?? 0))
+  return rate > 0
+    ? precipitationShafts({ drops: raindrops({ rate: Math.max(rate, 0.5) }) })
+    : undefined
+}
+
 /** A still's scene, drawn as an app would draw it: a pass, the air, the clouds. */
 export class StillView {
   readonly #renderer: WebGPURenderer
@@ -140,15 +151,20 @@ export class StillView {
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     let picture: Node = air
     if (still.clouds !== undefined) {
-      const { preset, coverage } = still.clouds
+      const { preset, coverage, precipitation: falls } = still.clouds
       const layers = cloudPreset(preset)
+      if (falls !== undefined) layers.at(0).set({ precipitation: falls })
       if (coverage !== undefined) layers.at(0).set({ coverage })
       const { dropletRadius } = still
       const light =
         dropletRadius === undefined
           ? undefined
           : new DropletLightTable({ dropletRadius, crystals: iceCrystals() })
-      const node = clouds(air, depth, camera, atmosphere, layers, { quality, light })
+      const node = clouds(air, depth, camera, atmosphere, layers, {
+        quality,
+        light,
+        precipitation: fallOf(layers)
+      })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))

@@ -1,4 +1,4 @@
-import type { CloudPresetName } from '@welkin/clouds'
+import type { CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 
@@ -8,7 +8,7 @@ export interface Still {
   /** Features to look for. */
   about: string
   /** Preset of clouds; default: a clear sky. */
-  clouds?: { preset: CloudPresetName; coverage?: number }
+  clouds?: { preset: CloudPresetName; coverage?: number; precipitation?: CloudPrecipitation }
   /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
@@ -58,7 +58,7 @@ export interface TerrainStill {
 export type AnyStill = Still | ValleyStill | TerrainStill
 
 /** The presets from the ground: where to look. */
-const presets: Record<CloudPresetName, { azimuth: number; pitch: number }> = {
+const presets: Partial<Record<CloudPresetName, { azimuth: number; pitch: number }>> = {
   fairWeather: { azimuth: 330, pitch: 14 },
   stratocumulus: { azimuth: 30, pitch: 14 },
   overcast: { azimuth: 30, pitch: 10 },
@@ -204,6 +204,52 @@ const rainbows: Still[] = [
   }
 ]
 
+/** Rain and snow under clouds, seen from afar. */
+const falling: Still[] = [
+  {
+    name: 'shower',
+    about:
+      'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
+    clouds: { preset: 'shower' },
+    altitude: 60,
+    sun: { elevation: 30, azimuth: 280 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: 'shower-bow',
+    about:
+      'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
+    clouds: { preset: 'shower' },
+    altitude: 60,
+    sun: { elevation: 12, azimuth: 200 },
+    view: { azimuth: 20, pitch: 12 },
+    land: 'hills'
+  },
+  {
+    name: 'virga',
+    about: 'streaks below altocumulus at sunset that end in the air, the strongest deepest',
+    clouds: {
+      preset: 'altocumulus',
+      coverage: 0.6,
+      precipitation: { rate: 1.2, share: 0.6, virgaDepth: 900, freezingLevel: 3000 }
+    },
+    altitude: 60,
+    sun: { elevation: 4, azimuth: 10 },
+    view: { azimuth: 30, pitch: 14 },
+    land: 'hills'
+  },
+  {
+    name: 'snow-shower',
+    about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
+    clouds: { preset: 'snowShower' },
+    altitude: 60,
+    sun: { elevation: 18, azimuth: 290 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'snow'
+  }
+]
+
 /** Halos of crystals, at a winter noon. */
 const halos: Still[] = [
   {
@@ -302,6 +348,7 @@ export const stills: readonly AnyStill[] = [
   ...optics,
   ...halos,
   ...rainbows,
+  ...falling,
   ...valleys,
   ...terrains,
   {

@@ -24,6 +24,18 @@ const altocumulus: Partial<CloudLayerParameters> = {
   wind: { east: 16, north: -3 }
 }
 
+const overcast: Partial<CloudLayerParameters> = {
+  baseAltitude: 600,
+  topAltitude: 1500,
+  coverage: 1,
+  density: 0.02,
+  profileExponent: 0.7,
+  shapeAmount: 0.7,
+  edgeSoftness: 0.4,
+  weatherWeights: [0, 1, 0, 0],
+  wind: { east: 10, north: 5 }
+}
+
 const cirrus: Partial<CloudLayerParameters> = {
   baseAltitude: 8500,
   topAltitude: 9600,
@@ -51,6 +63,9 @@ export type CloudPresetName =
   | 'altocumulus'
   | 'cirrus'
   | 'mixed'
+  | 'shower'
+  | 'nimbostratus'
+  | 'snowShower'
 
 const presets: Readonly<Record<CloudPresetName, Layers>> = {
   fairWeather: [cumulus],
@@ -75,19 +90,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [
-    {
-      baseAltitude: 600,
-      topAltitude: 1500,
-      coverage: 1,
-      density: 0.02,
-      profileExponent: 0.7,
-      shapeAmount: 0.7,
-      edgeSoftness: 0.4,
-      weatherWeights: [0, 1, 0, 0],
-      wind: { east: 10, north: 5 }
-    }
-  ],
+  overcast: [overcast],
   cumulonimbus: [
     {
       baseAltitude: 700,
@@ -107,6 +110,37 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     { ...cumulus, coverage: 0.25 },
     { ...altocumulus, coverage: 0.35 },
     { ...cirrus, coverage: 0.4 }
+  ],
+  shower: [
+    {
+      baseAltitude: 700,
+      topAltitude: 6500,
+      coverage: 0.3,
+      density: 0.08,
+      anvil: 0.4,
+      weatherWeights: [0, 0, 1, 0],
+      wind: { east: 10, north: 4 },
+      precipitation: { rate: 12 }
+    },
+    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.2 }
+  ],
+  nimbostratus: [
+    {
+      ...overcast,
+      baseAltitude: 500,
+      topAltitude: 3500,
+      precipitation: { rate: 3, share: 0.9 }
+    }
+  ],
+  snowShower: [
+    {
+      baseAltitude: 500,
+      topAltitude: 3800,
+      coverage: 0.4,
+      profileExponent: 0.5,
+      wind: { east: 9, north: -6 },
+      precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
+    }
   ]
 }
 
@@ -124,6 +158,11 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
+ * - `shower`: towers up to 6.5 km with rain of 12 mm/h, among small cumulus
+ * - `nimbostratus`: a thick closed deck with rain of 3 mm/h
+ * - `snowShower`: towering cumulus in cold air, with snow of 1.5 mm/h of water
+ *
+ * What falls from the last three is seen if `clouds` has a `precipitation`.
  *
  * @param count - Least number of layers, to take other presets by `copy` later.
  * @throws If there is no preset of this name, or the count is none.

@@ -5,6 +5,7 @@ import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { WeatherMap } from '../density/WeatherMap'
 import type { ShadingContext } from '../light/tsl/shadingContext'
+import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
 import { encodeDistance } from '../temporal/tsl/packing'
@@ -19,6 +20,8 @@ import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
   readonly viewRays: FrameInputs
+  /** Rain and snow under the clouds. */
+  readonly precipitation?: PrecipitationShafts
 }
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
@@ -81,23 +84,28 @@ function marchPixels(scene: CloudScene): Outputs {
 
 /** Shades what was marched: light with the air in front of it, and its distances. */
 function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
-  const { field, viewRays } = scene
+  const { field, viewRays, precipitation } = scene
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
-    const { at } = marchedPixel(scene)
+    const { at, noise } = marchedPixel(scene)
     const here = uv() as unknown as Vec2
     const ray = marched.ray.sample(here).level(0).toConst() as Vec4
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
-    If(ray.z.lessThan(1), () => {
+    const shadeAll = (): void => {
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
         shares: marched.shares.sample(here).level(0).toConst() as Vec4
       }
       const { direction, directionView } = viewRayAt(viewRays, at)
-      const radiance = shadePoints(scene, direction, points)
-      const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
+      const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
+      const seen = precipitation
+        ? precipitation.among(clouds, scene, { direction, end: ray.y.exp2(), jitter: noise })
+        : { ...clouds, radiance: shadePoints(scene, direction, points) }
+      if (precipitation) distances.assign(vec4(encodeDistance(seen.distance), ray.y, 0, ray.w))
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
-    })
+    }
+    if (precipitation) shadeAll()
+    else If(ray.z.lessThan(1), shadeAll)
   })
 }
 

@@ -10,6 +10,7 @@ import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
 import type { CloudNoise } from '../noise/CloudNoise'
+import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { CloudRenderer } from './CloudRenderer'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
 import { FrameUniforms } from './FrameUniforms'
@@ -50,6 +51,8 @@ export interface CloudsOptions {
   extinction?: CloudFieldOptions['extinction']
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
+  /** Rain and snow under the clouds, of layers that have `precipitation`: `precipitationShafts()`. Left out, none is seen. */
+  precipitation?: PrecipitationShafts
 }
 
 const SETTINGS = ['quality', 'time', 'nightIlluminance', 'ambient', 'accumulates'] as const
@@ -94,6 +97,7 @@ export class CloudsNode extends AtmosphereNode {
   #time: number | null = null
   #accumulates = true
   readonly #ownsLight: boolean
+  readonly #precipitation: PrecipitationShafts | undefined
   readonly #noiseSlices: number
   readonly #uniforms = new QualityUniforms()
   readonly #frame = new FrameUniforms()
@@ -116,8 +120,17 @@ export class CloudsNode extends AtmosphereNode {
   ) {
     if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     super(atmosphere, camera)
-    checkOptions('CloudsNode', options, 'worldMap', 'noise', 'extinction', 'light', ...SETTINGS)
-    const { worldMap, noise, extinction, light, ...settings } = options
+    checkOptions(
+      'CloudsNode',
+      options,
+      'worldMap',
+      'noise',
+      'extinction',
+      'light',
+      'precipitation',
+      ...SETTINGS
+    )
+    const { worldMap, noise, extinction, light, precipitation, ...settings } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
     if (!isDepth(depthNode)) {
       fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
@@ -133,6 +146,12 @@ export class CloudsNode extends AtmosphereNode {
     this.set(settings)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
+    this.#precipitation = precipitation
+    if (precipitation === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
+      console.warn(
+        'CloudsNode: layers have precipitation, seen with the option precipitation: precipitationShafts()'
+      )
+    }
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
     this.passes = new CloudRenderer({
@@ -140,6 +159,7 @@ export class CloudsNode extends AtmosphereNode {
       light: this.light.nodes,
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
+      precipitation,
       viewRays: {
         field: this.field,
         frame: this.#frame,
@@ -269,7 +289,8 @@ export class CloudsNode extends AtmosphereNode {
     field.update(view, this.#time ?? frame.time)
     this.shadows.update(renderer, view)
     this.passes.setSize(width, height, this.#quality.block)
-    const { version } = light.texture
+    this.#precipitation?.update(field, view)
+    const version = light.texture.version + (this.#precipitation?.version ?? 0)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value
