@@ -191,7 +191,7 @@ gpuTest(
       medium.update(scene.field, { up: zenith } as AtmosphereView)
       const places = { ...state, layers: [layers.at(0).parameters] }
       const results = await evaluateOnGpu(scene.renderer, inputs, input =>
-        vec4(rainDepth(scene.field, medium, input as Node<'vec4'>))
+        vec4(rainDepth(scene.field, medium, input))
       )
       let wet = 0
       inputs.forEach(([x, y, z, distance], i) => {

@@ -57,7 +57,7 @@ export interface CloudLayerParameters {
    */
   readonly weatherWeights: readonly [number, number, number, number]
   readonly wind: CloudWind
-  /** What falls from it; seen if `clouds` has a `precipitation`. Null, the default, for nothing. */
+  /** Rain, snow or hail from it; seen if `clouds` has a `precipitation`. Null, the default, for nothing. */
   readonly precipitation: CloudPrecipitation | null
   /** True for a layer that casts shadows. */
   readonly shadow: boolean

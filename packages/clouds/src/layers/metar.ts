@@ -1,5 +1,5 @@
 import { checkRange } from '@welkin/atmosphere'
-import { checkOptions, fail } from '@welkin/geo'
+import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { CloudLayerParameters, CloudWind } from './CloudLayer'
 import { checkCount, CloudLayers } from './CloudLayers'
 import type { CloudPrecipitation } from './precipitation'
@@ -11,6 +11,8 @@ export interface METAROptions {
   readonly stationElevation?: number
   /** Least number of layers, to `copy` other reports later; default 1. */
   readonly count?: number
+  /** True for layers from which falls what is reported, for clouds with a `precipitation`; default false. */
+  readonly precipitation?: boolean
 }
 
 type Parameters = Partial<CloudLayerParameters>
@@ -111,7 +113,12 @@ function layerOfKind(group: Group, height: number): Parameters {
   return preset(amount === 6 ? 'stratocumulus' : 'fairWeather')
 }
 
-function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): Parameters {
+function layerOf(
+  group: Group,
+  elevation: number,
+  wind: CloudWind | undefined,
+  precipitation: CloudPrecipitation | null
+): Parameters {
   const [, amount, base, kind] = group
   const isFog = amount === 'VV'
   const unknown = isFog ? UNKNOWN_VISIBILITY : UNKNOWN_BASE
@@ -130,7 +137,8 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
     ...(isLow && wind && { wind }),
     coverage: eighthsOf(group) / 8,
     baseAltitude,
-    topAltitude: Math.min(baseAltitude + thickness, 30_000)
+    topAltitude: Math.min(baseAltitude + thickness, 30_000),
+    precipitation
   }
 }
 
@@ -147,9 +155,8 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
  * clouds are cumulus, from BKN on stratocumulus, and an overcast; below 6 km altocumulus or altostratus,
  * above that cirrus. TCU are 3.5 km tall, CB reach 11 km. `VV002` is fog, so thick that one sees 200 ft up.
  *
- * What falls (`-RA`, `SHRA`, `+TSRA`, `SN`, `DZ`) falls from CB, or else TCU, or else the layer that covers most, at the middle of the rates that
- * its intensity stands for, with hail for `GR` and `GS`; the temperature says how high the freezing level is. It is seen where `clouds` has a
- * `precipitation`. Mist and fog (`BR`, `FG`) have no layer but `VV`'s: {@link visibilityFromMETAR} has what is seen through them.
+ * With `precipitation: true`, what falls (`-RA`, `SHRA`, `+TSRA`, `SN`, `DZ`) falls from CB, or else TCU, or else the layer that covers most, at the middle of the rates that
+ * its intensity stands for, with hail for `GR` and `GS`; the temperature says how high the freezing level is. Mist and fog (`BR`, `FG`) have no layer but `VV`'s: {@link visibilityFromMETAR} has what is seen through them.
  *
  * The wind moves clouds below 2 km. Where it is variable or unknown, and above, they have their preset's.
  * An unknown base (`///`) is 3000 ft, an unknown amount SCT; a group of which nothing is known is left out.
@@ -162,8 +169,9 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
  * @see WMO-No. 306, Manual on Codes, FM 15; FMH-1, Surface Weather Observations and Reports, §12
  */
 export function cloudLayersFromMETAR(report: string, options: METAROptions = {}): CloudLayers {
-  checkOptions(WHERE, options, 'stationElevation', 'count')
-  const { stationElevation = 0, count = 1 } = options
+  checkOptions(WHERE, options, 'stationElevation', 'count', 'precipitation')
+  const { stationElevation = 0, count = 1, precipitation = false } = options
+  checkBoolean(WHERE, 'precipitation', precipitation)
   checkCount(WHERE, count)
   checkRange(WHERE, 'stationElevation', stationElevation, -500, 9000)
   if (typeof report !== 'string') fail(WHERE, 'report must be a string', report)
@@ -189,14 +197,11 @@ export function cloudLayersFromMETAR(report: string, options: METAROptions = {})
   const rank = (group: Group): number => eighthsOf(group) + (isTall(group) ? 8 : 0)
   const ranked = groups.toSorted((a, b) => rank(b) - rank(a))
   const [source] = ranked.toSorted((a, b) => kindRank(b) - kindRank(a))
-  const precipitation =
-    falling === null ? null : precipitationOf(falling, temperature, stationElevation)
+  const falls =
+    falling && precipitation ? precipitationOf(falling, temperature, stationElevation) : null
   const layers = groups
     .filter(group => ranked.indexOf(group) < CloudLayers.maxLayers)
-    .map(group => ({
-      ...layerOf(group, stationElevation, wind),
-      precipitation: group === source ? precipitation : null
-    }))
+    .map(group => layerOf(group, stationElevation, wind, group === source ? falls : null))
   return new CloudLayers(layers, Math.max(count, 1))
 }
 
@@ -204,10 +209,10 @@ export function cloudLayersFromMETAR(report: string, options: METAROptions = {})
 const kindRank = ([, , , kind]: Group): number => (kind === 'CB' ? 2 : kind === 'TCU' ? 1 : 0)
 
 /**
- * What falls by a group such as `+SHRA`.
+ * Precipitation by a group such as `+SHRA`.
  *
  * @param temperature - At the station [°C]; undefined if it is not known.
- * @param elevation - Of the station [m].
+ * @param elevation - Altitude of the station [m].
  */
 function precipitationOf(
   [text, intensity, kinds]: readonly string[],

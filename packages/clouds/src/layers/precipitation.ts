@@ -1,7 +1,7 @@
 import { checkOptions } from '@welkin/geo'
 import { checkRanges } from '../check'
 
-/** What falls from a layer of clouds. */
+/** Rain, snow and hail from a layer of clouds. */
 export interface CloudPrecipitation {
   /**
    * Mean rate under the columns from which it falls, as water, in [0, 300] [mm/h]: drizzle has 0.5, a shower 10, a cloudburst

@@ -1,5 +1,5 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
-import { FloatType, NearestFilter, UnsignedByteType } from 'three'
+import { FloatType, NearestFilter, UnsignedByteType, Vector2 } from 'three'
 import type { RenderTarget, Texture, Vector3 } from 'three'
 import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -16,6 +16,14 @@ import { marchClouds } from './tsl/march'
 import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type FrameInputs } from './tsl/viewRay'
 import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
+
+const _size = new Vector2()
+
+/** Size of the target that is drawn into [pixels]. */
+export function sizeOf(renderer: Renderer): { width: number; height: number } {
+  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
+  return { width: Math.max(width, 1), height: Math.max(height, 1) }
+}
 
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {

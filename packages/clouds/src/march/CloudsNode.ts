@@ -1,17 +1,17 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
 import type { Atmosphere, ScreenShadows } from '@welkin/atmosphere'
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
-import { Vector2 } from 'three'
 import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
+import { checkPrecipitation } from '../check'
 import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
 import type { CloudNoise } from '../noise/CloudNoise'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
-import { CloudRenderer } from './CloudRenderer'
+import { CloudRenderer, sizeOf } from './CloudRenderer'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
 import { FrameUniforms } from './FrameUniforms'
 import {
@@ -22,8 +22,6 @@ import {
   type CloudQualityName
 } from './quality'
 import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
-
-const _size = new Vector2()
 
 /** Slices of its own noise that a node draws in a frame: all in about 20. */
 const NOISE_SLICES = 12
@@ -109,7 +107,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly screens = new Set<ScreenShadows>()
   #quality: CloudQuality = cloudQualities.high
 
-  /** @throws If an argument is missing or of the wrong kind. */
+  /** @throws If an argument is missing or of the wrong kind, or layers have precipitation and nothing shows it. */
   constructor(
     colorNode: Node,
     depthNode: Node,
@@ -147,11 +145,7 @@ export class CloudsNode extends AtmosphereNode {
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#precipitation = precipitation
-    if (precipitation === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
-      console.warn(
-        'CloudsNode: layers have precipitation, seen with the option precipitation: precipitationShafts()'
-      )
-    }
+    checkPrecipitation('CloudsNode', layers, precipitation)
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
     this.passes = new CloudRenderer({
@@ -289,8 +283,7 @@ export class CloudsNode extends AtmosphereNode {
     field.update(view, this.#time ?? frame.time)
     this.shadows.update(renderer, view)
     this.passes.setSize(width, height, this.#quality.block)
-    this.#precipitation?.update(field, view)
-    const version = light.texture.version + (this.#precipitation?.version ?? 0)
+    const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value
@@ -340,12 +333,6 @@ function isDepth(node: Node): boolean {
 
 function isPerspective(camera: Camera): camera is PerspectiveCamera {
   return (camera as PerspectiveCamera | undefined)?.isPerspectiveCamera === true
-}
-
-/** Size of the target that is drawn into [pixels]. */
-function sizeOf(renderer: Renderer): { width: number; height: number } {
-  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-  return { width: Math.max(width, 1), height: Math.max(height, 1) }
 }
 
 /** Volumetric clouds as a post effect: see {@link CloudsNode}. */

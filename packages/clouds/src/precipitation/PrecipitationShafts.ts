@@ -50,8 +50,8 @@ const _axis = new Vector3()
  * clouds are: by the sun where no cloud is before it, by the sky and the ground. A node draws it before and behind its clouds, through air.
  * Serves one node; it has no textures of its own.
  *
- * @see Atlas 1953, "Optical extinction by rainfall", J. Meteor. 10, 486
- * @see Marshall 1953, "Precipitation trajectories and patterns", J. Meteor. 10, 25
+ * @see Atlas 1953, "Optical extinction by rainfall", J. Meteor. 10, pp. 486–488
+ * @see Marshall 1953, "Precipitation trajectories and patterns", J. Meteor. 10, pp. 25–29
  */
 export class PrecipitationShafts {
   /** Phase function of the drops; shared, not owned. */
@@ -80,13 +80,12 @@ export class PrecipitationShafts {
     this.drops = drops
   }
 
-  /** Counts changes other than those of wind and camera. */
-  get version(): number {
-    return this.#version + (this.drops?.version ?? 0)
-  }
-
-  /** Follows the layers of a field, whose `update` goes first. */
-  update({ layers, depthScale }: CloudField, { up }: AtmosphereView): void {
+  /**
+   * Follows the layers of a field, whose `update` goes first.
+   *
+   * @returns Count of changes other than those of wind and camera.
+   */
+  update({ layers, depthScale }: CloudField, { up }: AtmosphereView): number {
     let [ceiling, most] = [NOWHERE, 0]
     const state: number[] = []
     for (const [i, { parameters }] of [...layers].entries()) {
@@ -119,9 +118,10 @@ export class PrecipitationShafts {
     this.#ceiling.value = ceiling
     if (state.some((value, i) => value !== this.#state[i])) this.#version++
     this.#state = state
+    return this.#version + (this.drops?.version ?? 0)
   }
 
-  /** What falls from a layer, as shader nodes. */
+  /** Precipitation of a layer, as shader nodes. */
   fallOf(index: Int): FallNodes {
     const start = index.mul(int(STRIDE)).toConst()
     const [first, second, third] = [0, 1, 2].map(

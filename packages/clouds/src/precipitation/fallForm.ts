@@ -1,4 +1,4 @@
-/** Constants of what falls from clouds: tsl/fall.ts. */
+/** Constants of precipitation: tsl/fall.ts. */
 export const fallForm = {
   /**
    * Speeds at which drops of 2 mm (Gunn & Kinzer 1949, table 2) and flakes (Locatelli & Hobbs 1974) fall [m/s]. Slower: shafts lean

@@ -206,7 +206,8 @@ describe('cloudLayersFromMETAR', () => {
 })
 
 describe('weather of a METAR', () => {
-  const falls = (report: string) => read(report).map(({ precipitation }) => precipitation)
+  const falls = (report: string) =>
+    read(report, { precipitation: true }).map(({ precipitation }) => precipitation)
 
   it('falls from storms, towers, or what covers most', () => {
     const rates = (report: string) => falls(report).map(each => each?.rate)
@@ -222,6 +223,7 @@ describe('weather of a METAR', () => {
       undefined,
       5
     ])
+    expect(read('EDDM 221150Z 24008KT 3000 DZ BR OVC004 08/08 Q1020')[0].precipitation).toBe(null)
     expect(rates('EDDM 221150Z 24008KT 3000 DZ BR OVC004 08/08 Q1020')).toEqual([0.3])
     expect(rates('EDDM 221150Z 24008KT 9999 VCSH FEW030 10/08 Q1015')).toEqual([undefined])
     expect(rates('EDDM 221150Z 24008KT 9999 OVC030 10/08 Q1015 TEMPO 3000 RA')).toEqual([undefined])

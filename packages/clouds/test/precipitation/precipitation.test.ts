@@ -1,6 +1,9 @@
+import { Atmosphere } from '@welkin/atmosphere'
 import fc from 'fast-check'
+import { PerspectiveCamera } from 'three'
+import { float, vec4 } from 'three/tsl'
 import { describe, expect, it, test } from 'vitest'
-import { CloudLayer, cloudPreset, precipitationShafts } from '../../src'
+import { CloudLayer, cloudPreset, clouds, precipitationShafts } from '../../src'
 import { fallForm } from '../../src/precipitation/fallForm'
 import { extinctionOf, lagOf, rateOf } from '../twins/precipitation'
 
@@ -32,6 +35,10 @@ describe('precipitation of a layer', () => {
     expect(() => precipitationShafts({ drops: {} as never })).toThrow(
       'PrecipitationShafts: drops must be a ScatteringPhase or null'
     )
+    const [color, depth] = [vec4(0), float(0)]
+    expect(() =>
+      clouds(color, depth, new PerspectiveCamera(), new Atmosphere(), cloudPreset('shower'))
+    ).toThrow('CloudsNode: precipitation must be given')
     expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
   })
 })

@@ -53,7 +53,7 @@ export function rateOf(rate: number, rank: number, depth: number, virgaDepth: nu
 /**
  * Rank of the column from which it falls at a place, by planet-centred coordinates: `fallenFrom` of tsl/fall.ts, without streaks.
  *
- * @param position - From the planet's centre, in the mapped space [m].
+ * @param position - Displacement from the planet's centre, in the mapped space [m].
  */
 export function fallenRank(
   state: CloudState,

@@ -13,7 +13,7 @@ import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
 import { extinctionForm, fallForm } from '../fallForm'
 
-/** What falls from a layer, as shaders see it: lengths [m], rates [mm/h of water]. */
+/** Precipitation of a layer, as shaders see it: lengths [m], rates [mm/h of water]. */
 export interface FallNodes {
   readonly rate: Float
   readonly share: Float
@@ -44,7 +44,7 @@ export interface Fallen {
  * ½ dU/dz [m s], (y) of the cloud's lean [m]. In wind that grows evenly with height its path is a parabola (Marshall 1953), flat while it is snow.
  * Twin: test/twins/precipitation.ts
  *
- * @param altitude - Of the place [m].
+ * @param altitude - Altitude of the place [m].
  * @param base - Altitude of the cloud's base [m].
  */
 export const fallLag = /*#__PURE__*/ Fn(
@@ -64,7 +64,7 @@ export const fallLag = /*#__PURE__*/ Fn(
  *
  * @param rank - x of the column, in [0, 1].
  * @param streak - Factor, of mean 1.
- * @param depth - Of fall, over that of virga [–].
+ * @param depth - Depth of fall, over that of virga [–].
  */
 export const fallRate = /*#__PURE__*/ Fn(
   ([rate, rank, streak, depth]: [Float, Float, Float, Float]) => {
@@ -103,7 +103,7 @@ export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
   smoothstep(freezingLevel.sub(fallForm.melting), freezingLevel, altitude).toConst()
 
 /**
- * What falls from a layer at a place. To be called inside of a shader function.
+ * Precipitation of a layer at a place. To be called inside of a shader function.
  *
  * It left its cloud downwind, where the wind that grows with height has carried that in the meantime: the column's rank is looked up
  * there. Streaks are billows of the base at the same point.
@@ -129,7 +129,7 @@ export function fallenFrom(
     const above: CloudSample = { offset, altitude, up, distance }
     const packed = backgroundAt(field, layer, above, { map, index: layer.index })
     const background = unpackBackground(packed)
-    const resolution = resolutionAt(layer, distance.mul(field.pixelAngle).toConst() as Float)
+    const resolution = resolutionAt(layer, distance.mul(field.pixelAngle).toConst())
     const subpoint = subpointOffset(field, above).toConst() as Vec3
     const still = vec3(0).xy as Vec2
     const weather = cloudWeather(
@@ -164,7 +164,7 @@ export function fallenFrom(
     .mul(smoothstep(...fallForm.hailFrom, rank))
     .toConst() as Float
   return {
-    rate: rate.sub(hail).toConst() as Float,
+    rate: rate.sub(hail).toConst(),
     hail,
     snow: snowShare(altitude, nodes.freezingLevel),
     rank

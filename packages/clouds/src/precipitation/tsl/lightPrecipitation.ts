@@ -96,5 +96,5 @@ export function lightPrecipitation(
   const sky = mix(0.5, under.sky, hidden)
   const ground = mix(0.5, under.ground, hidden)
   const shares = vec3(often.max(0), sky, ground).mul(weight).toConst() as Vec3
-  return shade(field, sample, shares, once as Vec4)
+  return shade(field, sample, shares, once)
 }

@@ -88,7 +88,7 @@ export function marchPrecipitation(
   /** Sums of light on drops and on flakes, and of the depth of precipitation to the light. */
   const lights = vec4(0).toVar() as Variable<Vec4>
   If(span.greaterThan(1), () => {
-    loop('fallStep', count.toInt() as Int, index => {
+    loop('fallStep', count.toInt(), index => {
       const start = edgeAt(float(index)).toConst() as Float
       const length = edgeAt(float(index).add(1)).sub(start).toConst() as Float
       const at = start.add(length.mul(jitter)).toConst() as Float
@@ -141,10 +141,10 @@ export function marchPrecipitation(
     transmittance,
     before,
     weight: sums.x,
-    distance: sums.y.div(weight).toConst() as Float,
-    rank: sums.z.div(weight).toConst() as Float,
-    depthToLight: sums.w.div(weight).exp().sub(1).max(0).toConst() as Float,
-    ownDepth: lights.z.div(weight).toConst() as Float,
-    lit: vec2(lights.x, lights.y).toConst() as Vec2
+    distance: sums.y.div(weight).toConst(),
+    rank: sums.z.div(weight).toConst(),
+    depthToLight: sums.w.div(weight).exp().sub(1).max(0).toConst(),
+    ownDepth: lights.z.div(weight).toConst(),
+    lit: vec2(lights.x, lights.y).toConst()
   }
 }

@@ -1,0 +1,45 @@
+/** Rain and snow under clouds, seen from afar. */
+export const falling = [
+  {
+    name: 'shower',
+    about:
+      'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
+    clouds: { preset: 'shower' },
+    altitude: 60,
+    sun: { elevation: 30, azimuth: 280 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: 'shower-bow',
+    about:
+      'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
+    clouds: { preset: 'shower' },
+    altitude: 60,
+    sun: { elevation: 12, azimuth: 200 },
+    view: { azimuth: 20, pitch: 12 },
+    land: 'hills'
+  },
+  {
+    name: 'virga',
+    about: 'streaks below altocumulus at sunset that end in the air, the strongest deepest',
+    clouds: {
+      preset: 'altocumulus',
+      coverage: 0.6,
+      precipitation: { rate: 1.2, share: 0.6, virgaDepth: 900, freezingLevel: 3000 }
+    },
+    altitude: 60,
+    sun: { elevation: 4, azimuth: 10 },
+    view: { azimuth: 30, pitch: 14 },
+    land: 'hills'
+  },
+  {
+    name: 'snow-shower',
+    about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
+    clouds: { preset: 'snowShower' },
+    altitude: 60,
+    sun: { elevation: 18, azimuth: 290 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'snow'
+  }
+] as const
