@@ -52,10 +52,10 @@ const SHADOW_EXTENT = 6000
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
-function atmosphereOf({ planet, sun }: Still): Atmosphere {
+function atmosphereOf({ planet, place, sun }: Still): Atmosphere {
   const atmosphere =
     planet === 'mars' ? marsBody() : new Atmosphere({ parameters: standardEarthParameters() })
-  atmosphere.place({ longitude: 139.77, latitude: 35.68 })
+  atmosphere.place(place ?? { longitude: 139.77, latitude: 35.68 })
   if (sun instanceof Date) atmosphere.date = sun
   else atmosphere.setSunAngles(sun.elevation, sun.azimuth)
   return atmosphere

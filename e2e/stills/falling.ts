@@ -5,6 +5,7 @@ export const falling = [
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
     clouds: { preset: 'shower' },
+    place: { longitude: 140.19, latitude: 36.28 },
     altitude: 60,
     sun: { elevation: 30, azimuth: 280 },
     view: { azimuth: 20, pitch: 8 },
@@ -15,9 +16,10 @@ export const falling = [
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
     clouds: { preset: 'shower' },
+    place: { longitude: 140.07, latitude: 35.53 },
     altitude: 60,
-    sun: { elevation: 12, azimuth: 200 },
-    view: { azimuth: 20, pitch: 12 },
+    sun: { elevation: 12, azimuth: 199 },
+    view: { azimuth: 60, pitch: 10 },
     land: 'hills'
   },
   {
@@ -25,18 +27,20 @@ export const falling = [
     about: 'streaks below altocumulus at sunset that end in the air, the strongest deepest',
     clouds: {
       preset: 'altocumulus',
-      coverage: 0.6,
+      coverage: 0.5,
       precipitation: { rate: 1.2, share: 0.6, virgaDepth: 900, freezingLevel: 3000 }
     },
+    place: { longitude: 139.17, latitude: 35.33 },
     altitude: 60,
     sun: { elevation: 4, azimuth: 10 },
-    view: { azimuth: 30, pitch: 14 },
+    view: { azimuth: 30, pitch: 20 },
     land: 'hills'
   },
   {
     name: 'snow-shower',
     about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
     clouds: { preset: 'snowShower' },
+    place: { longitude: 140.49, latitude: 35.43 },
     altitude: 60,
     sun: { elevation: 18, azimuth: 290 },
     view: { azimuth: 20, pitch: 8 },

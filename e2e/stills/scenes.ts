@@ -19,7 +19,8 @@ export interface Still {
   /** Light shafts, of hills and clouds. */
   shafts?: true
   planet?: 'mars'
-  /** Camera above the ellipsoid [m]. */
+  /** Place of the camera, default Tokyo [°], and its altitude above the ellipsoid [m]. */
+  place?: { longitude: number; latitude: number }
   altitude: number
   /** Elevation and azimuth of the sun, clockwise from north [°]; or a date, which sets moon and stars too. */
   sun: { elevation: number; azimuth: number } | Date

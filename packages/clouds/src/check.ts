@@ -35,6 +35,6 @@ export function checkPrecipitation(
   medium: object | undefined
 ): void {
   if (medium === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
-    fail(where, 'precipitation must be given for layers that have some: precipitationShafts()')
+    fail(where, 'precipitation must be given: layers have some')
   }
 }

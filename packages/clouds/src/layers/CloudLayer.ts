@@ -194,7 +194,7 @@ function merge(
   const [a, b, c, d] = merged.weatherWeights
   const weatherWeights = Object.freeze([a, b, c, d] as const)
   const { precipitation: falls } = merged
-  const precipitation = falls && checkedPrecipitation('CloudLayer.precipitation', falls)
+  const precipitation = falls && checkedPrecipitation(falls)
   const wind = Object.freeze({ ...merged.wind })
   return Object.freeze({ ...merged, weatherWeights, wind, precipitation })
 }

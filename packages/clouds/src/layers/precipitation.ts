@@ -1,4 +1,4 @@
-import { checkOptions } from '@welkin/geo'
+import { withDefaults } from '@welkin/atmosphere'
 import { checkRanges } from '../check'
 
 /** Rain, snow and hail from a layer of clouds. */
@@ -39,14 +39,9 @@ const ranges = {
 } as const
 
 /** Precipitation with all its parameters, frozen. @throws If one is unknown or out of its range. */
-export function checkedPrecipitation(
-  where: string,
-  given: CloudPrecipitation
-): Required<CloudPrecipitation> {
-  const all = {
-    ...dry,
-    ...checkOptions(where, given, ...(Object.keys(dry) as (keyof typeof dry)[]))
-  }
+export function checkedPrecipitation(given: CloudPrecipitation): Required<CloudPrecipitation> {
+  const where = 'CloudLayer.precipitation'
+  const all = withDefaults(where, dry, given) as Required<CloudPrecipitation>
   checkRanges(where, all, ranges)
   return Object.freeze(all)
 }

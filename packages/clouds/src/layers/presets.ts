@@ -24,6 +24,25 @@ const altocumulus: Partial<CloudLayerParameters> = {
   wind: { east: 16, north: -3 }
 }
 
+const congestus: Partial<CloudLayerParameters> = {
+  baseAltitude: 800,
+  topAltitude: 4300,
+  coverage: 0.35,
+  profileExponent: 0.5,
+  wind: { east: 9, north: 3 }
+}
+
+const storm: Partial<CloudLayerParameters> = {
+  baseAltitude: 700,
+  topAltitude: 11_000,
+  coverage: 0.25,
+  density: 0.08,
+  anvil: 1,
+  turbulence: 0.8,
+  weatherWeights: [0, 0, 1, 0],
+  wind: { east: 12, north: 3 }
+}
+
 const overcast: Partial<CloudLayerParameters> = {
   baseAltitude: 600,
   topAltitude: 1500,
@@ -69,15 +88,7 @@ export type CloudPresetName =
 
 const presets: Readonly<Record<CloudPresetName, Layers>> = {
   fairWeather: [cumulus],
-  congestus: [
-    {
-      baseAltitude: 800,
-      topAltitude: 4300,
-      coverage: 0.35,
-      profileExponent: 0.5,
-      wind: { east: 9, north: 3 }
-    }
-  ],
+  congestus: [congestus],
   stratocumulus: [
     {
       baseAltitude: 800,
@@ -91,19 +102,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     }
   ],
   overcast: [overcast],
-  cumulonimbus: [
-    {
-      baseAltitude: 700,
-      topAltitude: 11_000,
-      coverage: 0.25,
-      density: 0.08,
-      anvil: 1,
-      turbulence: 0.8,
-      weatherWeights: [0, 0, 1, 0],
-      wind: { east: 12, north: 3 }
-    },
-    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.25 }
-  ],
+  cumulonimbus: [storm, { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.25 }],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
   mixed: [
@@ -111,37 +110,9 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     { ...altocumulus, coverage: 0.35 },
     { ...cirrus, coverage: 0.4 }
   ],
-  shower: [
-    {
-      baseAltitude: 700,
-      topAltitude: 6500,
-      coverage: 0.3,
-      density: 0.08,
-      anvil: 0.4,
-      weatherWeights: [0, 0, 1, 0],
-      wind: { east: 10, north: 4 },
-      precipitation: { rate: 12 }
-    },
-    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.2 }
-  ],
-  nimbostratus: [
-    {
-      ...overcast,
-      baseAltitude: 500,
-      topAltitude: 3500,
-      precipitation: { rate: 3, share: 0.9 }
-    }
-  ],
-  snowShower: [
-    {
-      baseAltitude: 500,
-      topAltitude: 3800,
-      coverage: 0.4,
-      profileExponent: 0.5,
-      wind: { east: 9, north: -6 },
-      precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
-    }
-  ]
+  shower: [{ ...storm, topAltitude: 6500, anvil: 0.4, precipitation: { rate: 12 } }, cumulus],
+  nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
+  snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }]
 }
 
 /** All names of {@link cloudPreset}, for menus. */

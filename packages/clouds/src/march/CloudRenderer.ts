@@ -99,21 +99,20 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
     const ray = marched.ray.sample(here).level(0).toConst() as Vec4
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
-    const shadeAll = (): void => {
+    // Rain may be where no cloud is.
+    If(ray.z.lessThan(precipitation ? 2 : 1), () => {
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
         shares: marched.shares.sample(here).level(0).toConst() as Vec4
       }
       const { direction, directionView } = viewRayAt(viewRays, at)
       const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
-      const seen = precipitation
-        ? precipitation.among(clouds, scene, { direction, end: ray.y.exp2(), jitter: noise })
-        : { ...clouds, radiance: shadePoints(scene, direction, points) }
-      if (precipitation) distances.assign(vec4(encodeDistance(seen.distance), ray.y, 0, ray.w))
+      const seen = precipitation?.among(scene, direction, noise, ray, clouds, distances) ?? {
+        ...clouds,
+        radiance: shadePoints(scene, direction, points)
+      }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
-    }
-    if (precipitation) shadeAll()
-    else If(ray.z.lessThan(1), shadeAll)
+    })
   })
 }
 

@@ -9,11 +9,11 @@ import { layerPeriods } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import type { CloudRay } from '../march/tsl/march'
 import type { SeenClouds } from '../march/tsl/seenPoints'
 import { shadePoints, type LitRay } from '../march/tsl/shadePoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
-import { vec4Array, type Float, type Int, type Variable, type Vec4 } from '../tsl-types'
+import { encodeDistance } from '../temporal/tsl/packing'
+import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { fallForm } from './fallForm'
 import type { FallNodes } from './tsl/fall'
@@ -142,23 +142,35 @@ export class PrecipitationShafts {
   /**
    * Clouds on a ray with what falls before and behind them, and their light. To be called inside of a shader function.
    *
+   * @param jitter - Noise in [0, 1).
+   * @param marched - Ray of the march: log₂ of its end in y.
    * @param clouds - Clouds on the ray, not lit yet.
+   * @param distances - Output of the pass, whose first component is the log₂ of the distance of what is seen.
    */
-  among(clouds: SeenClouds, context: ShadingContext, ray: CloudRay): SeenClouds & LitRay {
+  among(
+    context: ShadingContext,
+    direction: Vec3,
+    jitter: Float,
+    marched: Vec4,
+    clouds: SeenClouds,
+    distances: Variable<Vec4>
+  ): SeenClouds & LitRay {
     const { points } = clouds
+    const ray = { direction, end: marched.y.exp2(), jitter }
     const fallOf = (index: Int): FallNodes => this.fallOf(index)
     const seen = marchPrecipitation(context, fallOf, this.#ceiling, ray, points)
     const shares = points.shares.mul(seen.before).toConst() as Vec4
     const dimmed = { distances: points.distances, shares }
-    const radiance = shadePoints(context, ray.direction, dimmed).toVar() as Variable<Vec4>
+    const radiance = shadePoints(context, direction, dimmed).toVar() as Variable<Vec4>
     const distance = clouds.distance.toVar() as Variable<Float>
     const { weight } = seen
     If(weight.greaterThan(1e-4), () => {
-      const light = lightPrecipitation(context, this.drops, ray.direction, seen, this.#above)
+      const light = lightPrecipitation(context, this.drops, direction, seen, this.#above)
       radiance.addAssign(light)
       const ofClouds = shares.dot(vec4(1))
       distance.assign(mix(seen.distance, distance, ofClouds.div(ofClouds.add(weight))))
     })
+    distances.assign(vec4(encodeDistance(distance), marched.y, 0, marched.w))
     const transmittance = clouds.transmittance.mul(seen.transmittance).toConst() as Float
     return { points: dimmed, radiance, transmittance, distance }
   }
