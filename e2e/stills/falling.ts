@@ -5,7 +5,7 @@ export const falling = [
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
     clouds: { preset: 'shower' },
-    place: { longitude: 140.19, latitude: 36.28 },
+    place: { longitude: 139.65, latitude: 35.48 },
     altitude: 60,
     sun: { elevation: 30, azimuth: 280 },
     view: { azimuth: 20, pitch: 8 },
@@ -16,7 +16,7 @@ export const falling = [
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
     clouds: { preset: 'shower' },
-    place: { longitude: 140.07, latitude: 35.53 },
+    place: { longitude: 141.39, latitude: 35.83 },
     altitude: 60,
     sun: { elevation: 12, azimuth: 199 },
     view: { azimuth: 60, pitch: 10 },
@@ -40,7 +40,7 @@ export const falling = [
     name: 'snow-shower',
     about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
     clouds: { preset: 'snowShower' },
-    place: { longitude: 140.49, latitude: 35.43 },
+    place: { longitude: 139.05, latitude: 35.23 },
     altitude: 60,
     sun: { elevation: 18, azimuth: 290 },
     view: { azimuth: 20, pitch: 8 },

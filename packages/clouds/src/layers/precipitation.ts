@@ -41,7 +41,7 @@ const ranges = {
 /** Precipitation with all its parameters, frozen. @throws If one is unknown or out of its range. */
 export function checkedPrecipitation(given: CloudPrecipitation): Required<CloudPrecipitation> {
   const where = 'CloudLayer.precipitation'
-  const all = withDefaults(where, dry, given) as Required<CloudPrecipitation>
+  const all = withDefaults(where, dry, given)
   checkRanges(where, all, ranges)
   return Object.freeze(all)
 }

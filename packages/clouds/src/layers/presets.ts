@@ -110,7 +110,10 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     { ...altocumulus, coverage: 0.35 },
     { ...cirrus, coverage: 0.4 }
   ],
-  shower: [{ ...storm, topAltitude: 6500, anvil: 0.4, precipitation: { rate: 12 } }, cumulus],
+  shower: [
+    { ...storm, baseAltitude: 1000, topAltitude: 7000, anvil: 0.4, precipitation: { rate: 12 } },
+    cumulus
+  ],
   nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
   snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }]
 }
@@ -129,7 +132,7 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
- * - `shower`: towers up to 6.5 km with rain of 12 mm/h, among small cumulus
+ * - `shower`: towers up to 7 km with rain of 12 mm/h, among small cumulus
  * - `nimbostratus`: a thick closed deck with rain of 3 mm/h
  * - `snowShower`: towering cumulus in cold air, with snow of 1.5 mm/h of water
  *
