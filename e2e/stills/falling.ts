@@ -28,7 +28,7 @@ export const falling = [
     clouds: {
       preset: 'altocumulus',
       coverage: 0.5,
-      precipitation: { rate: 1.2, share: 0.6, virgaDepth: 900, freezingLevel: 3000 }
+      precipitation: { rate: 4, share: 0.5, virgaDepth: 1200, freezingLevel: 0 }
     },
     place: { longitude: 139.17, latitude: 35.33 },
     altitude: 60,

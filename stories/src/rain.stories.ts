@@ -64,7 +64,7 @@ export const Bow: Story = { name: 'Bow in a shower', args: { view: 'bow', sun: 1
 
 /** Rain that evaporates below altocumulus at sunset: only the heaviest streaks reach far down. */
 export const Virga: Story = {
-  args: { view: 'virga', sun: 4, rate: 1.2, virgaDepth: 900, freezingLevel: 3000 }
+  args: { view: 'virga', sun: 4, rate: 4, virgaDepth: 1200, freezingLevel: 0 }
 }
 
 /** Snow that falls slowly, and so trails far behind its clouds. */
