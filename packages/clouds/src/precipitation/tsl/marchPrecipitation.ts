@@ -19,10 +19,10 @@ import {
 import { fallenFrom, fallExtinction, type FallNodes } from './fall'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
-const STEPS = 1.4
+const STEPS = 0.6
 
-/** Longest stretch of a ray that is marched [m]: haze hides shafts beyond. */
-const LONGEST = 60_000
+/** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
+const LONGEST = 30_000
 
 /** Distance from which on nothing is marched [m]: shafts lie under their clouds then. */
 const FARTHEST = 150_000
