@@ -1,0 +1,7 @@
+import type { Atmosphere } from '../Atmosphere'
+import { rain } from './ParticleKind'
+import { Precipitation, type PrecipitationOptions } from './Precipitation'
+
+/** Rain around the camera: see {@link Precipitation}. */
+export const rainfall = (atmosphere: Atmosphere, options?: PrecipitationOptions): Precipitation =>
+  new Precipitation(atmosphere, rain, options)
