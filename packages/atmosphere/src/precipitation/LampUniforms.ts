@@ -60,7 +60,7 @@ export class LampUniforms {
     const { x: inside } = this.#inside
     const edge = this.#cone.w.min(inside.sub(1e-4))
     const cone = smoothstep(edge, inside, direction.dot(this.#cone.xyz))
-    return { illuminance: this.#light.xyz.mul(decay).mul(cone) as Vec3, direction }
+    return { illuminance: this.#light.xyz.mul(decay).mul(cone), direction }
   }
 }
 

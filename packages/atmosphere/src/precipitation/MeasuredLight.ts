@@ -45,7 +45,7 @@ class MeasuredRays {
   /** Illuminance of a plane towards it, at the place of a class. */
   illuminance(sizeClass: Float): Vec3 {
     const u = sizeClass.add(0.5).div(CLASSES)
-    return sampleLevel0(this.#texture, vec2(u as Float, 0.5)).rgb.mul(Math.PI) as Vec3
+    return sampleLevel0(this.#texture, vec2(u as Float, 0.5)).rgb.mul(Math.PI)
   }
 
   dispose(): void {
@@ -82,12 +82,12 @@ export class MeasuredLight {
       const { x, y, z, w } = this.#distances
       const near = texel.lessThan(0.5).select(x, y)
       const far = texel.lessThan(2.5).select(z, w)
-      return vec3(0, 0, texel.lessThan(1.5).select(near, far).negate()) as Vec3
+      return vec3(0, 0, texel.lessThan(1.5).select(near, far).negate())
     })()
     const normal = Fn((): Vec3 => {
       const axis = texel.mul(0.5).floor().toConst() as Float
       const sign = texel.sub(axis.mul(2)).mul(-2).add(1).toConst() as Float
-      const along = (n: number): Float => axis.equal(n).select(sign, float(0)) as Float
+      const along = (n: number): Float => axis.equal(n).select(sign, float(0))
       return (this.#axes as unknown as Mat3).mul(vec3(along(0), along(1), along(2))).normalize()
     })()
     this.#surfaces = new WhiteSurfaces('Welkin.PrecipitationSkylight', vec3(0, 0, 0), normal)
@@ -122,9 +122,9 @@ export class MeasuredLight {
         .add(2 * n + 0.5)
         .div(6)
       const read = sampleLevel0(this.#texture, vec2(u as Float, 0.5)).rgb.toConst()
-      return read.mul(component.mul(component)) as Vec3
+      return read.mul(component.mul(component))
     }
-    return faced(0, normal.x).add(faced(1, normal.y)).add(faced(2, normal.z)) as Vec3
+    return faced(0, normal.x).add(faced(1, normal.y)).add(faced(2, normal.z))
   }
 
   dispose(): void {

@@ -2,7 +2,7 @@ import { exp, float } from 'three/tsl'
 import { raindropSizes, snowflakeSizes, type SizeDistribution } from './cpu/sizes'
 import type { Float } from '../tsl-types'
 
-/** What tells drops from flakes. Diameters are those of the drop of water that a particle is or melts to [mm]. */
+/** Drops or flakes. Diameters are those of the drop of water that a particle is or melts to [mm]. */
 export interface ParticleKind {
   /** Name of the class, for errors. */
   readonly name: string
@@ -42,7 +42,7 @@ export const rain: ParticleKind = {
   edges: [0.5, 1, 2, 3, 6],
   reach: [2, 4, 8, 16],
   width: diameter => diameter.mul(1e-3),
-  speed: diameter => exp(diameter.mul(-0.6)).mul(-10.3).add(9.65).max(0) as Float,
+  speed: diameter => exp(diameter.mul(-0.6)).mul(-10.3).add(9.65).max(0),
   flutter: [0, 1],
   unevenness: 0,
   phase: [8.3, 0.12]
@@ -61,11 +61,11 @@ export const snow: ParticleKind = {
   edges: [0.3, 0.8, 1.6, 2.6, 5],
   reach: [2.5, 5, 10, 24],
   width: diameter => flakeWidth(diameter).mul(1e-3),
-  speed: diameter => flakeWidth(diameter).pow(0.16).mul(0.8) as Float,
+  speed: diameter => flakeWidth(diameter).pow(0.16).mul(0.8),
   flutter: [0.03, 1.1],
   unevenness: 0.25,
   phase: [3, 0.35]
 }
 
 /** Width of the flake that melts to a drop: ρ_s D³ = ρ_w D_m³ [mm]. */
-const flakeWidth = (diameter: Float): Float => float(diameter).pow(1.4437).mul(2.295) as Float
+const flakeWidth = (diameter: Float): Float => float(diameter).pow(1.4437).mul(2.295)

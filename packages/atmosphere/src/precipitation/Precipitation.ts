@@ -1,13 +1,5 @@
-import {
-  CustomBlending,
-  DoubleSide,
-  InstancedBufferGeometry,
-  Float32BufferAttribute,
-  Mesh,
-  OneFactor,
-  OneMinusSrcAlphaFactor
-} from 'three'
-import type { Camera, Light } from 'three'
+import { CustomBlending, DoubleSide, Mesh, OneFactor, OneMinusSrcAlphaFactor } from 'three'
+import type { Camera, InstancedBufferGeometry } from 'three'
 import { Node, NodeMaterial, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame } from 'three/webgpu'
 import {
@@ -24,77 +16,21 @@ import type { Vec4 } from '../tsl-types'
 import { DepthRays } from '../view/DepthRays'
 import { checkAtmosphere } from '../view/ViewNodes'
 import { FallingLattice, type PrecipitationWind } from './FallingLattice'
+import { chunkGeometry } from './chunkGeometry'
 import { isLamp, LampUniforms } from './LampUniforms'
 import { MeasuredLight } from './MeasuredLight'
 import type { ParticleKind } from './ParticleKind'
+import {
+  checkLights,
+  MEAN_SPEED,
+  OTHERS,
+  SETTINGS,
+  type PrecipitationOptions
+} from './PrecipitationOptions'
 import { PrecipitationShelter } from './PrecipitationShelter'
-import { CHUNK, PrecipitationUniforms } from './PrecipitationUniforms'
+import { PrecipitationUniforms } from './PrecipitationUniforms'
 import { particleFragment, particleVaryings } from './tsl/particleFragment'
 import { particleVertex } from './tsl/particleVertex'
-
-/** Options of {@link Precipitation}. */
-export interface PrecipitationOptions {
-  /** See {@link Precipitation.rate}; by default 5. */
-  rate?: number
-  /** See {@link Precipitation.wind}; by default none. */
-  wind?: PrecipitationWind
-  /** See {@link Precipitation.gusts}; by default 0.25. */
-  gusts?: number
-  /** See {@link Precipitation.shutter}; by default 1/120. */
-  shutter?: number
-  /** See {@link Precipitation.aperture}; by default 0.005. */
-  aperture?: number
-  /** See {@link Precipitation.focus}; by default 10. */
-  focus?: number
-  /** See {@link Precipitation.strength}; by default 1. */
-  strength?: number
-  /** See {@link Precipitation.time}; by default null. */
-  time?: number | null
-  /**
-   * Lights of the scene that fall on it: sun, moon and other directional lights, probes and ambient lights, and up to four
-   * `PointLight`s and `SpotLight`s. By default none.
-   */
-  lights?: readonly Light[]
-  /** Roofs that keep it off; by default none. Shared, not owned. */
-  shelter?: PrecipitationShelter
-  /** Depth that hides it, of `depthCamera`, for a scene of its own that is laid over a picture; by default the depth test does. */
-  depth?: Node
-  /** Camera that drew `depth`. */
-  depthCamera?: Camera
-  /** Most particles of each of four classes of size, a positive integer; by default 131,072. */
-  maxParticles?: number
-}
-
-const SETTINGS = [
-  'rate',
-  'wind',
-  'gusts',
-  'shutter',
-  'aperture',
-  'focus',
-  'strength',
-  'time'
-] as const
-const OTHERS = ['lights', 'shelter', 'depth', 'depthCamera', 'maxParticles'] as const
-
-/** Most lamps. */
-const LAMPS = 4
-/** Diameter whose speed of fall is the mean that roofs are seen along [mm]. */
-const MEAN_SPEED = { Rainfall: 6.5, Snowfall: 1 } as Record<string, number>
-
-/** Chunk of quads: corners in [−1, 1]², and the quad's number. */
-function chunkGeometry(): InstancedBufferGeometry {
-  const geometry = new InstancedBufferGeometry()
-  const corners: number[] = []
-  const index: number[] = []
-  for (let i = 0; i < CHUNK; i++) {
-    corners.push(-1, -1, i, 1, -1, i, -1, 1, i, 1, 1, i)
-    index.push(...[0, 1, 2, 2, 1, 3].map(n => 4 * i + n))
-  }
-  geometry.setAttribute('position', new Float32BufferAttribute(corners, 3))
-  geometry.setIndex(index)
-  return geometry
-}
 
 let made = 0
 
@@ -123,7 +59,7 @@ class PrecipitationNode extends Node<'vec4'> {
   }
 
   override setup(): Node {
-    return this.color as unknown as Node
+    return this.color
   }
 }
 
@@ -209,7 +145,7 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
     const uniforms = this.#uniforms
     const varyings = particleVaryings(`welkin${kind.name}${made++}`)
     const surroundings = { measured: this.#measured, lamps: this.#lamps, shelter: this.shelter }
-    const color = particleFragment(kind, varyings, rays, uniforms.unit as never)
+    const color = particleFragment(kind, varyings, rays, uniforms.unit)
     const before = (frame: NodeFrame): void => this.#prepare(frame)
     const node = new PrecipitationNode(color, before, frame => this.#update(frame))
     Object.assign(this.material, {
@@ -360,14 +296,4 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
     this.material.dispose()
     this.#measured.dispose()
   }
-}
-
-/** @throws If they are no lights, or more lamps than four. */
-function checkLights(where: string, lights: readonly Light[]): void {
-  if (!Array.isArray(lights)) fail(where, 'lights must be an array of Lights', lights)
-  lights.forEach((light: Light, i) => {
-    if (!light?.isLight) fail(where, `lights[${i}] must be a Light`, light)
-  })
-  const lamps = lights.filter(isLamp).length
-  if (lamps > LAMPS) fail(where, `lights must have at most ${LAMPS} lamps`, lamps)
 }

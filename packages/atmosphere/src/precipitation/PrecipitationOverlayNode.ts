@@ -5,7 +5,7 @@ import type { NodeFrame, TextureNode } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 import { checkCamera } from '../check'
 import { tableTarget } from '../tables/FragmentPass'
-import { sampleLevel0, type Vec2, type Vec4 } from '../tsl-types'
+import { sampleLevel0, type Vec4 } from '../tsl-types'
 import type { Precipitation } from './Precipitation'
 
 const _size = new Vector2()
@@ -65,9 +65,9 @@ export class PrecipitationOverlayNode extends Node<'vec4'> {
   override setup(): Node {
     return Fn((): Vec4 => {
       const color = vec4(this.colorNode as Vec4).toConst() as Vec4
-      const { rgb, a } = sampleLevel0(this.#texture, uv() as unknown as Vec2).toConst() as Vec4
+      const { rgb, a } = sampleLevel0(this.#texture, uv()).toConst() as Vec4
       return vec4(color.rgb.mul(a.oneMinus()).add(rgb), color.a)
-    })() as unknown as Node
+    })()
   }
 
   /** Frees its texture, not what falls. It can be used again. */

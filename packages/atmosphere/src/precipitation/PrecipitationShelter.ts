@@ -158,7 +158,7 @@ export class PrecipitationShelter {
     return roof
       .lessThanEqual(0)
       .or(at.z.lessThan(roof.add(BIAS)))
-      .or(isBeyond.x.max(isBeyond.y).greaterThan(0)) as Bool
+      .or(isBeyond.x.max(isBeyond.y).greaterThan(0))
   }
 
   /** Frees its texture and pipeline. It can be used again. */

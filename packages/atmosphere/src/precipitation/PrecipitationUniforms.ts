@@ -98,10 +98,10 @@ export class PrecipitationUniforms {
   classOf(chunk: Int): ClassNodes {
     const at = int(chunk).toFloat().toConst() as unknown as Float
     const isPast = (i: number) => at.greaterThanEqual(this.#sizes[i].w)
-    const pick = <T>(values: readonly T[]): Vec4 => {
-      const [a, b, c, d] = values as unknown as Vec4[]
+    const pick = (values: readonly unknown[]): Vec4 => {
+      const [a, b, c, d] = values as Vec4[]
       const far = isPast(3).select(d, c)
-      return isPast(2).select(far, isPast(1).select(b, a)).toConst() as Vec4
+      return isPast(2).select(far, isPast(1).select(b, a)).toConst()
     }
     const sizes = pick(this.#sizes)
     const box = pick(this.#boxes)

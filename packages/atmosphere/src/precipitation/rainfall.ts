@@ -1,6 +1,7 @@
 import type { Atmosphere } from '../Atmosphere'
 import { rain } from './ParticleKind'
-import { Precipitation, type PrecipitationOptions } from './Precipitation'
+import { Precipitation } from './Precipitation'
+import type { PrecipitationOptions } from './PrecipitationOptions'
 
 /** Rain around the camera: see {@link Precipitation}. */
 export const rainfall = (atmosphere: Atmosphere, options?: PrecipitationOptions): Precipitation =>

@@ -1,6 +1,7 @@
 import type { Atmosphere } from '../Atmosphere'
 import { snow } from './ParticleKind'
-import { Precipitation, type PrecipitationOptions } from './Precipitation'
+import { Precipitation } from './Precipitation'
+import type { PrecipitationOptions } from './PrecipitationOptions'
 
 /** Snow around the camera: see {@link Precipitation}. */
 export const snowfall = (atmosphere: Atmosphere, options?: PrecipitationOptions): Precipitation =>

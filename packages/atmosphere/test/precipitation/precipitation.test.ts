@@ -122,7 +122,7 @@ describe('drawn particles', () => {
 
 describe('FallingLattice', () => {
   const calm = { east: 0, north: 0 }
-  /** Where a particle stands from the camera, nearest to the middle of a box of 24 m. */
+  /** Place of a particle from the camera, nearest to the middle of a box of 24 m. */
   function place(lattice: FallingLattice): Vector3 {
     const [middle, drift] = [new Vector3(), new Vector3()]
     lattice.box(16, middle, drift)

@@ -10,7 +10,7 @@ export interface SizeDistribution {
  * Sizes of raindrops.
  *
  * @param rate - Rate of the rain, > 0 [mm/h].
- * @see Marshall & Palmer 1948, "The distribution of raindrops with size"
+ * @see Marshall & Palmer 1948, "The distribution of raindrops with size", eqs. 1–3
  */
 export const raindropSizes = (rate: number): SizeDistribution => ({
   intercept: 8000,
@@ -21,7 +21,7 @@ export const raindropSizes = (rate: number): SizeDistribution => ({
  * Sizes of snowflakes, by the drops that they melt to.
  *
  * @param rate - Rate of the snow as water, > 0 [mm/h].
- * @see Gunn & Marshall 1958, "The distribution with size of aggregate snowflakes"
+ * @see Gunn & Marshall 1958, "The distribution with size of aggregate snowflakes", J. Meteor. 15, p. 452
  */
 export const snowflakeSizes = (rate: number): SizeDistribution => ({
   intercept: 3800 * rate ** -0.87,

@@ -22,19 +22,19 @@ export function litParticle(
   direction: Vec3,
   place: Vec3
 ): Vec3 {
-  const behind = measured.radianceAround(direction.toConst() as Vec3)
+  const behind = measured.radianceAround(direction.toConst())
   const light = behind.mul(1 - even).toVar() as Vec3
-  const inFront = measured.radianceAround(direction.negate().toConst() as Vec3)
+  const inFront = measured.radianceAround(direction.negate().toConst())
   light.addAssign(behind.add(inFront).mul(even / 2))
   const view = place.normalize().toConst() as Vec3
   const phaseTo = (toLight: Vec3): Float => particlePhase(view.dot(toLight), concentration, even)
   for (const rays of measured.rays) {
     const direct = rays.illuminance(sizeClass)
-    light.addAssign(direct.mul(phaseTo(rays.direction as unknown as Vec3)))
+    light.addAssign(direct.mul(phaseTo(rays.direction)))
   }
   for (const lamp of lamps) {
     const { illuminance, direction: toLamp } = lamp.at(place)
     light.addAssign(illuminance.mul(phaseTo(toLamp)))
   }
-  return vec3(light) as Vec3
+  return vec3(light)
 }

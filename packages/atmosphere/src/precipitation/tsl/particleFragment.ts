@@ -1,12 +1,12 @@
 import { Fn, atan, float, screenUV, sin, smoothstep, varyingProperty, vec2, vec4 } from 'three/tsl'
-import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import type { DepthRays } from '../../view/DepthRays'
 import type { ParticleKind } from '../ParticleKind'
 
 /** Depth over which particles vanish in front of what the picture's depth has [m]. */
 const SOFTNESS = 0.1
 
-/** What a streak's corners hand to its pixels. */
+/** Values that a streak's corners hand to its pixels. */
 export interface ParticleVaryings {
   /** Place across and along the streak, over its outer radius. */
   readonly across: Vec2
@@ -17,9 +17,9 @@ export interface ParticleVaryings {
 }
 
 export const particleVaryings = (name: string): ParticleVaryings => ({
-  across: varyingProperty('vec2', `${name}Across`) as unknown as Vec2,
-  shape: varyingProperty('vec4', `${name}Shape`) as unknown as Vec4,
-  light: varyingProperty('vec4', `${name}Light`) as unknown as Vec4
+  across: varyingProperty('vec2', `${name}Across`),
+  shape: varyingProperty('vec4', `${name}Shape`),
+  light: varyingProperty('vec4', `${name}Light`)
 })
 
 /**
@@ -48,13 +48,10 @@ export function particleFragment(
     }
     opacity.mulAssign(smoothstep(shape.y, 1, radius).oneMinus())
     if (rays !== null) {
-      const { position, isSky } = rays.at(renderer, screenUV as unknown as Vec2)
-      const inFront = shape.w
-        .sub((position as Vec3).z)
-        .div(unit.mul(SOFTNESS))
-        .clamp()
+      const { position, isSky } = rays.at(renderer, screenUV)
+      const inFront = shape.w.sub(position.z).div(unit.mul(SOFTNESS)).clamp()
       opacity.mulAssign(isSky.select(float(1), inFront))
     }
     return vec4(light.rgb.mul(opacity), opacity)
-  })() as unknown as Vec4
+  })()
 }

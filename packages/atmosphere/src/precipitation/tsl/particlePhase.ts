@@ -11,5 +11,5 @@ import type { Float } from '../../tsl-types'
 export function particlePhase(cosScatter: Float, concentration: number, even: number): Float {
   const peak = ((1 - even) * 2 * concentration) / (1 - Math.exp(-2 * concentration))
   const lobe = exp(cosScatter.sub(1).mul(concentration)).mul(peak)
-  return lobe.add(even).mul(1 / (4 * Math.PI)) as Float
+  return lobe.add(even).mul(1 / (4 * Math.PI))
 }

@@ -30,5 +30,5 @@ export function streakShape(width: Float, length: Float, blur: Float): StreakSha
     .mul(half)
     .mul(Math.PI)
     .div(length.mul(inner.add(outer)).add(ends))
-  return { inner, outer, opacity: opacity as Float }
+  return { inner, outer, opacity: opacity }
 }

@@ -35,10 +35,10 @@ export const REACH_FADE = 0.7
 /** Numbers of a particle, the same at all times: even in [0, 1). */
 const randomOf = (particle: Int, sizeClass: Float): ((n: number) => Float) => {
   const seed = particle.mul(32).add(int(sizeClass).mul(8)).toConst()
-  return n => hash(seed.add(n) as never) as unknown as Float
+  return n => hash(seed.add(n))
 }
 
-/** What lights and hides particles. */
+/** Lights of particles, and roofs over them. */
 export interface ParticleSurroundings {
   readonly measured: MeasuredLight
   readonly lamps: readonly LampUniforms[]
@@ -58,7 +58,7 @@ export function particleVertex(
 ): Vec4 {
   return Fn((): Vec4 => {
     const corner = attribute('position', 'vec3') as unknown as Vec3
-    const at = uniforms.classOf(int(instanceIndex as never) as Int)
+    const at = uniforms.classOf(int(instanceIndex as never))
     const particle = int(instanceIndex as never)
       .sub(int(at.firstChunk))
       .mul(CHUNK)
@@ -136,7 +136,7 @@ export function particleVertex(
         const toCamera = head.add(tail).normalize().toConst() as Vec3
         const across = way.sub(toCamera.mul(way.dot(toCamera))).toConst() as Vec3
         const seenLength = across.length().toConst() as Float
-        const { inner, outer, opacity } = streakShape(width, seenLength, blur as Float)
+        const { inner, outer, opacity } = streakShape(width, seenLength, blur)
         const axis = seenLength.greaterThan(length.mul(1e-3)).select(across, vec3(0, 1e-6, 0))
         const along = axis
           .add(vec3(0, 1e-9, 0))
@@ -159,5 +159,5 @@ export function particleVertex(
       })
     })
     return clip
-  })() as unknown as Vec4
+  })()
 }
