@@ -1,7 +1,7 @@
 import { RenderTarget } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Street } from '../../stories/src/street/Street'
-import type { StreetStill } from './scenes'
+import type { StreetStill } from './streets'
 
 /** Time of fall [s]. */
 const TIME = 60

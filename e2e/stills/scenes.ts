@@ -1,5 +1,5 @@
 import type { CloudPresetName } from '@welkin/clouds'
-import type { StreetWeather } from '../../stories/src/street/Street'
+import { streets, type StreetStill } from './streets'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 
@@ -53,14 +53,6 @@ export interface TerrainStill {
     /** Elevation and azimuth of the sun, clockwise from north [°]. */
     sun: { elevation: number; azimuth: number }
   }
-}
-
-/** A still of the street of *Rain and snow, near*. */
-export interface StreetStill {
-  name: string
-  /** Features to look for. */
-  about: string
-  street: StreetWeather
 }
 
 /** A still of any kind. */
@@ -303,30 +295,6 @@ const terrains: TerrainStill[] = (
     sun: { elevation: 28, azimuth: heading + 100 }
   }
 }))
-
-const streets: StreetStill[] = [
-  {
-    name: 'rain-near',
-    about: 'a wet street by day: streaks of all lengths, faint ones behind; none under roofs',
-    street: { rain: 25, snow: 0, wind: 3, elevation: 25, shutter: 1 / 120 }
-  },
-  {
-    name: 'rain-none',
-    about: 'the same without rain: what it costs is the difference',
-    street: { rain: 0, snow: 0, wind: 3, elevation: 25, shutter: 1 / 120 }
-  },
-  {
-    name: 'snow-near',
-    about:
-      'snow in a street with lamps at night: cones of light, flakes of many sizes, soft near ones',
-    street: { rain: 0, snow: 2.5, wind: 1, elevation: -25, shutter: 1 / 60 }
-  },
-  {
-    name: 'rain-night',
-    about: 'rain under lamps at night: bright against the light',
-    street: { rain: 12, snow: 0, wind: 2, elevation: -25, shutter: 1 / 60 }
-  }
-]
 
 /** All stills, by name. */
 export const stills: readonly AnyStill[] = [

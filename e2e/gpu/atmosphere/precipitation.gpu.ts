@@ -71,68 +71,72 @@ gpuTest('rain and snow dim a view as much as their sizes say', async t => {
   }
 })
 
-gpuTest('rain is lit, hidden by depth and roofs, and frees its memory', async t => {
-  const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
-  const { scene, camera, atmosphere } = view()
-  const sun = new SunDirectionalLight(atmosphere)
-  const lamp = new PointLight('#ffffff', 5)
-  const spot = new SpotLight('#ffffff', 5)
-  const ambient = new AmbientLight('#ffffff', 1)
-  scene.add(sun, sun.target, lamp, spot, spot.target, ambient, new SkyLightProbe(atmosphere))
-  for (const light of [lamp, spot, spot.target]) light.position.copy(camera.position)
-  lamp.position.y += 2
-  const draw = async (): Promise<Picture> => {
-    await nextFrame()
-    return drawToFloat(renderer, () => renderer.render(scene, camera))
-  }
-  scene.updateMatrixWorld(true)
-  renderer.setClearColor(0, 1)
-  const shelter = new PrecipitationShelter(scene, { size: 64 })
-  const lights = scene.children.filter(child => 'isLight' in child) as never[]
-  const options = { rate: 40, lights, shelter, time: 10, maxParticles: 20_000 }
-  const falling: Precipitation = rainfall(atmosphere, options)
-  scene.add(falling)
-  const open = await draw()
-  expectLight(open, 'rain')
-  const light = mean(open, 1)
-  expectTrue(light > 0, `rain has light ${light}`)
+gpuTest(
+  'rain is lit, hidden by depth and roofs, and frees its memory',
+  async t => {
+    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
+    const { scene, camera, atmosphere } = view()
+    const sun = new SunDirectionalLight(atmosphere)
+    const lamp = new PointLight('#ffffff', 5)
+    const spot = new SpotLight('#ffffff', 5)
+    const ambient = new AmbientLight('#ffffff', 1)
+    scene.add(sun, sun.target, lamp, spot, spot.target, ambient, new SkyLightProbe(atmosphere))
+    for (const light of [lamp, spot, spot.target]) light.position.copy(camera.position)
+    lamp.position.y += 2
+    const draw = async (): Promise<Picture> => {
+      await nextFrame()
+      return drawToFloat(renderer, () => renderer.render(scene, camera))
+    }
+    scene.updateMatrixWorld(true)
+    renderer.setClearColor(0, 1)
+    const shelter = new PrecipitationShelter(scene, { size: 64 })
+    const lights = scene.children.filter(child => 'isLight' in child) as never[]
+    const options = { rate: 40, lights, shelter, time: 10, maxParticles: 20_000 }
+    const falling: Precipitation = rainfall(atmosphere, options)
+    scene.add(falling)
+    const open = await draw()
+    expectLight(open, 'rain')
+    const light = mean(open, 1)
+    expectTrue(light > 0, `rain has light ${light}`)
 
-  // A wall before the left half, nearer than the first drops.
-  const black = new MeshBasicMaterial({ color: 0, side: 2 })
-  const wall = new Mesh(new PlaneGeometry(1, 1), black)
-  camera.add(wall)
-  scene.add(camera)
-  wall.position.set(-0.5, 0, -0.1)
-  const walled = await draw()
-  expectTrue(mean(walled, 1, 0, 79) === 0, 'nothing is drawn behind the wall')
-  expectTrue(mean(walled, 1, 82) > 0, 'there is rain beside the wall')
-  camera.remove(wall)
+    // A wall before the left half, nearer than the first drops.
+    const black = new MeshBasicMaterial({ color: 0, side: 2 })
+    const wall = new Mesh(new PlaneGeometry(1, 1), black)
+    camera.add(wall)
+    scene.add(camera)
+    wall.position.set(-0.5, 0, -0.1)
+    const walled = await draw()
+    expectTrue(mean(walled, 1, 0, 79) === 0, 'nothing is drawn behind the wall')
+    expectTrue(mean(walled, 1, 82) > 0, 'there is rain beside the wall')
+    camera.remove(wall)
 
-  // A roof over all of the map, which the shelter knows of after its next drawing.
-  const roof = new Mesh(new PlaneGeometry(80, 80), black)
-  roof.rotation.x = Math.PI / 2
-  roof.position.copy(camera.position)
-  roof.position.y += 20
-  scene.add(roof)
-  shelter.needsUpdate = true
-  await draw()
-  const sheltered = await draw()
-  t.note(`light of rain ${light.toExponential(2)}, under a roof ${mean(sheltered, 1)}`)
-  expectTrue(mean(sheltered, 1) < 1e-6, 'it does not rain under the roof')
-  scene.remove(roof)
-  // Tables of the air stay; a second rain frees as much as it takes.
-  const before = renderer.info.memory.textures
-  const again = rainfall(atmosphere, { lights, rate: 1, time: 10 })
-  scene.add(again)
-  await draw()
-  const most = renderer.info.memory.textures
-  again.dispose()
-  expectTrue(most > before, `a second rain takes ${most - before} textures`)
-  expectTrue(renderer.info.memory.textures === before, 'and frees them')
-  falling.dispose()
-  shelter.dispose()
-  atmosphere.dispose()
-})
+    // A roof over all of the map, which the shelter knows of after its next drawing.
+    const roof = new Mesh(new PlaneGeometry(80, 80), black)
+    roof.rotation.x = Math.PI / 2
+    roof.position.copy(camera.position)
+    roof.position.y += 20
+    scene.add(roof)
+    shelter.needsUpdate = true
+    await draw()
+    const sheltered = await draw()
+    t.note(`light of rain ${light.toExponential(2)}, under a roof ${mean(sheltered, 1)}`)
+    expectTrue(mean(sheltered, 1) < 1e-6, 'it does not rain under the roof')
+    scene.remove(roof)
+    // Tables of the air stay; a second rain frees as much as it takes.
+    const before = renderer.info.memory.textures
+    const again = rainfall(atmosphere, { lights, rate: 1, time: 10 })
+    scene.add(again)
+    await draw()
+    const most = renderer.info.memory.textures
+    again.dispose()
+    expectTrue(most > before, `a second rain takes ${most - before} textures`)
+    expectTrue(renderer.info.memory.textures === before, 'and frees them')
+    falling.dispose()
+    shelter.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'precipitationOverlay draws in front of the depth that it is given',
