@@ -2,6 +2,7 @@ import type { CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 import { falling } from './falling'
+import { streets, type StreetStill } from './streets'
 
 /** A still: what is in it, where the sun stands, and where the camera looks. */
 export interface Still {
@@ -57,7 +58,7 @@ export interface TerrainStill {
 }
 
 /** A still of any kind. */
-export type AnyStill = Still | ValleyStill | TerrainStill
+export type AnyStill = Still | ValleyStill | TerrainStill | StreetStill
 
 /** The presets from the ground: where to look. */
 const presets: Partial<Record<CloudPresetName, { azimuth: number; pitch: number }>> = {
@@ -302,6 +303,7 @@ export const stills: readonly AnyStill[] = [
   ...falling,
   ...valleys,
   ...terrains,
+  ...streets,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',
