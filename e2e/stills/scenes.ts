@@ -1,6 +1,8 @@
-import type { CloudPresetName } from '@welkin/clouds'
+import type { CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
+import { falling } from './falling'
+import { streets, type StreetStill } from './streets'
 
 /** A still: what is in it, where the sun stands, and where the camera looks. */
 export interface Still {
@@ -8,7 +10,7 @@ export interface Still {
   /** Features to look for. */
   about: string
   /** Preset of clouds; default: a clear sky. */
-  clouds?: { preset: CloudPresetName; coverage?: number }
+  clouds?: { preset: CloudPresetName; coverage?: number; precipitation?: CloudPrecipitation }
   /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
@@ -18,7 +20,8 @@ export interface Still {
   /** Light shafts, of hills and clouds. */
   shafts?: true
   planet?: 'mars'
-  /** Camera above the ellipsoid [m]. */
+  /** Place of the camera, default Tokyo [°], and its altitude above the ellipsoid [m]. */
+  place?: { longitude: number; latitude: number }
   altitude: number
   /** Elevation and azimuth of the sun, clockwise from north [°]; or a date, which sets moon and stars too. */
   sun: { elevation: number; azimuth: number } | Date
@@ -55,10 +58,10 @@ export interface TerrainStill {
 }
 
 /** A still of any kind. */
-export type AnyStill = Still | ValleyStill | TerrainStill
+export type AnyStill = Still | ValleyStill | TerrainStill | StreetStill
 
 /** The presets from the ground: where to look. */
-const presets: Record<CloudPresetName, { azimuth: number; pitch: number }> = {
+const presets: Partial<Record<CloudPresetName, { azimuth: number; pitch: number }>> = {
   fairWeather: { azimuth: 330, pitch: 14 },
   stratocumulus: { azimuth: 30, pitch: 14 },
   overcast: { azimuth: 30, pitch: 10 },
@@ -268,19 +271,14 @@ const valleys: ValleyStill[] = [
 /** The made-up planet: at one's feet, among its mountains, and from far above. */
 const terrains: TerrainStill[] = (
   [
-    ['grass', 'a meadow: blades and tufts, no repetition', [0.886377, 47.171687, 1.7], [60, -12]],
-    [
-      'feet',
-      "the same meadow before one's feet: detail to 1 cm",
-      [0.886377, 47.171687, 1.7],
-      [60, -50]
-    ],
-    ['scree', 'stones between meadow and rock', [0.979909, 46.485055, 1.7], [150, -12]],
-    ['snow', 'snow and rock about a summit', [1.246555, 46.250288, 1.7], [240, -8]],
-    ['shore', 'sand, wet where the sea begins', [0.763649, 46.111121, 1.7], [10, -10]],
-    ['1km', 'slopes, valleys and cliffs in low sun', [1, 47, 1e3], [0, -12]],
-    ['10km', 'ranges without shimmer or grid', [1, 46.2, 1e4], [0, -12]],
-    ['400km', 'ranges from orbit: no net', [1, 44, 4e5], [0, -25]]
+    ['grass', 'a meadow: blades and tufts, no repetition', [0.494, 46.35, 1.7], [338, -8]],
+    ['feet', "the same meadow before one's feet: detail to 1 cm", [0.494, 46.35, 1.7], [338, -50]],
+    ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
+    ['snow', 'snow and rock about a summit', [0.438, 47.41, 1.7], [200, -8]],
+    ['shore', 'sand, wet where the sea begins', [1.32, 46.19, 1.7], [350, -8]],
+    ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
+    ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
+    ['400km', 'a mountainous coast from orbit: no net', [1, 44.5, 4e5], [0, -25]]
   ] as const
 ).map(([name, about, [longitude, latitude, height], [heading, pitch]]) => ({
   name: `terrain-${name}`,
@@ -302,8 +300,10 @@ export const stills: readonly AnyStill[] = [
   ...optics,
   ...halos,
   ...rainbows,
+  ...falling,
   ...valleys,
   ...terrains,
+  ...streets,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',
