@@ -282,16 +282,18 @@ export class HeightFog implements SkyLayer {
       const sharp = this.droplets.phase({ cosViewLight, cosView, cosLight }).sub(smooth)
       once = once.add(sharp.mul(scaled.div(this.#asymmetry.oneMinus()).negate().exp()))
     }
-    const often = multipleScattering(above, total, cosSlant)
+    const multiple = multipleScattering(above, total, cosSlant)
     const clouds = this.overcast?.light(source, cosLight)
-    const clear = lightTransmittance(uniforms, air.transmittance, altitude, cosLight)
-    const light = (clouds === undefined ? clear : clear.mul(clouds.direct)).toConst()
+    const light = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).toConst()
     const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
     const basis = momentBasis(cosView, cosLight, cosViewLight)
     const asymmetry = vec4(this.#asymmetry)
     const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry)).max(0)
-    const diffuse = (clouds === undefined ? sky : sky.mul(clouds.diffuse)).div(RADIANCE_SCALE)
-    return { once: light.mul(once), often: light.mul(often).add(diffuse) }
+    const often = light.mul(multiple).add(sky.div(RADIANCE_SCALE))
+    const first = light.mul(once)
+    return clouds === undefined
+      ? { once: first, often }
+      : { once: first.mul(clouds.direct), often: often.mul(clouds.diffuse) }
   }
 }
 

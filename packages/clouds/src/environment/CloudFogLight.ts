@@ -1,4 +1,9 @@
-import { FragmentPass, tableTarget } from '@welkin/atmosphere'
+import {
+  FragmentPass,
+  horizontalIrradiance,
+  tableTarget,
+  transmittanceToLight
+} from '@welkin/atmosphere'
 import type {
   AtmosphereView,
   DistanceFog,
@@ -14,10 +19,13 @@ import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { decksAround } from './tsl/decks'
-import { diffuseRatio } from './tsl/overcast'
+import { overcastIrradiance } from './tsl/overcast'
 
 /** Cosines of the light that the table holds: they crowd about the horizon. */
 const COLUMNS = 64
+
+/** Greatest factor on light that is scattered more than once: at dusk there is next to none. */
+const MOST = 10
 
 /** Clouds in the light of fog: see {@link cloudFogLight}. */
 export class CloudFogLight implements FogOvercast {
@@ -25,7 +33,7 @@ export class CloudFogLight implements FogOvercast {
   readonly fog: HeightFog | DistanceFog
   /** Clouds that change its light; shared, not owned. */
   readonly clouds: CloudsNode
-  /** Diffuse light among clouds over that without in one row, the part of direct light that passes in the other. */
+  /** All light on level ground under clouds over that without in one row, the part of direct light that passes in the other. */
   readonly #target = tableTarget('Welkin.CloudFogLight', COLUMNS, 2)
   readonly #table: TextureNode = texture(this.#target.texture)
   readonly #altitude = number()
@@ -91,7 +99,16 @@ export class CloudFogLight implements FogOvercast {
       const decks = decksAround(field, light.nodes, offset, altitude, up, cosLight)
       const result = vec4(decks.above.beam).toVar()
       If(texel.y.lessThan(0.5), () => {
-        result.assign(diffuseRatio(view, decks, altitude, cosLight))
+        const { uniforms, transmittance, diffuse } = view.air
+        const direct = transmittanceToLight(uniforms, transmittance, altitude, cosLight)
+          .mul(cosLight.max(0))
+          .toConst() as Vec4
+        const sky = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight).up.toConst()
+        const plane = { view, offset, altitude, up, cosLight, cosNormal: float(1) }
+        const cloudy = overcastIrradiance(field, light.nodes, plane, offset, sky as Vec4)
+        result.assign(
+          cloudy.add(direct.mul(decks.above.beam)).div(direct.add(sky).max(1e-20)).min(MOST)
+        )
       })
       return result
     })()
@@ -116,7 +133,7 @@ export class CloudFogLight implements FogOvercast {
  * cloudFogLight(mist, cloudsNode) // before the first render; `dispose()` ends it
  * ```
  *
- * It is the mean over some kilometres below the clouds' camera, from the weather alone. Where light shafts
+ * Light that is scattered once loses what clouds take from the sun, all other light as much as level ground has less. It is the mean over some kilometres below the clouds' camera, from the weather alone. Where light shafts
  * have the shadows of the clouds (`cloudAirShadow`), those count in its place. Layers whose `shadow` is false have
  * no part in it.
  *
