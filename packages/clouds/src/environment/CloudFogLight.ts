@@ -105,7 +105,7 @@ export class CloudFogLight implements FogOvercast {
           .toConst() as Vec4
         const sky = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight).up.toConst()
         const plane = { view, offset, altitude, up, cosLight, cosNormal: float(1) }
-        const cloudy = overcastIrradiance(field, light.nodes, plane, offset, sky as Vec4)
+        const cloudy = overcastIrradiance(field, light.nodes, plane, offset, sky)
         result.assign(
           cloudy.add(direct.mul(decks.above.beam)).div(direct.add(sky).max(1e-20)).min(MOST)
         )
