@@ -109,7 +109,7 @@ export class DistanceFog implements SkyLayer {
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const color = this.#color(ray).mul(ray.view.source.irradiance)
+      const color = this.#color(ray, raisedSky(ray).light.mul(ray.view.source.irradiance))
       const fog = this.#depth(distance)
       const through = fog.negate().exp().toConst()
       light.assign(air.radiance.mul(through).add(color.mul(through.oneMinus())))
@@ -120,17 +120,28 @@ export class DistanceFog implements SkyLayer {
 
   shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
     if (!isSun) return null
-    const { once, often } = this.#parts(ray)
+    const { light: sky, cosView, cosViewLight } = raisedSky(ray)
+    const light = this.#color(ray, sky)
+    // The sky's light is scattered once in about the part that it is at the camera.
+    const { air, height, viewpoint } = ray.view
+    const altitude = height.clamp(0, air.uniforms.thickness) as Float
+    const here = { altitude, cosView, cosLight: viewpoint.cosLight, cosViewLight }
+    const density = densities(air.uniforms, altitude)
+    const [direct, diffuse] = [true, false].map(direct => {
+      const parts = sourceFunction(air, here, float(0), density, { direct, diffuse: !direct })
+      return scatteredRadiance(air.uniforms, parts, cosViewLight).toConst()
+    })
+    const part = direct.div(direct.add(diffuse).max(1e-30)).toConst()
     // The sky has no such fog.
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
     const through = isSky.select(1, this.#depth(ray.distance).negate().exp()).toConst() as Float
-    const added = through.oneMinus().toConst() as Float
+    const added = light.mul(through.oneMinus()).toConst()
     const inverse = this.#density.max(1e-12).reciprocal().toConst()
     return {
       front: float(0),
       transmittance: through,
-      singleScattered: once.mul(added).toConst(),
-      multiplyScattered: often.mul(added).toConst(),
+      singleScattered: added.mul(part).toConst(),
+      multiplyScattered: added.mul(part.oneMinus()).toConst(),
       distanceAt(share) {
         const depth = share.mul(through.oneMinus()).oneMinus().log().negate()
         return depth.max(0).sqrt().mul(inverse).min(ray.distance).toConst()
@@ -138,33 +149,11 @@ export class DistanceFog implements SkyLayer {
     }
   }
 
-  /** Its colour, for unit irradiance of the sun [1/sr]. */
-  #color(ray: LayerRay): Vec4 {
-    if (this.overcast === null) return this.#shown(raisedSky(ray).light)
-    const { once, often } = this.#parts(ray)
-    return once.add(often)
-  }
-
-  /** Its colour, of light that is scattered once and more often, for unit irradiance of the sun [1/sr]. */
-  #parts(ray: LayerRay): { once: Vec4; often: Vec4 } {
-    const { light, cosView, cosViewLight } = raisedSky(ray)
-    const sky = this.#shown(light)
-    // The sky's light is scattered once in about the part that it is at the camera.
-    const { air, height, source, viewpoint } = ray.view
-    const { cosLight } = viewpoint
-    const altitude = height.clamp(0, air.uniforms.thickness) as Float
-    const here = { altitude, cosView, cosLight, cosViewLight }
-    const density = densities(air.uniforms, altitude)
-    const [direct, diffuse] = [true, false].map(direct => {
-      const parts = sourceFunction(air, here, float(0), density, { direct, diffuse: !direct })
-      return scatteredRadiance(air.uniforms, parts, cosViewLight).toConst()
-    })
-    const part = direct.div(direct.add(diffuse).max(1e-30)).toConst()
-    const [once, often] = [sky.mul(part), sky.mul(part.oneMinus())]
-    const clouds = this.overcast?.light(source, cosLight)
-    return clouds === undefined
-      ? { once, often }
-      : { once: once.mul(clouds.direct), often: often.mul(clouds.diffuse) }
+  /** Its colour, for unit irradiance of the sun [1/sr]: that of the sky, under clouds as much darker as the ground. */
+  #color({ view: { source, viewpoint } }: LayerRay, sky: Vec4): Vec4 {
+    const shown = this.#shown(sky)
+    const clouds = this.overcast?.light(source, viewpoint.cosLight)
+    return clouds === undefined ? shown : shown.mul(clouds.diffuse)
   }
 
   /** Light of the sky as layers before the fog show it. */

@@ -133,9 +133,10 @@ export class CloudFogLight implements FogOvercast {
  * cloudFogLight(mist, cloudsNode) // before the first render; `dispose()` ends it
  * ```
  *
- * Light that is scattered once loses what clouds take from the sun, all other light as much as level ground has less. It is the mean over some kilometres below the clouds' camera, from the weather alone. Where light shafts
- * have the shadows of the clouds (`cloudAirShadow`), those count in its place. Layers whose `shadow` is false have
- * no part in it.
+ * Mist loses of the light that it scatters once what clouds take from the sun, and of all other light as much as level
+ * ground does; distance fog all as the ground. It is the mean over some kilometres below the clouds' camera, from
+ * the weather alone. Where light shafts have the shadows of the clouds (`cloudAirShadow`), those count in its
+ * place. Layers whose `shadow` is false have no part in it.
  *
  * @throws If an argument is missing, or the fog has clouds already.
  */
