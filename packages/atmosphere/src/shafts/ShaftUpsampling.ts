@@ -1,8 +1,9 @@
-import type { Vector2 } from 'three'
+import { Vector2 } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import { vector2 } from '../uniforms'
 
 /**
  * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
@@ -14,6 +15,8 @@ const OTHER_DEPTH = 0.8
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
 
+const _size = new Vector2()
+
 /** A grid of pixels: in the left half light, in the right one log₂ of the distance, the least and the greatest one around, and lit air. */
 export interface PixelGrid {
   readonly texels: TextureNode
@@ -23,15 +26,20 @@ export interface PixelGrid {
   readonly texelSize: UniformNode<'vec2', Vector2>
 }
 
+/** Blocks of the target: mean light at the corners of the grid's texels, and copies of either half of the grid. */
+const BLOCKS = 3
+const [MEANS, LIGHT, DISTANCES] = [0, 1, 2]
+
 /**
  * Light of a grid of pixels for those between them: by depth, and smooth where that is about the same. Sums of four are
- * made beforehand, so that a pixel has two reads in place of nine.
+ * made beforehand, so that a pixel has two reads in place of five, of one texture.
  */
 export class ShaftUpsampling {
-  /** At the corners of the grid's texels: in the left half the mean light of the four, in the right one their distances. */
-  readonly #target = tableTarget('Welkin.LightShafts.corners', 1, 1)
-  readonly #corners: TextureNode = texture(this.#target.texture)
+  readonly #target = tableTarget('Welkin.LightShafts.blocks', 1, 1)
+  readonly #blocks: TextureNode = texture(this.#target.texture)
   readonly #grid: PixelGrid
+  /** Direction in which blocks follow each other: across the longer edge. */
+  readonly #stack = vector2()
   #pass: FragmentPass | null = null
 
   constructor(grid: PixelGrid) {
@@ -41,64 +49,53 @@ export class ShaftUpsampling {
   /** Follows the size of the grid. */
   resize(): void {
     const { x, y } = this.#grid.size.value
-    this.#target.setSize(2 * x + 2, y + 1)
+    const isWide = x > y
+    this.#stack.value.set(isWide ? 0 : 1, isWide ? 1 : 0)
+    const { width, height } = _size
+      .copy(this.#stack.value)
+      .multiplyScalar(BLOCKS - 1)
+      .addScalar(1)
+    this.#target.setSize((x + 1) * width, (y + 1) * height)
   }
 
   /** Draws what pixels read, once the grid is drawn. */
   draw(renderer: Renderer): void {
-    this.#pass ??= new FragmentPass('Welkin.LightShafts.corners', this.#corner())
+    this.#pass ??= new FragmentPass('Welkin.LightShafts.blocks', this.#texel())
     this.#pass.render(renderer, this.#target)
   }
 
-  #read(texel: Vec2): Vec4 {
-    return sampleLevel0(this.#grid.texels, texel.mul(this.#grid.texelSize)).toConst()
+  /** Size of a block, one more than that of the grid, and of all of them [texels]. */
+  #sizes(): { block: Vec2; all: Vec2 } {
+    const block = this.#grid.size.add(1).toConst() as Vec2
+    return { block, all: block.mul(this.#stack.mul(BLOCKS - 1).add(1)) as Vec2 }
   }
 
-  /** Reads the corners, counted from 0; either half at any place between them. */
-  #readCorner(corner: Vec2, half: 0 | 1): Vec4 {
-    const corners = this.#grid.size.add(1).toConst() as Vec2
-    const inHalf = corner.min(corners.sub(1)).add(0.5)
-    const at = inHalf.add(vec2(corners.x.mul(half), 0)).div(vec2(corners.x.mul(2), corners.y))
-    return sampleLevel0(this.#corners, at).toConst()
-  }
-
-  /** A texel of the corners. */
-  #corner(): Vec4 {
-    const { size } = this.#grid
+  /** A texel of the blocks. */
+  #texel(): Vec4 {
+    const { size, texels, texelSize } = this.#grid
+    const read = (texel: Vec2): Vec4 => sampleLevel0(texels, texel.mul(texelSize)).toConst()
     return Fn((): Vec4 => {
-      const corners = size.add(1).toConst() as Vec2
-      const corner = uv()
-        .mul(vec2(corners.x.mul(2), corners.y))
-        .floor()
-        .toVar() as Vec2
+      const { block, all } = this.#sizes()
+      const at = uv().mul(all).floor().toConst() as Vec2
+      const number = at.div(block).dot(this.#stack).add(1e-4).floor().toConst() as Float
+      const here = at.sub(block.mul(this.#stack).mul(number)).toConst() as Vec2
       const result = vec4(0).toVar()
-      If(corner.x.lessThan(corners.x), () => {
-        // Bilinear reads have the mean at once, and not that of the other half.
-        result.assign(this.#read(corner.min(vec2(size.x.sub(0.5), size.y))))
+      If(number.lessThan(0.5), () => {
+        // Bilinear reads at a corner have the mean at once, and not that of the other half.
+        result.assign(read(here.min(vec2(size.x.sub(0.5), size.y))))
       }).Else(() => {
-        corner.x.subAssign(corners.x)
-        const distances = this.#around(corner.sub(1)).map(at => this.#distances(at).x)
-        result.assign(vec4(distances[0], distances[1], distances[2], distances[3]))
+        const half = vec2(size.x.mul(number.sub(1)), 0)
+        result.assign(read(here.min(size.sub(1)).add(0.5).add(half)))
       })
       return result
     })()
   }
 
-  /** Middles of four texels of the grid that touch. */
-  #around(first: Vec2): Vec2[] {
-    return [0, 1, 2, 3].map(
-      i =>
-        first
-          .add(vec2(i % 2, i >> 1))
-          .clamp(vec2(0), this.#grid.size.sub(1))
-          .add(0.5)
-          .toConst() as Vec2
-    )
-  }
-
-  /** Distances at a texel of the grid, and lit air. */
-  #distances(middle: Vec2): Vec4 {
-    return this.#read(middle.add(vec2(this.#grid.size.x, 0)))
+  /** Reads a block, at a place in texels. */
+  #read(block: number, place: Vec2): Vec4 {
+    const { block: size, all } = this.#sizes()
+    const at = place.add(size.mul(this.#stack).mul(block)).div(all)
+    return sampleLevel0(this.#blocks, at).toConst()
   }
 
   /**
@@ -110,31 +107,39 @@ export class ShaftUpsampling {
    * @param litAir - Its lit air: asked for where no texel is of its depth.
    */
   light(place: Vec2, own: Float, litAir: () => Float): Vec4 {
-    const nearest = place.add(0.5).floor().min(this.#grid.size.sub(1)).toConst() as Vec2
-    const { y: least, z: greatest } = this.#distances(nearest.add(0.5))
+    const { size } = this.#grid
+    const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
+    const { y: least, z: greatest } = this.#read(DISTANCES, nearest.add(0.5))
     const light = vec4(0).toVar()
     If(own.sub(least).max(greatest.sub(own)).lessThan(SAME_DEPTH), () => {
-      light.assign(this.#readCorner(place.add(0.5), 0))
+      light.assign(this.#read(MEANS, place.add(1).min(size.add(0.5))))
     }).Else(() => {
       const first = place.floor().toConst() as Vec2
-      const apart = this.#readCorner(first.add(1), 1).sub(own).abs()
-      const weights = apart
+      const middles = [0, 1, 2, 3].map(
+        i =>
+          first
+            .add(vec2(i % 2, i >> 1))
+            .clamp(vec2(0), size.sub(1))
+            .add(0.5)
+            .toConst() as Vec2
+      )
+      const [a, b, c, d] = middles.map(middle => this.#read(DISTANCES, middle))
+      const weights = vec4(a.x, b.x, c.x, d.x)
+        .sub(own)
+        .abs()
         .sub(OTHER_DEPTH)
         .div(SAME_DEPTH - OTHER_DEPTH)
         .clamp(MIN_WEIGHT, 1)
         .toVar()
-      const middles = this.#around(first)
       const isAlone = weights.x.max(weights.y).max(weights.z.max(weights.w)).lessThan(1).toConst()
       const sum = weights.dot(vec4(1)).toConst()
       If(isAlone, () => {
         // Of light that others have more of, or less, the same part.
-        const lit = middles.map(middle => this.#distances(middle).w)
-        weights.mulAssign(vec4(litAir()).div(vec4(lit[0], lit[1], lit[2], lit[3])))
+        weights.mulAssign(vec4(litAir()).div(vec4(a.w, b.w, c.w, d.w)))
       })
-      const [a, b, c, d] = middles.map(middle => this.#read(middle))
       const { x, y, z, w } = weights
-      const all = a.mul(x).add(b.mul(y)).add(c.mul(z)).add(d.mul(w))
-      light.assign(all.div(float(sum)))
+      const parts = [x, y, z, w].map((weight, i) => this.#read(LIGHT, middles[i]).mul(weight))
+      light.assign(parts.reduce((total, part) => total.add(part)).div(float(sum)))
     })
     return light
   }
