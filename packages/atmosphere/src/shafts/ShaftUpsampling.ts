@@ -67,7 +67,7 @@ export class ShaftUpsampling {
   /** Size of a block, one more than that of the grid, and of all of them [texels]. */
   #sizes(): { block: Vec2; all: Vec2 } {
     const block = this.#grid.size.add(1).toConst() as Vec2
-    return { block, all: block.mul(this.#stack.mul(BLOCKS - 1).add(1)) as Vec2 }
+    return { block, all: block.mul(this.#stack.mul(BLOCKS - 1).add(1)) }
   }
 
   /** A texel of the blocks. */
