@@ -119,11 +119,7 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     if (ray === null) return without(air, this.#strength, view, () => this.#lostHere())
     if (this.#isElsewhere) return air
-    const { direction, cosView, ...to } = ray
-    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
-    return without(air, this.#strength, view, () =>
-      this.#lostTo({ direction, cosView, cosViewLight, distance: distanceOf(to) })
-    )
+    return without(air, this.#strength, view, () => this.#lostTo(distanceOf(ray)))
   }
 
   drawIn(frame: NodeFrame, sun: object): void {
@@ -144,7 +140,9 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light that the pixel loses, for unit irradiance [1/sr]. */
   #lostHere(): Vec4 {
-    return Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, this.#place, true)))()
+    return Fn(({ renderer }): Vec4 =>
+      this.#lostTo(this.#rayTo(renderer, this.#place, true).distance)
+    )()
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
@@ -274,13 +272,12 @@ export class ScreenShafts implements ScreenShadows {
   /**
    * Light that a pixel loses, for unit irradiance [1/sr].
    *
-   * @param ray - View ray to what is seen in it.
+   * @param distance - Distance to what is seen in it [m].
    */
-  #lostTo(ray: ShaftRay): Vec4 {
+  #lostTo(distance: Float): Vec4 {
     const place = this.#place.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
-    const own = log2(ray.distance).toConst() as Float
-    const light = this.#upsampling.light(place, own, () => this.#litAir(ray))
-    return light.mul(this.#growth(ray.distance)).div(LIGHT_SCALE)
+    const own = log2(distance).toConst() as Float
+    return this.#upsampling.light(place, own).mul(this.#growth(distance)).div(LIGHT_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */

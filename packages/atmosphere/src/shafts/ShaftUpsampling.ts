@@ -1,5 +1,5 @@
 import { Vector2 } from 'three'
-import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, step, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
@@ -104,9 +104,8 @@ export class ShaftUpsampling {
    *
    * @param place - Place in the grid, counted in texels from the middle of the first.
    * @param own - log₂ of the pixel's distance.
-   * @param litAir - Its lit air: asked for where no texel is of its depth.
    */
-  light(place: Vec2, own: Float, litAir: () => Float): Vec4 {
+  light(place: Vec2, own: Float): Vec4 {
     const { size } = this.#grid
     const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
     const { y: least, z: greatest } = this.#read(DISTANCES, nearest.add(0.5))
@@ -124,22 +123,23 @@ export class ShaftUpsampling {
             .toConst() as Vec2
       )
       const [a, b, c, d] = middles.map(middle => this.#read(DISTANCES, middle))
-      const weights = vec4(a.x, b.x, c.x, d.x)
-        .sub(own)
-        .abs()
+      const apart = vec4(a.x, b.x, c.x, d.x).sub(own).abs().toConst() as Vec4
+      const weights = apart
         .sub(OTHER_DEPTH)
         .div(SAME_DEPTH - OTHER_DEPTH)
         .clamp(MIN_WEIGHT, 1)
-        .toVar()
-      const isAlone = weights.x.max(weights.y).max(weights.z.max(weights.w)).lessThan(1).toConst()
-      const sum = weights.dot(vec4(1)).toConst()
-      If(isAlone, () => {
-        // Of light that others have more of, or less, the same part.
-        weights.mulAssign(vec4(litAir()).div(vec4(a.w, b.w, c.w, d.w)))
-      })
-      const { x, y, z, w } = weights
-      const parts = [x, y, z, w].map((weight, i) => this.#read(LIGHT, middles[i]).mul(weight))
-      light.assign(parts.reduce((total, part) => total.add(part)).div(float(sum)))
+        .toConst() as Vec4
+      // Of light that others have more of, or less, the same part: as much as the one nearest in depth.
+      const lit = vec4(a.w, b.w, c.w, d.w).toConst() as Vec4
+      const least = apart.x.min(apart.y).min(apart.z.min(apart.w))
+      const isNearest = step(apart, vec4(least)).toConst() as Vec4
+      const litHere = isNearest.dot(lit).div(isNearest.dot(vec4(1)))
+      const parts = weights.mul(vec4(litHere).div(lit)).toConst() as Vec4
+      const { x, y, z, w } = parts
+      const sum = [x, y, z, w]
+        .map((part, i) => this.#read(LIGHT, middles[i]).mul(part))
+        .reduce((total, part) => total.add(part))
+      light.assign(sum.div(weights.dot(vec4(1))))
     })
     return light
   }
