@@ -1,14 +1,22 @@
 import { Vector2 } from 'three'
 import type { RenderTarget } from 'three'
 import { Fn, If, bool, float, log2, screenUV, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
 import { linearSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import {
+  loop,
+  sampleLevel0,
+  type Bool,
+  type Float,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -19,7 +27,16 @@ import type { CameraShafts } from './CameraShafts'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR, without } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
-import { ShaftUpsampling } from './ShaftUpsampling'
+
+/**
+ * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
+ * silhouettes; smaller: the march's pixels show on slopes (*Towers in haze*).
+ */
+const SAME_DEPTH = 0.35
+const OTHER_DEPTH = 0.8
+
+/** Least weight in the bilateral upsampling: that of pixels of another depth. */
+const MIN_WEIGHT = 1e-3
 
 /** Greatest light that the target keeps: half floats hold a little more; and scale of light in it. */
 const MOST = 6e4
@@ -55,7 +72,7 @@ export class ScreenShafts implements ScreenShadows {
   readonly #freePath = number(1)
   /** 1 if there is a medium, such as fog, in the light of the shafts. */
   readonly #hasMedia = number()
-  readonly #upsampling: ShaftUpsampling
+  readonly #texels: TextureNode
   #pass: FragmentPass | null = null
   /** Version of the shafts that the pass is of. */
   #compiled = 0
@@ -70,11 +87,7 @@ export class ScreenShafts implements ScreenShadows {
     this.#isMesh = depthNode === null
     this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
-    this.#upsampling = new ShaftUpsampling({
-      texels: texture(this.target.texture),
-      size: this.#gridSize,
-      texelSize: this.#texelSize
-    })
+    this.#texels = texture(this.target.texture)
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -88,7 +101,6 @@ export class ScreenShafts implements ScreenShadows {
     const { x, y } = this.#gridSize.value
     this.target.setSize(2 * x, y)
     this.#texelSize.value.set(0.5 / x, 1 / y)
-    this.#upsampling.resize()
     if (!shafts.isActive) return
     // What is drawn here and now reads the view, and media in it.
     shafts.view.update(view)
@@ -106,7 +118,6 @@ export class ScreenShafts implements ScreenShadows {
       this.#compiled = shafts.version
     }
     this.#pass.render(renderer, this.target)
-    this.#upsampling.draw(renderer)
   }
 
   update(view: AtmosphereView): void {
@@ -119,7 +130,11 @@ export class ScreenShafts implements ScreenShadows {
     const { view } = this.#shafts
     if (ray === null) return without(air, this.#strength, view, () => this.#lostHere())
     if (this.#isElsewhere) return air
-    return without(air, this.#strength, view, () => this.#lostTo(distanceOf(ray)))
+    const { direction, cosView, ...to } = ray
+    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+    return without(air, this.#strength, view, () =>
+      this.#lostTo({ direction, cosView, cosViewLight, distance: distanceOf(to) })
+    )
   }
 
   drawIn(frame: NodeFrame, sun: object): void {
@@ -140,9 +155,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light that the pixel loses, for unit irradiance [1/sr]. */
   #lostHere(): Vec4 {
-    return Fn(({ renderer }): Vec4 =>
-      this.#lostTo(this.#rayTo(renderer, this.#place, true).distance)
-    )()
+    return Fn(({ renderer }): Vec4 => this.#lostTo(this.#rayTo(renderer, this.#place)))()
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
@@ -229,10 +242,10 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
-  #rayTo(renderer: Renderer, at: Vec2, isOwn = false): ShaftRay {
+  #rayTo(renderer: Renderer, at: Vec2): ShaftRay {
     const { position, isSky } = this.#isMesh
       ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
-      : this.#rays.at(renderer, at, isOwn)
+      : this.#rays.at(renderer, at)
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst()
     const length = offset.length().max(1e-3).toConst()
@@ -270,14 +283,56 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /**
-   * Light that a pixel loses, for unit irradiance [1/sr].
+   * Light that a pixel loses, for unit irradiance [1/sr]: from nine around it, of which any four that touch have
+   * samples in all places of their steps; where those are of several depths, from the four nearest.
    *
-   * @param distance - Distance to what is seen in it [m].
+   * @param ray - View ray to what is seen in it.
    */
-  #lostTo(distance: Float): Vec4 {
+  #lostTo(ray: ShaftRay): Vec4 {
+    const size = this.#gridSize
     const place = this.#place.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
-    const own = log2(distance).toConst() as Float
-    return this.#upsampling.light(place, own).mul(this.#growth(distance)).div(LIGHT_SCALE)
+    const read = (texel: Vec2): Vec4 =>
+      sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
+    const lightAt = (texel: Vec2): Vec4 => read(texel.min(size.sub(0.5)))
+    const own = log2(ray.distance).toConst() as Float
+    const nearest = place.add(0.5).floor().min(size.sub(1)).toConst() as Vec2
+    const { y: least, z: greatest } = read(nearest.add(vec2(size.x, 0)).add(0.5))
+    const lost = vec4(0).toVar()
+    If(own.sub(least).max(greatest.sub(own)).lessThan(SAME_DEPTH), () => {
+      // The means of all fours, between them: weights 1 − w, 1, w over 2 in both axes, by four reads.
+      const after = place.sub(nearest).mul(0.5).add(0.5).toConst() as Vec2
+      const before = after.oneMinus().toConst() as Vec2
+      const low = nearest.sub(0.5).add(vec2(0.25).div(before)).toConst() as Vec2
+      const high = nearest.add(1.5).sub(vec2(0.25).div(after)).toConst() as Vec2
+      const upper = lightAt(low)
+        .mul(before.x)
+        .add(lightAt(vec2(high.x, low.y)).mul(after.x))
+      const lower = lightAt(vec2(low.x, high.y)).mul(before.x).add(lightAt(high).mul(after.x))
+      const sum = upper.mul(before.y).add(lower.mul(after.y))
+      lost.assign(sum)
+    }).Else(() => {
+      const first = place.floor().toConst() as Vec2
+      const weights = float(0).toVar()
+      const light = this.#litAir(ray)
+      loop('corner', 4, index => {
+        const row = float(index).div(2).floor().toConst()
+        const corner = first
+          .add(vec2(float(index).sub(row.mul(2)), row))
+          .min(size.sub(1))
+          .add(0.5)
+        const other = read(corner.add(vec2(size.x, 0)))
+        const apart = other.x.sub(own).abs()
+        const weight = apart
+          .sub(OTHER_DEPTH)
+          .div(SAME_DEPTH - OTHER_DEPTH)
+          .clamp(MIN_WEIGHT, 1)
+        // Of light that others have more of, or less, the same part.
+        lost.addAssign(read(corner).mul(weight.mul(light.div(other.w))))
+        weights.addAssign(weight)
+      })
+      lost.divAssign(weights)
+    })
+    return lost.mul(this.#growth(ray.distance)).div(LIGHT_SCALE)
   }
 
   /** Takes them out of the shafts of their camera. */
@@ -289,7 +344,6 @@ export class ScreenShafts implements ScreenShadows {
   /** Frees the target, which is made again where they are drawn. */
   free(): void {
     this.target.dispose()
-    this.#upsampling.dispose()
     this.#pass?.dispose()
     this.#pass = null
   }

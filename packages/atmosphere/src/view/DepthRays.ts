@@ -23,23 +23,18 @@ export class DepthRays {
     this.#projectionInverse = uniform(camera.projectionMatrixInverse)
   }
 
-  /** Depth at a place; null for that of the fragment, of which shaders have one read. */
-  depthAt(at: Vec2 | null): Float {
+  depthAt(at: Vec2): Float {
     const depth = this.depthNode as unknown as TextureNode
     const read =
-      at !== null && typeof depth.sample === 'function'
+      typeof depth.sample === 'function'
         ? (depth.sample(at) as unknown as { level(n: number): Node }).level(0)
         : depth
     return float((read as unknown as { r: Float }).r).toConst()
   }
 
-  /**
-   * Position of what is seen; for the sky any in its direction. In view space [world units].
-   *
-   * @param isOwn - True for the place of a full-screen fragment.
-   */
-  at(renderer: Renderer, at: Vec2, isOwn = false): { position: Vec3; isSky: Bool } {
-    const depth = this.depthAt(isOwn ? null : at)
+  /** Position of what is seen; for the sky any in its direction. In view space [world units]. */
+  at(renderer: Renderer, at: Vec2): { position: Vec3; isSky: Bool } {
+    const depth = this.depthAt(at)
     const isSky = isBackgroundDepth(depth).toConst() as Bool
     const { isOrthographicCamera } = this.camera as OrthographicCamera
     const position = this.position(renderer, at, isSky.select(0.5, depth).toConst())
