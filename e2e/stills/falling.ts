@@ -16,7 +16,7 @@ export const falling = [
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
     clouds: { preset: 'shower' },
-    place: { longitude: 141.39, latitude: 35.83 },
+    place: { longitude: 141.57, latitude: 35.88 },
     altitude: 60,
     sun: { elevation: 12, azimuth: 199 },
     view: { azimuth: 60, pitch: 10 },

@@ -156,7 +156,11 @@ export class PrecipitationShafts {
     distances: Variable<Vec4>
   ): SeenClouds & LitRay {
     const { points } = clouds
-    const ray = { direction, end: marched.y.exp2(), jitter }
+    // Behind opaque clouds nothing is seen.
+    const { x, y, z, w } = points.distances
+    const last = x.max(y).max(z.max(w))
+    const end = clouds.transmittance.greaterThan(0).select(marched.y.exp2(), last).toConst()
+    const ray = { direction, end, jitter }
     const fallOf = (index: Int): FallNodes => this.fallOf(index)
     const seen = marchPrecipitation(context, fallOf, this.#ceiling, ray, points)
     const shares = points.shares.mul(seen.before).toConst() as Vec4

@@ -25,11 +25,11 @@ export const fallForm = {
    * Streaks: changes of the rate by coarse and fine billows above, per deviation of their noise [–]. 0: smooth curtains;
    * greater: combs (*Rain and snow*).
    */
-  coarseStreaks: 0.3,
-  fineStreaks: 0.28,
+  coarseStreaks: 0.4,
+  fineStreaks: 0.45,
   /** Blur of streaks over the way by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
-  lagBlur: 0.25,
-  fallBlur: 0.04
+  lagBlur: 0.12,
+  fallBlur: 0.03
 } as const
 
 /**

@@ -19,10 +19,13 @@ import {
 import { fallenFrom, fallExtinction, type FallNodes } from './fall'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
-const STEPS = 1.4
+const STEPS = 0.6
 
-/** Longest stretch of a ray that is marched [m]: haze hides shafts beyond. */
-const LONGEST = 60_000
+/** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
+const LONGEST = 30_000
+
+/** Distance from which on nothing is marched [m]: shafts lie under their clouds then. */
+const FARTHEST = 150_000
 
 /** First steps over those of an even march [–], for rays that begin among shafts. */
 const FIRST = 0.12
@@ -74,7 +77,8 @@ export function marchPrecipitation(
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const shell = crossings(field, cosView, ceiling)
   const from = shell.near.max(0).toConst() as Float
-  const span = shell.far.min(end).sub(from).min(LONGEST).toConst() as Float
+  const isNear = from.lessThan(FARTHEST).select(1, 0)
+  const span = shell.far.min(end).sub(from).min(LONGEST).mul(isNear).toConst() as Float
   const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
   const count = quality.layerSteps.mul(STEPS).ceil().toConst() as Float
   const edgeAt = (step: Float): Float => {
