@@ -52,7 +52,8 @@ export async function timeValley(
   valley.lookFrom('village')
   valley.camera.aspect = size[0] / size[1]
   valley.camera.updateProjectionMatrix()
-  const target = new RenderTarget(...size)
+  // As the story's canvas, it has no depth.
+  const target = new RenderTarget(...size, { depthBuffer: false })
   let time = 0
 
   const measure = async (changes: Partial<ValleyState>): Promise<[PassTime[], number]> => {

@@ -119,16 +119,21 @@ export function disposeMeshes(meshes: readonly Mesh[]): void {
   }
 }
 
-/** @param trackTimestamp - True to keep the GPU's time. */
+/**
+ * @param trackTimestamp - True to keep the GPU's time.
+ * @param isPost - True where a pipeline draws all of the canvas, which then needs neither samples nor depth.
+ */
 export async function createRenderer(
   canvas: HTMLCanvasElement,
   forceWebGL: boolean,
-  trackTimestamp = false
+  trackTimestamp = false,
+  isPost = false
 ): Promise<WebGPURenderer> {
   // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
   const renderer = new WebGPURenderer({
     canvas,
-    antialias: true,
+    antialias: !isPost,
+    depth: !isPost,
     forceWebGL,
     trackTimestamp,
     reversedDepthBuffer: true

@@ -33,7 +33,7 @@ export async function createValley(
   canvas: HTMLCanvasElement,
   args: ValleyArgs
 ): Promise<SceneHandle<ValleyArgs>> {
-  const renderer = await createRenderer(canvas, args.forceWebGL, !args.frame)
+  const renderer = await createRenderer(canvas, args.forceWebGL, !args.frame, true)
   const current = { ...args }
   const valley = new Valley(renderer, stateOf(current))
   const { scene, camera } = valley

@@ -51,7 +51,7 @@ export interface ValleyAir {
 /** Draws a picture to a texture, with the distance along the camera's axis in alpha: of the sky, the greatest. */
 function withDepth(picture: Node, scenePass: PassNode): TextureNode {
   const depth = scenePass.getViewZNode().negate().min(SKY_DEPTH)
-  return rtt(vec4((picture as Node<'vec4'>).rgb, depth))
+  return rtt(vec4((picture as Node<'vec4'>).rgb, depth), null, null, { depthBuffer: false })
 }
 
 /** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */

@@ -31,4 +31,5 @@ export {
   type CloudEnvironmentOptions
 } from './environment/CloudEnvironment'
 export { CloudSkyLight, cloudSkyLight } from './environment/CloudSkyLight'
+export { CloudFogLight, cloudFogLight } from './environment/CloudFogLight'
 export { CloudCover, type CloudCoverOptions } from './environment/CloudCover'

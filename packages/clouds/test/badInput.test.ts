@@ -1,4 +1,4 @@
-import { Atmosphere, SkyLightProbe } from '@welkin/atmosphere'
+import { Atmosphere, heightFog, SkyLightProbe } from '@welkin/atmosphere'
 import { Data3DTexture, Mesh, PerspectiveCamera, Scene, Texture } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, it } from 'vitest'
@@ -17,6 +17,7 @@ import {
   cloudsDebug,
   CloudField,
   cloudShadow,
+  cloudFogLight,
   cloudSkyLight,
   cloudWorldMap,
   noiseVolume
@@ -218,6 +219,18 @@ const cases: [message: string, call: () => unknown][] = [
       const lit = new SkyLightProbe(atmosphere)
       cloudSkyLight(lit, node)
       return cloudSkyLight(lit, node)
+    }
+  ],
+  [
+    'CloudFogLight: fog must be a HeightFog or DistanceFog, got a CloudsNode',
+    () => cloudFogLight(wrong(node), node)
+  ],
+  [
+    'CloudFogLight: fog must have no other CloudFogLight: dispose of that first, got a HeightFog',
+    () => {
+      const fog = heightFog()
+      cloudFogLight(fog, node)
+      return cloudFogLight(fog, node)
     }
   ],
 

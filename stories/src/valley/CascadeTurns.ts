@@ -12,7 +12,7 @@ const TURN = 0.01
 
 /** Way of the camera [parts of a cascade's width], and turn of the sun [rad], after which a cascade is drawn anew. */
 const WAY = 0.01
-const SUN_TURN = 1.5e-3
+const SUN_TURN = 3e-3
 
 /** Sine of the sun's elevation below which it casts no shadow on anything. */
 const SUNK = -0.05

@@ -9,7 +9,7 @@ import {
   stars
 } from '@welkin/atmosphere'
 import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
-import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
+import { cloudEnvironment, cloudFogLight, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
 import { MathUtils, type Mesh, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
@@ -136,6 +136,7 @@ export class Valley {
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: LONGITUDE, latitude: state.latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
+    const mistLight = cloudFogLight(this.#mist, node) // where there are no shafts
     scene.add(this.#ground, ...this.#trees, this.#village.object)
 
     this.#node = node
@@ -156,7 +157,7 @@ export class Valley {
     this.cycle.hour = state.hour
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      ...[this.#finish, exposure, overlay, this.#environment, node, shafts].map(
+      ...[this.#finish, exposure, overlay, this.#environment, mistLight, node, shafts].map(
         each => () => each.dispose()
       ),
       () => air.dispose(),

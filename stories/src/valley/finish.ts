@@ -129,7 +129,7 @@ export class ValleyFinish {
 
   /** A picture that effects read at many places. */
   #texture(picture: Node): ReturnType<typeof rtt> {
-    return this.#keep(rtt(picture as never))
+    return this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
   }
 
   #keep<T extends object>(used: T): T {

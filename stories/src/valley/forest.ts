@@ -9,7 +9,7 @@ import {
   Quaternion,
   Vector3
 } from 'three'
-import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
+import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
 import { forestAt, groundHeight, VILLAGE } from './ground'
 import { Trees, type Tree } from './Trees'
@@ -93,7 +93,8 @@ function leafy(x: number, y: number, z: number, size: number, detail: number): B
     vertex.normalize().addScaledVector(middle, 0.25).normalize()
     normal.setXYZ(i, vertex.x, vertex.y, vertex.z)
   }
-  return painted(crown.translate(x, y, z), LEAVES, 0.6)
+  // All that a vertex has follows from its place: faces share them.
+  return mergeVertices(painted(crown.translate(x, y, z), LEAVES, 0.6))
 }
 
 /**
@@ -115,7 +116,7 @@ function limetree(crowns: number, detail: number): BufferGeometry {
         ]
           .slice(0, crowns)
           .map(([x, y, z, size]) => leafy(x, y, z, size, detail))
-  const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 5, 1, true).toNonIndexed()
+  const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 5, 1, true)
   return mergeGeometries([...balls, painted(trunk.translate(0, 1.6, 0), BARK)])
 }
 

@@ -1,4 +1,5 @@
 import { If, float, vec4 } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
 import { setOptions } from '@welkin/geo'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
@@ -11,6 +12,7 @@ import { sampleSky } from '../skyVolume/tsl/skyVolume'
 import { viewRay } from '../skyVolume/tsl/viewRay'
 import type { Bool, Float, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
+import type { FogOvercast } from './FogOvercast'
 
 /** Options of {@link DistanceFog}. */
 export interface DistanceFogOptions {
@@ -31,6 +33,8 @@ export interface DistanceFogOptions {
  */
 export class DistanceFog implements SkyLayer {
   readonly leavesSky = true
+  /** Clouds' part in its light, by `cloudFogLight` of `@welkin/clouds`; null under a clear sky. Set it before the first render. */
+  overcast: FogOvercast | null = null
   #value = 1e-4
   #fade: readonly [number, number] = [5000, 15_000]
   #version = 0
@@ -88,7 +92,12 @@ export class DistanceFog implements SkyLayer {
     this.#atmosphere = atmosphere
   }
 
+  prepare(renderer: Renderer, view: AtmosphereView): void {
+    this.overcast?.prepare(renderer, view, Math.max(view.height, 0))
+  }
+
   update(view: AtmosphereView): void {
+    this.overcast?.update(view)
     const [low, high] = this.fade
     const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
     this.#density.value = this.density * (1 - x * x * (3 - 2 * x))
@@ -100,7 +109,7 @@ export class DistanceFog implements SkyLayer {
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const color = this.#shown(raisedSky(ray).light.mul(ray.view.source.irradiance))
+      const color = this.#color(ray, raisedSky(ray).light.mul(ray.view.source.irradiance))
       const fog = this.#depth(distance)
       const through = fog.negate().exp().toConst()
       light.assign(air.radiance.mul(through).add(color.mul(through.oneMinus())))
@@ -112,7 +121,7 @@ export class DistanceFog implements SkyLayer {
   shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
     if (!isSun) return null
     const { light: sky, cosView, cosViewLight } = raisedSky(ray)
-    const light = this.#shown(sky)
+    const light = this.#color(ray, sky)
     // The sky's light is scattered once in about the part that it is at the camera.
     const { air, height, viewpoint } = ray.view
     const altitude = height.clamp(0, air.uniforms.thickness) as Float
@@ -138,6 +147,13 @@ export class DistanceFog implements SkyLayer {
         return depth.max(0).sqrt().mul(inverse).min(ray.distance).toConst()
       }
     }
+  }
+
+  /** Its colour, for unit irradiance of the sun [1/sr]: that of the sky, under clouds as much darker as the ground. */
+  #color({ view: { source, viewpoint } }: LayerRay, sky: Vec4): Vec4 {
+    const shown = this.#shown(sky)
+    const clouds = this.overcast?.light(source, viewpoint.cosLight)
+    return clouds === undefined ? shown : shown.mul(clouds.diffuse)
   }
 
   /** Light of the sky as layers before the fog show it. */

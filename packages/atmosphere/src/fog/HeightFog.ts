@@ -1,7 +1,7 @@
 import type { Vector4 } from 'three'
 import { Vector3 } from 'three'
 import { If, exp, vec4 } from 'three/tsl'
-import type { UniformNode } from 'three/webgpu'
+import type { Renderer, UniformNode } from 'three/webgpu'
 import { checkOptions, fail } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -12,6 +12,7 @@ import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from 
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { diffuseMoments } from '../diffuseLight/tsl/diffuseLight'
+import type { FogOvercast } from './FogOvercast'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
 import { applyMoments, momentBasis } from '../diffuseLight/tsl/moments'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
@@ -70,6 +71,8 @@ export class HeightFog implements SkyLayer {
   declare fade: readonly [number, number]
   /** Droplets that it is made of, if given; shared. */
   readonly droplets: ScatteringPhase | null
+  /** Clouds' part in its light, by `cloudFogLight` of `@welkin/clouds`; null under a clear sky. Set it before the first render. */
+  overcast: FogOvercast | null = null
   readonly #density = number(0)
   readonly #falloff = number(1)
   readonly #height = number(0)
@@ -132,7 +135,12 @@ export class HeightFog implements SkyLayer {
     return this
   }
 
+  prepare(renderer: Renderer, view: AtmosphereView): void {
+    if (this.density > 0) this.overcast?.prepare(renderer, view, this.base)
+  }
+
   update(view: AtmosphereView): void {
+    this.overcast?.update(view)
     const { density, falloff, base, albedo, asymmetry, fade } = this.#options
     const [low, high] = fade
     const x = Math.min(Math.max((view.height - low) / (high - low), 0), 1)
@@ -161,15 +169,15 @@ export class HeightFog implements SkyLayer {
       const { uniforms } = ray.view.air
       const ahead = radianceBetween(uniforms, ray.view.volume, viewpoint, fog.segment, cosViewLight)
       const front = ahead.mul(source.irradiance).min(air.radiance).toConst()
-      const lightOf = (cosLight: Float, cosViewLight: Float): Vec4 => {
-        const { once, often } = this.#light(ray, fog.middle, cosLight, cosViewLight)
+      const lightOf = (source: LightSource, cosLight: Float, cosViewLight: Float): Vec4 => {
+        const { once, often } = this.#light(ray, source, fog.middle, cosLight, cosViewLight)
         return once.add(often)
       }
-      let inScatter = lightOf(viewpoint.cosLight, cosViewLight).mul(source.irradiance)
-      for (const { directionMapped, irradiance } of this.#lights) {
+      let inScatter = lightOf(source, viewpoint.cosLight, cosViewLight).mul(source.irradiance)
+      for (const { source: other, directionMapped, irradiance } of this.#lights) {
         const cosLight = ray.view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
         const cosViewLight = ray.direction.dot(directionMapped).clamp(-1, 1).toConst() as Float
-        inScatter = inScatter.add(lightOf(cosLight, cosViewLight).mul(irradiance))
+        inScatter = inScatter.add(lightOf(other, cosLight, cosViewLight).mul(irradiance))
       }
       const { through } = fog
       const behind = air.radiance.sub(front).mul(through)
@@ -181,18 +189,24 @@ export class HeightFog implements SkyLayer {
 
   shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
     if (!isSun && !this.sources.includes(ray.view.source)) return null
-    const { viewpoint } = ray.view
+    const { source, viewpoint } = ray.view
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
     const all = rayLimits(viewpoint, ray.cosView).length
     const distance = isSky.select(all, ray.distance).toConst() as Float
     const fog = this.#along({ ...ray, distance })
-    const { once, often } = this.#light(ray, fog.middle, viewpoint.cosLight, ray.cosViewLight)
+    const [once, often] = [vec4(0).toVar(), vec4(0).toVar()]
+    If(fog.through.lessThan(1), () => {
+      const { cosLight } = viewpoint
+      const light = this.#light(ray, source, fog.middle, cosLight, ray.cosViewLight)
+      once.assign(light.once.mul(fog.seen))
+      often.assign(light.often.mul(fog.seen))
+    })
     const { through, depthAt } = fog
     return {
       front: fog.middleDistance,
       transmittance: through,
-      singleScattered: once.mul(fog.seen).toConst(),
-      multiplyScattered: often.mul(fog.seen).toConst(),
+      singleScattered: once,
+      multiplyScattered: often,
       distanceAt: part => depthAt(part.mul(through.oneMinus()).oneMinus().log().negate())
     }
   }
@@ -244,6 +258,7 @@ export class HeightFog implements SkyLayer {
    */
   #light(
     { view, cosView }: LayerRay,
+    source: LightSource,
     middle: Float,
     cosLight: Float,
     cosViewLight: Float
@@ -267,16 +282,18 @@ export class HeightFog implements SkyLayer {
       const sharp = this.droplets.phase({ cosViewLight, cosView, cosLight }).sub(smooth)
       once = once.add(sharp.mul(scaled.div(this.#asymmetry.oneMinus()).negate().exp()))
     }
-    const often = multipleScattering(above, total, cosSlant)
+    const multiple = multipleScattering(above, total, cosSlant)
+    const clouds = this.overcast?.light(source, cosLight)
     const light = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).toConst()
     const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
     const basis = momentBasis(cosView, cosLight, cosViewLight)
     const asymmetry = vec4(this.#asymmetry)
-    const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry))
-    return {
-      once: light.mul(once),
-      often: light.mul(often).add(sky.max(0).div(RADIANCE_SCALE))
-    }
+    const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry)).max(0)
+    const often = light.mul(multiple).add(sky.div(RADIANCE_SCALE))
+    const first = light.mul(once)
+    return clouds === undefined
+      ? { once: first, often }
+      : { once: first.mul(clouds.direct), often: often.mul(clouds.diffuse) }
   }
 }
 

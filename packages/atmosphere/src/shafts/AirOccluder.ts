@@ -36,6 +36,8 @@ export interface ShadowedShafts extends AirShadows {
   readonly light: ParallelLight
   /** Source of the light. */
   readonly source: LightSource
+  /** True if there are shadows to be drawn, as of the last `prepare` for the camera. */
+  readonly isActive: boolean
 }
 
 /** Shadow that something casts into the air, in one light. */

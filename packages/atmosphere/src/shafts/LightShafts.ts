@@ -78,7 +78,7 @@ export class LightShafts implements ShadowedShafts {
   /** The camera's view of the air in this light, for post effects. */
   readonly view: ViewNodes
   /** Samples on a view ray. */
-  readonly steps = { groups: number(), samples: number() }
+  readonly steps = { groups: number(), samples: number(), inFog: number() }
   readonly #map = new SunPolarMap()
   readonly #volume: ShaftVolume
   readonly shadowedAir: ShadowedAir
@@ -259,7 +259,7 @@ export class LightShafts implements ShadowedShafts {
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
-    const { rows, groups, samples } = qualities[this.#quality]
+    const { rows, groups, samples, inFog } = qualities[this.#quality]
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
@@ -272,6 +272,7 @@ export class LightShafts implements ShadowedShafts {
     if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups
     steps.samples.value = samples
+    steps.inFog.value = inFog
     this.#drawVolume(renderer, view)
   }
 

@@ -1,13 +1,13 @@
 /**
  * Directions around the light that the shadow map tells apart; pixels from one that is marched to the next; groups of
- * samples along a view ray, and samples in each. In materials: rays along the longer edge of the picture, and samples in each
+ * samples along a view ray, and samples in each; samples in fog. In materials: rays along the longer edge of the picture, and samples in each
  * slice of a ray; no rays where each fragment marches.
  */
 export const qualities = {
-  low: { rows: 512, spacing: 4, groups: 3, samples: 2, rays: 128, looks: 2 },
-  medium: { rows: 768, spacing: 4, groups: 4, samples: 3, rays: 160, looks: 3 },
-  high: { rows: 1024, spacing: 3, groups: 4, samples: 4, rays: 0, looks: 0 },
-  reference: { rows: 2048, spacing: 1, groups: 64, samples: 8, rays: 0, looks: 0 }
+  low: { rows: 512, spacing: 4, groups: 3, samples: 2, inFog: 8, rays: 128, looks: 2 },
+  medium: { rows: 768, spacing: 4, groups: 3, samples: 3, inFog: 12, rays: 160, looks: 3 },
+  high: { rows: 1024, spacing: 3, groups: 4, samples: 4, inFog: 16, rays: 0, looks: 0 },
+  reference: { rows: 2048, spacing: 1, groups: 64, samples: 8, inFog: 512, rays: 0, looks: 0 }
 } as const
 
 /** Fineness of the march of light shafts. */

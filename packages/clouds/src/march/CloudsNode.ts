@@ -1,5 +1,5 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
-import type { Atmosphere, ScreenShadows } from '@welkin/atmosphere'
+import type { Atmosphere, ScreenShadows, ShadowedShafts } from '@welkin/atmosphere'
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
 import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
@@ -105,6 +105,8 @@ export class CloudsNode extends AtmosphereNode {
   readonly #exposure = uniform(1)
   /** Shadows in the air of the picture with the clouds, drawn by this node: those of `cloudAirShadow`. */
   readonly screens = new Set<ScreenShadows>()
+  /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
+  readonly castsInto = new Set<ShadowedShafts>()
   #quality: CloudQuality = cloudQualities.high
 
   /** @throws If an argument is missing or of the wrong kind, or layers have precipitation and nothing shows it. */

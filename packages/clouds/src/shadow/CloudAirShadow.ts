@@ -43,6 +43,7 @@ class CastShadow implements AirShadow {
     this.#shafts = shafts
     this.#foreground = new CloudForeground(clouds)
     this.#diffuse = new DiffuseRatioTable(clouds.shadows, clouds.light.nodes)
+    clouds.castsInto.add(shafts)
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
@@ -96,6 +97,7 @@ class CastShadow implements AirShadow {
 
   dispose(): void {
     this.#diffuse.dispose()
+    this.#clouds.castsInto.delete(this.#shafts)
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)

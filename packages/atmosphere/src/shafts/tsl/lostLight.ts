@@ -20,13 +20,12 @@ export interface ShaftSteps {
   readonly groups: Float
   /** Look-ups of the shadow for each. */
   readonly samples: Float
+  /** Look-ups in each medium, such as fog. Fewer than 8: grain before dark fog (`'low'` quality, *Towers in haze*). */
+  readonly inFog: Float
 }
 
 /** Places at which diffuse light is evaluated, over groups: it changes slowly, and four pixels share theirs. */
 const DIFFUSE_PART = 0.5
-
-/** Fewest look-ups in fog. Fewer: grain before dark fog (`'low'` quality, *Towers in haze*). */
-const LEAST_IN_MEDIA = 8
 
 /** Stretch of a ray that is marched in groups of samples, whatever its length. */
 interface Stretch {
@@ -65,7 +64,7 @@ export function lostLight(
   view: ViewUniforms,
   shadowedAir: ShadowedAir,
   shaftRay: ShaftRay,
-  { groups, samples }: ShaftSteps,
+  { groups, samples, inFog }: ShaftSteps,
   jitter: Float
 ): Vec4 {
   const { air, viewpoint } = view
@@ -99,9 +98,7 @@ export function lostLight(
     }
     if (media.length > 0) {
       const shadows = { darkAt: (far: Float) => darkAt(far, far.lessThan(mapped)), missingAt }
-      const count = groups.mul(samples).max(LEAST_IN_MEDIA).toConst() as Float
-      const places = { count, jitter }
-      lost.addAssign(lostInMedia(media, shadows, places))
+      lost.addAssign(lostInMedia(media, shadows, { count: inFog, jitter }))
     }
     const marchStretch = (name: string, stretch: Stretch): void => {
       const perGroup = stretch.width.div(stretch.groups).toConst()

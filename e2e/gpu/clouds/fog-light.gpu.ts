@@ -1,0 +1,95 @@
+import {
+  Atmosphere,
+  distanceFog,
+  heightFog,
+  lightShafts,
+  skyIlluminanceAt,
+  SunDirectionalLight,
+  sunIlluminanceAt
+} from '@welkin/atmosphere'
+import {
+  cloudAirShadow,
+  CloudCover,
+  cloudFogLight,
+  CloudLightTable,
+  cloudPreset
+} from '@welkin/clouds'
+import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
+import { CloudView, SparseNoise, viewSize } from '../harness/cloud-view'
+import { luminance } from '../harness/environment'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+
+const up = new Vector3(0, 1, 0)
+
+gpuTest(
+  'fog under an overcast is as dark as the ground, and once where shafts have the clouds',
+  async t => {
+    const renderer = await t.createRenderer(viewSize)
+    const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
+    const mist = heightFog({ falloff: 80, density: 0.05 })
+    const far = distanceFog({ density: 1 / 300, fade: [1e4, 2e4] })
+    atmosphere.add(mist, far)
+    const layers = cloudPreset('overcast')
+    const light = new CloudLightTable()
+    const view = new CloudView(renderer, atmosphere, layers, { noise: new SparseNoise(), light })
+    const { camera, node, scene } = view
+    const wall = new Mesh(new BoxGeometry(4000, 4000, 10), new MeshBasicMaterial({ color: 0 }))
+    wall.position.z = -2000
+    scene.add(wall)
+    camera.position.y = 2
+    const [mistLight, farLight] = [mist, far].map(fog => cloudFogLight(fog, node))
+    const cover = new CloudCover(layers, { light })
+    /** All light of level ground. */
+    const ground = (clouds: CloudCover): number =>
+      luminance(skyIlluminanceAt(atmosphere, new Vector3(), up, { clouds })) +
+      luminance(sunIlluminanceAt(atmosphere, new Vector3(), { clouds })) * atmosphere.sunDirection.y
+    const look = async (): Promise<number> =>
+      luminance((await view.draw(3)).at(viewSize.width / 2, viewSize.height / 2))
+    const coverages = [...layers].map(({ parameters }) => parameters.coverage)
+    const setClouds = (share: number): void =>
+      [...layers].forEach((layer, i) => void layer.set({ coverage: share * coverages[i] }))
+
+    for (const elevation of [20]) {
+      // Aside of the camera, which sees no forward peak.
+      atmosphere.setSunAngles(elevation, 90)
+      for (const [name, density, thickness] of [
+        ['height fog', 0.05, 0],
+        ['distance fog', 0, 1 / 300]
+      ] as const) {
+        mist.density = density
+        far.density = thickness
+        setClouds(1)
+        const dark = await look()
+        const onGround = ground(cover)
+        setClouds(0)
+        const bright = await look()
+        const [got, expected] = [dark / bright, onGround / ground(cover)]
+        t.note(`${name}, sun ${elevation}°: ${got.toFixed(3)} for ${expected.toFixed(3)}`)
+        expectTrue(Math.abs(got / expected - 1) < 0.35, `${name}, ${elevation}°: ${got}`)
+      }
+    }
+
+    // Light shafts of these clouds dim the fog themselves.
+    mist.density = 0.004
+    far.density = 0
+    setClouds(1)
+    const sun = new SunDirectionalLight(atmosphere, 100)
+    const shafts = lightShafts(atmosphere, camera, sun).add(cloudAirShadow(node))
+    scene.add(sun, sun.target)
+    view.show(node)
+    const both = await look()
+    for (const each of [mistLight, farLight]) each.dispose()
+    atmosphere.remove(mist).add(mist)
+    const alone = await look()
+    t.note(`with light shafts ${(both / alone).toFixed(4)} of those alone`)
+    expectTrue(
+      Math.abs(both / alone - 1) < 0.01,
+      `${both} for ${alone} where shafts have the clouds`
+    )
+    shafts.dispose()
+    view.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
