@@ -1,5 +1,9 @@
+import { float, vec4 } from 'three/tsl'
 import type { Float } from '../../tsl-types'
+import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
+import { columnStrength } from './strength'
+import type { WeatherBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
 export const NOWHERE = 1e6
@@ -24,3 +28,41 @@ export const CAUTION = 0.45
  */
 export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
   strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)
+
+/**
+ * Most that billows add to the strength of clear air, per shape amount [–]. Smaller: faster, and small clouds are missed
+ * in clear regions, as grain (*Cumulus*).
+ */
+const MOST_BILLOWS = 2
+
+/**
+ * Distance over which the background's part of the strength changes by 1 [periods of the weather], and the strength that
+ * clear air without a chance of clouds has at most [–]. Greater: faster, and edges of clear regions get
+ * ragged (*Cockpit*).
+ */
+const BACKGROUND_LIKELY = 0.05
+const SURELY_CLEAR = 3
+
+/**
+ * Likely distance of a layer's clouds where its background rules them out, whatever single clouds and billows
+ * add: there these need not be looked up [m]. 0 or less elsewhere.
+ *
+ * @param height - Height in the layer, from 0 at its base to 1 at its top.
+ */
+export function likelyDistanceByBackground(
+  layer: LayerNodes,
+  { sum, coverage }: WeatherBackground,
+  height: Float
+): Float {
+  const near = { billowsLost: float(0), unresolvedFraction: float(0) }
+  const most = { sum: sum.add(layer.weights.abs().dot(vec4(0.5))) }
+  const clearance = neededStrength(layer, height)
+    .sub(columnStrength(layer, most, coverage, near))
+    .sub(layer.shapeAmount.mul(MOST_BILLOWS))
+    .toConst()
+  const likely = clearance
+    .mul(BACKGROUND_LIKELY)
+    .div(layer.perWeatherPeriod)
+    .add(likelyDistance(layer, float(-SURELY_CLEAR)))
+  return clearance.greaterThan(0).select(likely, 0).toConst()
+}

@@ -1,14 +1,23 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
+import { NOISE_SIZE } from '../../noise/noiseSizes'
 import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
-import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
-import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
-import type { CloudSample } from './sample'
+import {
+  forLayersUnrolled,
+  heightIn,
+  isWithin,
+  layerAt,
+  type LayerNodes,
+  type LayerRange
+} from './layer'
+import { CAUTION, likelyDistance, likelyDistanceByBackground, NOWHERE } from './likelyDistance'
+import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
+import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -19,6 +28,9 @@ export interface SamplePair {
   /** Greatest extinction that clouds have at their height [1/m]. */
   readonly greatest: Float
 }
+
+/** Footprint below which single clouds are resolved [periods of the weather]. */
+const RESOLVED = 1 / NOISE_SIZE.weather
 
 /** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
 export type ClearLayers = Variable<Vec4>
@@ -34,6 +46,20 @@ const sampleNearby = (
   up,
   distance
 })
+
+/** `likelyDistanceByBackground` where single clouds are resolved, 0 elsewhere [m]. */
+function clearDistance(
+  field: CloudField,
+  layer: LayerNodes,
+  background: PackedBackground,
+  middle: CloudSample
+): Float {
+  if (field.extinction) return float(0)
+  const height = heightIn(layer, middle.altitude)
+  const likely = likelyDistanceByBackground(layer, unpackBackground(background), height)
+  const isResolved = footprintOf(field, middle).mul(layer.perWeatherPeriod).lessThan(RESOLVED)
+  return isResolved.select(likely, 0)
+}
 
 /**
  * Samples clouds at two places near each other on a ray, with detail.
@@ -72,15 +98,18 @@ export function samplePair(
     If(isWithin(layer, height).and(isNear), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
-      const options = { detail: true, direction }
-      const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
-      const likely = likelyDistance(layer, first.strength.max(second.strength)).toConst() as Float
+      const likely = clearDistance(field, layer, background, middle).toVar() as Float
+      If(likely.lessThanEqual(0), () => {
+        const options = { detail: true, direction }
+        const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
+        likely.assign(likelyDistance(layer, first.strength.max(second.strength)))
+        sum.addAssign(vec2(first.extinction, second.extinction))
+      })
       if (!isAlone) {
         const until = likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0)
         clear.assign(mix(clear, vec4(until), own))
       }
       nearest.assign(nearest.min(likely))
-      sum.addAssign(vec2(first.extinction, second.extinction))
     })
   }
   forLayersUnrolled(field, look, range)
