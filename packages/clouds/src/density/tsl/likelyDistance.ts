@@ -3,7 +3,7 @@ import type { Float } from '../../tsl-types'
 import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
 import { columnStrength } from './strength'
-import type { WeatherBackground } from './weatherBackground'
+import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
 export const NOWHERE = 1e6
@@ -33,36 +33,37 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
  * Most that billows add to the strength of clear air, per shape amount [–]. Smaller: faster, and small clouds are missed
  * in clear regions, as grain (*Cumulus*).
  */
-const MOST_BILLOWS = 2
+const MOST_BILLOWS = 1.5
 
 /**
- * Distance over which the background's part of the strength changes by 1 [periods of the weather], and the strength that
- * clear air without a chance of clouds has at most [–]. Greater: faster, and edges of clear regions get
- * ragged (*Cockpit*).
+ * Distance over which the background's part of the strength changes by 1 [periods of the weather]. Greater: faster, and
+ * edges of clear regions get ragged (*Cockpit*).
  */
-const BACKGROUND_LIKELY = 0.05
-const SURELY_CLEAR = 3
+const BACKGROUND_LIKELY = 0.1
+
+/** Distance that is taken off per footprint: from afar clouds blur [–]. Smaller: far clouds vanish (*Cockpit*). */
+const BLUR = 32
 
 /**
  * Likely distance of a layer's clouds where its background rules them out, whatever single clouds and billows
  * add: there these need not be looked up [m]. 0 or less elsewhere.
  *
  * @param height - Height in the layer, from 0 at its base to 1 at its top.
+ * @param footprint - Width of what a sample stands for [m].
  */
 export function likelyDistanceByBackground(
   layer: LayerNodes,
-  { sum, coverage }: WeatherBackground,
-  height: Float
+  background: PackedBackground,
+  height: Float,
+  footprint: Float
 ): Float {
-  const near = { billowsLost: float(0), unresolvedFraction: float(0) }
+  const { sum, coverage } = unpackBackground(background)
   const most = { sum: sum.add(layer.weights.abs().dot(vec4(0.5))) }
-  const clearance = neededStrength(layer, height)
-    .sub(columnStrength(layer, most, coverage, near))
+  const sharp = { billowsLost: float(0), unresolvedFraction: float(0) }
+  return neededStrength(layer, height)
+    .sub(columnStrength(layer, most, coverage, sharp))
     .sub(layer.shapeAmount.mul(MOST_BILLOWS))
-    .toConst()
-  const likely = clearance
     .mul(BACKGROUND_LIKELY)
     .div(layer.perWeatherPeriod)
-    .add(likelyDistance(layer, float(-SURELY_CLEAR)))
-  return clearance.greaterThan(0).select(likely, 0).toConst()
+    .sub(footprint.mul(BLUR))
 }

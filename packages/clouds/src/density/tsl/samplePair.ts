@@ -1,23 +1,14 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
-import { NOISE_SIZE } from '../../noise/noiseSizes'
 import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
-import {
-  forLayersUnrolled,
-  heightIn,
-  isWithin,
-  layerAt,
-  type LayerNodes,
-  type LayerRange
-} from './layer'
+import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
 import { CAUTION, likelyDistance, likelyDistanceByBackground, NOWHERE } from './likelyDistance'
 import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
-import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -28,9 +19,6 @@ export interface SamplePair {
   /** Greatest extinction that clouds have at their height [1/m]. */
   readonly greatest: Float
 }
-
-/** Footprint below which single clouds are resolved [periods of the weather]. */
-const RESOLVED = 1 / NOISE_SIZE.weather
 
 /** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
 export type ClearLayers = Variable<Vec4>
@@ -46,20 +34,6 @@ const sampleNearby = (
   up,
   distance
 })
-
-/** `likelyDistanceByBackground` where single clouds are resolved, 0 elsewhere [m]. */
-function clearDistance(
-  field: CloudField,
-  layer: LayerNodes,
-  background: PackedBackground,
-  middle: CloudSample
-): Float {
-  if (field.extinction) return float(0)
-  const height = heightIn(layer, middle.altitude)
-  const likely = likelyDistanceByBackground(layer, unpackBackground(background), height)
-  const isResolved = footprintOf(field, middle).mul(layer.perWeatherPeriod).lessThan(RESOLVED)
-  return isResolved.select(likely, 0)
-}
 
 /**
  * Samples clouds at two places near each other on a ray, with detail.
@@ -91,14 +65,12 @@ export function samplePair(
     const height = heightIn(layer, middle.altitude)
     const own = componentAt(float(index))
     const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
-    const isNear = clearUntil.lessThan(end).toConst()
-    If(isWithin(layer, height).and(isNear.not()), () => {
-      nearest.assign(nearest.min(clearUntil.sub(end)))
-    })
-    If(isWithin(layer, height).and(isNear), () => {
+    const isHere = isWithin(layer, height).toConst()
+    If(isHere.and(clearUntil.lessThan(end)), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
-      const likely = clearDistance(field, layer, background, middle).toVar() as Float
+      const footprint = footprintOf(field, middle)
+      const likely = likelyDistanceByBackground(layer, background, height, footprint).toVar()
       If(likely.lessThanEqual(0), () => {
         const options = { detail: true, direction }
         const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
@@ -106,10 +78,12 @@ export function samplePair(
         sum.addAssign(vec2(first.extinction, second.extinction))
       })
       if (!isAlone) {
-        const until = likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0)
+        const until = end.add(likely.mul(CAUTION)).mul(likely.sign())
         clear.assign(mix(clear, vec4(until), own))
       }
       nearest.assign(nearest.min(likely))
+    }).ElseIf(isHere, () => {
+      nearest.assign(nearest.min(clearUntil.sub(end)))
     })
   }
   forLayersUnrolled(field, look, range)

@@ -21,7 +21,8 @@ export function backgroundAt(
   sample: CloudSample,
   mapped?: { map: WeatherMap | undefined; index: Int }
 ): PackedBackground {
-  if (field.extinction) return vec4(0)
+  // As under a closed sky: it rules no clouds out.
+  if (field.extinction) return vec4(1)
   const subpoint = subpointOffset(field, sample).toConst() as Vec3
   const footprint = footprintOf(field, sample)
   const { map, index } = mapped ?? {}
