@@ -1,4 +1,4 @@
-import { float, vec4 } from 'three/tsl'
+import { float } from 'three/tsl'
 import type { Float } from '../../tsl-types'
 import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
@@ -30,16 +30,18 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
   strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)
 
 /**
- * Most that billows add to the strength of clear air, per shape amount [–]. Smaller: faster, and small clouds are missed
- * in clear regions, as grain (*Cumulus*).
+ * Most that billows add to the strength of clear air, and what anvils add: they spread from column to
+ * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
+ * regions, as grain (*Cumulus*).
  */
-const MOST_BILLOWS = 1.5
+const MOST_BILLOWS = 2
+const ANVIL = 99
 
 /**
  * Distance over which the background's part of the strength changes by 1 [periods of the weather]. Greater: faster, and
  * edges of clear regions get ragged (*Cockpit*).
  */
-const BACKGROUND_LIKELY = 0.1
+const BACKGROUND_LIKELY = 0.08
 
 /** Distance that is taken off per footprint: from afar clouds blur [–]. Smaller: far clouds vanish (*Cockpit*). */
 const BLUR = 32
@@ -58,11 +60,11 @@ export function likelyDistanceByBackground(
   footprint: Float
 ): Float {
   const { sum, coverage } = unpackBackground(background)
-  const most = { sum: sum.add(layer.weights.abs().dot(vec4(0.5))) }
+  const most = { sum: sum.add(layer.weights.length().mul(0.5)) }
   const sharp = { billowsLost: float(0), unresolvedFraction: float(0) }
   return neededStrength(layer, height)
     .sub(columnStrength(layer, most, coverage, sharp))
-    .sub(layer.shapeAmount.mul(MOST_BILLOWS))
+    .sub(layer.anvil.mul(ANVIL).add(MOST_BILLOWS))
     .mul(BACKGROUND_LIKELY)
     .div(layer.perWeatherPeriod)
     .sub(footprint.mul(BLUR))

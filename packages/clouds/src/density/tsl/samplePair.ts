@@ -24,15 +24,10 @@ export interface SamplePair {
 export type ClearLayers = Variable<Vec4>
 
 /** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */
-const sampleNearby = (
-  { offset, altitude, up, distance }: CloudSample,
-  direction: Vec3,
-  along: Float
-): CloudSample => ({
-  offset: offset.add(direction.mul(along)).toConst(),
-  altitude: altitude.add(direction.dot(up).mul(along)).toConst(),
-  up,
-  distance
+const sampleNearby = (sample: CloudSample, direction: Vec3, along: Float): CloudSample => ({
+  ...sample,
+  offset: sample.offset.add(direction.mul(along)).toConst(),
+  altitude: sample.altitude.add(direction.dot(sample.up).mul(along)).toConst()
 })
 
 /**
@@ -72,8 +67,10 @@ export function samplePair(
       const footprint = footprintOf(field, middle)
       const likely = likelyDistanceByBackground(layer, background, height, footprint).toVar()
       If(likely.lessThanEqual(0), () => {
-        const options = { detail: true, direction }
-        const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
+        const [first, second] = sampleLayerAt(field, layer, background, middle, places, {
+          detail: true,
+          direction
+        })
         likely.assign(likelyDistance(layer, first.strength.max(second.strength)))
         sum.addAssign(vec2(first.extinction, second.extinction))
       })

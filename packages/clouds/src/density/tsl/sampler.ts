@@ -104,8 +104,8 @@ export function sampleLayerPair(
 ): Vec2 {
   const background = backgroundAt(field, layer, middle)
   const found = sampleLayerAt(field, layer, background, middle, samples, { detail: false })
-  const [first, second] = samples.map(({ altitude }, i) =>
+  const inside = samples.map(({ altitude }, i) =>
     isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
   )
-  return vec2(first, second).toConst()
+  return vec2(...(inside as [Float, Float])).toConst()
 }
