@@ -1,5 +1,11 @@
-import { Atmosphere, aerialPerspective } from '@welkin/atmosphere'
-import { CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
+import { Atmosphere, aerialPerspective, raindrops } from '@welkin/atmosphere'
+import {
+  CloudLightTable,
+  CloudNoise,
+  cloudPreset,
+  clouds,
+  precipitationShafts
+} from '@welkin/clouds'
 import type { CloudLayers, CloudsNode } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import {
@@ -76,7 +82,9 @@ export class CloudBench {
     const scenePass = pass(new Scene().add(this.#globe), camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
     this.#air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
-    const options = { noise: this.#noise, light: this.#light }
+    const rains = [...layers].some(layer => layer.precipitation !== null)
+    const precipitation = rains ? precipitationShafts({ drops: raindrops() }) : undefined
+    const options = { noise: this.#noise, light: this.#light, precipitation }
     this.node = clouds(this.#air, depth, camera, atmosphere, layers, options)
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputNode = this.node

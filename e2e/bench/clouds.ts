@@ -10,6 +10,8 @@ interface CloudCase {
   view: CloudView
   /** Preset of the layers; default: cumulus that cover 0.4 of the sky. */
   preset?: CloudPresetName
+  /** False for a preset without its precipitation. */
+  rains?: boolean
   /** Elevation of the sun [°], default 40. */
   sunElevation?: number
   qualities: readonly CloudQualityName[]
@@ -22,7 +24,9 @@ const cloudCases: readonly CloudCase[] = [
   ...cloudViews.map(view => ({ name: view.name, view, qualities: everyQuality })),
   { name: 'low sun', view: ground, sunElevation: 4, qualities: everyQuality },
   { name: 'cumulonimbus', view: ground, preset: 'cumulonimbus', qualities: ['medium', 'high'] },
-  { name: 'mixed', view: ground, preset: 'mixed', qualities: ['medium', 'high'] }
+  { name: 'mixed', view: ground, preset: 'mixed', qualities: ['medium', 'high'] },
+  { name: 'shower', view: ground, preset: 'shower', qualities: ['high'] },
+  { name: 'shower, dry', view: ground, preset: 'shower', rains: false, qualities: ['high'] }
 ]
 
 /** Cost of clouds in one case at one quality. */
@@ -144,10 +148,18 @@ export async function timeClouds(
 ): Promise<CloudCost[]> {
   const renderer = await device.renderer(...size)
   const costs: CloudCost[] = []
-  const presets = [...new Set(cloudCases.map(({ preset }) => preset))]
-  for (const preset of presets) {
-    const bench = new CloudBench(renderer, size, preset && cloudPreset(preset))
-    for (const timed of cloudCases.filter(other => other.preset === preset)) {
+  const skies = new Map(
+    cloudCases.map(({ preset, rains }) => [`${preset} ${rains}`, { preset, rains }])
+  )
+  for (const { preset, rains } of skies.values()) {
+    const layers = preset && cloudPreset(preset)
+    // In the view from the ground there is rain, near and far.
+    if (preset === 'shower') layers?.at(0).set({ coverage: 0.6 })
+    if (rains === false) layers?.at(0).set({ precipitation: null })
+    const bench = new CloudBench(renderer, size, layers)
+    for (const timed of cloudCases.filter(
+      other => other.preset === preset && other.rains === rains
+    )) {
       const timings = await timeCase(bench, timed, frames)
       timings.forEach(tell)
       costs.push(...timings)

@@ -29,9 +29,12 @@ import {
   DropletLightTable,
   cloudShadow,
   cloudSkyLight,
+  precipitationShafts,
+  type CloudLayers,
   type CloudQuality,
   type CloudQualityName,
-  type CloudsNode
+  type CloudsNode,
+  type PrecipitationShafts
 } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
@@ -49,10 +52,10 @@ const SHADOW_EXTENT = 6000
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
-function atmosphereOf({ planet, sun }: Still): Atmosphere {
+function atmosphereOf({ planet, place, sun }: Still): Atmosphere {
   const atmosphere =
     planet === 'mars' ? marsBody() : new Atmosphere({ parameters: standardEarthParameters() })
-  atmosphere.place({ longitude: 139.77, latitude: 35.68 })
+  atmosphere.place(place ?? { longitude: 139.77, latitude: 35.68 })
   if (sun instanceof Date) atmosphere.date = sun
   else atmosphere.setSunAngles(sun.elevation, sun.azimuth)
   return atmosphere
@@ -85,6 +88,14 @@ function cameraOf({ altitude, view, land }: Still, aspect: number): PerspectiveC
   camera.rotation.y = -MathUtils.degToRad(view.azimuth)
   camera.updateMatrixWorld()
   return camera
+}
+
+/** Rain with its bows and snow under layers that have any. */
+function fallOf(layers: CloudLayers): PrecipitationShafts | undefined {
+  const rate = Math.max(...[...layers].map(layer => layer.precipitation?.rate ?? 0))
+  return rate > 0
+    ? precipitationShafts({ drops: raindrops({ rate: Math.max(rate, 0.5) }) })
+    : undefined
 }
 
 /** A still's scene, drawn as an app would draw it: a pass, the air, the clouds. */
@@ -140,15 +151,20 @@ export class StillView {
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     let picture: Node = air
     if (still.clouds !== undefined) {
-      const { preset, coverage } = still.clouds
+      const { preset, coverage, precipitation: falls } = still.clouds
       const layers = cloudPreset(preset)
+      if (falls !== undefined) layers.at(0).set({ precipitation: falls })
       if (coverage !== undefined) layers.at(0).set({ coverage })
       const { dropletRadius } = still
       const light =
         dropletRadius === undefined
           ? undefined
           : new DropletLightTable({ dropletRadius, crystals: iceCrystals() })
-      const node = clouds(air, depth, camera, atmosphere, layers, { quality, light })
+      const node = clouds(air, depth, camera, atmosphere, layers, {
+        quality,
+        light,
+        precipitation: fallOf(layers)
+      })
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))

@@ -11,6 +11,7 @@ import { tonesOf, type Tones } from '../harness/tones'
 import { gpuMilliseconds, HeadlessDevice, nextFrame } from '../headless/device'
 import { selectStills, stills, type AnyStill } from './scenes'
 import { StillView } from './StillView'
+import { StreetView } from './StreetView'
 import { TerrainView } from './TerrainView'
 import { ValleyView } from './ValleyView'
 
@@ -78,7 +79,8 @@ function encode(name: string, pixels: Uint8Array): Buffer {
 function viewOf(
   renderer: Parameters<typeof gpuMilliseconds>[0],
   still: AnyStill
-): StillView | ValleyView | TerrainView {
+): StillView | ValleyView | TerrainView | StreetView {
+  if ('street' in still) return new StreetView(renderer, still, size)
   if ('terrain' in still) return new TerrainView(renderer, still, size)
   if ('valley' in still) return new ValleyView(renderer, still, size, quality)
   return new StillView(renderer, still, size, quality)

@@ -1,6 +1,8 @@
-import type { CloudPresetName } from '@welkin/clouds'
+import type { CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
+import { falling } from './falling'
+import { streets, type StreetStill } from './streets'
 
 /** A still: what is in it, where the sun stands, and where the camera looks. */
 export interface Still {
@@ -8,7 +10,7 @@ export interface Still {
   /** Features to look for. */
   about: string
   /** Preset of clouds; default: a clear sky. */
-  clouds?: { preset: CloudPresetName; coverage?: number }
+  clouds?: { preset: CloudPresetName; coverage?: number; precipitation?: CloudPrecipitation }
   /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
@@ -18,7 +20,8 @@ export interface Still {
   /** Light shafts, of hills and clouds. */
   shafts?: true
   planet?: 'mars'
-  /** Camera above the ellipsoid [m]. */
+  /** Place of the camera, default Tokyo [°], and its altitude above the ellipsoid [m]. */
+  place?: { longitude: number; latitude: number }
   altitude: number
   /** Elevation and azimuth of the sun, clockwise from north [°]; or a date, which sets moon and stars too. */
   sun: { elevation: number; azimuth: number } | Date
@@ -55,10 +58,10 @@ export interface TerrainStill {
 }
 
 /** A still of any kind. */
-export type AnyStill = Still | ValleyStill | TerrainStill
+export type AnyStill = Still | ValleyStill | TerrainStill | StreetStill
 
 /** The presets from the ground: where to look. */
-const presets: Record<CloudPresetName, { azimuth: number; pitch: number }> = {
+const presets: Partial<Record<CloudPresetName, { azimuth: number; pitch: number }>> = {
   fairWeather: { azimuth: 330, pitch: 14 },
   stratocumulus: { azimuth: 30, pitch: 14 },
   overcast: { azimuth: 30, pitch: 10 },
@@ -302,8 +305,10 @@ export const stills: readonly AnyStill[] = [
   ...optics,
   ...halos,
   ...rainbows,
+  ...falling,
   ...valleys,
   ...terrains,
+  ...streets,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',

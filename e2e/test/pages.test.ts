@@ -132,8 +132,9 @@ describe('numbers that pages take from the code', () => {
   })
 
   it('has the defaults of layers and of the phase function', () => {
-    const { wind, ...layer } = new CloudLayer().parameters
-    const parameters = { ...layer, ...new CloudLightTable().phase, wind: `${wind.east} east` }
+    const { wind, precipitation, ...layer } = new CloudLayer().parameters
+    const own = { wind: `${wind.east} east`, precipitation: precipitation && 'some' }
+    const parameters = { ...layer, ...new CloudLightTable().phase, ...own }
     const cells = [...tableBelow(clouds, '## Layers'), ...tableBelow(clouds, '## Droplets')]
     const defaults = Object.fromEntries(cells.map(row => [row[0], row.at(-2)!.replace('−', '-')]))
     const texts = Object.entries(parameters).map(([name, value]) => [

@@ -9,17 +9,27 @@ import {
   distanceFog,
   heightFieldShadow,
   heightFog,
+  iceCrystals,
   lightShafts,
   milkyWay,
   moon,
   planetGround,
+  raindrops,
   skyEnvironment,
   stars,
   sunFlare,
   surfaceLighting
 } from '@welkin/atmosphere'
 import type { SkyLayer } from '@welkin/atmosphere'
-import { cloudPreset, clouds, cloudShadow, cloudSkyLight, cloudWorldMap } from '@welkin/clouds'
+import {
+  cloudPreset,
+  clouds,
+  cloudShadow,
+  cloudSkyLight,
+  cloudWorldMap,
+  DropletLightTable,
+  precipitationShafts
+} from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import {
   DataTexture,
@@ -203,6 +213,13 @@ it('features of the clouds sample as many textures as their README says', async 
   expect(march).toBe(6)
   const shade = await inPass(world => world.clouds(picture()), 'Welkin.CloudsShade')
   expect(shade).toBe(10)
+  const rainy = await inPass(({ air, depth, camera, atmosphere }) => {
+    const light = new DropletLightTable({ crystals: iceCrystals() })
+    const precipitation = precipitationShafts({ drops: raindrops() })
+    const options = { light, precipitation, worldMap: cloudWorldMap(picture()) }
+    return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
+  }, 'Welkin.CloudsShade')
+  expect(rainy).toBe(13)
   const dimmed = await inLit(world => {
     cloudSkyLight(world.sky, world.clouds())
   })

@@ -1,9 +1,15 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { CloudField, CloudLayers, cloudPreset } from '@welkin/clouds'
-import { Vector3 } from 'three'
-import { float, texture3D, vec4 } from 'three/tsl'
+import type { AtmosphereView } from '@welkin/atmosphere'
+import { CloudField, CloudLayers, cloudPreset, precipitationShafts } from '@welkin/clouds'
+import type { PrecipitationShafts } from '@welkin/clouds'
+import { MathUtils, Vector3 } from 'three'
+import { float, int, Loop, texture3D, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { cloudExtinction as extinctionTwin } from '../../../packages/clouds/test/twins/density'
+import { extinctionOf, fallenRank, rateOf } from '../../../packages/clouds/test/twins/precipitation'
+import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
+import { fallForm } from '../../../packages/clouds/src/precipitation/fallForm'
+import { fallenFrom, fallExtinction } from '../../../packages/clouds/src/precipitation/tsl/fall'
 import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../../packages/clouds/src/noise/noiseSizes'
 import { cloudExtinction, verticalOpticalDepth } from '../harness/cloud-extinction'
@@ -135,6 +141,86 @@ gpuTest('follows a layer without compiling', async t => {
   columns.dispose()
   scene.dispose()
 })
+
+/** Depth of the columns of rain [m], and samples in each. */
+const RAIN_DEPTH = 950
+const COLUMN_STEPS = 12
+
+/** Optical depth of what falls from the field's only layer, straight up from the ground below a place. */
+function rainDepth(
+  field: CloudField,
+  medium: PrecipitationShafts,
+  place: Node<'vec4'>
+): Node<'float'> {
+  const depth = float(0).toVar()
+  const start = place.xyz.toConst()
+  const { altitude, up } = field.view.localCoordinates(start)
+  const [layer, falls] = [layerAt(field, int(0)), medium.fallOf(int(0))]
+  Loop(COLUMN_STEPS, ({ i }) => {
+    const height = float(i as never)
+      .add(0.5)
+      .mul(RAIN_DEPTH / COLUMN_STEPS)
+      .toConst()
+    const offset = start.add(up.mul(height.sub(altitude))).toConst()
+    const sample = { offset, altitude: height, up, distance: place.w }
+    const { rate, snow, hail } = fallenFrom(field, undefined, layer, falls, sample)
+    depth.addAssign(fallExtinction(rate, snow, hail).mul(RAIN_DEPTH / COLUMN_STEPS))
+  })
+  return depth
+}
+
+gpuTest(
+  'lets rain and snow fall where float64 does, as opaque as their rates say',
+  async t => {
+    const rates = [0.5, 3, 12, 60]
+    const layer = {
+      coverage: 0.8,
+      shapeAmount: 0,
+      shear: 0.3,
+      wind: { east: 12, north: -5 }
+    }
+    const layers = new CloudLayers([{ ...layer, precipitation: { rate: 1, freezingLevel: 600 } }])
+    const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+    const medium = precipitationShafts()
+    const inputs = offsets(scene.viewpoint, 40, 20_000, 21, share => 5 + 20 * share)
+    const state = scene.state()
+    const { zenith, bottomRadius } = state
+    for (const rate of rates) {
+      const falls = { rate, share: 0.7, freezingLevel: 600, virgaDepth: rate > 3 ? 900 : 0 }
+      layers.at(0).precipitation = falls
+      medium.update(scene.field, { up: zenith } as AtmosphereView)
+      const places = { ...state, layers: [layers.at(0).parameters] }
+      const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+        vec4(rainDepth(scene.field, medium, input))
+      )
+      // As above: of the strongest column's.
+      const deepest = extinctionOf(rateOf(rate, 1, 0, 0), 1, 0) * RAIN_DEPTH
+      let wet = 0
+      inputs.forEach(([x, y, z, distance], i) => {
+        const place = scene.viewpoint.clone().add(new Vector3(x, y, z))
+        const up = place.clone().normalize()
+        let depth = 0
+        for (let k = 0; k < COLUMN_STEPS; k++) {
+          const altitude = (RAIN_DEPTH * (k + 0.5)) / COLUMN_STEPS
+          const at = up.clone().multiplyScalar(bottomRadius + altitude)
+          const rank = fallenRank(places, twin, 0, at, distance)
+          const here = rank > 0 ? rateOf(rate, rank, 1000 - altitude, falls.virgaDepth) : 0
+          const snow = MathUtils.smoothstep(altitude, 600 - fallForm.melting, 600)
+          depth += (extinctionOf(here, snow, 0) * RAIN_DEPTH) / COLUMN_STEPS
+        }
+        if (depth > 0.01) wet++
+        const got = results[4 * i]
+        expectTrue(
+          Math.abs(got - depth) < 0.015 * deepest,
+          `rate ${rate}: optical depth ${got} for ${depth}`
+        )
+      })
+      expectTrue(wet > 8, `rate ${rate}: ${wet} columns with rain`)
+    }
+    scene.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('gives numbers for any parameters', async t => {
   const draw = random(11)

@@ -95,6 +95,17 @@ export { Raindrops, raindrops } from './optics/Raindrops'
 export type { RaindropsOptions } from './optics/Raindrops'
 export { IceCrystals, iceCrystals } from './optics/IceCrystals'
 export type { IceCrystalsOptions } from './optics/IceCrystals'
+export { rainfall } from './precipitation/rainfall'
+export { snowfall } from './precipitation/snowfall'
+export type { Precipitation } from './precipitation/Precipitation'
+export type { PrecipitationOptions } from './precipitation/PrecipitationOptions'
+export type { PrecipitationWind } from './precipitation/FallingLattice'
+export { PrecipitationShelter } from './precipitation/PrecipitationShelter'
+export type { PrecipitationShelterOptions } from './precipitation/PrecipitationShelter'
+export {
+  PrecipitationOverlayNode,
+  precipitationOverlay
+} from './precipitation/PrecipitationOverlayNode'
 export type { ScatteringAngles, ScatteringPhase } from './optics/ScatteringPhase'
 
 // For shaders of one's own; `AtmosphereNode` has an example.

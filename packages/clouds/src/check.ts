@@ -27,3 +27,14 @@ export function named<T extends object>(
 export function checkClouds(where: string, value: { readonly shadows: unknown }): void {
   if (value?.shadows === undefined) fail(where, 'clouds must be a CloudsNode', value)
 }
+
+/** @throws If layers have precipitation, and nothing shows it. */
+export function checkPrecipitation(
+  where: string,
+  layers: Iterable<{ readonly precipitation: { readonly rate: number } | null }>,
+  medium: object | undefined
+): void {
+  if (medium === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
+    fail(where, 'precipitation must be given: layers have some')
+  }
+}

@@ -1,6 +1,7 @@
 export { CloudLayer, type CloudLayerParameters, type CloudWind } from './layers/CloudLayer'
+export type { CloudPrecipitation } from './layers/precipitation'
 export { CloudLayers } from './layers/CloudLayers'
-export { cloudLayersFromMETAR, type METAROptions } from './layers/metar'
+export { cloudLayersFromMETAR, visibilityFromMETAR, type METAROptions } from './layers/metar'
 export { CloudField, type CloudFieldOptions } from './density/CloudField'
 export { CloudWorldMap, cloudWorldMap } from './density/CloudWorldMap'
 export type { CloudWorldMapOptions, MapBounds } from './density/CloudWorldMap'
@@ -14,6 +15,11 @@ export type { CloudLight, FineSampleNodes } from './light/CloudLightTable'
 export { DropletLightTable, type DropletLightOptions } from './light/DropletLightTable'
 export type { CloudPhaseParameters } from './light/cpu/cloudPhase'
 export { CloudsNode, clouds, type CloudsOptions } from './march/CloudsNode'
+export {
+  PrecipitationShafts,
+  precipitationShafts,
+  type PrecipitationShaftsOptions
+} from './precipitation/PrecipitationShafts'
 export { CloudVelocityNode, cloudVelocity } from './temporal/CloudVelocityNode'
 export { CloudsDebugNode, cloudsDebug, type CloudsDebug } from './march/CloudsDebugNode'
 export { cloudQualities, type CloudQuality, type CloudQualityName } from './march/quality'

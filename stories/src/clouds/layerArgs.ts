@@ -33,7 +33,7 @@ export interface LayerArgs {
 const THINNEST = 50
 
 export function layerArgs(parameters: CloudLayerParameters): LayerArgs {
-  const { weatherWeights, wind, ...rest } = parameters
+  const { weatherWeights, wind, precipitation: _, ...rest } = parameters
   const [cumulus, stratocumulus, cumulonimbus, cirrus] = weatherWeights
   return {
     ...rest,
@@ -47,7 +47,7 @@ export function layerArgs(parameters: CloudLayerParameters): LayerArgs {
 }
 
 /** The other way round. A layer upside down becomes a thin one at its base. */
-export function layerParameters(args: LayerArgs): CloudLayerParameters {
+export function layerParameters(args: LayerArgs): Omit<CloudLayerParameters, 'precipitation'> {
   const { baseAltitude, topAltitude, coverage, density, profileExponent } = args
   const { shapeAmount, detailAmount, weatherScale, shapeScale, detailScale } = args
   const { edgeSoftness, turbulence, shear, anvil, openCells, densityGrowth, shadow } = args

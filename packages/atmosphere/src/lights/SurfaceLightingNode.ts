@@ -7,6 +7,7 @@ import { checkCamera, checkRange } from '../check'
 import { tableTarget } from '../tables/FragmentPass'
 import { sampleLevel0, type Bool, type Float, type Vec3, type Vec4 } from '../tsl-types'
 import { DepthRays } from '../view/DepthRays'
+import { depthNormalHere, depthPositionHere } from './tsl/depthSurface'
 import { WhiteSurfaces } from './WhiteSurfaces'
 
 /** Options of {@link SurfaceLightingNode}. */
@@ -100,7 +101,13 @@ export class SurfaceLightingNode extends Node<'vec4'> {
     this.camera = camera
     this.lights = [...lights]
     this.#mask = mask
-    this.#surfaces = new WhiteSurfaces(new DepthRays(depthNode, camera), normal)
+    const rays = new DepthRays(depthNode, camera)
+    const position = depthPositionHere(rays)
+    this.#surfaces = new WhiteSurfaces(
+      'Welkin.SurfaceLighting',
+      position,
+      normal ?? depthNormalHere(rays)
+    )
     this.#light = texture(this.#target.texture)
     this.updateBeforeType = NodeUpdateType.RENDER
     this.set(settings)
@@ -139,7 +146,7 @@ export class SurfaceLightingNode extends Node<'vec4'> {
     if (renderer === null || this.strength === 0) return
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.#target.setSize(Math.max(width, 1), Math.max(height, 1))
-    this.#surfaces.render(renderer, this.lights, this.#target)
+    this.#surfaces.render(renderer, this.camera, this.lights, this.#target)
   }
 
   override setup(): Node {

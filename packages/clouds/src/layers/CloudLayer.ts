@@ -2,6 +2,7 @@ import { checkSpectrum, withDefaults } from '@welkin/atmosphere'
 import { checkBoolean, checkFinite, checkOptions, fail } from '@welkin/geo'
 import { checkRanges } from '../check'
 import { parameterProperties } from '../parameterProperties'
+import { checkedPrecipitation, type CloudPrecipitation } from './precipitation'
 
 /** Horizontal velocity of the air at a layer [m/s], towards east and north. */
 export interface CloudWind {
@@ -56,6 +57,8 @@ export interface CloudLayerParameters {
    */
   readonly weatherWeights: readonly [number, number, number, number]
   readonly wind: CloudWind
+  /** Rain, snow or hail from it; seen if `clouds` has a `precipitation`. Null, the default, for nothing. */
+  readonly precipitation: CloudPrecipitation | null
   /** True for a layer that casts shadows. */
   readonly shadow: boolean
 }
@@ -80,6 +83,7 @@ const defaults: CloudLayerParameters = {
   densityGrowth: 0.25,
   weatherWeights: [1, 0, 0, 0],
   wind: { east: 8, north: 0 },
+  precipitation: null,
   shadow: true
 }
 
@@ -145,6 +149,7 @@ export class CloudLayer {
   declare densityGrowth: CloudLayerParameters['densityGrowth']
   declare weatherWeights: CloudLayerParameters['weatherWeights']
   declare wind: CloudLayerParameters['wind']
+  declare precipitation: CloudLayerParameters['precipitation']
   declare shadow: CloudLayerParameters['shadow']
   #parameters: CloudLayerParameters
 
@@ -188,5 +193,8 @@ function merge(
   requireParameters(merged)
   const [a, b, c, d] = merged.weatherWeights
   const weatherWeights = Object.freeze([a, b, c, d] as const)
-  return Object.freeze({ ...merged, weatherWeights, wind: Object.freeze({ ...merged.wind }) })
+  const { precipitation: falls } = merged
+  const precipitation = falls && checkedPrecipitation(falls)
+  const wind = Object.freeze({ ...merged.wind })
+  return Object.freeze({ ...merged, weatherWeights, wind, precipitation })
 }

@@ -1,7 +1,8 @@
 import { checkRange } from '@welkin/atmosphere'
-import { checkOptions, fail } from '@welkin/geo'
+import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { CloudLayerParameters, CloudWind } from './CloudLayer'
 import { checkCount, CloudLayers } from './CloudLayers'
+import type { CloudPrecipitation } from './precipitation'
 import { cloudPreset, type CloudPresetName } from './presets'
 
 /** Options of {@link cloudLayersFromMETAR}. */
@@ -10,6 +11,8 @@ export interface METAROptions {
   readonly stationElevation?: number
   /** Least number of layers, to `copy` other reports later; default 1. */
   readonly count?: number
+  /** True for layers from which falls what is reported, for clouds with a `precipitation`; default false. */
+  readonly precipitation?: boolean
 }
 
 type Parameters = Partial<CloudLayerParameters>
@@ -24,6 +27,23 @@ const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
 
 const WIND = /^(?:(\d{3})P?(\d{2,3})|VRB\d{2,3}|\/{5})(?:GP?\d{2,3})?(KT|MPS)$/
 const CLOUD = /^(FEW|SCT|BKN|OVC|VV|\/{3})([0-5]\d\d|\/{3})(CB|TCU|\/{3})?$/
+
+/** Present weather that falls: intensity, descriptors, kinds. */
+const FALLING = /^([-+]?)(?:SH|TS|FZ|BL|DR|PR)*((?:DZ|RA|SN|SG|PL|GR|GS|UP)+)$/
+
+/** Temperature and dew point [°C]. */
+const TEMPERATURE = /^(M?)(\d\d)\/(?:M?\d\d|\/\/)?$/
+
+/**
+ * Rates of light, moderate and heavy drizzle, snow and rain [mm/h of water]: middles of the ranges of WMO-No. 8, vol. I, annex 1.B.
+ */
+const rates = { drizzle: [0.07, 0.3, 0.7], snow: [0.5, 2, 6], rain: [1.2, 5, 20] } as const
+
+/** Fall of temperature with height in the standard atmosphere [°C/m]. */
+const LAPSE = 0.0065
+
+/** Depth of air above 0 °C through which what is reported as rain has fallen, at least [m]. */
+const MELTED = 300
 
 /** A group of which something is known. */
 const KNOWN = /[^/]/
@@ -93,7 +113,12 @@ function layerOfKind(group: Group, height: number): Parameters {
   return preset(amount === 6 ? 'stratocumulus' : 'fairWeather')
 }
 
-function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): Parameters {
+function layerOf(
+  group: Group,
+  elevation: number,
+  wind: CloudWind | undefined,
+  precipitation: CloudPrecipitation | null
+): Parameters {
   const [, amount, base, kind] = group
   const isFog = amount === 'VV'
   const unknown = isFog ? UNKNOWN_VISIBILITY : UNKNOWN_BASE
@@ -112,7 +137,8 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
     ...(isLow && wind && { wind }),
     coverage: eighthsOf(group) / 8,
     baseAltitude,
-    topAltitude: Math.min(baseAltitude + thickness, 30_000)
+    topAltitude: Math.min(baseAltitude + thickness, 30_000),
+    precipitation
   }
 }
 
@@ -129,6 +155,9 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
  * clouds are cumulus, from BKN on stratocumulus, and an overcast; below 6 km altocumulus or altostratus,
  * above that cirrus. TCU are 3.5 km tall, CB reach 11 km. `VV002` is fog, so thick that one sees 200 ft up.
  *
+ * With `precipitation: true`, what falls (`-RA`, `SHRA`, `+TSRA`, `SN`, `DZ`) falls from CB, or else TCU, or else the layer that covers most, at the middle of the rates that
+ * its intensity stands for, with hail for `GR` and `GS`; the temperature says how high the freezing level is. Mist and fog (`BR`, `FG`) have no layer but `VV`'s: {@link visibilityFromMETAR} has what is seen through them.
+ *
  * The wind moves clouds below 2 km. Where it is variable or unknown, and above, they have their preset's.
  * An unknown base (`///`) is 3000 ft, an unknown amount SCT; a group of which nothing is known is left out.
  * Without clouds (`SKC`, `CLR`, `NSC`, `NCD`, `CAVOK`), one layer covers nothing. Of more groups than
@@ -140,14 +169,17 @@ function layerOf(group: Group, elevation: number, wind: CloudWind | undefined): 
  * @see WMO-No. 306, Manual on Codes, FM 15; FMH-1, Surface Weather Observations and Reports, §12
  */
 export function cloudLayersFromMETAR(report: string, options: METAROptions = {}): CloudLayers {
-  checkOptions(WHERE, options, 'stationElevation', 'count')
-  const { stationElevation = 0, count = 1 } = options
+  checkOptions(WHERE, options, 'stationElevation', 'count', 'precipitation')
+  const { stationElevation = 0, count = 1, precipitation = false } = options
+  checkBoolean(WHERE, 'precipitation', precipitation)
   checkCount(WHERE, count)
   checkRange(WHERE, 'stationElevation', stationElevation, -500, 9000)
   if (typeof report !== 'string') fail(WHERE, 'report must be a string', report)
   const groups: Group[] = []
   let isReport = false
   let wind: CloudWind | undefined
+  let falling: RegExpExecArray | null = null
+  let temperature: number | undefined
   for (const text of report
     .toUpperCase()
     .split(LATER)[0]
@@ -155,16 +187,80 @@ export function cloudLayersFromMETAR(report: string, options: METAROptions = {})
     const group = CLOUD.exec(text) as Group | null
     if (group && KNOWN.test(text)) groups.push(group)
     if (!group && LIKE_CLOUD.test(text)) fail(WHERE, "clouds must be like 'SCT035TCU'", text)
+    falling ??= FALLING.exec(text)
+    const [, sign, degrees] = TEMPERATURE.exec(text) ?? []
+    if (degrees !== undefined) temperature = Number(degrees) * (sign ? -1 : 1)
     if (LIKE_WIND.test(text)) wind = windOf(text)
     isReport ||= group !== null || TELLING.test(text)
   }
   if (!isReport) fail(WHERE, 'report must be a METAR', report)
   const rank = (group: Group): number => eighthsOf(group) + (isTall(group) ? 8 : 0)
   const ranked = groups.toSorted((a, b) => rank(b) - rank(a))
+  const [source] = ranked.toSorted((a, b) => kindRank(b) - kindRank(a))
+  const falls =
+    falling && precipitation ? precipitationOf(falling, temperature, stationElevation) : null
   const layers = groups
     .filter(group => ranked.indexOf(group) < CloudLayers.maxLayers)
-    .map(group => layerOf(group, stationElevation, wind))
+    .map(group => layerOf(group, stationElevation, wind, group === source ? falls : null))
   return new CloudLayers(layers, Math.max(count, 1))
+}
+
+/** Clouds that rain rather than others: storms, and towers. */
+const kindRank = ([, , , kind]: Group): number => (kind === 'CB' ? 2 : kind === 'TCU' ? 1 : 0)
+
+/**
+ * Precipitation by a group such as `+SHRA`.
+ *
+ * @param temperature - At the station [°C]; undefined if it is not known.
+ * @param elevation - Altitude of the station [m].
+ */
+function precipitationOf(
+  [text, intensity, kinds]: readonly string[],
+  temperature: number | undefined,
+  elevation: number
+): CloudPrecipitation {
+  const isSnow = /SN|SG/.test(kinds) && !kinds.includes('RA')
+  const isDrizzle = /^DZ$/.test(kinds)
+  const each = isSnow ? rates.snow : isDrizzle ? rates.drizzle : rates.rain
+  const rate = each[['-', '', '+'].indexOf(intensity)]
+  const freezing = elevation + (temperature ?? 15) / LAPSE
+  const freezingLevel = isSnow
+    ? Math.min(freezing, elevation)
+    : Math.max(freezing, elevation + MELTED)
+  return {
+    rate,
+    share: /SH|TS/.test(text) ? 0.5 : 0.9,
+    freezingLevel: Math.max(freezingLevel, -1000),
+    hail: /GR|GS/.test(kinds) ? 0.3 : 0
+  }
+}
+
+const VISIBILITY = /^(?:CAVOK|(\d{4})(?:NDV)?|([PM]?)(?:(\d+)|(?:(\d+) )?(\d)\/(\d+))SM)$/
+
+/**
+ * Prevailing visibility in an aerodrome's report [m]: 10,000 for `9999` and `CAVOK`, null where it is not known. Mist (`BR`) has 1 to 5 km, fog
+ * (`FG`) less than 1 km: `heightFog({ density: 3 / visibility })` shows them.
+ *
+ * @param report - The whole report.
+ * @throws Error when it is no string.
+ * @see WMO-No. 306, Manual on Codes, FM 15, 15.6
+ */
+export function visibilityFromMETAR(report: string): number | null {
+  if (typeof report !== 'string') fail('visibilityFromMETAR', 'report must be a string', report)
+  const [proper] = report.toUpperCase().split(LATER)
+  // Miles may be two groups: 1 1/2SM.
+  const texts = proper.replace(/ (\d) (\d\/\d+SM)/, ' $1_$2').split(/[\s=$]+/)
+  for (const text of texts) {
+    const found = VISIBILITY.exec(text.replace('_', ' '))
+    if (!found) continue
+    const [all, metres, , miles, whole = 0, part, of] = found
+    if (all === 'CAVOK' || metres === '9999') return 10_000
+    if (metres !== undefined) return Number(metres)
+    return (
+      1609.344 * (miles === undefined ? Number(whole) + Number(part) / Number(of) : Number(miles))
+    )
+  }
+  return null
 }
 
 /** Wind of a group such as `24008G18KT`, from 240°; undefined where it is variable or unknown. */

@@ -24,6 +24,37 @@ const altocumulus: Partial<CloudLayerParameters> = {
   wind: { east: 16, north: -3 }
 }
 
+const congestus: Partial<CloudLayerParameters> = {
+  baseAltitude: 800,
+  topAltitude: 4300,
+  coverage: 0.35,
+  profileExponent: 0.5,
+  wind: { east: 9, north: 3 }
+}
+
+const storm: Partial<CloudLayerParameters> = {
+  baseAltitude: 700,
+  topAltitude: 11_000,
+  coverage: 0.25,
+  density: 0.08,
+  anvil: 1,
+  turbulence: 0.8,
+  weatherWeights: [0, 0, 1, 0],
+  wind: { east: 12, north: 3 }
+}
+
+const overcast: Partial<CloudLayerParameters> = {
+  baseAltitude: 600,
+  topAltitude: 1500,
+  coverage: 1,
+  density: 0.02,
+  profileExponent: 0.7,
+  shapeAmount: 0.7,
+  edgeSoftness: 0.4,
+  weatherWeights: [0, 1, 0, 0],
+  wind: { east: 10, north: 5 }
+}
+
 const cirrus: Partial<CloudLayerParameters> = {
   baseAltitude: 8500,
   topAltitude: 9600,
@@ -51,18 +82,13 @@ export type CloudPresetName =
   | 'altocumulus'
   | 'cirrus'
   | 'mixed'
+  | 'shower'
+  | 'nimbostratus'
+  | 'snowShower'
 
 const presets: Readonly<Record<CloudPresetName, Layers>> = {
   fairWeather: [cumulus],
-  congestus: [
-    {
-      baseAltitude: 800,
-      topAltitude: 4300,
-      coverage: 0.35,
-      profileExponent: 0.5,
-      wind: { east: 9, north: 3 }
-    }
-  ],
+  congestus: [congestus],
   stratocumulus: [
     {
       baseAltitude: 800,
@@ -75,39 +101,21 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [
-    {
-      baseAltitude: 600,
-      topAltitude: 1500,
-      coverage: 1,
-      density: 0.02,
-      profileExponent: 0.7,
-      shapeAmount: 0.7,
-      edgeSoftness: 0.4,
-      weatherWeights: [0, 1, 0, 0],
-      wind: { east: 10, north: 5 }
-    }
-  ],
-  cumulonimbus: [
-    {
-      baseAltitude: 700,
-      topAltitude: 11_000,
-      coverage: 0.25,
-      density: 0.08,
-      anvil: 1,
-      turbulence: 0.8,
-      weatherWeights: [0, 0, 1, 0],
-      wind: { east: 12, north: 3 }
-    },
-    { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.25 }
-  ],
+  overcast: [overcast],
+  cumulonimbus: [storm, { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.25 }],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
   mixed: [
     { ...cumulus, coverage: 0.25 },
     { ...altocumulus, coverage: 0.35 },
     { ...cirrus, coverage: 0.4 }
-  ]
+  ],
+  shower: [
+    { ...storm, baseAltitude: 1000, topAltitude: 7000, anvil: 0.4, precipitation: { rate: 12 } },
+    cumulus
+  ],
+  nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
+  snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }]
 }
 
 /** All names of {@link cloudPreset}, for menus. */
@@ -124,6 +132,11 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other
+ * - `shower`: towers up to 7 km with rain of 12 mm/h, among small cumulus
+ * - `nimbostratus`: a thick closed deck with rain of 3 mm/h
+ * - `snowShower`: towering cumulus in cold air, with snow of 1.5 mm/h of water
+ *
+ * What falls from the last three is seen if `clouds` has a `precipitation`.
  *
  * @param count - Least number of layers, to take other presets by `copy` later.
  * @throws If there is no preset of this name, or the count is none.

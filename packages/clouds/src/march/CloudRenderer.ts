@@ -1,10 +1,11 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
-import { FloatType, NearestFilter, UnsignedByteType } from 'three'
+import { FloatType, NearestFilter, UnsignedByteType, Vector2 } from 'three'
 import type { RenderTarget, Texture, Vector3 } from 'three'
 import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { WeatherMap } from '../density/WeatherMap'
 import type { ShadingContext } from '../light/tsl/shadingContext'
+import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
 import { encodeDistance } from '../temporal/tsl/packing'
@@ -16,9 +17,19 @@ import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type FrameInputs } from './tsl/viewRay'
 import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
+const _size = new Vector2()
+
+/** Size of the target that is drawn into [pixels]. */
+export function sizeOf(renderer: Renderer): { width: number; height: number } {
+  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
+  return { width: Math.max(width, 1), height: Math.max(height, 1) }
+}
+
 /** Inputs of a camera's passes. */
 export interface CloudScene extends ShadingContext {
   readonly viewRays: FrameInputs
+  /** Rain and snow under the clouds. */
+  readonly precipitation?: PrecipitationShafts
 }
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
@@ -81,21 +92,25 @@ function marchPixels(scene: CloudScene): Outputs {
 
 /** Shades what was marched: light with the air in front of it, and its distances. */
 function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
-  const { field, viewRays } = scene
+  const { field, viewRays, precipitation } = scene
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
-    const { at } = marchedPixel(scene)
+    const { at, noise } = marchedPixel(scene)
     const here = uv() as unknown as Vec2
     const ray = marched.ray.sample(here).level(0).toConst() as Vec4
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
-    If(ray.z.lessThan(1), () => {
+    // Rain may be where no cloud is.
+    If(ray.z.lessThan(precipitation ? 2 : 1), () => {
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
         shares: marched.shares.sample(here).level(0).toConst() as Vec4
       }
       const { direction, directionView } = viewRayAt(viewRays, at)
-      const radiance = shadePoints(scene, direction, points)
-      const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
+      const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
+      const seen = precipitation?.among(scene, direction, noise, ray, clouds, distances) ?? {
+        ...clouds,
+        radiance: shadePoints(scene, direction, points)
+      }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
   })

@@ -1,16 +1,17 @@
 import { AtmosphereNode } from '@welkin/atmosphere'
 import type { Atmosphere, ScreenShadows } from '@welkin/atmosphere'
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
-import { Vector2 } from 'three'
 import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
+import { checkPrecipitation } from '../check'
 import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
 import type { CloudNoise } from '../noise/CloudNoise'
-import { CloudRenderer } from './CloudRenderer'
+import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
+import { CloudRenderer, sizeOf } from './CloudRenderer'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
 import { FrameUniforms } from './FrameUniforms'
 import {
@@ -21,8 +22,6 @@ import {
   type CloudQualityName
 } from './quality'
 import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
-
-const _size = new Vector2()
 
 /** Slices of its own noise that a node draws in a frame: all in about 20. */
 const NOISE_SLICES = 12
@@ -50,6 +49,8 @@ export interface CloudsOptions {
   extinction?: CloudFieldOptions['extinction']
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
+  /** Rain and snow under the clouds, of layers that have `precipitation`: `precipitationShafts()`. Left out, none is seen. */
+  precipitation?: PrecipitationShafts
 }
 
 const SETTINGS = ['quality', 'time', 'nightIlluminance', 'ambient', 'accumulates'] as const
@@ -94,6 +95,7 @@ export class CloudsNode extends AtmosphereNode {
   #time: number | null = null
   #accumulates = true
   readonly #ownsLight: boolean
+  readonly #precipitation: PrecipitationShafts | undefined
   readonly #noiseSlices: number
   readonly #uniforms = new QualityUniforms()
   readonly #frame = new FrameUniforms()
@@ -105,7 +107,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly screens = new Set<ScreenShadows>()
   #quality: CloudQuality = cloudQualities.high
 
-  /** @throws If an argument is missing or of the wrong kind. */
+  /** @throws If an argument is missing or of the wrong kind, or layers have precipitation and nothing shows it. */
   constructor(
     colorNode: Node,
     depthNode: Node,
@@ -116,8 +118,17 @@ export class CloudsNode extends AtmosphereNode {
   ) {
     if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
     super(atmosphere, camera)
-    checkOptions('CloudsNode', options, 'worldMap', 'noise', 'extinction', 'light', ...SETTINGS)
-    const { worldMap, noise, extinction, light, ...settings } = options
+    checkOptions(
+      'CloudsNode',
+      options,
+      'worldMap',
+      'noise',
+      'extinction',
+      'light',
+      'precipitation',
+      ...SETTINGS
+    )
+    const { worldMap, noise, extinction, light, precipitation, ...settings } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
     if (!isDepth(depthNode)) {
       fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
@@ -133,6 +144,8 @@ export class CloudsNode extends AtmosphereNode {
     this.set(settings)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
+    this.#precipitation = precipitation
+    checkPrecipitation('CloudsNode', layers, precipitation)
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field)
     this.passes = new CloudRenderer({
@@ -140,6 +153,7 @@ export class CloudsNode extends AtmosphereNode {
       light: this.light.nodes,
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
+      precipitation,
       viewRays: {
         field: this.field,
         frame: this.#frame,
@@ -269,7 +283,7 @@ export class CloudsNode extends AtmosphereNode {
     field.update(view, this.#time ?? frame.time)
     this.shadows.update(renderer, view)
     this.passes.setSize(width, height, this.#quality.block)
-    const { version } = light.texture
+    const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value
@@ -319,12 +333,6 @@ function isDepth(node: Node): boolean {
 
 function isPerspective(camera: Camera): camera is PerspectiveCamera {
   return (camera as PerspectiveCamera | undefined)?.isPerspectiveCamera === true
-}
-
-/** Size of the target that is drawn into [pixels]. */
-function sizeOf(renderer: Renderer): { width: number; height: number } {
-  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-  return { width: Math.max(width, 1), height: Math.max(height, 1) }
 }
 
 /** Volumetric clouds as a post effect: see {@link CloudsNode}. */

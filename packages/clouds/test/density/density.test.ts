@@ -312,7 +312,10 @@ describe('cloudPreset', () => {
       'cumulonimbus',
       'altocumulus',
       'cirrus',
-      'mixed'
+      'mixed',
+      'shower',
+      'nimbostratus',
+      'snowShower'
     ])
     for (const name of cloudPresetNames) {
       cloudPreset(name).at(0).set({ coverage: 0.01 })

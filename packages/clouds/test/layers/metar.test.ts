@@ -1,6 +1,11 @@
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
-import { cloudLayersFromMETAR, cloudPreset, type CloudLayerParameters } from '../../src'
+import {
+  cloudLayersFromMETAR,
+  cloudPreset,
+  visibilityFromMETAR,
+  type CloudLayerParameters
+} from '../../src'
 
 const read = (report: string, options = {}): CloudLayerParameters[] =>
   [...cloudLayersFromMETAR(report, options)].map(({ parameters }) => parameters)
@@ -197,5 +202,51 @@ describe('cloudLayersFromMETAR', () => {
         expect(layers).toHaveLength(Math.min(Math.max(groups.length, 1), 4))
       })
     )
+  })
+})
+
+describe('weather of a METAR', () => {
+  const falls = (report: string) =>
+    read(report, { precipitation: true }).map(({ precipitation }) => precipitation)
+
+  it('falls from storms, towers, or what covers most', () => {
+    const rates = (report: string) => falls(report).map(each => each?.rate)
+    expect(rates('EDDM 221150Z 24008KT 6000 -RA FEW018 OVC035 10/08 Q1015')).toEqual([
+      undefined,
+      1.2
+    ])
+    expect(rates('EDDM 221150Z 24008KT 4000 +TSRA SCT025CB BKN080 22/18 Q1008')).toEqual([
+      20,
+      undefined
+    ])
+    expect(rates('EDDM 221150Z 24008KT 8000 SHRA BKN018 SCT030TCU 12/09 Q1008')).toEqual([
+      undefined,
+      5
+    ])
+    expect(read('EDDM 221150Z 24008KT 3000 DZ BR OVC004 08/08 Q1020')[0].precipitation).toBe(null)
+    expect(rates('EDDM 221150Z 24008KT 3000 DZ BR OVC004 08/08 Q1020')).toEqual([0.3])
+    expect(rates('EDDM 221150Z 24008KT 9999 VCSH FEW030 10/08 Q1015')).toEqual([undefined])
+    expect(rates('EDDM 221150Z 24008KT 9999 OVC030 10/08 Q1015 TEMPO 3000 RA')).toEqual([undefined])
+  })
+
+  it('is snow or rain as reported, with hail', () => {
+    const [snow] = falls('ENGM 221150Z 01005KT 1500 SN OVC010 M02/M03 Q1001')
+    expect(snow).toMatchObject({ rate: 2, share: 0.9, hail: 0 })
+    expect(snow?.freezingLevel).toBeCloseTo(-308, 0)
+    const [rain] = falls('EGLL 221150Z 21010KT 5000 +SHRAGS SCT020CB 13/10 Q0998')
+    expect(rain).toMatchObject({ rate: 20, share: 0.5, hail: 0.3, freezingLevel: 2000 })
+  })
+
+  it.for([
+    ['UUEE 221130Z 19004MPS 0150 R24C/0400N FG VV002 M01/M01 Q1024', 150],
+    ['EDDM 221150Z 24008KT 9999 FEW018 10/04 Q1015', 10_000],
+    ['LFPG 221200Z VRB02KT CAVOK 21/09 Q1023 NOSIG', 10_000],
+    ['KSFO 221156Z 28014G22KT 10SM FEW008 14/10 A2997', 16_093],
+    ['KSFO 221156Z 28014G22KT 1 1/2SM BR FEW008 14/10 A2997', 2414],
+    ['KSFO 221156Z 28014G22KT M1/4SM FG VV001 14/14 A2997', 402],
+    ['EGPC 221150Z AUTO /////KT //// // ////// 10/04 Q1015', null]
+  ] as const)('sees as far as %s says', ([report, metres]) => {
+    const seen = visibilityFromMETAR(report)
+    expect(seen === null ? null : Math.round(seen)).toBe(metres)
   })
 })

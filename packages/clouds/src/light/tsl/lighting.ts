@@ -26,7 +26,7 @@ export interface CloudShares {
 }
 
 /** The light of a place: the moon where it is night, or else the sun. */
-function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample): ShadingLight {
+export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample): ShadingLight {
   const { view, night } = field
   const isMoonlit = isNight(field, up.dot(view.lightDirection)).toConst()
   const direction = isMoonlit.select(night.moonDirection, view.lightDirection).toConst() as Vec3

@@ -7,7 +7,7 @@ import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'
 export const FAR_AWAY = 1e12
 
 /** The two distances at which a ray's line crosses the sphere at an altitude; `FAR_AWAY` if none. */
-function crossings(
+export function crossings(
   field: CloudField,
   cosView: Float,
   altitude: Float
@@ -74,7 +74,7 @@ export interface LayersAt {
  * Coverages between which isolated clouds grow together to a deck. Lower: *Cumulus* are lit like a deck,
  * dark between their tops.
  */
-const GROWING_TOGETHER = [0.35, 1] as const
+export const GROWING_TOGETHER = [0.35, 1] as const
 
 /**
  * Layers around an altitude.

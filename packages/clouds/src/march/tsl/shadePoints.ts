@@ -9,11 +9,14 @@ import { layersAt } from './layerBoundaries'
 import { marchClouds, type CloudRay, type MarchedClouds } from './march'
 import { POINTS, type SeenPoints } from './seenPoints'
 
-/** Clouds on a ray, with their light. */
-export interface LitClouds extends MarchedClouds {
+/** Light of a ray's clouds. */
+export interface LitRay {
   /** Spectral radiance at the clouds for unit irradiance of the bare sun [1/sr]. */
   readonly radiance: Vec4
 }
+
+/** Clouds on a ray, with their light. */
+export interface LitClouds extends MarchedClouds, LitRay {}
 
 /**
  * Light of what a ray sees of the clouds, from the points that stand for it. To be called inside of a shader

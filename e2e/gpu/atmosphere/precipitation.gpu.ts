@@ -1,0 +1,177 @@
+import {
+  Atmosphere,
+  precipitationOverlay,
+  PrecipitationShelter,
+  rainfall,
+  SkyLightProbe,
+  snowfall,
+  SunDirectionalLight,
+  type Precipitation
+} from '@welkin/atmosphere'
+import {
+  AmbientLight,
+  Mesh,
+  MeshBasicMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  PointLight,
+  Scene,
+  SpotLight
+} from 'three'
+import { float, vec4 } from 'three/tsl'
+import { RenderPipeline } from 'three/webgpu'
+import { rain, snow } from '../../../packages/atmosphere/src/precipitation/ParticleKind'
+import {
+  drawnDepth,
+  flakeWidth
+} from '../../../packages/atmosphere/test/twins/precipitation/meanDepth'
+import { drawToFloat, expectLight } from '../harness/atmosphere'
+import { expectClose, expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
+
+const size = { width: 160, height: 90 }
+
+/** Mean of a channel over columns of a picture. */
+function mean({ width, height, data }: Picture, channel: number, from = 0, to = width): number {
+  let sum = 0
+  for (let y = 0; y < height; y++)
+    for (let x = from; x < to; x++) sum += data[4 * (y * width + x) + channel]
+  return sum / height / (to - from)
+}
+
+function view(): { scene: Scene; camera: PerspectiveCamera; atmosphere: Atmosphere } {
+  const camera = new PerspectiveCamera(50, size.width / size.height, 0.05, 1000)
+  camera.position.set(120, 30, -80)
+  camera.rotation.y = 0.4
+  camera.updateMatrixWorld()
+  return { scene: new Scene(), camera, atmosphere: new Atmosphere() }
+}
+
+gpuTest('rain and snow dim a view as much as their sizes say', async t => {
+  const renderer = await t.createRenderer({ ...size, alpha: true })
+  const { scene, camera, atmosphere } = view()
+  renderer.setClearColor(0, 0)
+  const widths = { rain: (d: number) => d / 1000, snow: flakeWidth }
+  for (const [falling, kind, rate, widthOf] of [
+    [rainfall(atmosphere, { rate: 25, time: 30 }), rain, 25, widths.rain],
+    [snowfall(atmosphere, { rate: 2, time: 30 }), snow, 2, widths.snow]
+  ] as const) {
+    scene.clear()
+    scene.add(falling)
+    const picture = await t.render(renderer, scene, camera, size)
+    const expected = 1 - Math.exp(-drawnDepth(kind, rate, widthOf))
+    t.note(`${kind.name}: ${mean(picture, 3).toExponential(3)} of ${expected.toExponential(3)}`)
+    expectClose(mean(picture, 3), expected, { relative: 0.06 }, kind.name)
+    falling.rate = 0
+    const none = await t.render(renderer, scene, camera, size)
+    expectTrue(mean(none, 3) === 0, `${kind.name} at rate 0`)
+    falling.dispose()
+  }
+})
+
+gpuTest(
+  'rain is lit, hidden by depth and roofs, and frees its memory',
+  async t => {
+    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
+    const { scene, camera, atmosphere } = view()
+    const sun = new SunDirectionalLight(atmosphere)
+    const lamp = new PointLight('#ffffff', 5)
+    const spot = new SpotLight('#ffffff', 5)
+    const ambient = new AmbientLight('#ffffff', 1)
+    scene.add(sun, sun.target, lamp, spot, spot.target, ambient, new SkyLightProbe(atmosphere))
+    for (const light of [lamp, spot, spot.target]) light.position.copy(camera.position)
+    lamp.position.y += 2
+    const draw = async (): Promise<Picture> => {
+      await nextFrame()
+      return drawToFloat(renderer, () => renderer.render(scene, camera))
+    }
+    scene.updateMatrixWorld(true)
+    renderer.setClearColor(0, 1)
+    const shelter = new PrecipitationShelter(scene, { size: 64 })
+    const lights = scene.children.filter(child => 'isLight' in child) as never[]
+    const options = { rate: 40, lights, shelter, time: 10, maxParticles: 20_000 }
+    const falling: Precipitation = rainfall(atmosphere, options)
+    scene.add(falling)
+    const open = await draw()
+    expectLight(open, 'rain')
+    const light = mean(open, 1)
+    expectTrue(light > 0, `rain has light ${light}`)
+
+    // A wall before the left half, nearer than the first drops.
+    const black = new MeshBasicMaterial({ color: 0, side: 2 })
+    const wall = new Mesh(new PlaneGeometry(1, 1), black)
+    camera.add(wall)
+    scene.add(camera)
+    wall.position.set(-0.5, 0, -0.1)
+    const walled = await draw()
+    expectTrue(mean(walled, 1, 0, 79) === 0, 'nothing is drawn behind the wall')
+    expectTrue(mean(walled, 1, 82) > 0, 'there is rain beside the wall')
+    camera.remove(wall)
+
+    // A roof over all of the map, which the shelter knows of after its next drawing.
+    const roof = new Mesh(new PlaneGeometry(80, 80), black)
+    roof.rotation.x = Math.PI / 2
+    roof.position.copy(camera.position)
+    roof.position.y += 20
+    scene.add(roof)
+    shelter.needsUpdate = true
+    await draw()
+    const sheltered = await draw()
+    t.note(`light of rain ${light.toExponential(2)}, under a roof ${mean(sheltered, 1)}`)
+    expectTrue(mean(sheltered, 1) < 1e-6, 'it does not rain under the roof')
+    scene.remove(roof)
+    // Tables of the air stay; a second rain frees as much as it takes.
+    const before = renderer.info.memory.textures
+    const again = rainfall(atmosphere, { lights, rate: 1, time: 10 })
+    scene.add(again)
+    await draw()
+    const most = renderer.info.memory.textures
+    again.dispose()
+    expectTrue(most > before, `a second rain takes ${most - before} textures`)
+    expectTrue(renderer.info.memory.textures === before, 'and frees them')
+    falling.dispose()
+    shelter.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'precipitationOverlay draws in front of the depth that it is given',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { camera, atmosphere } = view()
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    const lights = [new AmbientLight('#ffffff', 3)]
+    const drawn: number[] = []
+    for (const depth of [1, 0.5]) {
+      // Far, and at twice the near plane: before all drops.
+      const falling = snowfall(atmosphere, {
+        lights,
+        rate: 3,
+        time: 5,
+        depth: float(depth),
+        depthCamera: camera,
+        maxParticles: 20_000
+      })
+      const overlay = precipitationOverlay(vec4(0.5, 0.5, 0.5, 1), camera, [falling])
+      pipeline.outputNode = overlay
+      pipeline.needsUpdate = true
+      await nextFrame()
+      const picture = await drawToFloat(renderer, () => pipeline.render())
+      expectLight(picture, 'overlay')
+      drawn.push(
+        picture.data.filter((value, i) => i % 4 < 3 && Math.abs(value - 0.5) > 1e-4).length
+      )
+      overlay.dispose()
+      falling.dispose()
+    }
+    expectTrue(drawn[0] > 1000 && drawn[1] === 0, `${drawn.join(' and ')} values changed`)
+    pipeline.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)

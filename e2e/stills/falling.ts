@@ -1,0 +1,49 @@
+/** Rain and snow under clouds, seen from afar. */
+export const falling = [
+  {
+    name: 'shower',
+    about:
+      'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
+    clouds: { preset: 'shower' },
+    place: { longitude: 139.65, latitude: 35.48 },
+    altitude: 60,
+    sun: { elevation: 30, azimuth: 280 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'hills'
+  },
+  {
+    name: 'shower-bow',
+    about:
+      'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
+    clouds: { preset: 'shower' },
+    place: { longitude: 141.57, latitude: 35.88 },
+    altitude: 60,
+    sun: { elevation: 12, azimuth: 199 },
+    view: { azimuth: 60, pitch: 10 },
+    land: 'hills'
+  },
+  {
+    name: 'virga',
+    about: 'streaks below altocumulus at sunset that end in the air, the strongest deepest',
+    clouds: {
+      preset: 'altocumulus',
+      coverage: 0.5,
+      precipitation: { rate: 4, share: 0.5, virgaDepth: 1200, freezingLevel: 0 }
+    },
+    place: { longitude: 139.17, latitude: 35.33 },
+    altitude: 60,
+    sun: { elevation: 4, azimuth: 10 },
+    view: { azimuth: 30, pitch: 20 },
+    land: 'hills'
+  },
+  {
+    name: 'snow-shower',
+    about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
+    clouds: { preset: 'snowShower' },
+    place: { longitude: 139.05, latitude: 35.23 },
+    altitude: 60,
+    sun: { elevation: 18, azimuth: 290 },
+    view: { azimuth: 20, pitch: 8 },
+    land: 'snow'
+  }
+] as const

@@ -1,0 +1,43 @@
+import type { ParticleKind } from '../ParticleKind'
+import { numberBetween } from './sizes'
+
+/** Side of a class's box over its reach: it holds all that a camera sees up to there, whichever way it turns. */
+export const BOX_SIDE = 1.5
+
+/** Particles of a class of size that are drawn. */
+export interface DrawnClass {
+  /** Side of the box [m]. */
+  readonly side: number
+  /** Particles of the box of the drawn rate's sizes, over {@link weight} [–]. */
+  readonly proposed: number
+  /** Particles that the graphics unit goes through: those that are there at this rate are among the first. */
+  readonly count: number
+  /** Real particles for which each one stands, ≥ 1. */
+  readonly weight: number
+}
+
+/**
+ * Particles to draw at a rate.
+ *
+ * @param rate - [mm/h]; 0 has none.
+ * @param most - Most particles of a class.
+ */
+export function drawnParticles(kind: ParticleKind, rate: number, most: number): DrawnClass[] {
+  const drawn = kind.sizes(kind.drawnRate)
+  const sizes = rate > 0 ? kind.sizes(rate) : { intercept: 0, slope: drawn.slope }
+  return kind.reach.map((reach, i) => {
+    const [from, to] = [kind.edges[i], kind.edges[i + 1]]
+    const side = BOX_SIDE * reach
+    const proposed = numberBetween(drawn, from, to) * side ** 3
+    const share = (diameter: number): number =>
+      (sizes.intercept / drawn.intercept) * Math.exp((drawn.slope - sizes.slope) * diameter)
+    const needed = proposed * Math.max(share(from), share(to))
+    const weight = Math.max(1, needed / most)
+    return {
+      side,
+      proposed: proposed / weight,
+      count: Math.min(Math.ceil(needed / weight), most),
+      weight
+    }
+  })
+}

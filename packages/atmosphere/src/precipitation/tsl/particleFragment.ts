@@ -1,0 +1,57 @@
+import { Fn, atan, float, screenUV, sin, smoothstep, varyingProperty, vec2, vec4 } from 'three/tsl'
+import type { Float, Vec2, Vec4 } from '../../tsl-types'
+import type { DepthRays } from '../../view/DepthRays'
+import type { ParticleKind } from '../ParticleKind'
+
+/** Depth over which particles vanish in front of what the picture's depth has [m]. */
+const SOFTNESS = 0.1
+
+/** Values that a streak's corners hand to its pixels. */
+export interface ParticleVaryings {
+  /** Place across and along the streak, over its outer radius. */
+  readonly across: Vec2
+  /** Half its way and inner radius, over the outer one; a random number; depth in view space [world units]. */
+  readonly shape: Vec4
+  /** Luminance and opacity. */
+  readonly light: Vec4
+}
+
+export const particleVaryings = (name: string): ParticleVaryings => ({
+  across: varyingProperty('vec2', `${name}Across`),
+  shape: varyingProperty('vec4', `${name}Shape`),
+  light: varyingProperty('vec4', `${name}Light`)
+})
+
+/**
+ * Colour of a streak's pixel, premultiplied.
+ *
+ * @param rays - Depth of what hides it; null where the depth test does.
+ * @param unit - Metres to world units.
+ */
+export function particleFragment(
+  { unevenness }: ParticleKind,
+  { across, shape, light }: ParticleVaryings,
+  rays: DepthRays | null,
+  unit: Float
+): Vec4 {
+  return Fn(({ renderer }): Vec4 => {
+    const beyond = across.y.abs().sub(shape.x).max(0)
+    const end = vec2(across.x, beyond.mul(across.y.sign())).toConst() as Vec2
+    const radius = end.length().toVar() as Float
+    const opacity = light.w.toVar() as Float
+    if (unevenness > 0) {
+      // Flakes have lobes; blurred ones are round again. Radius 1/(1 + ε sin) has the area (1 − ε²)^−1.5.
+      const sharp = shape.y.mul(unevenness).toConst() as Float
+      const lobes = sin((atan(end.y, end.x) as unknown as Float).mul(3).add(shape.z.mul(40)))
+      radius.mulAssign(lobes.mul(sharp).add(1))
+      opacity.mulAssign(sharp.mul(sharp).oneMinus().pow(1.5))
+    }
+    opacity.mulAssign(smoothstep(shape.y, 1, radius).oneMinus())
+    if (rays !== null) {
+      const { position, isSky } = rays.at(renderer, screenUV)
+      const inFront = shape.w.sub(position.z).div(unit.mul(SOFTNESS)).clamp()
+      opacity.mulAssign(isSky.select(float(1), inFront))
+    }
+    return vec4(light.rgb.mul(opacity), opacity)
+  })()
+}

@@ -1,0 +1,34 @@
+import type { Float } from '../../tsl-types'
+
+/** Outline of a streak: all that are within `outer` of its axis, full up to `inner`. */
+export interface StreakShape {
+  /** [m]. */
+  readonly inner: Float
+  /** [m]. */
+  readonly outer: Float
+  /** Opacity inside, such that the streak takes as much light as the particle does [–]. */
+  readonly opacity: Float
+}
+
+/**
+ * Streak of a round particle that moves while the shutter is open.
+ *
+ * Its edge is as wide as a pixel and the circle of confusion are. Opacity is the disc's π D²/4 over the integral of a profile
+ * that falls from 1 to 0 by `smoothstep` between `inner` and `outer`, along the way and at both ends. Twin: test/twins/precipitation.ts
+ *
+ * @param width - Diameter D, > 0 [m].
+ * @param length - Way of its middle [m].
+ * @param blur - Width of pixel and circle of confusion at its distance, > 0 [m].
+ */
+export function streakShape(width: Float, length: Float, blur: Float): StreakShape {
+  const half = width.mul(0.5).toConst() as Float
+  const inner = half.sub(blur).max(0).toConst() as Float
+  const outer = half.add(blur).toConst() as Float
+  const edge = outer.sub(inner).toConst() as Float
+  const ends = inner.mul(inner).add(inner.mul(edge)).add(edge.mul(edge).mul(0.3)).mul(Math.PI)
+  const opacity = half
+    .mul(half)
+    .mul(Math.PI)
+    .div(length.mul(inner.add(outer)).add(ends))
+  return { inner, outer, opacity: opacity }
+}

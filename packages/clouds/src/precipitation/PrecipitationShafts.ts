@@ -1,0 +1,185 @@
+import type { AtmosphereView, ScatteringPhase } from '@welkin/atmosphere'
+import { checkOptions, fail } from '@welkin/geo'
+import { MathUtils, Vector3, Vector4 } from 'three'
+import { If, int, mix, vec4 } from 'three/tsl'
+import type { CloudField } from '../density/CloudField'
+import { CloudLayers } from '../layers/CloudLayers'
+import { dry } from '../layers/precipitation'
+import { layerPeriods } from '../layers/layerUniforms'
+import { meanColumnOf } from '../layers/meanColumn'
+import { windAxis } from '../layers/wind'
+import type { ShadingContext } from '../light/tsl/shadingContext'
+import type { SeenClouds } from '../march/tsl/seenPoints'
+import { shadePoints, type LitRay } from '../march/tsl/shadePoints'
+import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
+import { encodeDistance } from '../temporal/tsl/packing'
+import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
+import { fallForm } from './fallForm'
+import type { FallNodes } from './tsl/fall'
+import { lightPrecipitation } from './tsl/lightPrecipitation'
+import { marchPrecipitation } from './tsl/marchPrecipitation'
+
+/** Options of {@link PrecipitationShafts}. */
+export interface PrecipitationShaftsOptions {
+  /**
+   * Phase function of the drops, `raindrops({ rate: 8 })`, with rainbows; shared, not owned. Null, the default, for a smooth one.
+   */
+  drops?: ScatteringPhase | null
+}
+
+/** Vectors that a layer takes in the uniforms. */
+const STRIDE = 3
+
+/** Altitude below all that is drawn, where nothing falls [m]. */
+const NOWHERE = -1000
+
+const _axis = new Vector3()
+
+/**
+ * Rain, snow and hail under clouds, as shafts and curtains seen from afar: a medium for `clouds`.
+ *
+ * ```ts
+ * const layers = cloudPreset('shower')
+ * layers.at(0).precipitation = { rate: 20 } // at any time
+ * const drops = raindrops({ rate: 20 })     // for rainbows; else left out
+ * const node = clouds(air, depth, camera, atmosphere, layers, { precipitation: precipitationShafts({ drops }) })
+ * ```
+ *
+ * It falls under the strongest columns of a layer, leans with the wind, which grows with height, and with the layer's shear, and is lit as
+ * clouds are: by the sun where no cloud is before it, by the sky and the ground. A node draws it before and behind its clouds, through air.
+ * Serves one node; it has no textures of its own.
+ *
+ * @see Atlas 1953, "Optical extinction by rainfall", J. Meteor. 10, pp. 486–488
+ * @see Marshall 1953, "Precipitation trajectories and patterns", J. Meteor. 10, pp. 25–29
+ */
+export class PrecipitationShafts {
+  /** Phase function of the drops; shared, not owned. */
+  readonly drops: ScatteringPhase | null
+  readonly #values: Vector4[] = Array.from(
+    { length: CloudLayers.maxLayers * STRIDE },
+    () => new Vector4()
+  )
+  readonly #array = vec4Array(this.#values)
+  readonly #ceiling = number(NOWHERE)
+  readonly #above = {
+    depth: number(),
+    layered: number(),
+    baseAltitude: number(),
+    period: number(1)
+  }
+  #version = 0
+  #state: readonly number[] = []
+
+  /** @throws If an option is unknown, or the drops are none. */
+  constructor(options: PrecipitationShaftsOptions = {}) {
+    const { drops = null } = checkOptions('PrecipitationShafts', options, 'drops')
+    if (drops !== null && typeof drops?.phase !== 'function') {
+      fail('PrecipitationShafts', 'drops must be a ScatteringPhase or null', drops)
+    }
+    this.drops = drops
+  }
+
+  /**
+   * Follows the layers of a field, whose `update` goes first.
+   *
+   * @returns Count of changes other than those of wind and camera.
+   */
+  update({ layers, depthScale }: CloudField, { up }: AtmosphereView): number {
+    let [ceiling, most] = [NOWHERE, 0]
+    const state: number[] = []
+    for (const [i, { parameters }] of [...layers].entries()) {
+      const { baseAltitude, topAltitude, coverage, density, wind, shear } = parameters
+      const all = { ...dry, ...parameters.precipitation }
+      const { rate, share, virgaDepth, freezingLevel, hail } = all
+      const thickness = topAltitude - baseAltitude
+      const layerCeiling = baseAltitude + thickness * fallForm.onset
+      const growth =
+        (Math.hypot(wind.east, wind.north) * (1 - fallForm.groundWind)) /
+        Math.max(baseAltitude, 100)
+      const [first, second, third] = this.#values.slice(i * STRIDE)
+      first.set(rate, share, virgaDepth > 0 ? 1 / virgaDepth : 0, freezingLevel)
+      windAxis(wind, up, _axis)
+      const { x, y, z } = _axis
+      second.set(x, y, z, 0).multiplyScalar(growth / 2).w = hail
+      third.set(x, y, z, 0).multiplyScalar(shear).w = layerCeiling
+      state.push(...Object.values(all))
+      if (rate === 0 || coverage === 0) continue
+      ceiling = Math.max(ceiling, layerCeiling)
+      if (rate <= most) continue
+      most = rate
+      const column = meanColumnOf(parameters, depthScale.value)
+      const { depth, layered, baseAltitude: base, period } = this.#above
+      depth.value = density * thickness * column.insideDensity * depthScale.value
+      layered.value = MathUtils.smoothstep(coverage, ...GROWING_TOGETHER)
+      base.value = baseAltitude
+      period.value = layerPeriods(parameters).weather
+    }
+    this.#ceiling.value = ceiling
+    if (state.some((value, i) => value !== this.#state[i])) this.#version++
+    this.#state = state
+    return this.#version + (this.drops?.version ?? 0)
+  }
+
+  /** Precipitation of a layer, as shader nodes. */
+  fallOf(index: Int): FallNodes {
+    const start = index.mul(int(STRIDE)).toConst()
+    const [first, second, third] = [0, 1, 2].map(
+      slot => this.#array.element(start.add(int(slot))).toConst() as Vec4
+    )
+    return {
+      rate: first.x,
+      share: first.y,
+      perVirga: first.z,
+      freezingLevel: first.w,
+      windAxis: second.xyz,
+      hail: second.w,
+      shearAxis: third.xyz,
+      ceiling: third.w
+    }
+  }
+
+  /**
+   * Clouds on a ray with what falls before and behind them, and their light. To be called inside of a shader function.
+   *
+   * @param jitter - Noise in [0, 1).
+   * @param marched - Ray of the march: log₂ of its end in y.
+   * @param clouds - Clouds on the ray, not lit yet.
+   * @param distances - Output of the pass, whose first component is the log₂ of the distance of what is seen.
+   */
+  among(
+    context: ShadingContext,
+    direction: Vec3,
+    jitter: Float,
+    marched: Vec4,
+    clouds: SeenClouds,
+    distances: Variable<Vec4>
+  ): SeenClouds & LitRay {
+    const { points } = clouds
+    // Behind opaque clouds nothing is seen.
+    const { x, y, z, w } = points.distances
+    const last = x.max(y).max(z.max(w))
+    const end = clouds.transmittance.greaterThan(0).select(marched.y.exp2(), last).toConst()
+    const ray = { direction, end, jitter }
+    const fallOf = (index: Int): FallNodes => this.fallOf(index)
+    const seen = marchPrecipitation(context, fallOf, this.#ceiling, ray, points)
+    const shares = points.shares.mul(seen.before).toConst() as Vec4
+    const dimmed = { distances: points.distances, shares }
+    const radiance = shadePoints(context, direction, dimmed).toVar() as Variable<Vec4>
+    const distance = clouds.distance.toVar() as Variable<Float>
+    const { weight } = seen
+    If(weight.greaterThan(1e-4), () => {
+      const light = lightPrecipitation(context, this.drops, direction, seen, this.#above)
+      radiance.addAssign(light)
+      const ofClouds = shares.dot(vec4(1))
+      distance.assign(mix(seen.distance, distance, ofClouds.div(ofClouds.add(weight))))
+    })
+    distances.assign(vec4(encodeDistance(distance), marched.y, 0, marched.w))
+    const transmittance = clouds.transmittance.mul(seen.transmittance).toConst() as Float
+    return { points: dimmed, radiance, transmittance, distance }
+  }
+}
+
+/** Rain, snow and hail under clouds: see {@link PrecipitationShafts}. */
+export const precipitationShafts = (options?: PrecipitationShaftsOptions): PrecipitationShafts =>
+  new PrecipitationShafts(options)

@@ -1,0 +1,45 @@
+/** Constants of precipitation: tsl/fall.ts. */
+export const fallForm = {
+  /**
+   * Speeds at which drops of 2 mm (Gunn & Kinzer 1949, table 2) and flakes (Locatelli & Hobbs 1974) fall [m/s]. Slower: shafts lean
+   * more (*Rain and snow*).
+   */
+  rainSpeed: 6.5,
+  snowSpeed: 1.2,
+  /** Wind at the ground over that at the base, between which it grows evenly [–]. Greater: upright shafts (*Rain and snow*). */
+  groundWind: 0.4,
+  /** Exponent of the rate in the column's rank: greater, and more falls in cores, with softer edges (*Rain and snow*). */
+  core: 2,
+  /** Share of the layer's thickness over which rates set in above the base. 0: a gap below clouds (*Rain and snow*). */
+  onset: 0.06,
+  /** Depth below the freezing level in which snow melts [m]. */
+  melting: 300,
+  /**
+   * Exponent of the rate in what evaporates: with Kessler's (1969) evaporation, ∝ (water per volume)^0.65, and water ∝ R^0.89,
+   * R^0.42 falls evenly with the depth.
+   */
+  evaporation: 0.42,
+  /** Ranks between which hail sets in where a layer has any [–]. */
+  hailFrom: [0.5, 0.9],
+  /**
+   * Streaks: changes of the rate by coarse and fine billows above, per deviation of their noise [–]. 0: smooth curtains;
+   * greater: combs (*Rain and snow*).
+   */
+  coarseStreaks: 0.4,
+  fineStreaks: 0.45,
+  /** Blur of streaks over the way by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
+  lagBlur: 0.12,
+  fallBlur: 0.03
+} as const
+
+/**
+ * Extinction of visible light by what falls: a R^b per km for a rate R of water [mm/h].
+ *
+ * Rain: Atlas 1953, "Optical extinction by rainfall", J. Meteor. 10, 486. Snow: that of wet flakes at 550 nm, ITU-R P.1817-1 (2012),
+ * table 2: 3.84 dB/km. Hail: stones of 10 mm, 1.5 Q/(ρ D v) with Q = 2, ρ = 900 kg/m³ and v = 11.5 m/s (Matson & Huggins 1980).
+ */
+export const extinctionForm = {
+  rain: [0.33, 0.64],
+  snow: [0.885, 0.72],
+  hail: 0.0081
+} as const

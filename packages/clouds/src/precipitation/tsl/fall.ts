@@ -1,0 +1,172 @@
+import { Fn, If, float, mix, smoothstep, vec2, vec3 } from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import { billows, levelOf } from '../../density/tsl/billows'
+import type { LayerNodes } from '../../density/tsl/layer'
+import { resolutionAt } from '../../density/tsl/resolution'
+import { subpointOffset, type CloudSample } from '../../density/tsl/sample'
+import { backgroundAt } from '../../density/tsl/sampler'
+import { cloudWeather } from '../../density/tsl/weather'
+import { unpackBackground } from '../../density/tsl/weatherBackground'
+import type { WeatherMap } from '../../density/WeatherMap'
+import { cumulative } from '../../noise/tsl/noiseChannels'
+import { NOISE_SIZE } from '../../noise/noiseSizes'
+import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
+import { extinctionForm, fallForm } from '../fallForm'
+
+/** Precipitation of a layer, as shaders see it: lengths [m], rates [mm/h of water]. */
+export interface FallNodes {
+  readonly rate: Float
+  readonly share: Float
+  /** 1/depth of virga [1/m]; 0 where nothing evaporates. */
+  readonly perVirga: Float
+  readonly freezingLevel: Float
+  readonly hail: Float
+  /** Altitude above which nothing falls yet. */
+  readonly ceiling: Float
+  /** Wind's axis times half its growth with height [1/s], and times the layer's shear [–]: downwind is `cross(·, zenith)`. */
+  readonly windAxis: Vec3
+  readonly shearAxis: Vec3
+}
+
+/** Precipitation at a place. */
+export interface Fallen {
+  /** Rates of water [mm/h] that fall as drops or flakes, and as hail. */
+  readonly rate: Float
+  readonly hail: Float
+  /** Share of snow, in [0, 1]. */
+  readonly snow: Float
+  /** Rank of the column above among those from which it falls, in (0, 1]; 0 where none does. */
+  readonly rank: Float
+}
+
+/**
+ * Way by which what falls lags behind the cloud that it left, over the wind's growth with height: (x) of
+ * ½ dU/dz [m s], (y) of the cloud's lean [m]. In wind that grows evenly with height its path is a parabola (Marshall 1953), flat while it is snow.
+ * Twin: test/twins/precipitation.ts
+ *
+ * @param altitude - Altitude of the place [m].
+ * @param base - Altitude of the cloud's base [m].
+ */
+export const fallLag = /*#__PURE__*/ Fn(
+  ([altitude, base, freezingLevel]: [Float, Float, Float]) => {
+    const depth = base.sub(altitude).max(0).toConst()
+    const asSnow = base.sub(freezingLevel).clamp(0, depth).toConst()
+    const snow = asSnow.mul(asSnow).toConst()
+    const rain = depth.mul(depth).sub(snow)
+    return vec2(snow.div(fallForm.snowSpeed).add(rain.div(fallForm.rainSpeed)), depth)
+  },
+  layout('precipitationLag', 'vec2', { altitude: 'float', base: 'float', freezingLevel: 'float' })
+)
+
+/**
+ * Rate at a depth below the base [mm/h]: (n + 1) xⁿ times the mean at the base, less what has evaporated. Ranks x are equally frequent, so
+ * that the mean over all columns from which it falls is the rate asked for. Twin: test/twins/precipitation.ts
+ *
+ * @param rank - x of the column, in [0, 1].
+ * @param streak - Factor, of mean 1.
+ * @param depth - Depth of fall, over that of virga [–].
+ */
+export const fallRate = /*#__PURE__*/ Fn(
+  ([rate, rank, streak, depth]: [Float, Float, Float, Float]) => {
+    const { core, evaporation: b } = fallForm
+    const falling = rank
+      .pow(core)
+      .mul(streak)
+      .mul(rate)
+      .mul(core + 1)
+    const left = falling.pow(b).sub(rate.pow(b).mul(depth)).max(0)
+    return depth.greaterThan(0).select(left.pow(1 / b), falling)
+  },
+  layout('precipitationRate', 'float', {
+    rate: 'float',
+    rank: 'float',
+    streak: 'float',
+    depth: 'float'
+  })
+)
+
+/** Extinction [1/m]: `extinctionForm`. Twin: test/twins/precipitation.ts */
+export const fallExtinction = /*#__PURE__*/ Fn(
+  ([rate, snow, hail]: [Float, Float, Float]) => {
+    const { rain: r, snow: s, hail: h } = extinctionForm
+    const positive = rate.max(1e-6).toConst()
+    const drops = positive.pow(r[1]).mul(r[0])
+    const flakes = positive.pow(s[1]).mul(s[0])
+    const both = mix(drops, flakes, snow).mul(rate.greaterThan(0).select(1, 0))
+    return both.add(hail.mul(h)).div(1000)
+  },
+  layout('precipitationExtinction', 'float', { rate: 'float', snow: 'float', hail: 'float' })
+)
+
+/** Share of snow at an altitude [m], in [0, 1]. */
+export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
+  smoothstep(freezingLevel.sub(fallForm.melting), freezingLevel, altitude).toConst()
+
+/**
+ * Precipitation of a layer at a place. To be called inside of a shader function.
+ *
+ * It left its cloud downwind, where the wind that grows with height has carried that in the meantime: the column's rank is looked up
+ * there. Streaks are billows of the base at the same point.
+ */
+export function fallenFrom(
+  field: CloudField,
+  map: WeatherMap | undefined,
+  layer: LayerNodes,
+  nodes: FallNodes,
+  sample: CloudSample
+): Fallen {
+  const rate = float(0).toVar() as Variable<Float>
+  const rank = float(0).toVar() as Variable<Float>
+  const { baseAltitude } = layer
+  const { ceiling } = nodes
+  const { altitude, up, distance } = sample
+  If(nodes.rate.greaterThan(0).and(altitude.lessThan(ceiling)), () => {
+    const depth = baseAltitude.sub(altitude).max(0).toConst() as Float
+    const lag = fallLag(altitude, baseAltitude, nodes.freezingLevel).toConst() as Vec2
+    const aside = nodes.windAxis.mul(lag.x).add(nodes.shearAxis.mul(lag.y))
+    const drift = aside.cross(up).toConst() as Vec3
+    const offset = sample.offset.add(drift).toConst() as Vec3
+    const above: CloudSample = { offset, altitude, up, distance }
+    const packed = backgroundAt(field, layer, above, { map, index: layer.index })
+    const background = unpackBackground(packed)
+    const resolution = resolutionAt(layer, distance.mul(field.pixelAngle).toConst())
+    const subpoint = subpointOffset(field, above).toConst() as Vec3
+    const still = vec3(0).xy as Vec2
+    const weather = cloudWeather(
+      field,
+      layer,
+      background,
+      subpoint,
+      still,
+      resolution,
+      'where unresolved'
+    )
+    const columns = background.coverage.mul(nodes.share).max(1e-4)
+    rank.assign(cumulative(weather.sum).oneMinus().div(columns).oneMinus().max(0))
+    If(rank.greaterThan(0).and(background.coverage.greaterThan(0)), () => {
+      const atBase = offset.add(up.mul(baseAltitude.sub(altitude))).toConst() as Vec3
+      const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
+      const footprint = resolution.footprint.max(blur).mul(layer.perShapePeriod)
+      const level = levelOf(footprint, 1 / NOISE_SIZE.shape)
+      const { coarse, fine } = billows(field, layer, atBase, background.shift, level)
+      const streak = coarse
+        .mul(fallForm.coarseStreaks)
+        .add(fine.mul(fallForm.fineStreaks))
+        .mul(layer.shapeAmount)
+        .add(1)
+        .max(0)
+      const onset = ceiling.sub(altitude).div(ceiling.sub(baseAltitude)).clamp(0, 1)
+      rate.assign(fallRate(nodes.rate, rank, streak, depth.mul(nodes.perVirga)).mul(onset))
+    })
+  })
+  const hail = rate
+    .mul(nodes.hail)
+    .mul(smoothstep(...fallForm.hailFrom, rank))
+    .toConst() as Float
+  return {
+    rate: rate.sub(hail).toConst(),
+    hail,
+    snow: snowShare(altitude, nodes.freezingLevel),
+    rank
+  }
+}

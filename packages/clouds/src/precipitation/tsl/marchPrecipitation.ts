@@ -1,0 +1,154 @@
+import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { forLayers, layerAt } from '../../density/tsl/layer'
+import type { CloudSample } from '../../density/tsl/sample'
+import type { SeenPoints } from '../../march/tsl/seenPoints'
+import type { CloudRay } from '../../march/tsl/march'
+import { crossings } from '../../march/tsl/layerBoundaries'
+import { sampleShadows } from '../../shadow/tsl/sampleShadows'
+import { lightAt } from '../../light/tsl/lighting'
+import type { ShadingContext } from '../../light/tsl/shadingContext'
+import {
+  loop,
+  type Float,
+  type Int,
+  type Variable,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../../tsl-types'
+import { fallenFrom, fallExtinction, type FallNodes } from './fall'
+
+/** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
+const STEPS = 0.6
+
+/** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
+const LONGEST = 30_000
+
+/** Distance from which on nothing is marched [m]: shafts lie under their clouds then. */
+const FARTHEST = 150_000
+
+/** First steps over those of an even march [–], for rays that begin among shafts. */
+const FIRST = 0.12
+
+/** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
+const BLUR = 0.1
+
+/** Share of extinguished light that is diffracted, by a tenth of a degree: it counts as not scattered (Bohren & Huffman 1983, §4.4.3). */
+export const DIFFRACTED = 0.5
+
+/** Longest way of light through what falls, in which it counts as even [m]. */
+const LIT_WIDTH = 1500
+
+/** Precipitation on a ray. Depths count without what is only diffracted. */
+export interface SeenPrecipitation {
+  /** Share of light that passes all of it, and that from each point of the clouds; in [0, 1]. */
+  readonly transmittance: Float
+  readonly before: Vec4
+  /** Part of the picture's light that it scatters, and its means by that part: */
+  readonly weight: Float
+  /** distance [m], */
+  readonly distance: Float
+  /** rank of the columns above, in [0, 1], */
+  readonly rank: Float
+  /** scaled depth of clouds towards the light, */
+  readonly depthToLight: Float
+  /** depth of precipitation towards the light, */
+  readonly ownDepth: Float
+  /** and direct light that arrives unscattered, over that above the clouds, of drops and of flakes. */
+  readonly lit: Vec2
+}
+
+/**
+ * Marches a ray through what falls from the clouds, in even steps from afar and growing ones from within. To be called inside of a shader
+ * function.
+ *
+ * @param ceiling - Altitude above which nothing falls [m].
+ * @param points - Clouds on the ray.
+ */
+export function marchPrecipitation(
+  context: ShadingContext,
+  fallOf: (index: Int) => FallNodes,
+  ceiling: Float,
+  { direction, end, jitter }: CloudRay,
+  points: SeenPoints
+): SeenPrecipitation {
+  const { field, weatherMap, light, shadows, quality } = context
+  const { view } = field
+  const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
+  const shell = crossings(field, cosView, ceiling)
+  const from = shell.near.max(0).toConst() as Float
+  const isNear = from.lessThan(FARTHEST).select(1, 0)
+  const span = shell.far.min(end).sub(from).min(LONGEST).mul(isNear).toConst() as Float
+  const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
+  const count = quality.layerSteps.mul(STEPS).ceil().toConst() as Float
+  const edgeAt = (step: Float): Float => {
+    const part = step.div(count).toConst()
+    return from.add(span.mul(part).mul(part.mul(first.oneMinus()).add(first)))
+  }
+  const transmittance = float(1).toVar() as Variable<Float>
+  const before = vec4(1).toVar() as Variable<Vec4>
+  /** Weight, and sums by it: distance, rank, logarithm of the depth to the light. */
+  const sums = vec4(0).toVar() as Variable<Vec4>
+  /** Sums of light on drops and on flakes, and of the depth of precipitation to the light. */
+  const lights = vec4(0).toVar() as Variable<Vec4>
+  If(span.greaterThan(1), () => {
+    loop('fallStep', count.toInt(), index => {
+      const start = edgeAt(float(index)).toConst() as Float
+      const length = edgeAt(float(index).add(1)).sub(start).toConst() as Float
+      const at = start.add(length.mul(jitter)).toConst() as Float
+      const offset = direction.mul(at).toConst() as Vec3
+      const blurred = at.max(length.mul(BLUR).div(field.pixelAngle)).toConst() as Float
+      const sample: CloudSample = { offset, ...view.localCoordinates(offset), distance: blurred }
+      /** Extinction, the same of flakes and stones, and of ranks. */
+      const found = vec4(0).toVar() as Variable<Vec4>
+      forLayers(field, layer => {
+        const { rate, snow, hail, rank } = fallenFrom(
+          field,
+          weatherMap,
+          layerAt(field, layer),
+          fallOf(layer),
+          sample
+        )
+        const all = fallExtinction(rate, snow, hail).toConst()
+        const drops = fallExtinction(rate, float(0), float(0)).mul(snow.oneMinus()).min(all)
+        found.addAssign(vec4(all, all.sub(drops), all.mul(rank), 0))
+      })
+      If(found.x.greaterThan(0), () => {
+        const extinction = found.x.mul(1 - DIFFRACTED).toConst() as Float
+        const depth = extinction.mul(length).toConst() as Float
+        const through = depth.negate().exp().toConst() as Float
+        // Clouds in front hide it.
+        const isBefore = vec4(at)
+          .sub(points.distances)
+          .div(points.distances.mul(0.1).max(50))
+          .add(0.5)
+          .clamp(0, 1)
+        const unhidden = points.shares.dot(isBefore).oneMinus().max(0)
+        const seen = transmittance.mul(unhidden).mul(through.oneMinus()).toConst() as Float
+        const toLight = lightAt(context, sample)
+        const { toLight: depthToLight, inMap } = sampleShadows(shadows, offset)
+        const clouds = depthToLight.mul(inMap).mul(toLight.isMapped).mul(light.depthScale)
+        const slant = toLight.cosine.max(0.05).reciprocal()
+        const own = ceiling.sub(sample.altitude).mul(slant).min(LIT_WIDTH).mul(extinction)
+        const lit = clouds.add(own).negate().exp().mul(seen).toConst() as Float
+        const flakes = found.y.div(found.x).toConst() as Float
+        sums.addAssign(vec4(1, at, found.z.div(found.x), clouds.add(1).log()).mul(seen))
+        lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
+        const ahead = points.distances.sub(start).clamp(0, length)
+        before.mulAssign(ahead.mul(extinction).negate().exp())
+        transmittance.mulAssign(through)
+      })
+    })
+  })
+  const weight = sums.x.max(1e-6).toConst() as Float
+  return {
+    transmittance,
+    before,
+    weight: sums.x,
+    distance: sums.y.div(weight).toConst(),
+    rank: sums.z.div(weight).toConst(),
+    depthToLight: sums.w.div(weight).exp().sub(1).max(0).toConst(),
+    ownDepth: lights.z.div(weight).toConst(),
+    lit: vec2(lights.x, lights.y).toConst()
+  }
+}

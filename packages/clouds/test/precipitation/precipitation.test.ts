@@ -1,0 +1,92 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import fc from 'fast-check'
+import { PerspectiveCamera } from 'three'
+import { float, vec4 } from 'three/tsl'
+import { describe, expect, it, test } from 'vitest'
+import { CloudLayer, cloudPreset, clouds, precipitationShafts } from '../../src'
+import { fallForm } from '../../src/precipitation/fallForm'
+import { extinctionOf, lagOf, rateOf } from '../twins/precipitation'
+
+const rates = fc.double({ min: 0.1, max: 100, noNaN: true })
+
+describe('precipitation of a layer', () => {
+  test('is checked with the layer, and live', () => {
+    const layer = new CloudLayer({ precipitation: { rate: 12 } })
+    expect(layer.precipitation).toMatchObject({ rate: 12, share: 0.5, freezingLevel: 2300 })
+    layer.precipitation = { rate: 3, virgaDepth: 800 }
+    expect(layer.precipitation).toMatchObject({ rate: 3, virgaDepth: 800 })
+    expect(() => (layer.precipitation = { rate: -1 })).toThrow(
+      'CloudLayer.precipitation: rate must be in [0, 300], got -1'
+    )
+    expect(() => layer.set({ precipitation: { rate: 5, share: 0 } })).toThrow(/share must be/)
+    expect(() => layer.set({ precipitation: { rte: 5 } as never })).toThrow(
+      "CloudLayer.precipitation: unknown option 'rte', did you mean 'rate'?"
+    )
+    expect(layer.precipitation?.rate).toBe(3)
+    layer.precipitation = null
+    expect(layer.precipitation).toBe(null)
+  })
+
+  test('comes with the presets that have any, and needs drops that are some', () => {
+    const rain = (name: 'shower' | 'nimbostratus' | 'snowShower' | 'overcast') =>
+      cloudPreset(name).at(0).precipitation?.rate
+    expect([rain('shower'), rain('nimbostratus'), rain('snowShower')]).toEqual([12, 3, 1.5])
+    expect(rain('overcast')).toBe(undefined)
+    expect(() => precipitationShafts({ drops: {} as never })).toThrow(
+      'PrecipitationShafts: drops must be a ScatteringPhase or null'
+    )
+    const [color, depth] = [vec4(0), float(0)]
+    expect(() =>
+      clouds(color, depth, new PerspectiveCamera(), new Atmosphere(), cloudPreset('shower'))
+    ).toThrow('CloudsNode: precipitation must be given: layers have some')
+    expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
+  })
+})
+
+describe('precipitation', () => {
+  it('is as opaque as was measured', () => {
+    // Atlas 1953: 0.33 R^0.64 per km, visibility 3.0 km over 1.4/km in rain of 10 mm/h.
+    expect(1000 * extinctionOf(1, 0, 0)).toBeCloseTo(0.33, 3)
+    expect(1000 * extinctionOf(10, 0, 0)).toBeCloseTo(1.44, 2)
+    // ITU-R P.1817: 3.84 dB/km for wet snow of 1 mm/h.
+    expect((1000 * extinctionOf(1, 1, 0) * 10) / Math.log(10)).toBeCloseTo(3.84, 2)
+    // Marshall & Palmer 1948, drops twice as wide as they block: 0.365 R^0.63.
+    fc.assert(
+      fc.property(rates, rate => {
+        const drops = 4.1 * rate ** -0.21
+        const section = ((Math.PI / 4) * 8000 * 2) / drops ** 3
+        const ratio = extinctionOf(rate, 0, 0) / (2 * section * 1e-6)
+        expect(ratio).toBeGreaterThan(0.87)
+        expect(ratio).toBeLessThan(0.96)
+        expect(extinctionOf(0, 0, rate)).toBeLessThan(extinctionOf(rate, 0, 0) / 3)
+      })
+    )
+  })
+
+  it('has the rate asked for in the mean over all columns from which it falls', () => {
+    let mean = 0
+    for (let i = 0; i < 1000; i++) mean += rateOf(12, (i + 0.5) / 1000, 0, 0) / 1000
+    expect(mean).toBeCloseTo(12, 3)
+  })
+
+  it('falls in a parabola, the flatter the slower', () => {
+    const { groundWind, rainSpeed, snowSpeed } = fallForm
+    const whole = (10 * (1 - groundWind) * 1000) / 2
+    expect(lagOf(10, 0, 1000, 3000)).toBeCloseTo(whole / rainSpeed, 3)
+    expect(lagOf(10, 0, 1000, -100)).toBeCloseTo(whole / snowSpeed, 3)
+    expect(lagOf(10, 500, 1000, 3000)).toBeCloseTo(whole / 4 / rainSpeed, 3)
+  })
+
+  it('evaporates: that of the given rate within the depth, heavier rain later', () => {
+    expect(rateOf(5, Math.sqrt(1 / 3), 995, 1000)).toBeLessThan(0.001)
+    expect(rateOf(5, 1, 1000, 1000)).toBeGreaterThan(1)
+    expect(rateOf(5, 1, 1600, 1000)).toBeLessThan(0.01)
+    fc.assert(
+      fc.property(rates, fc.double({ min: 0, max: 1, noNaN: true }), (rate, rank) => {
+        const [lower, higher] = [300, 200].map(depth => rateOf(rate, rank, depth, 1000))
+        expect(lower).toBeLessThanOrEqual(higher + 1e-6)
+      }),
+      { numRuns: 20 }
+    )
+  })
+})

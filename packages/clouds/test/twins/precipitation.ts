@@ -1,0 +1,78 @@
+import { Vector3 } from 'three'
+import { extinctionForm, fallForm } from '../../src/precipitation/fallForm'
+import { dry } from '../../src/layers/precipitation'
+import { windAxis } from '../../src/layers/wind'
+import { weatherAt, type CloudState } from './density'
+import type { NoiseTextures } from './noiseTextures'
+
+/** Steps of the integral along a drop's path. */
+const STEPS = 4000
+
+/** Visible extinction [1/m] of precipitation: rates of water [mm/h], share of snow. */
+export function extinctionOf(rate: number, snow: number, hail: number): number {
+  const { rain, snow: flakes, hail: stones } = extinctionForm
+  const perKm =
+    (1 - snow) * rain[0] * rate ** rain[1] + snow * flakes[0] * rate ** flakes[1] + stones * hail
+  return perKm / 1000
+}
+
+/**
+ * Way by which what falls lags behind its cloud [m]: the path of a drop, step by step, through wind that grows evenly from a part of the
+ * base's at the ground. `fallLag` of tsl/fall.ts has it in closed form.
+ *
+ * @param wind - Speed of the wind at the base [m/s].
+ */
+export function lagOf(wind: number, altitude: number, base: number, freezingLevel: number): number {
+  const { groundWind, rainSpeed, snowSpeed } = fallForm
+  const step = (base - altitude) / STEPS
+  let lag = 0
+  for (let i = 0; i < STEPS; i++) {
+    const z = base - (i + 0.5) * step
+    const speed = z > freezingLevel ? snowSpeed : rainSpeed
+    const here = wind * (groundWind + ((1 - groundWind) * z) / base)
+    lag += ((wind - here) * step) / speed
+  }
+  return lag
+}
+
+/** Rate at the base by the rank of a column [mm/h], and below, where some has evaporated: the differential equation, step by step. */
+export function rateOf(rate: number, rank: number, depth: number, virgaDepth: number): number {
+  const { core, evaporation: b } = fallForm
+  let falling = rate * (core + 1) * rank ** core
+  if (virgaDepth === 0) return falling
+  // d(R^b)/dz is even, so that dR/dz = −R^(1−b) rate^b / (b depth).
+  const step = depth / STEPS
+  for (let i = 0; i < STEPS && falling > 0; i++) {
+    const slope = (r: number): number => (Math.max(r, 0) ** (1 - b) * rate ** b) / (b * virgaDepth)
+    const middle = falling - (slope(falling) * step) / 2
+    falling -= slope(middle) * step
+  }
+  return Math.max(falling, 0)
+}
+
+/**
+ * Rank of the column from which it falls at a place, by planet-centred coordinates: `fallenFrom` of tsl/fall.ts, without streaks.
+ *
+ * @param position - Displacement from the planet's centre, in the mapped space [m].
+ */
+export function fallenRank(
+  state: CloudState,
+  noise: NoiseTextures,
+  index: number,
+  position: Vector3,
+  distance: number
+): number {
+  const layer = state.layers[index]
+  const { share, freezingLevel } = { ...dry, ...layer.precipitation }
+  const up = position.clone().normalize()
+  const altitude = Math.min(position.length() - state.bottomRadius, layer.baseAltitude)
+  const { east, north } = layer.wind
+  const lag =
+    lagOf(Math.hypot(east, north), altitude, layer.baseAltitude, freezingLevel) +
+    layer.shear * (layer.baseAltitude - altitude)
+  const axis = windAxis(layer.wind, state.zenith ?? up, new Vector3())
+  const source = position.clone().addScaledVector(axis.cross(up), lag)
+  const { sum, coverage } = weatherAt(state, noise, index, source, distance)
+  const fromTop = 1 - 1 / (1 + Math.exp(-1.702 * sum))
+  return Math.max(1 - fromTop / (coverage * share), 0)
+}

@@ -1,0 +1,74 @@
+import type { Meta, StoryObj } from '@storybook/html-vite'
+import { mount } from './mount'
+import { createRain, VIEWS } from './rain.scene'
+import type { RainArgs } from './rain.scene'
+import { choiceOf, rendererArgTypes } from './storyArgs'
+import { storyCode } from './storyCode'
+
+const code = `${storyCode('quickStart.ts', 'quick start')}
+
+${storyCode('air.ts', 'post effect')}
+
+${storyCode('rain.scene.ts', 'rain')}`
+
+const { forceWebGL, frame } = rendererArgTypes
+
+const meta: Meta<RainArgs> = {
+  title: 'Rain and snow',
+  render: mount(createRain, code, ({ view }) => view),
+  argTypes: {
+    view: { name: 'View', ...choiceOf(VIEWS) },
+    sun: { name: 'Sun [°]', control: { type: 'range', min: 1, max: 60, step: 0.5 } },
+    rate: {
+      name: 'Rate [mm/h]',
+      description: 'As water, in the mean where it falls',
+      control: { type: 'range', min: 0, max: 100, step: 0.5 }
+    },
+    virgaDepth: {
+      name: 'Virga [m]',
+      description: 'Depth of fall in which rain evaporates; 0 for none',
+      control: { type: 'range', min: 0, max: 3000, step: 50 }
+    },
+    freezingLevel: {
+      name: 'Freezing level [m]',
+      description: 'Snow falls above it, rain below',
+      control: { type: 'range', min: 0, max: 5000, step: 100 }
+    },
+    exposure: { name: 'Exposure [stops]', control: { type: 'range', min: -4, max: 4, step: 0.25 } },
+    forceWebGL,
+    frame,
+    path: { table: { disable: true } }
+  },
+  args: {
+    view: 'shower',
+    sun: 30,
+    rate: 12,
+    virgaDepth: 0,
+    freezingLevel: 2300,
+    exposure: 0,
+    forceWebGL: false,
+    path: 'post',
+    frame: false
+  }
+}
+
+export default meta
+
+type Story = StoryObj<RainArgs>
+
+/** Curtains of rain under towers, where their columns are strongest; they slant as the wind grows with height. */
+export const Shower: Story = {}
+
+/** The sun low behind one's back: a bow where a shaft is sunlit, and none beside it. */
+export const Bow: Story = { name: 'Bow in a shower', args: { view: 'bow', sun: 12 } }
+
+/** Rain that evaporates below altocumulus at sunset: only the heaviest streaks reach far down. */
+export const Virga: Story = {
+  args: { view: 'virga', sun: 4, rate: 4, virgaDepth: 1200, freezingLevel: 0 }
+}
+
+/** Snow that falls slowly, and so trails far behind its clouds. */
+export const SnowShower: Story = {
+  name: 'Snow shower',
+  args: { view: 'snow', sun: 18, rate: 1.5, freezingLevel: 0 }
+}
