@@ -17,6 +17,7 @@ import {
   milkyWay,
   moon,
   planetGround,
+  raindrops,
   proceduralStars,
   skyBackground,
   skyEnvironment,
@@ -26,6 +27,7 @@ import {
 import type { AutoExposureNode, LightShafts } from '@welkin/atmosphere'
 import {
   DropletLightTable,
+  precipitationShafts,
   cloudAirShadow,
   cloudEnvironment,
   cloudPreset,
@@ -135,10 +137,12 @@ class World {
     const air = aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('mixed', 4)
     layers.at(3).set({ baseAltitude: 6000, topAltitude: 6500, coverage: 0.3 })
+    layers.at(0).set({ precipitation: { rate: 5, hail: 0.2, virgaDepth: 2000 } })
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
       quality: coarse,
       worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null,
-      light: new DropletLightTable({ crystals: iceCrystals() })
+      light: new DropletLightTable({ crystals: iceCrystals() }),
+      precipitation: precipitationShafts({ drops: raindrops() })
     })
     this.#clouds.time = 0
     shafts.add(cloudAirShadow(this.#clouds))

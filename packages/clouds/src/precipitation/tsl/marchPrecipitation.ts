@@ -1,11 +1,11 @@
-import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { Break, If, float, mix, vec2, vec4 } from 'three/tsl'
 import { forLayers, layerAt } from '../../density/tsl/layer'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { SeenPoints } from '../../march/tsl/seenPoints'
 import type { CloudRay } from '../../march/tsl/march'
 import { crossings } from '../../march/tsl/layerBoundaries'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
-import { lightAt } from '../../light/tsl/lighting'
+import { LEAST_TRANSMITTANCE, lightAt } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import {
   loop,
@@ -20,6 +20,10 @@ import { fallenFrom, fallExtinction, type FallNodes } from './fall'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
 const STEPS = 0.6
+
+/** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
+const SHORTEST = 200
+const LEAST = 3
 
 /** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
 const LONGEST = 30_000
@@ -80,7 +84,11 @@ export function marchPrecipitation(
   const isNear = from.lessThan(FARTHEST).select(1, 0)
   const span = shell.far.min(end).sub(from).min(LONGEST).mul(isNear).toConst() as Float
   const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
-  const count = quality.layerSteps.mul(STEPS).ceil().toConst() as Float
+  const count = span
+    .div(SHORTEST)
+    .clamp(LEAST, quality.layerSteps.mul(STEPS))
+    .ceil()
+    .toConst() as Float
   const edgeAt = (step: Float): Float => {
     const part = step.div(count).toConst()
     return from.add(span.mul(part).mul(part.mul(first.oneMinus()).add(first)))
@@ -93,6 +101,9 @@ export function marchPrecipitation(
   const lights = vec4(0).toVar() as Variable<Vec4>
   If(span.greaterThan(1), () => {
     loop('fallStep', count.toInt(), index => {
+      If(transmittance.lessThan(LEAST_TRANSMITTANCE), () => {
+        Break()
+      })
       const start = edgeAt(float(index)).toConst() as Float
       const length = edgeAt(float(index).add(1)).sub(start).toConst() as Float
       const at = start.add(length.mul(jitter)).toConst() as Float
