@@ -8,7 +8,7 @@ import { inLattice, type LayerNodes } from './layer'
 
 /** Level of detail for a footprint; 0 where texels are wider. */
 export const levelOf = (footprint: Float, texel: Float | number): Float =>
-  log2(footprint.div(texel).max(1e-3)).max(0).toConst()
+  log2(footprint.div(texel).max(1)).toConst()
 
 /** Noise of unit deviation from its encoded values. */
 const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst()

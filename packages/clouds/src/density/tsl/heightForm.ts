@@ -1,4 +1,4 @@
-import { If, float, smoothstep } from 'three/tsl'
+import { If, smoothstep } from 'three/tsl'
 import { billowForm, heightForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
@@ -72,5 +72,4 @@ export function billowStrength(
 }
 
 /** Share of turbulence at a height, in [0, 1]: none at the base, or else it would not be flat. */
-export const bendAtHeight = (height: Float): Float =>
-  float(height).div(billowForm.bendHeight).clamp(0, 1)
+export const bendAtHeight = (height: Float): Float => height.div(billowForm.bendHeight).min(1)

@@ -184,11 +184,9 @@ export function forLayersUnrolled(
   { first, last }: LayerRange
 ): void {
   const { length } = field.layers
-  if (length === 1) {
-    body(int(0))
-    return
-  }
   for (let i = 0; i < length; i++) {
-    If(first.lessThanEqual(int(i)).and(last.greaterThan(int(i))), () => body(int(i)))
+    const index = int(i)
+    if (length === 1) body(index)
+    else If(first.lessThanEqual(index).and(last.greaterThan(index)), () => body(index))
   }
 }

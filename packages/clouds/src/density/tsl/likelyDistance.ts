@@ -1,5 +1,9 @@
+import { float } from 'three/tsl'
 import type { Float } from '../../tsl-types'
+import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
+import { columnStrength } from './strength'
+import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
 export const NOWHERE = 1e6
@@ -24,3 +28,44 @@ export const CAUTION = 0.45
  */
 export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
   strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)
+
+/**
+ * Most that billows add to the strength of clear air, and what anvils add: they spread from column to
+ * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
+ * regions, as grain (*Cumulus*).
+ */
+const MOST_BILLOWS = 2
+const ANVIL = 99
+
+/**
+ * Distance over which the background's part of the strength changes by 1 [periods of the weather]. Greater: faster, and
+ * edges of clear regions get ragged (*Cockpit*).
+ */
+const BACKGROUND_LIKELY = 0.08
+
+/** Distance that is taken off per footprint: from afar clouds blur [–]. Smaller: far clouds vanish (*Cockpit*). */
+const BLUR = 32
+
+/**
+ * Likely distance of a layer's clouds where its background rules them out, whatever single clouds and billows
+ * add: there these need not be looked up [m]. 0 or less elsewhere.
+ *
+ * @param height - Height in the layer, from 0 at its base to 1 at its top.
+ * @param footprint - Width of what a sample stands for [m].
+ */
+export function likelyDistanceByBackground(
+  layer: LayerNodes,
+  background: PackedBackground,
+  height: Float,
+  footprint: Float
+): Float {
+  const { sum, coverage } = unpackBackground(background)
+  const most = { sum: sum.add(layer.weights.length().mul(0.5)) }
+  const sharp = { billowsLost: float(0), unresolvedFraction: float(0) }
+  return neededStrength(layer, height)
+    .sub(columnStrength(layer, most, coverage, sharp))
+    .sub(layer.anvil.mul(ANVIL).add(MOST_BILLOWS))
+    .mul(BACKGROUND_LIKELY)
+    .div(layer.perWeatherPeriod)
+    .sub(footprint.mul(BLUR))
+}

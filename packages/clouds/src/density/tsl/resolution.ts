@@ -1,4 +1,4 @@
-import { If, float, log2, smoothstep } from 'three/tsl'
+import { If, float, smoothstep } from 'three/tsl'
 import { strengthForm } from '../formConstants'
 import { noisePeriods, REGION_SIZE, scaleWeights } from '../../layers/layerUniforms'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
@@ -24,7 +24,7 @@ export interface Resolution {
 
 /** Level of detail of the weather's noise for a footprint, looked up with a period [m]. */
 export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
-  log2(footprint.mul(perPeriod).mul(NOISE_SIZE.weather).max(1)).toConst()
+  levelOf(footprint.mul(perPeriod), 1 / NOISE_SIZE.weather)
 
 /**
  * Levels of detail over which single clouds pass into their mean: the first and the last. Smaller: clouds blur

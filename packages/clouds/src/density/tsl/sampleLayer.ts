@@ -107,12 +107,10 @@ export function sampleLayerAt(
   { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
 ): LayerSample[] {
   if (field.extinction)
-    return samples
-      .map(sample => field.extinction!(sample))
-      .map(extinction => ({
-        extinction,
-        strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH)
-      }))
+    return samples.map(sample => {
+      const extinction = field.extinction!(sample)
+      return { extinction, strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH) }
+    })
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution
@@ -122,7 +120,10 @@ export function sampleLayerAt(
     const { filteredCoverage } = body.weather
     const whole = strength.toVar() as Float
     const density = float(0).toVar() as Float
-    const mostDetail = hasDetail ? detailStrength.abs().mul(MOST_DETAIL).toConst() : float(0)
+    const mostDetail = detailStrength
+      .abs()
+      .mul(hasDetail ? MOST_DETAIL : 0)
+      .toConst()
     If(strength.greaterThan(mostDetail.negate()), () => {
       const edge = edgeAt(layer, height)
       if (hasDetail) {

@@ -5,8 +5,8 @@ import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
 import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
-import { CAUTION, likelyDistance, NOWHERE } from './likelyDistance'
-import type { CloudSample } from './sample'
+import { CAUTION, likelyDistance, likelyDistanceByBackground, NOWHERE } from './likelyDistance'
+import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
 
@@ -24,15 +24,10 @@ export interface SamplePair {
 export type ClearLayers = Variable<Vec4>
 
 /** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */
-const sampleNearby = (
-  { offset, altitude, up, distance }: CloudSample,
-  direction: Vec3,
-  along: Float
-): CloudSample => ({
-  offset: offset.add(direction.mul(along)).toConst(),
-  altitude: altitude.add(direction.dot(up).mul(along)).toConst(),
-  up,
-  distance
+const sampleNearby = (sample: CloudSample, direction: Vec3, along: Float): CloudSample => ({
+  ...sample,
+  offset: sample.offset.add(direction.mul(along)).toConst(),
+  altitude: sample.altitude.add(direction.dot(sample.up).mul(along)).toConst()
 })
 
 /**
@@ -65,22 +60,27 @@ export function samplePair(
     const height = heightIn(layer, middle.altitude)
     const own = componentAt(float(index))
     const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
-    const isNear = clearUntil.lessThan(end).toConst()
-    If(isWithin(layer, height).and(isNear.not()), () => {
-      nearest.assign(nearest.min(clearUntil.sub(end)))
-    })
-    If(isWithin(layer, height).and(isNear), () => {
+    const isHere = isWithin(layer, height).toConst()
+    If(isHere.and(clearUntil.lessThan(end)), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
-      const options = { detail: true, direction }
-      const [first, second] = sampleLayerAt(field, layer, background, middle, places, options)
-      const likely = likelyDistance(layer, first.strength.max(second.strength)).toConst() as Float
+      const footprint = footprintOf(field, middle)
+      const likely = likelyDistanceByBackground(layer, background, height, footprint).toVar()
+      If(likely.lessThanEqual(0), () => {
+        const [first, second] = sampleLayerAt(field, layer, background, middle, places, {
+          detail: true,
+          direction
+        })
+        likely.assign(likelyDistance(layer, first.strength.max(second.strength)))
+        sum.addAssign(vec2(first.extinction, second.extinction))
+      })
       if (!isAlone) {
-        const until = likely.greaterThan(0).select(end.add(likely.mul(CAUTION)), 0)
+        const until = end.add(likely.mul(CAUTION)).mul(likely.sign())
         clear.assign(mix(clear, vec4(until), own))
       }
       nearest.assign(nearest.min(likely))
-      sum.addAssign(vec2(first.extinction, second.extinction))
+    }).ElseIf(isHere, () => {
+      nearest.assign(nearest.min(clearUntil.sub(end)))
     })
   }
   forLayersUnrolled(field, look, range)

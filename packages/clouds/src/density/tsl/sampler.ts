@@ -21,7 +21,8 @@ export function backgroundAt(
   sample: CloudSample,
   mapped?: { map: WeatherMap | undefined; index: Int }
 ): PackedBackground {
-  if (field.extinction) return vec4(0)
+  // As under a closed sky: it rules no clouds out.
+  if (field.extinction) return vec4(1)
   const subpoint = subpointOffset(field, sample).toConst() as Vec3
   const footprint = footprintOf(field, sample)
   const { map, index } = mapped ?? {}
@@ -103,8 +104,8 @@ export function sampleLayerPair(
 ): Vec2 {
   const background = backgroundAt(field, layer, middle)
   const found = sampleLayerAt(field, layer, background, middle, samples, { detail: false })
-  const [first, second] = samples.map(({ altitude }, i) =>
+  const inside = samples.map(({ altitude }, i) =>
     isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
   )
-  return vec2(first, second).toConst()
+  return vec2(...(inside as [Float, Float])).toConst()
 }

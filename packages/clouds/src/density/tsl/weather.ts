@@ -1,4 +1,4 @@
-import { If, float, vec3 } from 'three/tsl'
+import { If, float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -85,7 +85,7 @@ export function filteredCoverageAt(
   const footprint = footprintOf(field, sample)
   const packed = weatherBackground(field, layer, subpoint, sample, footprint)
   const background = unpackBackground(packed)
-  const still = vec3(0).xy as Vec2
+  const still = vec2(0) as Vec2
   const resolution = resolutionAt(layer, footprint)
   return cloudWeather(field, layer, background, subpoint, still, resolution, 'everywhere')
     .filteredCoverage

@@ -3,7 +3,6 @@ import type { CloudField } from '../../density/CloudField'
 import type { QualityUniforms } from '../quality'
 import type { Bool, Float, Variable, Vec2 } from '../../tsl-types'
 import { CAUTION } from '../../density/tsl/likelyDistance'
-import { FAR_AWAY } from './layerBoundaries'
 
 // The step policy of the march, and nothing else: a pair of samples goes half a step and one and a half
 // steps ahead. Through clear air steps are as long as there is likely no cloud; a pair that lands in one goes
@@ -63,11 +62,11 @@ export interface StepPair {
 /** Steps before the first segment. */
 export const stepState = (jitter: Float): StepState => ({
   isFine: bool(false).toVar(),
-  finest: float(1).toVar(),
-  longest: float(FAR_AWAY).toVar(),
+  finest: float(0).toVar(),
+  longest: float(0).toVar(),
   likely: float(0).toVar(),
   before: float(0).toVar(),
-  part: jitter.toVar(),
+  part: float(0).toVar(),
   jitter
 })
 
@@ -92,12 +91,7 @@ export function enterSteps(
   part.assign(jitter)
   const span = to.sub(from).toConst()
   const footprint = from.mul(field.pixelAngle)
-  longest.assign(
-    span
-      .div(quality.layerSteps)
-      .max(footprint.min(span.div(LEAST_STEPS)))
-      .max(1)
-  )
+  longest.assign(span.div(quality.layerSteps).max(footprint.min(span.div(LEAST_STEPS))))
   finest.assign(stepIn(quality, density, longest))
 }
 
