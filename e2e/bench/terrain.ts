@@ -85,7 +85,7 @@ class TerrainBench {
   }
 
   add(resolution: number): Terrain {
-    const heights = new MountainHeights({ seed: 1 })
+    const heights = new MountainHeights({ seed: 513 })
     this.terrain = new Terrain(this.#atmosphere, heights, { resolution })
     this.#scene.add(this.terrain)
     return this.terrain

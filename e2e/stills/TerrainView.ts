@@ -37,7 +37,7 @@ export class TerrainView {
     const { longitude, latitude } = view
     atmosphere.place({ longitude, latitude })
     atmosphere.setSunAngles(view.sun.elevation, view.sun.azimuth)
-    const terrain = (this.#terrain = new Terrain(atmosphere, new MountainHeights({ seed: 1 })))
+    const terrain = (this.#terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 })))
     terrain.castShadow = terrain.receiveShadow = true
     const camera = (this.#camera = new PerspectiveCamera(55, width / height, 0.1, 1e8))
     camera.near = Math.max(view.height / 20, 0.05)

@@ -271,19 +271,14 @@ const valleys: ValleyStill[] = [
 /** The made-up planet: at one's feet, among its mountains, and from far above. */
 const terrains: TerrainStill[] = (
   [
-    ['grass', 'a meadow: blades and tufts, no repetition', [0.886377, 47.171687, 1.7], [60, -12]],
-    [
-      'feet',
-      "the same meadow before one's feet: detail to 1 cm",
-      [0.886377, 47.171687, 1.7],
-      [60, -50]
-    ],
-    ['scree', 'stones between meadow and rock', [0.979909, 46.485055, 1.7], [150, -12]],
-    ['snow', 'snow and rock about a summit', [1.246555, 46.250288, 1.7], [240, -8]],
-    ['shore', 'sand, wet where the sea begins', [0.763649, 46.111121, 1.7], [10, -10]],
-    ['1km', 'slopes, valleys and cliffs in low sun', [1, 47, 1e3], [0, -12]],
-    ['10km', 'ranges without shimmer or grid', [1, 46.2, 1e4], [0, -12]],
-    ['400km', 'ranges from orbit: no net', [1, 44, 4e5], [0, -25]]
+    ['grass', 'a meadow: blades and tufts, no repetition', [0.494, 46.35, 1.7], [338, -8]],
+    ['feet', "the same meadow before one's feet: detail to 1 cm", [0.494, 46.35, 1.7], [338, -50]],
+    ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
+    ['snow', 'snow and rock about a summit', [0.438, 47.41, 1.7], [200, -8]],
+    ['shore', 'sand, wet where the sea begins', [1.32, 46.19, 1.7], [350, -8]],
+    ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
+    ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
+    ['400km', 'a mountainous coast from orbit: no net', [1, 44.5, 4e5], [0, -25]]
   ] as const
 ).map(([name, about, [longitude, latitude, height], [heading, pitch]]) => ({
   name: `terrain-${name}`,

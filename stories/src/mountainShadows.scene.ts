@@ -37,7 +37,7 @@ export interface MountainShadowsArgs extends RendererArgs {
 }
 
 /** Place of the world's origin [°], and the camera's height above the ground there [m]. */
-const ORIGIN = { longitude: 2.49, latitude: 46.209 }
+const ORIGIN = { longitude: 1.1, latitude: 47.08 }
 const HEIGHT = 250
 
 /** Direction of the camera, clockwise from north, and above the horizontal [°]. */
@@ -81,7 +81,11 @@ export async function createMountainShadows(
   const air = new Air(renderer, scene, camera, 'post', atmosphere)
   const { sun, post } = air
   if (post === undefined) throw new Error('createMountainShadows: there must be a post effect')
-  const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 1 }), args.frame ? STILL : {})
+  const terrain = new Terrain(
+    atmosphere,
+    new MountainHeights({ seed: 513 }),
+    args.frame ? STILL : {}
+  )
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
   prepareShadow(sun)

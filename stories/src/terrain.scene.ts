@@ -16,25 +16,32 @@ import { GroundCamera, type GroundView } from './terrain/GroundCamera'
 export const VIEWS = {
   meadow: {
     label: 'Meadow, 2 m',
-    longitude: 0.43,
-    latitude: 47.12,
+    longitude: 0.494,
+    latitude: 46.35,
     height: 2,
-    heading: 150,
-    pitch: 8
+    heading: 338,
+    pitch: 6
   },
   shore: {
     label: 'Shore, 30 m',
-    longitude: 0.94,
-    latitude: 46.12,
+    longitude: 1.32,
+    latitude: 46.19,
     height: 30,
-    heading: 10,
-    pitch: 5
+    heading: 350,
+    pitch: 2
   },
-  summit: { label: 'Summit, 2 m', longitude: 1, latitude: 47, height: 2, heading: 250, pitch: -5 },
+  summit: {
+    label: 'Summit, 2 m',
+    longitude: 0.438,
+    latitude: 47.41,
+    height: 2,
+    heading: 200,
+    pitch: -5
+  },
   range: {
     label: 'Range, 8 km',
-    longitude: 1,
-    latitude: 46.2,
+    longitude: 0.45,
+    latitude: 46.9,
     height: 8000,
     heading: 0,
     pitch: -10
@@ -42,7 +49,7 @@ export const VIEWS = {
   orbit: {
     label: 'Orbit, 400 km',
     longitude: 1,
-    latitude: 42,
+    latitude: 43.5,
     height: 4e5,
     heading: 0,
     pitch: -25
@@ -72,7 +79,7 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
 }
 
 /** Place of the world's origin [°]. */
-const ORIGIN = { longitude: 0.43, latitude: 47.12 }
+const ORIGIN = { longitude: 0.494, latitude: 46.35 }
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
@@ -91,7 +98,7 @@ export async function createTerrain(
   const air = new Air(renderer, scene, camera, args.path, atmosphere)
   const options = args.frame ? STILL : {}
   // #region terrain
-  const heights = new MountainHeights({ seed: 1 }) // a function: nothing is loaded
+  const heights = new MountainHeights({ seed: 513 }) // a function: nothing is loaded
   const terrain = new Terrain(atmosphere, heights, options)
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)

@@ -34,6 +34,9 @@ import { writeTiles } from './tiles/writeTiles'
 /** Least height of the viewer above the ground that distances count from [m]. */
 const LEAST_CLEARANCE = 0.5
 
+/** Depth of skirts where no page is missing [cells]: only rounding is hidden. */
+const SHALLOW = 0.1
+
 /** Level of "no sea", below all ground [m]. */
 const NO_SEA = -1e9
 
@@ -268,7 +271,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#uniforms.update(viewer, ground)
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
-    this.#uniforms.skirt.value = 2 ** selection.lag
+    this.#uniforms.skirt.value = selection.lag === 0 ? SHALLOW : 2 ** selection.lag
     this.#uniforms.referenceECEF(reference)
     writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
       tree.range(level)

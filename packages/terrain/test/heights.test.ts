@@ -68,7 +68,7 @@ it('is within its bounds', () => {
   )
 })
 
-it('has land and sea, mountains and plains', () => {
+it('has land and sea, plains and, on little of the land, belts of mountains', () => {
   const points = Array.from({ length: 4000 }, (_, i) => {
     const z = (2 * i + 1) / 4000 - 1
     const level = Math.sqrt(1 - z * z)
@@ -77,9 +77,24 @@ it('has land and sea, mountains and plains', () => {
       new Vector3(level * Math.cos(turn), level * Math.sin(turn), z).setLength(6.4e6)
     )
   })
-  const heights = points.map(point => sampleAt(point).height)
-  const land = heights.filter(height => height > 0).length / heights.length
-  expect(land).toBeGreaterThan(0.2)
-  expect(land).toBeLessThan(0.6)
-  expect(Math.max(...heights)).toBeGreaterThan(3000)
+  const heightOf = (point: Vector3): number => sampleAt(point).height
+  const land = points.filter(point => heightOf(point) > 0)
+  expect(land.length / points.length).toBeGreaterThan(0.2)
+  expect(land.length / points.length).toBeLessThan(0.6)
+  /** Differences of height within 10 km. */
+  const reliefs = land.map(point => {
+    const east = new Vector3(0, 0, 1).cross(point).normalize()
+    const north = point.clone().normalize().cross(east)
+    const heights = [0, 1, 2, 3, 4, 5].map(i => {
+      const there = point.clone().addScaledVector(east, 1e4 * Math.cos(i))
+      return heightOf(earth.footPoint(there.addScaledVector(north, 1e4 * Math.sin(i))))
+    })
+    return Math.max(...heights) - Math.min(...heights)
+  })
+  const share = (least: number): number =>
+    reliefs.filter(relief => relief > least).length / reliefs.length
+  expect(share(1500)).toBeGreaterThan(0.01)
+  expect(share(1000)).toBeLessThan(0.25)
+  expect(share(300)).toBeLessThan(0.6)
+  expect(Math.max(...land.map(heightOf))).toBeGreaterThan(3500)
 })

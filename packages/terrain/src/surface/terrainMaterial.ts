@@ -6,7 +6,7 @@ import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
-import { firstTexel, quarterOf, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
+import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
 
@@ -40,45 +40,41 @@ export function terrainMaterial(
   const { reference, radii, stretch, seaLevel } = uniforms
 
   const handed = {
-    place: handedOn<Vec4>('vec4', 'Place'),
-    texels: handedOn<Vec4>('vec4', 'Texels'),
+    place: handedOn<Vec3>('vec3', 'Place'),
+    texels: handedOn<Vec2>('vec2', 'Texels'),
+    pages: handedOn<Vec4>('vec4', 'Pages'),
     blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, resolution, detail)
     handed.place.assign(vertex.place)
     handed.texels.assign(vertex.texels)
+    handed.pages.assign(vertex.pages)
     handed.blend.assign(vertex.blend)
     return vertex.position
   })()
 
-  const { place: handedPlace, texels, blend } = handed
+  const { place: offset, texels, pages, blend } = handed
   const { width, height } = atlas.surface
-  const { columns, surfaceSide } = atlas
-  const face = blend.z.add(0.5).mod(6).floor().toConst('face') as Float
+  const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
-  const inPage = texels.xy.clamp(0, surfaceSide - 1).toConst('inPage') as Vec2
-  const texelIn = (slot: Float, steps: Vec2): Vec2 =>
-    firstTexel(slot.round(), columns, surfaceSide).add(steps).add(0.5)
+  const inPage = texels.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
   const page = texture(atlas.surface.texture)
   const pageAt = (texel: Vec2): Vec4 =>
     (page as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } })
-      .sample(texel.div(vec2(width, height)))
+      .sample(texel.add(0.5).div(vec2(width, height)))
       .level(0)
   // Gradient along the face's axes, height and patchiness.
   const ground = Fn(() => {
-    const mixed = pageAt(texelIn(texels.z, inPage)).toVar('page') as unknown as Vec4 & {
+    const mixed = pageAt(pages.xy.add(inPage)).toVar('page') as unknown as Vec4 & {
       assign(value: Vec4): void
     }
     If(blend.x.greaterThan(0), () => {
-      const quarter = quarterOf(blend.z.add(0.5).div(6).floor())
-      const steps = inPage.add(quarter.mul(surfaceSide - 1)).mul(0.5) as unknown as Vec2
-      const parent = pageAt(texelIn(texels.w, steps))
+      const parent = pageAt(pages.zw.add(inPage.mul(0.5)))
       mixed.assign(mix(mixed, parent, blend.x))
     })
     return mixed
   })().toConst('ground') as unknown as Vec4
-  const offset = handedPlace.xyz
   const place = reference.mul(REFERENCE_STEP).add(offset)
   const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
   const { first, second } = faceAxes(face)
@@ -109,9 +105,12 @@ export function terrainMaterial(
     seaLevel
   )
   // Shadow maps ask for its alpha, and need not wait for the rest.
-  material.colorNode = Fn(({ material: drawn }: NodeBuilder) =>
-    isShadowPass(drawn) ? vec4(1) : vec4(surface.color, 1)
-  )()
+  material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
+    if (isShadowPass(drawn)) return vec4(1)
+    // Ahead of the branches of near ground: each would find the page's texel and the normal anew.
+    ;(surface.frame as unknown as { toStack(): void }).toStack()
+    return vec4(surface.color, 1)
+  })()
   material.roughnessNode = surface.roughness
   material.aoNode = surface.occlusion.mul(blend.w)
   material.normalNode = transformNormalToView(normal.sub(surface.grain).normalize())

@@ -32,6 +32,8 @@ export class Tile {
   lastUse = 0
   /** Number of the last selection that it could be seen in. */
   lastDrawn = 0
+  /** Distance from the viewer then, see `distanceTo` [m]. */
+  distance = 0
   /** Place of its page in the atlas; −1 without one. */
   slot = -1
   /** Share of the parent's page in what is drawn, in [0, 1]: 1 as its own page arrives, then ever less. */

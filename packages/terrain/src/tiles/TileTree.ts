@@ -95,6 +95,7 @@ export class TileTree {
         const taken = target.tiles.length + unseen.length + next.length + (open.length - i)
         tile.lastDrawn = this.#selections
         const distance = distanceTo(tile, viewer.datumPoint)
+        tile.distance = distance
         const range = this.#ranges[tile.level + 1]
         const isNear = tile.level < this.finestLevel && distance < range
         const isShown = !isPaged || (tile.slot >= 0 && tile.fade === 0)
@@ -115,8 +116,8 @@ export class TileTree {
       }
       open = next
     }
-    // Fine ones first: what is near hides what is far.
-    target.tiles.reverse()
+    // What is near hides what is far.
+    target.tiles.sort((a, b) => a.distance - b.distance)
     target.inView = target.tiles.length
     target.tiles.push(...unseen)
     target.missing.sort((a, b) => urgency.get(b)! - urgency.get(a)!)

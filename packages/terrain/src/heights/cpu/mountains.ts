@@ -1,22 +1,77 @@
 import { fractalSum, type Octaves, type Sum } from '../../noise/cpu/fractalSum'
 import { latticeNoise, type Noise } from '../../noise/cpu/latticeNoise'
 
-/** Continents: from 8,400 km to 131 km. */
-export const CONTINENTS: Octaves = { count: 7, inverse: 2 ** -23, gain: 0.55, seed: 11 }
+/** Noise that moves places: crests and coasts that lie along its cells come to lie anywhere. */
+export interface Warp {
+  /** 1 / wavelength, a power of two [1/m]. */
+  readonly inverse: number
+  /** Displacement along an axis per unit of noise [m]. */
+  readonly reach: number
+  /** Seed of the first axis; each next one has the next. */
+  readonly seed: number
+}
 
-/** Mountain ranges: from 1,050 km to 262 km. */
-export const RANGES: Octaves = { count: 3, inverse: 2 ** -20, gain: 0.5, seed: 41 }
+/** Displacement of continents and belts. */
+export const LAND_WARP: Warp = { inverse: 2 ** -20, reach: 3e5, seed: 301 }
 
-/** Ridges: from 33 km to 2 m. */
-export const RIDGES: Octaves = { count: 15, inverse: 2 ** -15, gain: 0.47, seed: 71 }
+/** Displacement of ridges. */
+export const RIDGE_WARP: Warp = { inverse: 2 ** -15, reach: 1.1e4, seed: 331 }
 
-/** Roundness of ridges' crests, in units of the noise. */
+/** Continents: from 8,400 km to 524 km. */
+export const CONTINENTS: Octaves = { count: 5, inverse: 2 ** -23, gain: 0.55, seed: 11 }
+
+/** A family of mountain belts: long, curved, along places where noise is 0, and strong in places. */
+export interface Belts {
+  /** 1 / wavelength of the noise, a power of two [1/m]. */
+  readonly inverse: number
+  readonly seed: number
+  /** Half width, in units of the noise. */
+  readonly width: number
+  /** Strength of the strongest. */
+  readonly strength: number
+  /** Displacement along this axis of `LAND_WARP`, per reach, over which belts rise from nothing to their full strength. */
+  readonly axis: 0 | 1
+  readonly start: number
+  readonly end: number
+}
+
+/** Chains across continents, and shorter ones. */
+export const CHAINS: Belts = {
+  inverse: 2 ** -22,
+  seed: 41,
+  width: 0.06,
+  strength: 1,
+  axis: 0,
+  start: -0.3,
+  end: 0.3
+}
+export const SHORT_CHAINS: Belts = {
+  inverse: 2 ** -21,
+  seed: 43,
+  width: 0.05,
+  strength: 0.6,
+  axis: 1,
+  start: -0.1,
+  end: 0.4
+}
+
+/**
+ * Ridges: from 66 km to 4 m. The first octaves are valleys, where noise is 0, between massifs; the others are crests there.
+ * Those of 1 km and more are displaced: of shorter ones float32 would lose the phase.
+ */
+export const RIDGES = { count: 15, inverse: 2 ** -16, seed: 71, valleys: 2, moved: 7 }
+
+/** Amplitude of an octave is 1 / (LONG[0] LONG[1]^n + SHORT[0] SHORT[1]^n): most at 16 to 33 km. */
+export const LONG = [3, 0.39] as const
+export const SHORT = [0.305, 1 / 0.47] as const
+
+/** Roundness of crests and of valleys' floors, in units of the noise. */
 export const ROUNDNESS = 0.05
 
 /** Scale of the noise under ridges: crests are where it is 0. */
 export const STEEPNESS = 1.5
 
-/** Mean of an octave of ridges. */
+/** Mean of an octave of crests; of one of valleys, what that lacks of 1. */
 export const MEAN_RIDGE = 0.45
 
 /** Roughness of an octave per height of the one before: ridges are rough, valleys smooth. */
@@ -26,45 +81,92 @@ export const ROUGHENING = 1.9
 export const LAND_HEIGHT = 2400
 export const LAND_OFFSET = -250
 
-/** Ranges rise where the sum of continents and ranges is between these. */
-export const RANGE_START = -0.15
-export const RANGE_END = 0.75
+/** Height that belts lift the ground by, per relief. */
+export const UPLIFT = 0.5
 
-/** Share of the mountains' height that plains have. */
-export const PLAINS = 0.07
+/** Shares of the relief: everywhere, in hills of high land, and in belts. */
+export const PLAINS = 0.03
+export const HILLS = 0.1
+export const BELT_RIDGES = 0.95
+
+/** Sum of continents over which hills rise. */
+export const HILLS_START = -0.3
+export const HILLS_END = 0.4
 
 const noise: Noise = { x: 0, y: 0, z: 0, value: 0 }
 
-/**
- * Ridged multifractal, at full detail: crests where noise is 0, each octave as rough as those before are high.
- * Twin of the shader's.
- */
-export function ridgedSum(
-  x: number,
-  y: number,
-  z: number,
-  { count, inverse, gain, seed: first }: Octaves,
-  seed: number,
-  target: Sum
-): Sum {
+/** Amplitude of an octave of ridges [–]. */
+export const ridgeAmplitude = (octave: number): number =>
+  1 / (LONG[0] * LONG[1] ** octave + SHORT[0] * SHORT[1] ** octave)
+
+/** Smooth step from 0 to 1, and its slope. */
+function smooth(start: number, end: number, value: number): [number, number] {
+  const t = Math.min(Math.max((value - start) / (end - start), 0), 1)
+  return [t * t * (3 - 2 * t), (6 * t * (1 - t)) / (end - start)]
+}
+
+/** Place and displacement, each with its gradient [1/m]. */
+class Warped {
+  x = 0
+  y = 0
+  z = 0
+  /** Displacement along each axis, per reach. */
+  readonly moves: readonly Sum[] = [0, 1, 2].map(() => ({ x: 0, y: 0, z: 0, value: 0 }))
+
+  move(x: number, y: number, z: number, { inverse, reach, seed }: Warp, shift: number): this {
+    for (const [axis, move] of this.moves.entries()) {
+      latticeNoise(x, y, z, inverse, seed + shift + axis, move)
+      move.x *= inverse
+      move.y *= inverse
+      move.z *= inverse
+    }
+    this.x = x + reach * this.moves[0].value
+    this.y = y + reach * this.moves[1].value
+    this.z = z + reach * this.moves[2].value
+    return this
+  }
+
+  /** Turns a gradient at the displaced place into that at the place itself. */
+  back(sum: Sum, { reach }: Warp): void {
+    const { x, y, z } = sum
+    const [a, b, c] = this.moves
+    for (const axis of ['x', 'y', 'z'] as const) {
+      sum[axis] += reach * (a[axis] * x + b[axis] * y + c[axis] * z)
+    }
+  }
+}
+
+const landWarp = new Warped()
+const ridgeWarp = new Warped()
+
+/** Ridged multifractal of valleys and crests, at full detail: each octave is as rough as those before are high. Twin of the shader's. */
+function ridgedSum(x: number, y: number, z: number, seed: number, target: Sum): Sum {
+  const { count, inverse, seed: first, valleys, moved } = RIDGES
+  ridgeWarp.move(x, y, z, RIDGE_WARP, seed)
   target.x = target.y = target.z = target.value = 0
   let weight = 1
   const turn = { x: 0, y: 0, z: 0 }
   for (let i = 0; i < count; i++) {
     const scale = inverse * 2 ** i
-    const amplitude = gain ** i
-    latticeNoise(x, y, z, scale, first + seed + i, noise)
+    const amplitude = ridgeAmplitude(i)
+    if (i < moved) {
+      latticeNoise(ridgeWarp.x, ridgeWarp.y, ridgeWarp.z, scale, first + seed + i, noise)
+      ridgeWarp.back(noise, RIDGE_WARP)
+    } else latticeNoise(x, y, z, scale, first + seed + i, noise)
     const value = STEEPNESS * noise.value
     const root = Math.hypot(value, ROUNDNESS)
-    const ridge = (1 - root) ** 2
-    const steepness = (-2 * (1 - root) * value * STEEPNESS * scale) / root
+    const isValley = i < valleys
+    const sign = isValley ? -1 : 1
+    const ridge = (isValley ? 1 : 0) + sign * (1 - root) ** 2
+    const over = ridge - (isValley ? 1 - MEAN_RIDGE : MEAN_RIDGE)
+    const steepness = (sign * -2 * (1 - root) * value * STEEPNESS * scale) / root
     const sx = steepness * noise.x
     const sy = steepness * noise.y
     const sz = steepness * noise.z
-    target.value += amplitude * weight * (ridge - MEAN_RIDGE)
-    target.x += amplitude * (weight * sx + (ridge - MEAN_RIDGE) * turn.x)
-    target.y += amplitude * (weight * sy + (ridge - MEAN_RIDGE) * turn.y)
-    target.z += amplitude * (weight * sz + (ridge - MEAN_RIDGE) * turn.z)
+    target.value += amplitude * weight * over
+    target.x += amplitude * (weight * sx + over * turn.x)
+    target.y += amplitude * (weight * sy + over * turn.y)
+    target.z += amplitude * (weight * sz + over * turn.z)
     const next = Math.min(ROUGHENING * ridge * weight, 1)
     const slope = 2 * (1 - next) * ROUGHENING
     turn.x = slope * (sx * weight + ridge * turn.x)
@@ -75,14 +177,35 @@ export function ridgedSum(
   return target
 }
 
+/** Strength of a family of belts at a place that `landWarp` has. */
+function beltsAt(belts: Belts, seed: number, target: Sum): Sum {
+  const { inverse, width, strength, axis, start, end } = belts
+  const { x, y, z, moves } = landWarp
+  latticeNoise(x, y, z, inverse, belts.seed + seed, target)
+  const ratio = target.value / width
+  const fall = 1 / (1 + ratio * ratio)
+  const [there, edge] = smooth(start, end, moves[axis].value)
+  const turn = (-4 * ratio * fall ** 3 * there * strength * inverse) / width
+  target.x *= turn
+  target.y *= turn
+  target.z *= turn
+  landWarp.back(target, LAND_WARP)
+  for (const along of ['x', 'y', 'z'] as const) {
+    target[along] += fall * fall * edge * strength * moves[axis][along]
+  }
+  target.value = fall * fall * there * strength
+  return target
+}
+
 const land: Sum = { x: 0, y: 0, z: 0, value: 0 }
-const range: Sum = { x: 0, y: 0, z: 0, value: 0 }
+const belt: Sum = { x: 0, y: 0, z: 0, value: 0 }
+const short: Sum = { x: 0, y: 0, z: 0, value: 0 }
 const ridges: Sum = { x: 0, y: 0, z: 0, value: 0 }
 
 /**
- * Height of continents, ranges and ridges, with its gradient [–]. Twin of the shader's.
+ * Height of continents, belts and ridges, with its gradient [–]. Twin of the shader's.
  *
- * @param relief - Height of the highest ridges over the land [m].
+ * @param relief - Height of the highest ridges over the valleys [m].
  * @param seed - Added to all seeds.
  * @returns Height as `value` [m].
  */
@@ -94,17 +217,23 @@ export function mountains(
   seed: number,
   target: Sum
 ): Sum {
-  fractalSum(x, y, z, CONTINENTS, seed, land)
-  fractalSum(x, y, z, RANGES, seed, range)
-  ridgedSum(x, y, z, RIDGES, seed, ridges)
-  const width = RANGE_END - RANGE_START
-  const t = Math.min(Math.max((land.value + range.value - RANGE_START) / width, 0), 1)
-  const mask = PLAINS + (1 - PLAINS) * t * t * (3 - 2 * t)
-  const edge = ((1 - PLAINS) * 6 * t * (1 - t)) / width
-  target.value = LAND_OFFSET + LAND_HEIGHT * land.value + relief * mask * ridges.value
+  landWarp.move(x, y, z, LAND_WARP, seed)
+  fractalSum(landWarp.x, landWarp.y, landWarp.z, CONTINENTS, seed, land)
+  landWarp.back(land, LAND_WARP)
+  beltsAt(CHAINS, seed, belt)
+  beltsAt(SHORT_CHAINS, seed, short)
+  ridgedSum(x, y, z, seed, ridges)
+  const lift = 1 - (1 - belt.value) * (1 - short.value)
+  const [hills, edge] = smooth(HILLS_START, HILLS_END, land.value)
+  const mask = PLAINS + HILLS * hills + BELT_RIDGES * lift
+  target.value =
+    LAND_OFFSET + LAND_HEIGHT * land.value + relief * (UPLIFT * lift + mask * ridges.value)
   for (const axis of ['x', 'y', 'z'] as const) {
-    const turn = edge * (land[axis] + range[axis])
-    target[axis] = LAND_HEIGHT * land[axis] + relief * (mask * ridges[axis] + turn * ridges.value)
+    const rise = belt[axis] * (1 - short.value) + short[axis] * (1 - belt.value)
+    const turn = HILLS * edge * land[axis] + BELT_RIDGES * rise
+    target[axis] =
+      LAND_HEIGHT * land[axis] +
+      relief * (UPLIFT * rise + mask * ridges[axis] + turn * ridges.value)
   }
   return target
 }

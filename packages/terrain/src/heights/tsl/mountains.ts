@@ -3,61 +3,115 @@ import { fractalSum, keptShare } from '../../noise/tsl/fractalSum'
 import { latticeNoise } from '../../noise/tsl/latticeNoise'
 import { layout, loop, type Float, type Vec3, type Vec4 } from '../../tsl-types'
 import {
+  BELT_RIDGES,
+  CHAINS,
   CONTINENTS,
+  HILLS,
+  HILLS_END,
+  HILLS_START,
   LAND_HEIGHT,
   LAND_OFFSET,
+  LAND_WARP,
+  LONG,
   MEAN_RIDGE,
   PLAINS,
-  RANGE_END,
-  RANGE_START,
-  RANGES,
   RIDGES,
+  RIDGE_WARP,
   ROUGHENING,
   ROUNDNESS,
-  STEEPNESS
+  SHORT,
+  SHORT_CHAINS,
+  STEEPNESS,
+  UPLIFT,
+  type Belts,
+  type Warp
 } from '../cpu/mountains'
 
 const continents = /*#__PURE__*/ fractalSum('welkinContinents', CONTINENTS)
-const ranges = /*#__PURE__*/ fractalSum('welkinRanges', RANGES)
+
+/** A place that noise has moved. */
+interface Warped {
+  /** As of `latticeNoise`. */
+  readonly offset: Vec3
+  /** Displacement along each axis, per reach (w), and its gradient (xyz) [1/m]. */
+  readonly moves: readonly Vec4[]
+  /** Gradient at the place itself from that at the moved one, with the value in w left as it is. */
+  readonly back: (sum: Vec4) => Vec4
+}
+
+/** Moves a place by noise, where that is not too short to be seen. */
+function warped(
+  { inverse, reach, seed: first }: Warp,
+  reference: Vec3,
+  offset: Vec3,
+  shortest: Float,
+  seed: Float
+): Warped {
+  const kept = keptShare(float(inverse), shortest).toConst()
+  const moves = [0, 1, 2].map(axis => {
+    const noise = latticeNoise(reference, offset, float(inverse), seed.add(first + axis)).toConst()
+    return vec4(noise.xyz.mul(inverse), noise.w).mul(kept).toConst()
+  }) as unknown as Vec4[]
+  const [x, y, z] = moves
+  return {
+    offset: offset.add(vec3(x.w, y.w, z.w).mul(reach)).toConst(),
+    moves,
+    back: sum => {
+      const turn = x.xyz.mul(sum.x).add(y.xyz.mul(sum.y)).add(z.xyz.mul(sum.z))
+      return vec4(sum.xyz.add(turn.mul(reach)), sum.w).toConst()
+    }
+  }
+}
 
 /**
- * Ridged multifractal: crests where noise is 0, each octave as rough as those before are high. Parameters and result
- * as of `fractalSum`.
+ * Ridged multifractal: valleys and crests where noise is 0, each octave as rough as those before are high. The longer octaves are of the
+ * displaced place. Parameters and result as of `fractalSum`.
  *
  * @see Ebert et al. 2003, "Texturing and Modeling", chapter 16, ridged multifractal. Twin: ../cpu/mountains.ts
  */
 const ridgedSum = /*#__PURE__*/ Fn(
   ([reference, offset, shortest, seed]: [Vec3, Vec3, Float, Float]) => {
+    const place = warped(RIDGE_WARP, reference, offset, shortest, seed)
     const sum = vec4(0).toVar('sum')
     /** Weight of the octave (w) and its gradient. */
     const weight = vec4(0, 0, 0, 1).toVar('weight')
     const inverse = float(RIDGES.inverse).toVar('inverse')
-    const amplitude = float(1).toVar('amplitude')
+    const long = float(LONG[0]).toVar('longPart')
+    const short = float(SHORT[0]).toVar('shortPart')
     loop('octave', RIDGES.count, octave => {
-      const kept = keptShare(inverse, shortest).mul(amplitude).toConst('kept')
+      const kept = keptShare(inverse, shortest).div(long.add(short)).toConst('kept')
       If(kept.lessThanEqual(0), () => {
         Break()
       })
       const index = seed.add(float(octave)).add(RIDGES.seed)
-      const noise = latticeNoise(reference, offset, inverse, index).mul(STEEPNESS).toConst('noise')
+      const isMoved = float(octave).lessThan(RIDGES.moved - 0.5)
+      const where = isMoved.select(place.offset, offset).toConst('movedPlace') as Vec3
+      const plain = latticeNoise(reference, where, inverse, index).mul(STEEPNESS).toConst('plain')
+      const noise = isMoved.select(place.back(plain), plain).toConst('noise') as Vec4
       const root = noise.w
         .mul(noise.w)
         .add(ROUNDNESS ** 2)
         .sqrt()
         .toConst('root')
       const fall = root.oneMinus().toConst('fall')
-      const ridge = fall.mul(fall).toConst('ridge')
-      const steepness = fall.mul(noise.w).mul(inverse).mul(-2).div(root)
+      const isValley = float(octave)
+        .lessThan(RIDGES.valleys - 0.5)
+        .select(1, 0)
+        .toConst('isValley') as unknown as Float
+      const sign = isValley.mul(-2).add(1).toConst('sign')
+      const ridge = fall.mul(fall).mul(sign).add(isValley).toConst('ridge')
+      const steepness = fall.mul(noise.w).mul(inverse).mul(sign).mul(-2).div(root)
       // Product rule, gradients in xyz.
       const slope = noise.xyz.mul(steepness).mul(weight.w).toConst('slope')
-      const over = ridge.sub(MEAN_RIDGE)
+      const over = ridge.sub(isValley.mul(1 - 2 * MEAN_RIDGE).add(MEAN_RIDGE)).toConst('over')
       const gradient = slope.add(weight.xyz.mul(over))
       sum.addAssign(vec4(gradient, over.mul(weight.w)).mul(kept))
       const next = ridge.mul(weight.w).mul(ROUGHENING).min(1).toConst('next')
       const turn = slope.add(weight.xyz.mul(ridge)).mul(next.oneMinus().mul(2 * ROUGHENING))
       weight.assign(vec4(turn, next.mul(float(2).sub(next))))
       inverse.mulAssign(2)
-      amplitude.mulAssign(RIDGES.gain)
+      long.mulAssign(LONG[1])
+      short.mulAssign(SHORT[1])
     })
     return sum
   },
@@ -69,12 +123,41 @@ const ridgedSum = /*#__PURE__*/ Fn(
   })
 ) as unknown as (reference: Vec3, offset: Vec3, shortest: Float, seed: Float) => Vec4
 
+/** Strength of a family of belts (w) and its gradient (xyz) [1/m]. */
+function beltsAt(belts: Belts, reference: Vec3, place: Warped, seed: Float): Vec4 {
+  const { inverse, width, strength, start, end } = belts
+  const noise = latticeNoise(
+    reference,
+    place.offset,
+    float(inverse),
+    seed.add(belts.seed)
+  ).toConst()
+  const ratio = noise.w.div(width).toConst()
+  const fall = ratio.mul(ratio).add(1).reciprocal().toConst()
+  const move = place.moves[belts.axis]
+  const t = move.w
+    .sub(start)
+    .div(end - start)
+    .clamp(0, 1)
+    .toConst()
+  const there = smoothstep(0, 1, t).mul(strength).toConst()
+  const edge = t.mul(t.oneMinus()).mul((6 * strength) / (end - start))
+  const square = fall.mul(fall).toConst()
+  const turn = ratio
+    .mul(square)
+    .mul(fall)
+    .mul(there)
+    .mul((-4 * inverse) / width)
+  const across = place.back(vec4(noise.xyz.mul(turn), square.mul(there)))
+  return across.add(vec4(move.xyz.mul(square.mul(edge)), 0)).toConst()
+}
+
 /**
- * Height of continents, ranges and ridges.
+ * Height of continents, belts and ridges.
  *
  * @param reference - As of `latticeNoise`, like `offset`.
  * @param shortest - Shortest wavelength [m], see `HeightSource.sample`.
- * @param relief - Height of the highest ridges over the land [m].
+ * @param relief - Height of the highest ridges over the valleys [m].
  * @param seed - Added to all seeds.
  * @returns Gradient (xyz) [–] and height (w) [m]. Twin: ../cpu/mountains.ts
  */
@@ -85,23 +168,28 @@ export const mountains = (
   relief: Float,
   seed: Float
 ): Vec4 => {
-  const land = continents(reference, offset, shortest, seed).toConst('land')
-  const range = ranges(reference, offset, shortest, seed).toConst('range')
+  const place = warped(LAND_WARP, reference, offset, shortest, seed)
+  const land = place.back(continents(reference, place.offset, shortest, seed)).toConst('land')
+  const belt = beltsAt(CHAINS, reference, place, seed)
+  const short = beltsAt(SHORT_CHAINS, reference, place, seed)
   const ridges = ridgedSum(reference, offset, shortest, seed).toConst('ridges')
-  const width = RANGE_END - RANGE_START
-  const sum = land.add(range).toConst('sum')
-  const t = sum.w.sub(RANGE_START).div(width).clamp(0, 1).toConst('t')
+  const lift = belt.add(short).sub(belt.mul(short.w)).sub(short.mul(belt.w))
+  const lifted = vec4(lift.xyz, belt.w.add(short.w).sub(belt.w.mul(short.w))).toConst('lift')
+  const t = land.w
+    .sub(HILLS_START)
+    .div(HILLS_END - HILLS_START)
+    .clamp(0, 1)
+    .toConst('t')
+  const edge = t.mul(t.oneMinus()).mul((6 * HILLS) / (HILLS_END - HILLS_START))
   const mask = smoothstep(0, 1, t)
-    .mul(1 - PLAINS)
+    .mul(HILLS)
     .add(PLAINS)
+    .add(lifted.w.mul(BELT_RIDGES))
     .toConst('mask')
-  const edge = t.mul(t.oneMinus()).mul((6 * (1 - PLAINS)) / width)
-  const tilt = vec3(ridges.xyz)
-    .mul(mask)
-    .add(sum.xyz.mul(edge.mul(ridges.w)))
-  const mountain = vec4(tilt, ridges.w.mul(mask)).mul(relief)
+  const turn = land.xyz.mul(edge).add(lifted.xyz.mul(BELT_RIDGES)).mul(ridges.w)
+  const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask))
   return land
     .mul(LAND_HEIGHT)
-    .add(mountain)
+    .add(mountain.add(lifted.mul(UPLIFT)).mul(relief))
     .add(vec4(0, 0, 0, LAND_OFFSET))
 }

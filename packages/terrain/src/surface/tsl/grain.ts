@@ -36,6 +36,8 @@ export interface Grain {
   readonly tuft: Float
   /** Longer side of the pixel on the ground [m]. */
   readonly footprint: Float
+  /** The second of two vectors along the ground that pictures are laid by. */
+  readonly frame: Vec3
   /** Share of the slopes that are smaller than a pixel. */
   readonly lost: Float
 }
@@ -79,6 +81,7 @@ export function grainAt(place: GrainPlace): Grain {
     boulder: coarse.z,
     tuft: coarse.w,
     footprint,
+    frame: bitangent,
     lost: footprint.div(FINE.gone / 4).min(1)
   }
 }

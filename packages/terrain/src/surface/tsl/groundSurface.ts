@@ -6,8 +6,12 @@ import { grainAt, type GrainPlace } from './grain'
 const GRAIN_VARIANCE = 0.3
 
 /** Differences of height within a pixel, to its size on the ground, and at most [m]. */
-const SPREAD = 0.4
-const MOST_SPREAD = 900
+const SPREAD = 0.12
+const MOST_SPREAD = 450
+
+/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
+const DRY_SNOW = 500
+const SUNNY_SNOW = 350
 
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
 const ROCK = [0.2, 0.178, 0.157]
@@ -27,6 +31,8 @@ const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
 export interface GroundSurface {
   /** Reflectance, linear sRGB. */
   readonly color: Vec3
+  /** A vector along the ground that stones are laid by: what they need is known when it is. */
+  readonly frame: Vec3
   /** Roughness as of three's materials. */
   readonly roughness: Float
   /** Gradient of stones, along the ground [–]. */
@@ -62,8 +68,12 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
 
   // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
   const square = sinLatitude.mul(sinLatitude).toConst('square')
+  // Ground that falls towards the equator has a normal nearer to it than up is.
+  const sunny = up.z.sub(place.normal.z).mul(up.z.sign())
   const snowLine = float(5200)
     .sub(square.mul(square.mul(3600).add(2000)))
+    .add(climate.mul(DRY_SNOW))
+    .add(sunny.mul(SUNNY_SNOW))
     .toConst('snowLine')
   // A pixel that shows much ground shows its heights, too.
   const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
@@ -133,7 +143,8 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     .toConst('bump')
   const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
-  const alpha = rough.pow(4).add(
+  const roughSquare = rough.mul(rough).toConst('roughSquare')
+  const alpha = roughSquare.mul(roughSquare).add(
     bump
       .mul(bump)
       .mul(grain.lost)
@@ -141,8 +152,9 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   )
   const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.4))
   return {
+    frame: grain.frame,
     color: mix(dry, water, isSea),
-    roughness: mix(alpha.pow(0.25).min(1), float(0.22), isSea),
+    roughness: mix(alpha.sqrt().sqrt().min(1), float(0.22), isSea),
     grain: grain.gradient(bump, bump.mul(bareness.max(bare).mul(0.6))),
     occlusion: hollow.mul(0.9).add(1).max(0.3)
   }

@@ -16,11 +16,13 @@ const DEEPEST_SKIRT = 2e4
 export interface TileVertex {
   /** Viewer to the vertex, ECEF axes [m]. */
   readonly position: Vec3
-  /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m] (xyz), and height of the ground [m] (w). */
-  readonly place: Vec4
-  /** Texels from the first one of a page for pixels (xy), and places of the tile's page and of its parent's (zw). */
-  readonly texels: Vec4
-  /** Share of the parent's page (x), climate (y), face of the cube and six times the quarter of the parent (z), and share of the sky (w). */
+  /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m]. */
+  readonly place: Vec3
+  /** Texels from the first one of a page for pixels. */
+  readonly texels: Vec2
+  /** First texels of the tile's page (xy), and of its quarter of the parent's (zw). */
+  readonly pages: Vec4
+  /** Share of the parent's page (x), climate (y), face of the cube (z), and share of the sky (w). */
   readonly blend: Vec4
 }
 
@@ -36,7 +38,7 @@ export interface TileVertex {
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3.4
  */
 export function tileVertex(
-  { heights, columns, heightSide, density }: PageAtlas,
+  { heights, columns, heightSide, surfaceSide, density }: PageAtlas,
   uniforms: TerrainUniforms,
   resolution: number,
   detail: number
@@ -88,21 +90,25 @@ export function tileVertex(
   const up = cube.add(delta).mul(stretch).normalize().toConst('up')
   const tilt = unitDifference(cube.mul(stretch), delta.mul(stretch))
   const cell = extent.mul(radii.x).mul(2 / resolution)
-  const skirt = positionGeometry.z.mul(cell.max(cell.mul(skirtScale).min(DEEPEST_SKIRT)))
+  const skirt = positionGeometry.z.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)
     .add(tilt.mul(groundHeight))
     .add(up.mul(height.sub(groundHeight).sub(skirt)))
   return {
     position,
-    place: vec4(tileOffset.xyz.add(subpoint), mixed.x),
-    texels: vec4(moved.mul(density), own, parent),
-    blend: vec4(morph, mixed.y, tileCube.w.add(quarter.mul(6)), mixed.z)
+    place: tileOffset.xyz.add(subpoint),
+    texels: moved.mul(density),
+    pages: vec4(
+      firstTexel(own, columns, surfaceSide),
+      firstTexel(parent, columns, surfaceSide).add(inParent.mul(density / 2))
+    ),
+    blend: vec4(morph, mixed.y, tileCube.w, mixed.z)
   }
 }
 
 /** First texel of a page. */
-export function firstTexel(slot: Float, columns: number, side: number): Vec2 {
+function firstTexel(slot: Float, columns: number, side: number): Vec2 {
   const row = slot.add(0.5).div(columns).floor().toConst()
   return vec2(slot.sub(row.mul(columns)), row)
     .mul(side)
@@ -110,7 +116,7 @@ export function firstTexel(slot: Float, columns: number, side: number): Vec2 {
 }
 
 /** Column and row of a quarter of a tile. */
-export const quarterOf = (quarter: Float): Vec2 => vec2(quarter.mod(2), quarter.mul(0.5).floor())
+const quarterOf = (quarter: Float): Vec2 => vec2(quarter.mod(2), quarter.mul(0.5).floor())
 
 /** Height, climate and share of the sky at a texel. */
 function load(heights: Texture, texel: Vec2): Vec3 {
