@@ -15,10 +15,10 @@ export const falling = [
     name: 'shower-bow',
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
-    clouds: { preset: 'shower' },
-    place: { longitude: 141.57, latitude: 35.88 },
+    clouds: { preset: 'shower', coverage: 0.15 },
+    place: { longitude: 140.49, latitude: 36.33 },
     altitude: 60,
-    sun: { elevation: 12, azimuth: 199 },
+    sun: { elevation: 12, azimuth: 206 },
     view: { azimuth: 60, pitch: 10 },
     land: 'hills'
   },
