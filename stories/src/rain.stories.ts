@@ -57,7 +57,7 @@ export default meta
 type Story = StoryObj<RainArgs>
 
 /** Curtains of rain under towers, where their columns are strongest; they slant as the wind grows with height. */
-export const Shower: Story = {}
+export const Shower: Story = { tags: ['screenshot'] }
 
 /** The sun low behind one's back: a bow where a shaft is sunlit, and none beside it. */
 export const Bow: Story = { name: 'Bow in a shower', args: { view: 'bow', sun: 12 } }
