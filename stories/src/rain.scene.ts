@@ -24,18 +24,56 @@ interface View {
   readonly clouds: CloudPresetName
   /** Share of the sky that the first layer covers. */
   readonly coverage: number
-  /** Azimuth of the sun, clockwise from north, where the camera looks [°]. */
+  /** Azimuth of the sun, clockwise from north [°]. */
   readonly azimuth: number
+  /** Azimuth that the camera looks to, clockwise from north [°]. */
+  readonly heading: number
   /** Pitch of the camera [°]. */
   readonly pitch: number
+  /** Place of the camera [°]. */
+  readonly place: { readonly longitude: number; readonly latitude: number }
 }
+
+const home = { longitude: 0, latitude: 0 }
 
 /** Weathers, and where the camera looks. */
 export const VIEWS = {
-  shower: { label: 'Shower', clouds: 'shower', coverage: 0.3, azimuth: 260, pitch: 10 },
-  bow: { label: 'Bow in a shower', clouds: 'shower', coverage: 0.3, azimuth: 180, pitch: 14 },
-  virga: { label: 'Virga', clouds: 'altocumulus', coverage: 0.6, azimuth: 340, pitch: 14 },
-  snow: { label: 'Snow shower', clouds: 'snowShower', coverage: 0.4, azimuth: 270, pitch: 10 }
+  shower: {
+    label: 'Shower',
+    clouds: 'shower',
+    coverage: 0.3,
+    azimuth: 260,
+    heading: 0,
+    pitch: 10,
+    place: home
+  },
+  bow: {
+    label: 'Bow in a shower',
+    clouds: 'shower',
+    coverage: 0.15,
+    azimuth: 206,
+    heading: 60,
+    pitch: 10,
+    place: { longitude: 140.49, latitude: 36.33 }
+  },
+  virga: {
+    label: 'Virga',
+    clouds: 'altocumulus',
+    coverage: 0.6,
+    azimuth: 340,
+    heading: 0,
+    pitch: 14,
+    place: home
+  },
+  snow: {
+    label: 'Snow shower',
+    clouds: 'snowShower',
+    coverage: 0.4,
+    azimuth: 270,
+    heading: 0,
+    pitch: 10,
+    place: home
+  }
 } as const satisfies Record<string, View>
 
 export interface RainArgs extends RendererArgs {
@@ -61,7 +99,8 @@ export async function createRain(
   const view = VIEWS[args.view]
   const camera = new PerspectiveCamera(62, 1, 1, 4e5)
   camera.position.y = 60
-  camera.rotation.x = MathUtils.degToRad(view.pitch)
+  const { pitch, heading } = view
+  camera.rotation.set(MathUtils.degToRad(pitch), MathUtils.degToRad(-heading), 0, 'YXZ')
   camera.updateMatrixWorld()
   const explorer = args.frame ? undefined : new Explorer(camera, canvas)
   const elapsed = frameClock(args.frame)
@@ -69,6 +108,7 @@ export async function createRain(
   const air = new Air(renderer, scene, camera, 'post')
   const { atmosphere, sun, sky } = air
   const { pipeline, color, depth } = air.post!
+  atmosphere.place(view.place)
   atmosphere.add(planetGround())
   // #region rain
   const layers = cloudPreset(view.clouds)
