@@ -1,5 +1,5 @@
 import { CloudNoise, cloudPreset, cloudQualities } from '@welkin/clouds'
-import type { CloudPresetName, CloudQuality, CloudQualityName } from '@welkin/clouds'
+import type { CloudLayers, CloudQuality, CloudQualityName } from '@welkin/clouds'
 import { gpuMilliseconds, release, type HeadlessDevice } from '../headless/device'
 import { CloudBench, cloudViews, type CloudView } from './CloudBench'
 import { median } from './statistics'
@@ -8,10 +8,8 @@ import { median } from './statistics'
 interface CloudCase {
   name: string
   view: CloudView
-  /** Preset of the layers; default: cumulus that cover 0.4 of the sky. */
-  preset?: CloudPresetName
-  /** False for a preset without its precipitation. */
-  rains?: boolean
+  /** Layers; default: cumulus that cover 0.4 of the sky. */
+  layers?: () => CloudLayers
   /** Elevation of the sun [°], default 40. */
   sunElevation?: number
   qualities: readonly CloudQualityName[]
@@ -20,13 +18,36 @@ interface CloudCase {
 const everyQuality = ['low', 'medium', 'high', 'ultra'] as const
 const [ground] = cloudViews
 
+/** Showers that bring rain to the view from the ground, near and far. */
+function shower(): CloudLayers {
+  const layers = cloudPreset('shower')
+  layers.at(0).set({ coverage: 0.6 })
+  return layers
+}
+
+function dryShower(): CloudLayers {
+  const layers = shower()
+  layers.at(0).set({ precipitation: null })
+  return layers
+}
+
 const cloudCases: readonly CloudCase[] = [
   ...cloudViews.map(view => ({ name: view.name, view, qualities: everyQuality })),
   { name: 'low sun', view: ground, sunElevation: 4, qualities: everyQuality },
-  { name: 'cumulonimbus', view: ground, preset: 'cumulonimbus', qualities: ['medium', 'high'] },
-  { name: 'mixed', view: ground, preset: 'mixed', qualities: ['medium', 'high'] },
-  { name: 'shower', view: ground, preset: 'shower', qualities: ['high'] },
-  { name: 'shower, dry', view: ground, preset: 'shower', rains: false, qualities: ['high'] }
+  {
+    name: 'cumulonimbus',
+    view: ground,
+    layers: () => cloudPreset('cumulonimbus'),
+    qualities: ['medium', 'high']
+  },
+  {
+    name: 'mixed',
+    view: ground,
+    layers: () => cloudPreset('mixed'),
+    qualities: ['medium', 'high']
+  },
+  { name: 'shower', view: ground, layers: shower, qualities: ['high'] },
+  { name: 'shower, dry', view: ground, layers: dryShower, qualities: ['high'] }
 ]
 
 /** Cost of clouds in one case at one quality. */
@@ -148,18 +169,9 @@ export async function timeClouds(
 ): Promise<CloudCost[]> {
   const renderer = await device.renderer(...size)
   const costs: CloudCost[] = []
-  const skies = new Map(
-    cloudCases.map(({ preset, rains }) => [`${preset} ${rains}`, { preset, rains }])
-  )
-  for (const { preset, rains } of skies.values()) {
-    const layers = preset && cloudPreset(preset)
-    // In the view from the ground there is rain, near and far.
-    if (preset === 'shower') layers?.at(0).set({ coverage: 0.6 })
-    if (rains === false) layers?.at(0).set({ precipitation: null })
-    const bench = new CloudBench(renderer, size, layers)
-    for (const timed of cloudCases.filter(
-      other => other.preset === preset && other.rains === rains
-    )) {
+  for (const layers of new Set(cloudCases.map(timed => timed.layers))) {
+    const bench = new CloudBench(renderer, size, layers?.())
+    for (const timed of cloudCases.filter(other => other.layers === layers)) {
       const timings = await timeCase(bench, timed, frames)
       timings.forEach(tell)
       costs.push(...timings)

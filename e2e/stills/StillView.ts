@@ -42,6 +42,7 @@ import { pass, shadow } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { Landscape, meadow, redDust, snow } from './landscape'
 import type { Still } from './scenes'
+import { readPicture } from './readPicture'
 
 /** Vertical field of view [°]. */
 const FIELD_OF_VIEW = 55
@@ -195,10 +196,8 @@ export class StillView {
   }
 
   /** Picture of the canvas as a viewer sees it, RGBA, rows top-down. */
-  async picture(): Promise<Uint8Array> {
-    const { width, height } = this.#target
-    const pixels = this.#renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height)
-    return (await pixels) as Uint8Array
+  picture(): Promise<Uint8Array> {
+    return readPicture(this.#renderer, this.#target)
   }
 
   dispose(): void {

@@ -2,11 +2,12 @@ import { RenderTarget } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Street } from '../../stories/src/street/Street'
 import type { StreetStill } from './streets'
+import { readPicture } from './readPicture'
 
 /** Time of fall [s]. */
 const TIME = 60
 
-/** The street of the story, its clock stopped. */
+/** A street in rain or snow, its clock stopped. */
 export class StreetView {
   readonly #renderer: WebGPURenderer
   readonly #target: RenderTarget
@@ -47,10 +48,8 @@ export class StreetView {
   }
 
   /** Picture of the canvas as a viewer sees it, RGBA, rows top-down. */
-  async picture(): Promise<Uint8Array> {
-    const { width, height } = this.#target
-    const pixels = this.#renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height)
-    return (await pixels) as Uint8Array
+  picture(): Promise<Uint8Array> {
+    return readPicture(this.#renderer, this.#target)
   }
 
   dispose(): void {

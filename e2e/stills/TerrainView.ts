@@ -12,6 +12,7 @@ import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import type { TerrainStill } from './scenes'
+import { readPicture } from './readPicture'
 
 /** Half width of the shadow map about the camera, and distance of the light [m]. */
 const SHADOW_EXTENT = 150
@@ -90,10 +91,8 @@ export class TerrainView {
   }
 
   /** Picture of the canvas as a viewer sees it, RGBA, rows top-down. */
-  async picture(): Promise<Uint8Array> {
-    const { width, height } = this.#target
-    const pixels = this.renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height)
-    return (await pixels) as Uint8Array
+  picture(): Promise<Uint8Array> {
+    return readPicture(this.renderer, this.#target)
   }
 
   dispose(): void {

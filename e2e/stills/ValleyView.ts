@@ -4,6 +4,7 @@ import type { WebGPURenderer } from 'three/webgpu'
 import { Valley } from '../../stories/src/valley/Valley'
 import { openingState } from '../../stories/src/valley/openingState'
 import type { ValleyStill } from './scenes'
+import { readPicture } from './readPicture'
 
 /** Time of waves and clouds [s]. */
 const TIME = 100
@@ -52,10 +53,8 @@ export class ValleyView {
   }
 
   /** Picture of the canvas as a viewer sees it, RGBA, rows top-down. */
-  async picture(): Promise<Uint8Array> {
-    const { width, height } = this.#target
-    const pixels = this.#renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height)
-    return (await pixels) as Uint8Array
+  picture(): Promise<Uint8Array> {
+    return readPicture(this.#renderer, this.#target)
   }
 
   dispose(): void {

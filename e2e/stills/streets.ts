@@ -1,6 +1,6 @@
 import type { StreetWeather } from '../../stories/src/street/Street'
 
-/** A still of the street of *Rain and snow, near*. */
+/** A still of a street in rain or snow. */
 export interface StreetStill {
   name: string
   /** Features to look for. */

@@ -1,4 +1,4 @@
-import { Vector2, type Camera, type Light } from 'three'
+import type { Camera, Light } from 'three'
 import { Fn, If, float, isBackgroundDepth, mix, texture, uniform, uv, vec4 } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame, TextureNode } from 'three/webgpu'
@@ -7,6 +7,7 @@ import { checkCamera, checkRange } from '../check'
 import { tableTarget } from '../tables/FragmentPass'
 import { sampleLevel0, type Bool, type Float, type Vec3, type Vec4 } from '../tsl-types'
 import { DepthRays } from '../view/DepthRays'
+import { drawnSize } from '../view/renderers'
 import { depthNormalHere, depthPositionHere } from './tsl/depthSurface'
 import { WhiteSurfaces } from './WhiteSurfaces'
 
@@ -24,8 +25,6 @@ export interface SurfaceLightingOptions {
 
 const WHERE = 'SurfaceLightingNode'
 const SETTINGS = ['strength', 'albedo'] as const
-
-const _size = new Vector2()
 
 function checkNode(name: string, value: Node | undefined): void {
   if (!value?.isNode) fail(WHERE, `${name} must be a node`, value)
@@ -144,8 +143,8 @@ export class SurfaceLightingNode extends Node<'vec4'> {
 
   override updateBefore({ renderer }: NodeFrame): undefined {
     if (renderer === null || this.strength === 0) return
-    const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-    this.#target.setSize(Math.max(width, 1), Math.max(height, 1))
+    const { width, height } = drawnSize(renderer)
+    this.#target.setSize(width, height)
     this.#surfaces.render(renderer, this.camera, this.lights, this.#target)
   }
 

@@ -18,6 +18,8 @@ export interface ParticleKind {
   readonly width: (diameter: Float) => Float
   /** Speed of fall in still air [m/s]. */
   readonly speed: (diameter: Float) => Float
+  /** Mean speed of fall, along which roofs are seen [m/s]. */
+  readonly meanSpeed: number
   /** Sideways flutter: amplitude [m] and mean frequency [Hz]. */
   readonly flutter: readonly [amplitude: number, frequency: number]
   /** Unevenness of the outline, in [0, 1) [–]. */
@@ -43,6 +45,7 @@ export const rain: ParticleKind = {
   reach: [2, 4, 8, 16],
   width: diameter => diameter.mul(1e-3),
   speed: diameter => exp(diameter.mul(-0.6)).mul(-10.3).add(9.65).max(0),
+  meanSpeed: 6.5,
   flutter: [0, 1],
   unevenness: 0,
   phase: [8.3, 0.12]
@@ -62,6 +65,7 @@ export const snow: ParticleKind = {
   reach: [2.5, 5, 10, 24],
   width: diameter => flakeWidth(diameter).mul(1e-3),
   speed: diameter => flakeWidth(diameter).pow(0.16).mul(0.8),
+  meanSpeed: 1,
   flutter: [0.03, 1.1],
   unevenness: 0.25,
   phase: [3, 0.35]

@@ -20,13 +20,7 @@ import { chunkGeometry } from './chunkGeometry'
 import { isLamp, LampUniforms } from './LampUniforms'
 import { MeasuredLight } from './MeasuredLight'
 import type { ParticleKind } from './ParticleKind'
-import {
-  checkLights,
-  MEAN_SPEED,
-  OTHERS,
-  SETTINGS,
-  type PrecipitationOptions
-} from './PrecipitationOptions'
+import { checkLights, OTHERS, SETTINGS, type PrecipitationOptions } from './PrecipitationOptions'
 import { PrecipitationShelter } from './PrecipitationShelter'
 import { PrecipitationUniforms } from './PrecipitationUniforms'
 import { particleFragment, particleVaryings } from './tsl/particleFragment'
@@ -275,7 +269,7 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
     const camera = this.#follow(frame)
     if (renderer === null || camera === null) return
     this.#measured.render(renderer, camera)
-    this.shelter?.render(renderer, camera, this.#lattice, MEAN_SPEED[this.#kind.name])
+    this.shelter?.render(renderer, camera, this.#lattice, this.#kind.meanSpeed)
   }
 
   // Apart from `#prepare`, where a nested render (a mirror's) may still set another camera's values.

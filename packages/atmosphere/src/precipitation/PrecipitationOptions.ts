@@ -52,8 +52,6 @@ export const OTHERS = ['lights', 'shelter', 'depth', 'depthCamera', 'maxParticle
 
 /** Most lamps. */
 const LAMPS = 4
-/** Mean speeds of fall, along which roofs are seen [m/s]. */
-export const MEAN_SPEED = { Rainfall: 6.5, Snowfall: 1 } as Record<string, number>
 
 /** @throws If they are no lights, or more lamps than four. */
 export function checkLights(where: string, lights: readonly Light[]): void {

@@ -1,4 +1,4 @@
-import { Scene, Vector2, type Camera } from 'three'
+import { Scene, type Camera } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import { Node, NodeUpdateType, RendererUtils } from 'three/webgpu'
 import type { NodeFrame, TextureNode } from 'three/webgpu'
@@ -6,9 +6,8 @@ import { fail } from '@welkin/geo'
 import { checkCamera } from '../check'
 import { tableTarget } from '../tables/FragmentPass'
 import { sampleLevel0, type Vec4 } from '../tsl-types'
+import { drawnSize } from '../view/renderers'
 import type { Precipitation } from './Precipitation'
-
-const _size = new Vector2()
 
 /**
  * Lays rain and snow over a picture that has its air and clouds already.
@@ -52,8 +51,8 @@ export class PrecipitationOverlayNode extends Node<'vec4'> {
 
   override updateBefore({ renderer }: NodeFrame): undefined {
     if (renderer === null) return
-    const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-    this.#target.setSize(Math.max(width, 1), Math.max(height, 1))
+    const { width, height } = drawnSize(renderer)
+    this.#target.setSize(width, height)
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     renderer.setRenderTarget(this.#target)
     renderer.setClearColor(0x000000, 0)

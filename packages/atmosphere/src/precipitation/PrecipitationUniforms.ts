@@ -2,7 +2,7 @@ import { Vector3 } from 'three'
 import { int } from 'three/tsl'
 import { matrix3, number, vector3, vector4 } from '../uniforms'
 import type { Float, Int, Vec3, Vec4 } from '../tsl-types'
-import { drawnParticles } from './cpu/drawnParticles'
+import { drawnParticles, drawnSizes } from './cpu/drawnParticles'
 import { numberBetween } from './cpu/sizes'
 import type { FallingLattice } from './FallingLattice'
 import type { ParticleKind } from './ParticleKind'
@@ -65,10 +65,9 @@ export class PrecipitationUniforms {
    */
   setRate(rate: number, most: number): number {
     const { kind } = this
-    const drawn = kind.sizes(kind.drawnRate)
-    const sizes = rate > 0 ? kind.sizes(rate) : { intercept: 0, slope: drawn.slope }
-    this.share.value = sizes.intercept / drawn.intercept
-    this.slope.value = drawn.slope - sizes.slope
+    const { drawn, there } = drawnSizes(kind, rate)
+    this.share.value = there.intercept / drawn.intercept
+    this.slope.value = drawn.slope - there.slope
     let chunk = 0
     drawnParticles(kind, rate, most).forEach(({ side, proposed, count, weight }, i) => {
       const [from, to] = [kind.edges[i], kind.edges[i + 1]]

@@ -1,4 +1,4 @@
-import type { Object3D, Scene } from 'three'
+import { Vector2, type Object3D, type Scene } from 'three'
 import type { Renderer } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 
@@ -6,6 +6,14 @@ import { fail } from '@welkin/geo'
 export function checkRenderer(where: string, renderer: Renderer): void {
   if (renderer?.isRenderer) return
   fail(where, 'renderer must be a WebGPURenderer of three/webgpu, for WebGL2 too', renderer)
+}
+
+const _size = new Vector2()
+
+/** Size of the target that is drawn into, at least 1 × 1 [pixels]. */
+export function drawnSize(renderer: Renderer): { width: number; height: number } {
+  const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
+  return { width: Math.max(width, 1), height: Math.max(height, 1) }
 }
 
 /**

@@ -19,13 +19,11 @@ import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { decksAround } from './tsl/decks'
-import { overcastIrradiance } from './tsl/overcast'
+import { columnOf, cosLightOf } from './tsl/lightColumns'
+import { MOST_DIFFUSE, overcastIrradiance } from './tsl/overcast'
 
-/** Cosines of the light that the table holds: they crowd about the horizon. */
+/** Cosines of the light that the table holds. */
 const COLUMNS = 64
-
-/** Greatest factor on light that is scattered more than once: at dusk there is next to none. */
-const MOST = 10
 
 /** Clouds in the light of fog: see {@link cloudFogLight}. */
 export class CloudFogLight implements FogOvercast {
@@ -77,8 +75,8 @@ export class CloudFogLight implements FogOvercast {
   light(source: LightSource, cosLight: Float): { direct: Float; diffuse: Vec4 } {
     let share = this.#shares.get(source)
     if (share === undefined) this.#shares.set(source, (share = number()))
-    const side = cosLight.sign().mul(cosLight.abs().sqrt()).mul(0.5).add(0.5).toConst()
-    const read = (row: number): Vec4 => this.#table.sample(vec2(side, row)).level(float(0))
+    const column = columnOf(cosLight).toConst()
+    const read = (row: number): Vec4 => this.#table.sample(vec2(column, row)).level(float(0))
     return {
       diffuse: mix(vec4(1), read(0.25), share).toConst(),
       direct: mix(float(1), read(0.75).x, share).toConst()
@@ -91,8 +89,7 @@ export class CloudFogLight implements FogOvercast {
     const { view } = field
     return Fn((): Vec4 => {
       const texel = uv() as unknown as Vec2
-      const side = texel.x.mul(2).sub(1).toConst() as Float
-      const cosLight = side.mul(side.abs()).toConst() as Float
+      const cosLight = cosLightOf(texel.x)
       const up = view.up as unknown as Vec3
       const altitude = this.#altitude as Float
       const offset = up.mul(altitude.sub(view.height)).toConst() as Vec3
@@ -107,7 +104,7 @@ export class CloudFogLight implements FogOvercast {
         const plane = { view, offset, altitude, up, cosLight, cosNormal: float(1) }
         const cloudy = overcastIrradiance(field, light.nodes, plane, offset, sky)
         result.assign(
-          cloudy.add(direct.mul(decks.above.beam)).div(direct.add(sky).max(1e-20)).min(MOST)
+          cloudy.add(direct.mul(decks.above.beam)).div(direct.add(sky).max(1e-20)).min(MOST_DIFFUSE)
         )
       })
       return result

@@ -2,6 +2,7 @@ import { FragmentPass } from '@welkin/atmosphere'
 import { Fn, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { meanDecks } from '../environment/tsl/decks'
+import { columnOf, cosLightOf } from '../environment/tsl/lightColumns'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudLight } from '../light/CloudLightTable'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
@@ -23,8 +24,7 @@ export class DiffuseRatioTable {
     const { view } = field
     const ratio = Fn((): Vec4 => {
       const texel = uv() as unknown as Vec2
-      const side = texel.x.mul(2).sub(1).toConst() as Float
-      const cosLight = side.mul(side.abs()).toConst() as Float
+      const cosLight = cosLightOf(texel.x)
       const altitude = texel.y.mul(texel.y).mul(view.air.uniforms.thickness).toConst() as Float
       return diffuseRatio(view, meanDecks(field, light, altitude, cosLight), altitude, cosLight)
     })
@@ -43,9 +43,8 @@ export class DiffuseRatioTable {
   /** Reads the table at an explicit level, so inside of branches, too. */
   sample(altitude: Float, cosLight: Float): Vec4 {
     const { nodes, target, field } = this.#shadows
-    const side = cosLight.sign().mul(cosLight.abs().sqrt()).mul(0.5).add(0.5)
     // Not before the middle of the first column: bilinear reads would mix in the cascade beside it.
-    const column = side
+    const column = columnOf(cosLight)
       .max(0.5 / COLUMNS)
       .sub(1)
       .mul(COLUMNS / target.width)

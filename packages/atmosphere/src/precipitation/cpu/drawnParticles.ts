@@ -1,8 +1,17 @@
 import type { ParticleKind } from '../ParticleKind'
-import { numberBetween } from './sizes'
+import { numberBetween, type SizeDistribution } from './sizes'
 
 /** Side of a class's box over its reach: it holds all that a camera sees up to there, whichever way it turns. */
 export const BOX_SIDE = 1.5
+
+/** Sizes that particles are drawn from, and those at a rate [mm/h]: at 0 there are none. */
+export function drawnSizes(
+  { sizes, drawnRate }: ParticleKind,
+  rate: number
+): { drawn: SizeDistribution; there: SizeDistribution } {
+  const drawn = sizes(drawnRate)
+  return { drawn, there: rate > 0 ? sizes(rate) : { intercept: 0, slope: drawn.slope } }
+}
 
 /** Particles of a class of size that are drawn. */
 export interface DrawnClass {
@@ -23,14 +32,13 @@ export interface DrawnClass {
  * @param most - Most particles of a class.
  */
 export function drawnParticles(kind: ParticleKind, rate: number, most: number): DrawnClass[] {
-  const drawn = kind.sizes(kind.drawnRate)
-  const sizes = rate > 0 ? kind.sizes(rate) : { intercept: 0, slope: drawn.slope }
+  const { drawn, there } = drawnSizes(kind, rate)
   return kind.reach.map((reach, i) => {
     const [from, to] = [kind.edges[i], kind.edges[i + 1]]
     const side = BOX_SIDE * reach
     const proposed = numberBetween(drawn, from, to) * side ** 3
     const share = (diameter: number): number =>
-      (sizes.intercept / drawn.intercept) * Math.exp((drawn.slope - sizes.slope) * diameter)
+      (there.intercept / drawn.intercept) * Math.exp((drawn.slope - there.slope) * diameter)
     const needed = proposed * Math.max(share(from), share(to))
     const weight = Math.max(1, needed / most)
     return {

@@ -14,7 +14,7 @@ export interface StreakShape {
  * Streak of a round particle that moves while the shutter is open.
  *
  * Its edge is as wide as a pixel and the circle of confusion are. Opacity is the disc's π D²/4 over the integral of a profile
- * that falls from 1 to 0 by `smoothstep` between `inner` and `outer`, along the way and at both ends. Twin: test/twins/precipitation.ts
+ * that falls from 1 to 0 by `smoothstep` between `inner` and `outer`, along the way and at both ends. Twin: test/twins/precipitation/meanDepth.ts
  *
  * @param width - Diameter D, > 0 [m].
  * @param length - Way of its middle [m].
@@ -30,5 +30,5 @@ export function streakShape(width: Float, length: Float, blur: Float): StreakSha
     .mul(half)
     .mul(Math.PI)
     .div(length.mul(inner.add(outer)).add(ends))
-  return { inner, outer, opacity: opacity }
+  return { inner, outer, opacity }
 }

@@ -114,15 +114,15 @@ export function particleVertex(
       const projection = cameraProjectionMatrix as unknown as Mat4
       const middle = projection.mul(vec4(head.sub(way.mul(0.5)), 1)).toConst() as Vec4
       const reachOfView = middle.w.mul(1.3).add(way.length())
-      const isSeen = middle.xy.abs().sub(reachOfView).toConst()
-      const isDrawn = isSeen.x
-        .max(isSeen.y)
+      const outside = middle.xy.abs().sub(reachOfView).toConst()
+      const isInView = outside.x
+        .max(outside.y)
         .lessThan(0)
         .and(fade.greaterThan(0))
         .and(head.z.max(tail.z).lessThan(0))
-      const hidden = shelter === null ? isDrawn : isDrawn.and(shelter.isOpen(head))
+      const isDrawn = shelter === null ? isInView : isInView.and(shelter.isOpen(head))
 
-      If(hidden, () => {
+      If(isDrawn, () => {
         const unit = uniforms.unit
         const pixel = middle.w.mul(2).div(projection.element(1).element(1).mul(screenSize.y))
         const focused = distance.div(uniforms.focus).oneMinus().abs().mul(uniforms.aperture)

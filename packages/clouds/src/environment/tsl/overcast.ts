@@ -104,7 +104,7 @@ function lightsAbout(
 }
 
 /** Most times as bright as without clouds that diffuse light is taken to be: at dusk there is next to none. */
-const MOST_DIFFUSE = 10
+export const MOST_DIFFUSE = 10
 
 /**
  * Diffuse light from above and below among clouds, over that without clouds [–].

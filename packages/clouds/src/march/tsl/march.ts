@@ -43,7 +43,7 @@ export function marchClouds(
   { direction, end, jitter }: CloudRay
 ): MarchedClouds {
   const { view } = field
-  const cosView = direction.dot(view.up).toConst() as Float
+  const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const sampleAt = (distance: Float): CloudSample => {
     const at = distance.toConst() as Float
     const offset = direction.mul(at).toConst() as Vec3

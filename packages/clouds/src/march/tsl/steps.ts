@@ -91,7 +91,12 @@ export function enterSteps(
   part.assign(jitter)
   const span = to.sub(from).toConst()
   const footprint = from.mul(field.pixelAngle)
-  longest.assign(span.div(quality.layerSteps).max(footprint.min(span.div(LEAST_STEPS))))
+  longest.assign(
+    span
+      .div(quality.layerSteps)
+      .max(footprint.min(span.div(LEAST_STEPS)))
+      .max(1)
+  )
   finest.assign(stepIn(quality, density, longest))
 }
 

@@ -69,7 +69,7 @@ export function viewRayEnd(
   missesGround?: Bool
 ): Float {
   const depth = depthAt(uv).toConst() as Float
-  const cosView = direction.dot(field.view.up).toConst() as Float
+  const cosView = direction.dot(field.view.up).clamp(-1, 1).toConst() as Float
   const end = float(FAR_AWAY).toVar()
   const findGround = (): void => {
     end.assign(groundDistance(field, cosView))
