@@ -5,6 +5,7 @@ import { airLine, PATHS, timeAir, timeBake, timeFirstFrame } from './air'
 import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { timeEnvironment } from './environment'
 import { measureCloudMemory } from './memory'
+import { rainLine, timeRain } from './rain'
 import { measureShaders } from './shaders'
 import { shaftLine, timeShafts } from './shafts'
 import { timeShells } from './shell'
@@ -66,6 +67,11 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     const shafts = await timeShafts(device, size, frames)
     for (const cost of shafts) log(shaftLine(cost))
     return { shafts }
+  },
+  async rain() {
+    const rain = await timeRain(device, size, frames)
+    for (const cost of rain) log(rainLine(cost))
+    return { rain }
   },
   async valley() {
     const valley = await timeValley(device, size, frames)

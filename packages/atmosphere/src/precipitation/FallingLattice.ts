@@ -3,7 +3,7 @@ import type { Atmosphere } from '../Atmosphere'
 import { BOX_SIDE } from './cpu/drawnParticles'
 import { gustiness } from './cpu/gustiness'
 
-/** Time after which particles are where they were, in calm air [s]: speeds are whole boxes per that time. */
+/** Time after which flakes flutter as before [s]: each turns a whole number of times in it. */
 export const LOOP_TIME = 512
 /** Distance from the anchor after which a new one is taken [m]. */
 const ANCHOR_REACH = 10_000
@@ -45,7 +45,8 @@ export class FallingLattice {
   readonly forward = new Vector3()
   /** Metres to world units. */
   unit = 1
-  /** Time, since the loop's begin, in [0, 1). */
+  /** Time of fall [s], and since the loop's begin, in [0, 1). */
+  time = 0
   phase = 0
   readonly #drift = new Vector3()
   readonly #frame = new Matrix4()
@@ -72,7 +73,7 @@ export class FallingLattice {
     const way = time - (this.#time ?? time) + gusts * (now.way - before.way)
     this.#drift.x += east * way
     this.#drift.z -= north * way
-    this.#time = time
+    this.#time = this.time = time
     this.phase = time / LOOP_TIME - Math.floor(time / LOOP_TIME)
     this.wind.set(east, 0, -north).multiplyScalar(Math.max(1 + gusts * now.speed, 0))
 

@@ -1,4 +1,4 @@
-import { exp, float } from 'three/tsl'
+import { float } from 'three/tsl'
 import { raindropSizes, snowflakeSizes, type SizeDistribution } from './cpu/sizes'
 import type { Float } from '../tsl-types'
 
@@ -14,16 +14,22 @@ export interface ParticleKind {
   readonly edges: readonly [number, number, number, number, number]
   /** Distance up to which a class is drawn [m]: farther off its particles are too faint. */
   readonly reach: readonly [number, number, number, number]
+  /** Real particles for which each one that is drawn stands, at least: those of small classes are too faint to be told apart. */
+  readonly weights: readonly [number, number, number, number]
+  /** Most particles of a class that are drawn, if no one says. */
+  readonly most: number
   /** Width that is seen [m]. @param diameter - [mm]. */
   readonly width: (diameter: Float) => Float
-  /** Speed of fall in still air [m/s]. */
-  readonly speed: (diameter: Float) => Float
+  /** Speed of fall in still air [m/s]. @param diameter - [mm]. */
+  readonly speed: (diameter: number) => number
   /** Mean speed of fall, along which roofs are seen [m/s]. */
   readonly meanSpeed: number
   /** Sideways flutter: amplitude [m] and mean frequency [Hz]. */
   readonly flutter: readonly [amplitude: number, frequency: number]
   /** Unevenness of the outline, in [0, 1) [–]. */
   readonly unevenness: number
+  /** True for what thins out towards its edge. */
+  readonly isSoft: boolean
   /**
    * Phase function without what is diffracted: concentration κ of the forward lobe, e^{−κ(1 − cos θ)}, and share of the
    * light that goes evenly into all directions.
@@ -43,13 +49,19 @@ export const rain: ParticleKind = {
   drawnRate: 100,
   edges: [0.5, 1, 2, 3, 6],
   reach: [2, 4, 8, 16],
+  weights: [4, 2, 1, 1],
+  most: 65_536,
   width: diameter => diameter.mul(1e-3),
-  speed: diameter => exp(diameter.mul(-0.6)).mul(-10.3).add(9.65).max(0),
+  speed: diameter => Math.max(9.65 - 10.3 * Math.exp(-0.6 * diameter), 0),
   meanSpeed: 6.5,
   flutter: [0, 1],
   unevenness: 0,
+  isSoft: false,
   phase: [8.3, 0.12]
 }
+
+/** Width of the flake that melts to a drop of diameter D, by ρ_s D³ = ρ_w D_m³: factor [mm] and power of D/mm. */
+const FLAKE = [2.295, 1.4437] as const
 
 /**
  * Snow: aggregates of dendrites.
@@ -63,13 +75,16 @@ export const snow: ParticleKind = {
   drawnRate: 3,
   edges: [0.3, 0.8, 1.6, 2.6, 5],
   reach: [2.5, 5, 10, 24],
-  width: diameter => flakeWidth(diameter).mul(1e-3),
-  speed: diameter => flakeWidth(diameter).pow(0.16).mul(0.8),
+  weights: [2, 1, 1, 1],
+  most: 131_072,
+  width: diameter =>
+    float(diameter)
+      .pow(FLAKE[1])
+      .mul(1e-3 * FLAKE[0]),
+  speed: diameter => 0.8 * (FLAKE[0] * diameter ** FLAKE[1]) ** 0.16,
   meanSpeed: 1,
   flutter: [0.03, 1.1],
-  unevenness: 0.25,
+  unevenness: 0.3,
+  isSoft: true,
   phase: [3, 0.35]
 }
-
-/** Width of the flake that melts to a drop: ρ_s D³ = ρ_w D_m³ [mm]. */
-const flakeWidth = (diameter: Float): Float => float(diameter).pow(1.4437).mul(2.295)

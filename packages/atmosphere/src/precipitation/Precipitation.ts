@@ -17,6 +17,7 @@ import { DepthRays } from '../view/DepthRays'
 import { checkAtmosphere } from '../view/ViewNodes'
 import { FallingLattice, type PrecipitationWind } from './FallingLattice'
 import { chunkGeometry } from './chunkGeometry'
+import { FallingChunks } from './FallingChunks'
 import { isLamp, LampUniforms } from './LampUniforms'
 import { MeasuredLight } from './MeasuredLight'
 import type { ParticleKind } from './ParticleKind'
@@ -88,7 +89,7 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
   readonly #lattice = new FallingLattice()
   readonly #measured: MeasuredLight
   readonly #lamps: readonly LampUniforms[]
-  readonly #maxParticles: number
+  readonly #chunks: FallingChunks
   #rate = 5
   #wind: PrecipitationWind = { east: 0, north: 0 }
   #gusts = 0.25
@@ -104,7 +105,7 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
       shelter = null,
       depth,
       depthCamera,
-      maxParticles = 131_072,
+      maxParticles = kind.most,
       ...settings
     } = options
     checkLights(where, lights)
@@ -115,14 +116,15 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
       fail(where, 'depthCamera must be the Camera that drew depth', depthCamera)
     if (!Number.isInteger(maxParticles) || maxParticles < 1)
       fail(where, 'maxParticles must be a positive integer', maxParticles)
-    super(chunkGeometry(), new NodeMaterial())
+    const chunks = new FallingChunks(kind, maxParticles)
+    super(chunkGeometry(chunks.attribute), new NodeMaterial())
     this.name = `Welkin.${where}`
     this.frustumCulled = false
     this.renderOrder = 2
     this.atmosphere = atmosphere
     this.shelter = shelter
     this.#kind = kind
-    this.#maxParticles = maxParticles
+    this.#chunks = chunks
     this.#uniforms = new PrecipitationUniforms(kind)
     this.#measured = new MeasuredLight(lights, kind.reach)
     this.#lamps = lights.filter(isLamp).map(lamp => new LampUniforms(lamp))
@@ -179,8 +181,7 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
   set rate(value: number) {
     checkRange(this.#kind.name, 'rate', value, 0, 300)
     this.#rate = value
-    // Three draws one instance where there are none to draw.
-    this.geometry.instanceCount = this.#uniforms.setRate(value, this.#maxParticles)
+    this.#uniforms.setRate(value, this.#chunks.setRate(value))
   }
 
   /** Mean wind, `{ east, north }` [m/s]. */
@@ -268,6 +269,11 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
     const { renderer } = frame
     const camera = this.#follow(frame)
     if (renderer === null || camera === null) return
+    const { wind, cameraVelocity } = this.#lattice
+    // Streaks, flutter and discs out of focus reach out of their chunks.
+    const speed = wind.distanceTo(cameraVelocity) + 10
+    const margin = speed * this.shutter + this.aperture + 0.1
+    this.geometry.instanceCount = this.#chunks.update(this.#lattice, camera, margin)
     this.#measured.render(renderer, camera)
     this.shelter?.render(renderer, camera, this.#lattice, this.#kind.meanSpeed)
   }

@@ -1,14 +1,10 @@
 import { Vector3 } from 'three'
-import { int } from 'three/tsl'
 import { matrix3, number, vector3, vector4 } from '../uniforms'
-import type { Float, Int, Vec3, Vec4 } from '../tsl-types'
-import { drawnParticles, drawnSizes } from './cpu/drawnParticles'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
+import { drawnSizes, type DrawnClass } from './cpu/drawnParticles'
 import { numberBetween } from './cpu/sizes'
 import type { FallingLattice } from './FallingLattice'
 import type { ParticleKind } from './ParticleKind'
-
-/** Particles that a chunk of the mesh has. */
-export const CHUNK = 256
 
 const _middle = new Vector3()
 const _drift = new Vector3()
@@ -17,8 +13,6 @@ const _drift = new Vector3()
 export interface ClassNodes {
   /** Its number. */
   readonly index: Float
-  /** First of its particles' chunks. */
-  readonly firstChunk: Float
   /** Side of its box, and distance up to which it is drawn [m]. */
   readonly side: Float
   readonly reach: Float
@@ -60,23 +54,19 @@ export class PrecipitationUniforms {
    * Takes a rate.
    *
    * @param rate - [mm/h].
-   * @param most - Most particles of a class.
-   * @returns Chunks to draw.
+   * @param classes - What is drawn at it.
    */
-  setRate(rate: number, most: number): number {
+  setRate(rate: number, classes: readonly DrawnClass[]): void {
     const { kind } = this
     const { drawn, there } = drawnSizes(kind, rate)
     this.share.value = there.intercept / drawn.intercept
     this.slope.value = drawn.slope - there.slope
-    let chunk = 0
-    drawnParticles(kind, rate, most).forEach(({ side, proposed, count, weight }, i) => {
+    classes.forEach(({ side, proposed, weight }, i) => {
       const [from, to] = [kind.edges[i], kind.edges[i + 1]]
       const range = numberBetween(drawn, from, to) / numberBetween(drawn, from, Infinity)
-      this.#sizes[i].value.set(from, range, weight, chunk)
+      this.#sizes[i].value.set(from, range, weight, 0)
       this.#boxes[i].value.set(side, kind.reach[i], proposed, i)
-      chunk += Math.ceil(count / CHUNK)
     })
-    return chunk
   }
 
   /** Takes the frame of a camera. */
@@ -93,10 +83,9 @@ export class PrecipitationUniforms {
     })
   }
 
-  /** Class of a chunk, as nodes. */
-  classOf(chunk: Int): ClassNodes {
-    const at = int(chunk).toFloat().toConst() as unknown as Float
-    const isPast = (i: number) => at.greaterThanEqual(this.#sizes[i].w)
+  /** Values of a class. @param index - Its number. */
+  classOf(index: Float): ClassNodes {
+    const isPast = (i: number) => index.greaterThan(i - 0.5)
     const pick = (values: readonly unknown[]): Vec4 => {
       const [a, b, c, d] = values as Vec4[]
       const far = isPast(3).select(d, c)
@@ -105,8 +94,7 @@ export class PrecipitationUniforms {
     const sizes = pick(this.#sizes)
     const box = pick(this.#boxes)
     return {
-      index: box.w,
-      firstChunk: sizes.w,
+      index,
       side: box.x,
       reach: box.y,
       proposed: box.z,

@@ -1,8 +1,9 @@
 import { Float32BufferAttribute, InstancedBufferGeometry } from 'three'
-import { CHUNK } from './PrecipitationUniforms'
+import type { InstancedBufferAttribute } from 'three'
+import { CHUNK } from './FallingChunks'
 
-/** Chunk of quads: corners in [−1, 1]², and the quad's number. */
-export function chunkGeometry(): InstancedBufferGeometry {
+/** Chunk of quads: corners in [−1, 1]², and the quad's number. @param chunks - What instances have. */
+export function chunkGeometry(chunks: InstancedBufferAttribute): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry()
   const corners: number[] = []
   const index: number[] = []
@@ -11,6 +12,7 @@ export function chunkGeometry(): InstancedBufferGeometry {
     index.push(...[0, 1, 2, 2, 1, 3].map(n => 4 * i + n))
   }
   geometry.setAttribute('position', new Float32BufferAttribute(corners, 3))
+  geometry.setAttribute('chunk', chunks)
   geometry.setIndex(index)
   return geometry
 }

@@ -40,7 +40,7 @@ export function drawnParticles(kind: ParticleKind, rate: number, most: number): 
     const share = (diameter: number): number =>
       (there.intercept / drawn.intercept) * Math.exp((drawn.slope - there.slope) * diameter)
     const needed = proposed * Math.max(share(from), share(to))
-    const weight = Math.max(1, needed / most)
+    const weight = Math.max(kind.weights[i], needed / most)
     return {
       side,
       proposed: proposed / weight,

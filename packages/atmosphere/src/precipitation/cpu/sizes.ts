@@ -29,6 +29,20 @@ export const snowflakeSizes = (rate: number): SizeDistribution => ({
 })
 
 /**
+ * Diameter below which a share of the drops or flakes between two diameters is [mm].
+ *
+ * @param from - Diameter [mm].
+ * @param to - Diameter [mm].
+ * @param share - In [0, 1] [–].
+ */
+export const diameterAt = (
+  { slope }: SizeDistribution,
+  from: number,
+  to: number,
+  share: number
+): number => from - Math.log1p(share * Math.expm1(slope * (from - to))) / slope
+
+/**
  * Number of drops or flakes between two diameters [1/m³]: the integral of N(D).
  *
  * @param from - Diameter [mm].

@@ -10,7 +10,7 @@ const SOFTNESS = 0.1
 export interface ParticleVaryings {
   /** Place across and along the streak, over its outer radius. */
   readonly across: Vec2
-  /** Half its way and inner radius, over the outer one; a random number; depth in view space [world units]. */
+  /** Half its way and inner radius (of soft ones its sharpness) over the outer one; a random number; depth in view space [world units]. */
   readonly shape: Vec4
   /** Luminance and opacity. */
   readonly light: Vec4
@@ -29,7 +29,7 @@ export const particleVaryings = (name: string): ParticleVaryings => ({
  * @param unit - Metres to world units.
  */
 export function particleFragment(
-  { unevenness }: ParticleKind,
+  { unevenness, isSoft }: ParticleKind,
   { across, shape, light }: ParticleVaryings,
   rays: DepthRays | null,
   unit: Float
@@ -42,11 +42,13 @@ export function particleFragment(
     if (unevenness > 0) {
       // Flakes have lobes; blurred ones are round again. Radius 1/(1 + ε sin) has the area (1 − ε²)^−1.5.
       const sharp = shape.y.mul(unevenness).toConst() as Float
-      const lobes = sin((atan(end.y, end.x) as unknown as Float).mul(3).add(shape.z.mul(40)))
-      radius.mulAssign(lobes.mul(sharp).add(1))
+      const angle = atan(end.y, end.x) as unknown as Float
+      const three = sin(angle.mul(3).add(shape.z.mul(40)))
+      const two = sin(angle.mul(2).add(shape.z.mul(91)))
+      radius.mulAssign(three.add(two).mul(Math.SQRT1_2).mul(sharp).add(1))
       opacity.mulAssign(sharp.mul(sharp).oneMinus().pow(1.5))
     }
-    opacity.mulAssign(smoothstep(shape.y, 1, radius).oneMinus())
+    opacity.mulAssign(smoothstep(isSoft ? 0 : shape.y, 1, radius).oneMinus())
     if (rays !== null) {
       const { position, isSky } = rays.at(renderer, screenUV)
       const inFront = shape.w.sub(position.z).div(unit.mul(SOFTNESS)).clamp()

@@ -1,3 +1,4 @@
+import { float } from 'three/tsl'
 import type { Float } from '../../tsl-types'
 
 /** Outline of a streak: all that are within `outer` of its axis, full up to `inner`. */
@@ -10,6 +11,9 @@ export interface StreakShape {
   readonly opacity: Float
 }
 
+/** Radius at which a soft particle ends, over that of a disc that takes as much light: √(1/0.3), its middle is opaque. */
+const SOFT_RADIUS = 1.83
+
 /**
  * Streak of a round particle that moves while the shutter is open.
  *
@@ -19,11 +23,20 @@ export interface StreakShape {
  * @param width - Diameter D, > 0 [m].
  * @param length - Way of its middle [m].
  * @param blur - Width of pixel and circle of confusion at its distance, > 0 [m].
+ * @param isSoft - True for a particle that thins out from its middle on.
  */
-export function streakShape(width: Float, length: Float, blur: Float): StreakShape {
+export function streakShape(
+  width: Float,
+  length: Float,
+  blur: Float,
+  isSoft: boolean
+): StreakShape {
   const half = width.mul(0.5).toConst() as Float
-  const inner = half.sub(blur).max(0).toConst() as Float
-  const outer = half.add(blur).toConst() as Float
+  const inner = (isSoft ? float(0) : half.sub(blur).max(0)).toConst() as Float
+  const outer = half
+    .mul(isSoft ? SOFT_RADIUS : 1)
+    .add(blur)
+    .toConst() as Float
   const edge = outer.sub(inner).toConst() as Float
   const ends = inner.mul(inner).add(inner.mul(edge)).add(edge.mul(edge).mul(0.3)).mul(Math.PI)
   const opacity = half

@@ -6,7 +6,6 @@ import {
   cross,
   float,
   hash,
-  instanceIndex,
   int,
   log,
   screenSize,
@@ -16,18 +15,21 @@ import {
   vec4
 } from 'three/tsl'
 import type { Float, Int, Mat3, Mat4, Vec3, Vec4 } from '../../tsl-types'
+import { CELLS, CHUNK, LAYER, STRATA } from '../FallingChunks'
 import { LOOP_TIME } from '../FallingLattice'
 import type { LampUniforms } from '../LampUniforms'
 import type { MeasuredLight } from '../MeasuredLight'
 import type { ParticleKind } from '../ParticleKind'
 import type { PrecipitationShelter } from '../PrecipitationShelter'
-import { CHUNK, type PrecipitationUniforms } from '../PrecipitationUniforms'
+import type { PrecipitationUniforms } from '../PrecipitationUniforms'
 import { litParticle } from './litParticle'
 import { streakShape } from './particleShape'
 import type { ParticleVaryings } from './particleFragment'
 
 /** Distances over which particles in front of the lens fade [m]. */
 const LENS = [0.12, 0.35] as const
+/** Half width of the filter of edges [pixels]: lines are as smooth as they need, and cover few pixels. */
+const FOOTPRINT = 0.75
 /** Share of its box's half side, and of a class's reach, from which particles fade. */
 const EDGE_FADE = 0.9
 export const REACH_FADE = 0.7
@@ -58,26 +60,39 @@ export function particleVertex(
 ): Vec4 {
   return Fn((): Vec4 => {
     const corner = attribute('position', 'vec3') as unknown as Vec3
-    const at = uniforms.classOf(int(instanceIndex as never))
-    const particle = int(instanceIndex as never)
-      .sub(int(at.firstChunk))
-      .mul(CHUNK)
-      .add(int(corner.z))
-      .toConst() as Int
+    const chunk = attribute('chunk', 'vec4') as unknown as Vec4
+    const { x: number, y: group, z: fall, w: speed } = chunk
+    const sizeClass = group.div(STRATA).floor().toConst() as Float
+    const stratum = group.sub(sizeClass.mul(STRATA))
+    const at = uniforms.classOf(sizeClass)
+    const particle = int(number).mul(CHUNK).add(int(corner.z)).toConst() as Int
     const random = randomOf(particle, at.index)
     const drawnSlope = kind.sizes(kind.drawnRate).slope
-    const diameter = log(random(0).mul(at.range).oneMinus())
+    const share = random(0).add(stratum).div(STRATA)
+    const diameter = log(share.mul(at.range).oneMinus())
       .div(-drawnSlope)
       .add(at.edge)
       .toConst() as Float
     const there = uniforms.slope.mul(diameter).exp().mul(uniforms.share).mul(at.proposed)
     const clip = vec4(2, 2, 2, 1).toVar() as Vec4
 
-    If(float(particle).lessThan(there), () => {
-      const speed = kind.speed(diameter).toConst() as Float
-      const turns = speed.mul(LOOP_TIME).div(at.side).round()
-      const fall = turns.mul(uniforms.phase).fract()
-      const place = vec3(random(1), random(2).sub(fall), random(3)).add(at.drift).fract().toConst()
+    // Layers have all sizes, in random order: those of a rate are among the first.
+    const layer = number.div(LAYER / CHUNK).floor()
+    const order = layer.add(hash(particle.add(0x5bd1e995))).mul(LAYER)
+
+    If(order.lessThan(there), () => {
+      const column = number.div(CELLS).floor().toConst() as Float
+      const row = column.div(CELLS).floor().toConst() as Float
+      const place = vec3(
+        random(1).add(column.sub(row.mul(CELLS))),
+        random(2).add(number.sub(column.mul(CELLS))),
+        random(3).add(row.sub(row.div(CELLS).floor().mul(CELLS)))
+      )
+        .div(CELLS)
+        .add(at.drift)
+        .sub(vec3(0, fall, 0))
+        .fract()
+        .toConst()
       const box = place.sub(0.5).toConst() as Vec3
       const offset = box.mul(at.side).add(at.middle).toVar() as Vec3
       const velocity = uniforms.velocity.sub(vec3(0, speed, 0)).toVar() as Vec3
@@ -124,7 +139,9 @@ export function particleVertex(
 
       If(isDrawn, () => {
         const unit = uniforms.unit
-        const pixel = middle.w.mul(2).div(projection.element(1).element(1).mul(screenSize.y))
+        const pixel = middle.w
+          .mul(2 * FOOTPRINT)
+          .div(projection.element(1).element(1).mul(screenSize.y))
         const focused = distance.div(uniforms.focus).oneMinus().abs().mul(uniforms.aperture)
         const blur = pixel
           .mul(pixel)
@@ -136,7 +153,8 @@ export function particleVertex(
         const toCamera = head.add(tail).normalize().toConst() as Vec3
         const across = way.sub(toCamera.mul(way.dot(toCamera))).toConst() as Vec3
         const seenLength = across.length().toConst() as Float
-        const { inner, outer, opacity } = streakShape(width, seenLength, blur)
+        const { inner, outer, opacity } = streakShape(width, seenLength, blur, kind.isSoft)
+        const sharpness = kind.isSoft ? width.div(width.add(blur)) : inner.div(outer)
         const axis = seenLength.greaterThan(length.mul(1e-3)).select(across, vec3(0, 1e-6, 0))
         const along = axis
           .add(vec3(0, 1e-9, 0))
@@ -151,7 +169,7 @@ export function particleVertex(
         clip.assign(projection.mul(vec4(position, 1)))
         varyings.across.assign(vec2(corner.x, reach.div(outer)))
         varyings.shape.assign(
-          vec4(seenLength.div(outer).mul(0.5), inner.div(outer), random(7), position.z)
+          vec4(seenLength.div(outer).mul(0.5), sharpness, random(7), position.z)
         )
         const light = litParticle(kind, measured, lamps, at.index, offset.div(distance), head)
         const alpha = opacity.mul(at.weight).mul(uniforms.opacity).min(1).mul(fade)

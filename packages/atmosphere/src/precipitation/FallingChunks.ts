@@ -1,0 +1,125 @@
+import { Frustum, InstancedBufferAttribute, Matrix4, Vector3 } from 'three'
+import type { Camera } from 'three'
+import { drawnParticles, type DrawnClass } from './cpu/drawnParticles'
+import { diameterAt } from './cpu/sizes'
+import type { FallingLattice } from './FallingLattice'
+import type { ParticleKind } from './ParticleKind'
+
+/** Cells along each edge of a class's box. */
+export const CELLS = 4
+/** Particles of a cell that fall together. */
+export const CHUNK = 64
+/** Parts of equal number that a class's sizes have: those of a chunk are of one, and fall equally fast. */
+export const STRATA = 8
+/** Chunks of a layer, which has one in each cell, and its particles. */
+const LAYER_CHUNKS = CELLS ** 3
+export const LAYER = CHUNK * LAYER_CHUNKS
+/** Number of a chunk whose particles are never there. */
+const NO_CHUNK = 2 ** 14 * LAYER_CHUNKS
+
+const _middle = new Vector3()
+const _drift = new Vector3()
+const _frustum = new Frustum()
+const _matrix = new Matrix4()
+
+const fract = (x: number): number => x - Math.floor(x)
+
+/**
+ * Chunks of particles that a camera sees.
+ *
+ * Chunks over each other fall equally fast, so that they stay over each other, and particles as dense as they are. What is out
+ * of view costs no vertices.
+ */
+export class FallingChunks {
+  /** Per chunk: its number in its class; class and stratum, 8 c + s; way that it has fallen over its box's side; speed [m/s]. */
+  readonly attribute: InstancedBufferAttribute
+  #classes: readonly DrawnClass[] = []
+  /** Speeds of columns, by class and layer [m/s]. */
+  readonly #speeds: number[][]
+
+  /** @param most - Most particles of a class. */
+  constructor(
+    private readonly kind: ParticleKind,
+    private readonly most: number
+  ) {
+    const chunks = kind.reach.length * Math.ceil(most / LAYER) * LAYER_CHUNKS
+    this.attribute = new InstancedBufferAttribute(new Float32Array(4 * chunks), 4)
+    this.#speeds = kind.reach.map(() => [])
+  }
+
+  /** Takes a rate [mm/h]. @returns What is drawn of each class. */
+  setRate(rate: number): readonly DrawnClass[] {
+    this.#classes = drawnParticles(this.kind, rate, this.most)
+    return this.#classes
+  }
+
+  /** Speed of a column of chunks, whose number is 16 times its layer and its place in it [m/s]. */
+  #speed(sizeClass: number, column: number): number {
+    const { kind } = this
+    return (this.#speeds[sizeClass][column] ??= kind.speed(
+      diameterAt(
+        kind.sizes(kind.drawnRate),
+        kind.edges[sizeClass],
+        kind.edges[sizeClass + 1],
+        (stratumOf(column) + fract(column * 0.618034)) / STRATA
+      )
+    ))
+  }
+
+  /**
+   * Takes the frame of a camera.
+   *
+   * @param margin - Distance from its chunk up to which a particle is drawn [m].
+   * @returns Number of chunks to draw.
+   */
+  update(lattice: FallingLattice, { projectionMatrix }: Camera, margin: number): number {
+    _matrix.copy(lattice.toView).setPosition(0, 0, 0).premultiply(projectionMatrix)
+    // The planes at the sides are the first four, whatever the depth is.
+    const sides = _frustum.setFromProjectionMatrix(_matrix).planes.slice(0, 4)
+    const { attribute } = this
+    let chunks = 0
+    this.#classes.forEach(({ side, count }, sizeClass) => {
+      const reach = this.kind.reach[sizeClass]
+      const radius = (Math.sqrt(0.75) * side) / CELLS + margin
+      lattice.box(reach, _middle, _drift)
+      const starts = (offset: number): number[][] =>
+        Array.from({ length: CELLS }, (_, cell) => images(fract(cell / CELLS + offset)))
+      const [xs, zs] = [starts(_drift.x), starts(_drift.z)]
+      const isSeen = (x: number, y: number, z: number): boolean => {
+        const px = (x + 0.5 / CELLS - 0.5) * side + _middle.x
+        const py = (y + 0.5 / CELLS - 0.5) * side + _middle.y
+        const pz = (z + 0.5 / CELLS - 0.5) * side + _middle.z
+        if (px * px + py * py + pz * pz > (reach + radius) ** 2) return false
+        return sides.every(
+          ({ normal, constant }) =>
+            normal.x * px + normal.y * py + normal.z * pz + constant > -radius
+        )
+      }
+      const columns = Math.ceil(count / LAYER) * CELLS ** 2
+      for (let column = 0; column < columns; column++) {
+        const speed = this.#speed(sizeClass, column)
+        const fall = fract((speed * lattice.time) / side)
+        const ys = starts(_drift.y - fall)
+        const [x, z] = [xs[column % CELLS], zs[Math.floor(column / CELLS) % CELLS]]
+        ys.forEach((y, cell) => {
+          if (!x.some(a => y.some(b => z.some(c => isSeen(a, b, c))))) return
+          const group = sizeClass * STRATA + stratumOf(column)
+          attribute.setXYZW(chunks++, column * CELLS + cell, group, fall, speed)
+        })
+      }
+    })
+    // Three draws one instance where there are none to draw.
+    if (chunks === 0) attribute.setXYZW(0, NO_CHUNK, 0, 0, 0)
+    attribute.clearUpdateRanges()
+    attribute.addUpdateRange(0, 4 * Math.max(chunks, 1))
+    attribute.needsUpdate = true
+    return chunks
+  }
+}
+
+/** Places at which a cell begins: one that reaches over its box's end goes on at the other. */
+const images = (start: number): number[] => (start > 1 - 1 / CELLS ? [start, start - 1] : [start])
+
+/** Each stratum has as many columns of a layer as the others, and as many layers of a column. */
+const stratumOf = (column: number): number =>
+  (5 * (column % CELLS ** 2) + Math.floor(column / CELLS ** 2)) % STRATA
