@@ -1,4 +1,5 @@
-import { AgXToneMapping, RenderTarget } from 'three'
+import { photographicToneMapping } from '@welkin/atmosphere'
+import { CustomToneMapping, RenderTarget } from 'three'
 import { PassTimes, type PassTime } from '../../stories/src/valley/PassTimes'
 import { openingState } from '../../stories/src/valley/openingState'
 import { sharesOf } from '../../stories/src/valley/shares'
@@ -44,7 +45,8 @@ export async function timeValley(
   const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
-  renderer.toneMapping = AgXToneMapping
+  renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
+  renderer.toneMapping = CustomToneMapping
   const times = new PassTimes()
   renderer.inspector = times
   const valley = new Valley(renderer, openingState)
