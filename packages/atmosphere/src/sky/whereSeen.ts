@@ -2,7 +2,7 @@ import { context } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Bool } from '../tsl-types'
 
-/** What {@link whereSeen} hands on to the nodes of a picture. */
+/** Context of the nodes of a picture, by {@link whereSeen}. */
 interface SeenContext {
   welkinIsSeen?: Bool
 }
