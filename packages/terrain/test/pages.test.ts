@@ -185,8 +185,8 @@ it.each([
       return drawn.length
     }
     const here = viewerAt(0, 500)
-    // Whole faces, and twelve times as many as later until no more come.
-    expect(await update(here)).toBe(6 + 12)
+    // Whole faces, and 32 times as many as later until no more come.
+    expect(await update(here)).toBe(6 + 32)
     for (let frame = 0; frame < 100; frame++) await update(here)
     expect(tiles.isFull).toBe(false)
     expect(tiles.selection.lag).toBeGreaterThan(0)

@@ -9,6 +9,9 @@ const GRAIN_VARIANCE = 0.3
 const SPREAD = 0.12
 const MOST_SPREAD = 450
 
+/** Height above the sea that sand reaches [m]. */
+const BEACH = 9
+
 /** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
 const DRY_SNOW = 500
 const SUNNY_SNOW = 350
@@ -118,7 +121,13 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     overTrees.add(relief.mul(260))
   ).toConst('bareness')
   const alpine = mix(soil, scree, bareness)
-  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
+  // A beach is a small part of a pixel that shows much height.
+  const beach = spread.div(BEACH).add(1).reciprocal().toConst('beach')
+  const inland = smoothstep(2, BEACH, overSea.add(patch.mul(4)).add(relief))
+    .oneMinus()
+    .mul(beach)
+    .oneMinus()
+    .toConst('inland')
   const sand = color(SAND).mul(blade.mul(0.12).add(stone.mul(0.1)).add(1))
   const shore = mix(sand, alpine, inland)
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
@@ -131,9 +140,9 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
-  const isSea = overSea.lessThan(0).select(1, 0)
+  const isSea = overSea.div(spread.mul(-0.5).sub(0.01)).add(0.5).clamp(0, 1).toConst('isSea')
   const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
-  const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1))
+  const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1).mul(beach))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
