@@ -275,7 +275,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
     const isFine = selection.lag === 0
-    this.#uniforms.skirt.value = isFine ? SHALLOW : 4 * 2 ** selection.lag
+    this.#uniforms.skirt.value = isFine ? SHALLOW : 2 ** (selection.lag + 2)
     this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + clearance / 2
     this.#uniforms.referenceECEF(reference)
     writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>

@@ -74,7 +74,7 @@ it('draws whole faces anew when their heights arrive, however late', async () =>
   expect(drawn.slice(6).map(({ slot }) => slot)).toEqual(drawn.slice(0, 6).map(({ slot }) => slot))
   expect(tree.roots.every(({ slot, fade }) => slot >= 0 && fade === 0)).toBe(true)
   expect(pages.isFlat(200)).toBe(false)
-  expect(pages.loading).toBe(0)
+  expect(pages.isStuck).toBe(true)
 })
 
 it('asks for the heights of a whole face again when they failed', async () => {

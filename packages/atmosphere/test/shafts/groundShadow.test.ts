@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
 import { expect, it } from 'vitest'
-import { Atmosphere, GroundShadow, groundShadow } from '@welkin/atmosphere'
+import { Atmosphere, groundShadow, type GroundShadow } from '@welkin/atmosphere'
 
 const atmosphere = new Atmosphere({ frame: 'ecef' })
 const { ellipsoid } = atmosphere
