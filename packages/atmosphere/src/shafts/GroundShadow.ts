@@ -1,4 +1,12 @@
-import { DataTexture, FloatType, LinearFilter, Matrix4, RedFormat, Vector3 } from 'three'
+import {
+  DataTexture,
+  DataUtils,
+  HalfFloatType,
+  LinearFilter,
+  Matrix4,
+  RedFormat,
+  Vector3
+} from 'three'
 import { checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkRange, withDefaults } from '../check'
@@ -57,10 +65,10 @@ export class GroundShadow extends HeightFieldShadow {
   readonly width: number
   /** Heights along its edge. */
   readonly texels: number
-  /** Heights over the plane through the square's middle, row by row from south to north [m]. */
+  /** Heights over the plane through the square's middle, row by row from south to north, half floats [m]. */
   readonly heights: DataTexture
   /** Heights of the next square, how many are found, and its axes in ECEF: east, north, up. */
-  #next: Float32Array
+  #next: Uint16Array
   #found = 0
   readonly #axes = new Matrix4()
   /** Middle of the square in use, on the ellipsoid, ECEF [m]. */
@@ -78,11 +86,11 @@ export class GroundShadow extends HeightFieldShadow {
     checkRange(where, 'texels', texels, 16, 1024)
     if (!Number.isInteger(texels)) fail(where, 'texels must be a whole number', texels)
     const heights = new DataTexture(
-      new Float32Array(texels ** 2),
+      new Uint16Array(texels ** 2),
       texels,
       texels,
       RedFormat,
-      FloatType
+      HalfFloatType
     )
     heights.name = 'Welkin.GroundShadow'
     heights.minFilter = heights.magFilter = LinearFilter
@@ -92,7 +100,7 @@ export class GroundShadow extends HeightFieldShadow {
     this.width = width
     this.texels = texels
     this.heights = heights
-    this.#next = new Float32Array(texels ** 2)
+    this.#next = new Uint16Array(texels ** 2)
   }
 
   /**
@@ -110,7 +118,10 @@ export class GroundShadow extends HeightFieldShadow {
     }
     const isFirst = Number.isNaN(this.#middle.x)
     const end = Math.min(isFirst ? Infinity : this.#found + ROWS * texels, texels ** 2)
-    for (; this.#found < end; this.#found++) this.#next[this.#found] = this.#heightAt(this.#found)
+    for (; this.#found < end; this.#found++) {
+      // Half floats: some devices blend no others.
+      this.#next[this.#found] = DataUtils.toHalfFloat(this.#heightAt(this.#found))
+    }
     if (end === texels ** 2) this.#change()
   }
 
@@ -140,7 +151,7 @@ export class GroundShadow extends HeightFieldShadow {
   #change(): void {
     const { matrix, width } = this
     const { image } = this.heights
-    const used = image.data as Float32Array
+    const used = image.data as Uint16Array
     image.data = this.#next
     this.#next = used
     this.#found = 0

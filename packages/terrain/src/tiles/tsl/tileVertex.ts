@@ -69,7 +69,7 @@ export function tileVertex(
     .add(fromCenter(alongCube(cells)))
     .sub(datum)
     .length()
-    .toConst('distance')
+    .toConst()
   const morph = distance
     .div(base.w)
     .sub(start)
