@@ -65,7 +65,8 @@ export async function createMountainShadows(
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
   // #region mountain shadows
   const mountains = groundShadow(atmosphere, terrain) // within 50 km
-  const shafts = lightShafts(atmosphere, camera, sun).add(mountains) // into the air, and onto the ground:
+  const shafts = lightShafts(atmosphere, camera, sun).add(mountains) // in the air
+  // And on the ground.
   Object.assign(sun.shadow, { shadowNode: terrainShadow(mountains, sun, shadow(sun)) })
   const { picture, depth, pipeline } = post
   pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
