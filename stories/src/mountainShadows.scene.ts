@@ -2,12 +2,20 @@ import {
   aerialPerspective,
   Atmosphere,
   exposureFor,
-  groundShadow,
+  heightFieldShadow,
   lightShafts,
   terrainShadow
 } from '@welkin/atmosphere'
 import { MountainHeights, Terrain } from '@welkin/terrain'
-import { PerspectiveCamera, Scene } from 'three'
+import {
+  DataTexture,
+  FloatType,
+  Matrix4,
+  PerspectiveCamera,
+  RedFormat,
+  Scene,
+  Vector3
+} from 'three'
 import { shadow } from 'three/tsl'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
@@ -29,15 +37,35 @@ export interface MountainShadowsArgs extends RendererArgs {
 }
 
 /** Place of the world's origin [°], and the camera's height above the ground there [m]. */
-const ORIGIN = { longitude: 0.415, latitude: 46.92 }
+const ORIGIN = { longitude: 1.1, latitude: 47.08 }
 const HEIGHT = 250
 
 /** Direction of the camera, clockwise from north, and above the horizontal [°]. */
-const HEADING = 244
-const PITCH = 5
+const HEADING = 58
+const PITCH = 3
+
+/** Edge of the field whose mountains cast shadows [m], and texels along it. */
+const FIELD = 110_000
+const TEXELS = 256
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
+
+/** Heights over the plane through the world's origin, of places in rows from south to north [m]. */
+function heightsAbovePlane(terrain: Terrain, altitudeOf: (place: Vector3) => number): DataTexture {
+  const heights = new Float32Array(TEXELS ** 2)
+  const place = new Vector3()
+  for (let i = 0; i < heights.length; i++) {
+    const [east, north] = [i % TEXELS, Math.floor(i / TEXELS)].map(
+      texel => ((texel + 0.5) / TEXELS - 0.5) * FIELD
+    )
+    // The planet falls away from the plane.
+    heights[i] = terrain.heightBelow(place.set(east, 0, -north)) - altitudeOf(place)
+  }
+  const texture = new DataTexture(heights, TEXELS, TEXELS, RedFormat, FloatType)
+  texture.needsUpdate = true
+  return texture
+}
 
 /** Shadows of mountains tens of kilometres away, in the haze and on the ground, where no shadow map reaches. */
 export async function createMountainShadows(
@@ -63,11 +91,14 @@ export async function createMountainShadows(
   prepareShadow(sun)
 
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
+  const heights = heightsAbovePlane(terrain, place => ground.heightAt(place))
   // #region mountain shadows
-  const mountains = groundShadow(atmosphere, terrain) // within 50 km
-  const shafts = lightShafts(atmosphere, camera, sun).add(mountains) // in the air
-  // And on the ground.
-  Object.assign(sun.shadow, { shadowNode: terrainShadow(mountains, sun, shadow(sun)) })
+  // From the field, whose first texel is in the south-west, to the world: x is east, y up, z south.
+  const toWorld = new Matrix4()
+  toWorld.set(FIELD, 0, 0, -FIELD / 2, 0, 0, 1, 0, 0, -FIELD, 0, FIELD / 2, 0, 0, 0, 1)
+  const hills = heightFieldShadow(heights, toWorld) // a texture in metres
+  const shafts = lightShafts(atmosphere, camera, sun).add(hills) // into the air, and onto the ground:
+  Object.assign(sun.shadow, { shadowNode: terrainShadow(hills, sun, shadow(sun)) })
   const { picture, depth, pipeline } = post
   pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
   // #endregion
@@ -104,7 +135,7 @@ export async function createMountainShadows(
     draw,
     dispose() {
       shafts.dispose()
-      mountains.dispose()
+      heights.dispose()
       terrain.dispose()
       air.dispose()
     }

@@ -32,8 +32,8 @@ const meta: Meta<MountainShadowsArgs> = {
   args: {
     strength: 1,
     turbidity: 5,
-    elevation: 4.5,
-    azimuth: 247,
+    elevation: 4,
+    azimuth: 57,
     exposure: -1.75,
     forceWebGL: false,
     path: 'post',
@@ -45,5 +45,5 @@ export default meta
 
 type Story = StoryObj<MountainShadowsArgs>
 
-/** A lone peak before the setting sun: its shadow reaches through the haze, beside the light of the saddles. */
-export const Sunset: Story = { tags: ['screenshot'] }
+/** A ridge 30 km away before the rising sun. */
+export const Sunrise: Story = { tags: ['screenshot'] }

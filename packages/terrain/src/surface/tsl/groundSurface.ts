@@ -9,9 +9,6 @@ const GRAIN_VARIANCE = 0.3
 const SPREAD = 0.12
 const MOST_SPREAD = 450
 
-/** Height above the sea that sand reaches [m]. */
-const BEACH = 9
-
 /** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
 const DRY_SNOW = 500
 const SUNNY_SNOW = 350
@@ -99,7 +96,6 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   // Dark between stones, and between blades.
   const stony = stone.mul(0.45).add(1).toConst('stony')
   const light = blade.mul(1.5).add(tuft.mul(0.35)).toConst('light')
-  const shade = light.add(1).max(0.25).toConst('shade')
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   const meadow = mix(
     color(GRASS),
@@ -107,11 +103,11 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     smoothstep(-0.3, 0.6, patch.mul(0.9).add(light.mul(0.5)))
       .mul(0.55)
       .add(smoothstep(-900, 200, overTrees).mul(0.35))
-  ).mul(shade)
+  ).mul(light.add(1).max(0.2))
   const woods = smoothstep(-0.12, 0.1, patch.sub(dryness).add(tuft.mul(0.12)))
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
     .mul(smoothstep(15, 60, overSea))
-  const floor = color(FOREST).mul(shade)
+  const floor = color(FOREST).mul(light.add(1).max(0.3))
   const green = mix(meadow, floor, woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
   const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
@@ -122,11 +118,8 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     overTrees.add(relief.mul(260))
   ).toConst('bareness')
   const alpine = mix(soil, scree, bareness)
-  // A beach is a small part of a pixel that shows much height.
-  const beach = spread.div(BEACH).add(1).reciprocal().toConst('beach')
-  const higher = smoothstep(2, BEACH, overSea.add(patch.mul(4)).add(relief))
-  const inland = mix(float(1), higher, beach).toConst('inland')
-  const sand = color(SAND).mul(blade.mul(0.12).add(1))
+  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
+  const sand = color(SAND).mul(blade.mul(0.12).add(stone.mul(0.1)).add(1))
   const shore = mix(sand, alpine, inland)
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
   const land = mix(shore, rock, bare)
@@ -137,13 +130,10 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   )
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
-  const wet = smoothstep(0, 1.2, overSea).toConst('wet')
-  const isSea = float(0.5)
-    .sub(overSea.div(spread.add(0.01)))
-    .clamp(0, 1)
-    .toConst('isSea')
+  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
+  const isSea = overSea.lessThan(0).select(1, 0)
   const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
-  const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1).mul(beach))
+  const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
