@@ -13,7 +13,10 @@ interface ShadowedLightNode {
   shadowNode: Node | null
 }
 interface LightsBuilder {
-  context: { irradiance: { addAssign(node: Vec3): void } }
+  context: {
+    irradiance: { addAssign(node: Vec3): void }
+    reflectedLight: { directDiffuse: { assign(node: Vec3): void } }
+  }
   lightsNode: {
     getLightNodes(builder: unknown): ShadowedLightNode[]
     setupLights(builder: unknown, nodes: ShadowedLightNode[]): void
@@ -69,6 +72,8 @@ class VertexLightingModel extends PhongLightingModel {
     const lit = builder as unknown as LightsBuilder
     const { context, lightsNode } = lit
     const { irradiance } = context
+    // Before branches: three would begin the sum anew in each.
+    context.reflectedLight.directDiffuse.assign(vec3(0))
     const received: [Light, Vec3][] = []
     for (const node of lightsNode.getLightNodes(lit)) {
       context.irradiance = { addAssign: color => received.push([node.light, color]) }
