@@ -3,7 +3,8 @@ import { mkdirSync, writeFileSync } from 'node:fs'
 import { join } from 'node:path'
 import { parseArgs } from 'node:util'
 import { PNG } from 'pngjs'
-import { AgXToneMapping } from 'three'
+import { photographicToneMapping } from '@welkin/atmosphere'
+import { CustomToneMapping } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { cloudReference } from '../bench/clouds'
 import { median } from '../bench/statistics'
@@ -115,7 +116,8 @@ async function take(
 async function rendererOf(device: HeadlessDevice, isPlanet: boolean): Promise<WebGPURenderer> {
   const renderer = await device.renderer(...size, { reversedDepthBuffer: isPlanet })
   renderer.highPrecision = isPlanet
-  renderer.toneMapping = AgXToneMapping
+  renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
+  renderer.toneMapping = CustomToneMapping
   renderer.shadowMap.enabled = true
   return renderer
 }

@@ -139,10 +139,11 @@ const shafts: Still[] = [
     name: 'shafts-storm',
     about: "a storm's shadow on its own anvil's haze and on the air below, from 10 km",
     clouds: { preset: 'cumulonimbus' },
-    sun: { elevation: 12, azimuth: 80 },
-    view: { azimuth: 40, pitch: -6 },
-    altitude: 10_000,
-    land: 'hills',
+    place: { longitude: 142.4, latitude: 35.7 },
+    sun: { elevation: 9, azimuth: 60 },
+    view: { azimuth: 35, pitch: -3 },
+    altitude: 9000,
+    land: 'planet',
     shafts: true
   },
   {
@@ -342,12 +343,13 @@ export const stills: readonly AnyStill[] = [
   },
   {
     name: '10km-storm',
-    about: 'from an airliner: anvils just below',
+    about: 'from an airliner: a tower and its anvil aside, small cumulus below',
     clouds: { preset: 'cumulonimbus' },
-    altitude: 12_500,
-    sun: { elevation: 20, azimuth: 200 },
-    view: { azimuth: 80, pitch: -8 },
-    land: 'hills'
+    place: { longitude: 142.4, latitude: 35.7 },
+    altitude: 9000,
+    sun: { elevation: 35, azimuth: 300 },
+    view: { azimuth: 20, pitch: -2 },
+    land: 'planet'
   },
   {
     name: '100km',

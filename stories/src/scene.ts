@@ -1,5 +1,5 @@
-import type { AutoExposureNode } from '@welkin/atmosphere'
-import { AgXToneMapping, InstancedMesh } from 'three'
+import { photographicToneMapping, type AutoExposureNode } from '@welkin/atmosphere'
+import { CustomToneMapping, InstancedMesh } from 'three'
 import type { Camera, Mesh, PerspectiveCamera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
 import type { Air, AirPath } from './air'
@@ -140,7 +140,8 @@ export async function createRenderer(
   })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
-  renderer.toneMapping = AgXToneMapping
+  renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
+  renderer.toneMapping = CustomToneMapping
   await renderer.init()
   return renderer
 }

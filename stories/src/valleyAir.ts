@@ -22,10 +22,11 @@ import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clou
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { Light, PerspectiveCamera, Scene } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { pass, rtt, vec4 } from 'three/tsl'
+import { pass, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
+import { PictureNode } from './valley/PictureNode'
 
 /** Sky, light, clouds and shadows of a scene, exposed. */
 export interface ValleyAir {
@@ -49,9 +50,9 @@ export interface ValleyAir {
 }
 
 /** Draws a picture to a texture, with the distance along the camera's axis in alpha: of the sky, the greatest. */
-function withDepth(picture: Node, scenePass: PassNode): TextureNode {
+function withDepth(picture: Node, scenePass: PassNode): PictureNode {
   const depth = scenePass.getViewZNode().negate().min(SKY_DEPTH)
-  return rtt(vec4((picture as Node<'vec4'>).rgb, depth), null, null, { depthBuffer: false })
+  return new PictureNode('Picture', vec4((picture as Node<'vec4'>).rgb, depth))
 }
 
 /** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */
@@ -110,6 +111,7 @@ export function valleyAir(
     exposure,
     dispose() {
       for (const light of [sun, sky, moonlight, moonlitSky, night]) light.dispose()
+      picture.dispose()
       cascades.dispose()
     }
   }

@@ -1,14 +1,15 @@
-import { Atmosphere, autoExposure } from '@welkin/atmosphere'
+import { Atmosphere, autoExposure, photographicToneMapping } from '@welkin/atmosphere'
 import {
   ACESFilmicToneMapping,
   AgXToneMapping,
+  CustomToneMapping,
   DataTexture,
   FloatType,
   NearestFilter,
   type Texture
 } from 'three'
-import { texture } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { agxToneMapping, float, texture, vec3, vec4 } from 'three/tsl'
+import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import {
   cellWeights,
   meteredLogLuminance,
@@ -17,6 +18,7 @@ import {
 import { ExposureMeter } from '../../../packages/atmosphere/src/exposure/ExposureMeter'
 import { tonesOf } from '../../harness/tones'
 import { days, ExposureStage, nights, type ExposureScene } from '../harness/exposure-scenes'
+import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import type { GpuContext } from '../harness/context'
 import { gpuTest } from '../harness/gpu-test'
@@ -162,6 +164,31 @@ gpuTest('meters an even picture exactly, however large', async t => {
   }
 })
 
+gpuTest(
+  'photographic tones: AgX with an S-curve, black and white where they were',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const greys = [0, 1e-4, 0.01, 0.05, 0.18, 0.5, 2, 8, 40].map(grey => [grey])
+    const pairs = await evaluateOnGpu(renderer, greys, input => {
+      const light = vec3(input.x)
+      const agx = agxToneMapping(light, float(1)) as Node<'vec3'>
+      const plain = photographicToneMapping({ contrast: 1, saturation: 1 })(light, float(1))
+      const steep = photographicToneMapping({ contrast: 1.5, saturation: 0 })(light, float(1))
+      return vec4(agx.x, (plain as Node<'vec3'>).x, (steep as Node<'vec3'>).x, 0)
+    })
+    for (let i = 0; i < greys.length; i++) {
+      const [agx, plain, steep] = pairs.subarray(4 * i)
+      const what = `grey ${greys[i][0]}`
+      expectClose(plain, agx, { absolute: 2e-4 }, `${what}, contrast 1`)
+      const x = agx ** (1 / 2.2)
+      const curve = x ** 1.5 / (x ** 1.5 + (1 - x) ** 1.5)
+      const expected = (curve + 0.6 * (1 - x) * (x - curve)) ** 2.2
+      expectClose(steep, expected, { absolute: 1e-3 }, `${what}, contrast 1.5`)
+    }
+  },
+  { backends: ['webgpu'] }
+)
+
 /** Checks a scene's tones as viewers see them. */
 async function judge(
   t: GpuContext,
@@ -173,7 +200,12 @@ async function judge(
   // From a scale for daylight; half floats hold no night in that.
   await stage.settle(4)
   const metered = stage.exposure.luminance!
-  const mappings = { AgX: AgXToneMapping, ACES: ACESFilmicToneMapping }
+  renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
+  const mappings = {
+    AgX: AgXToneMapping,
+    ACES: ACESFilmicToneMapping,
+    photographic: CustomToneMapping
+  }
   for (const [name, toneMapping] of Object.entries(mappings)) {
     renderer.toneMapping = toneMapping
     stage.refresh()

@@ -216,8 +216,6 @@ async function findHoles(
   pages = Infinity
 ): Promise<number> {
   const random = randomNumbers(pages === Infinity ? 11 : 23)
-  // Ground that is still too coarse may lie above someone who stands on what it ought to be.
-  const lowest = pages === Infinity ? 2 : 2000
   // What is sure to be below the horizon: a ray that meets the ellipsoid below all ground.
   const core = atmosphere.ellipsoid.grown(heights.lowest)
   const ray = new Vector3()
@@ -225,7 +223,7 @@ async function findHoles(
   for (let n = 0; n < count; n++) {
     const longitude = 360 * random() - 180
     const latitude = (Math.asin(2 * random() - 1) * 180) / Math.PI
-    const height = lowest * (2e7 / lowest) ** random()
+    const height = 2 * 1e7 ** random()
     const picture = await draw(longitude, latitude, height, -Math.PI * random() * 0.5, pages)
     const holes: string[] = []
     for (let y = 0; y < picture.height; y++) {

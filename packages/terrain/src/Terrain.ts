@@ -37,6 +37,9 @@ const LEAST_CLEARANCE = 0.5
 /** Depth of skirts where no page is missing [cells]: only rounding is hidden. */
 const SHALLOW = 0.1
 
+/** Height of "no ceiling", above all ground [m]. */
+const NO_CEILING = 1e9
+
 /** Level of "no sea", below all ground [m]. */
 const NO_SEA = -1e9
 
@@ -160,7 +163,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#camera = value
   }
 
-  /** Pages drawn in a frame, ≥ 1: twelve times as many until the first picture is full. */
+  /** Pages drawn in a frame, ≥ 1: 32 times as many until the first picture is full. */
   get pagesPerFrame(): number {
     return this.#tiles.pagesPerFrame
   }
@@ -271,7 +274,9 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     this.#uniforms.update(viewer, ground)
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
-    this.#uniforms.skirt.value = selection.lag === 0 ? SHALLOW : 2 ** selection.lag
+    const isFine = selection.lag === 0
+    this.#uniforms.skirt.value = isFine ? SHALLOW : 2 ** (selection.lag + 2)
+    this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + clearance / 2
     this.#uniforms.referenceECEF(reference)
     writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
       tree.range(level)

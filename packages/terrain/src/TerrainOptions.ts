@@ -5,7 +5,7 @@ import { isPageSource, type PageSource } from './pages/PageSource'
 
 /** Options of `Terrain`. */
 export interface TerrainOptions {
-  /** Cells along a tile's edge, even, in [4, 128], default 24. */
+  /** Cells along a tile's edge, even, in [4, 128], default 16: 24 has finer ridges, for a fifth more time at eye height. */
   resolution?: number
   /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
   detail?: number
@@ -26,7 +26,7 @@ export const SETTINGS = ['seaLevel', 'shadowDistance', 'camera', 'pagesPerFrame'
 
 /** Options that are left out. */
 export const DEFAULTS: Required<TerrainOptions> = {
-  resolution: 24,
+  resolution: 16,
   detail: 1.5,
   seaLevel: 0,
   shadowDistance: 3000,

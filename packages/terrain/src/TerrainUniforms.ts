@@ -16,6 +16,8 @@ export class TerrainUniforms {
   readonly groundHeight = number()
   /** Surface of the sea [m]; far below all ground where there is none. */
   readonly seaLevel = number()
+  /** Height below which ground stays about the viewer, who would be under it else while pages are missing [m]. */
+  readonly ceiling = number()
   /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */
   readonly skirt = number(1)
   /** Radii of the ellipsoid [m]. */

@@ -1,4 +1,5 @@
-import { AgXToneMapping, HalfFloatType, SRGBColorSpace } from 'three'
+import { photographicToneMapping } from '@welkin/atmosphere'
+import { HalfFloatType, NoToneMapping, SRGBColorSpace } from 'three'
 import { float, mix, renderOutput, rtt, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 
@@ -7,8 +8,8 @@ const SIZE = 48
 const STOPS = [-12.5, 7] as const
 
 /**
- * Tone mapping by a table: two look-ups in place of logarithms, powers and matrices for each pixel. It has three's AgX and
- * sRGB, baked with the first frame: greys within half a level of 255, the brightest saturated colours within five.
+ * Tone mapping by a table: two look-ups in place of logarithms, powers and matrices for each pixel. It has
+ * `photographicToneMapping` and sRGB, baked with the first frame: greys within half a level of 255, the brightest saturated colours within five.
  */
 export class ToneTable {
   readonly #table = rtt(vec4(bakedColor(), 1), SIZE * SIZE, SIZE, {
@@ -62,5 +63,6 @@ function bakedColor(): Node<'vec3'> {
     .mul((brightest - darkest) / (SIZE - 1))
     .add(darkest)
     .exp2()
-  return (renderOutput(vec4(light, 1), AgXToneMapping, SRGBColorSpace) as Node<'vec4'>).rgb
+  const shown = photographicToneMapping()(light, float(1)) as Node<'vec3'>
+  return (renderOutput(vec4(shown, 1), NoToneMapping, SRGBColorSpace) as Node<'vec4'>).rgb
 }

@@ -85,6 +85,9 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
 /** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
 const NIGHT_LIGHTS = 4
 
+/** Elevation of the sun below which it lights no mountain of the valley [degrees]. */
+const SUNLIGHT = -3
+
 /** Longitude of the valley, where the weather has good cumulus [degrees]. */
 const LONGITUDE = 10
 
@@ -116,6 +119,7 @@ export class Valley {
   readonly #shafts
   readonly #cascadeTurns: CascadeTurns
   readonly #nightLights
+  readonly #sun
   readonly #environment
   readonly #finish: ValleyFinish
   readonly #dispose: (() => void)[] = []
@@ -133,6 +137,7 @@ export class Valley {
     const { atmosphere, clouds: node, shafts, exposure } = air
     this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#nightLights = air.nightLights
+    this.#sun = air.directLights[0]
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: LONGITUDE, latitude: state.latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
@@ -235,6 +240,7 @@ export class Valley {
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
     for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
+    setLit(this.#sun, elevation > SUNLIGHT)
     this.#village.light(share, luminanceScale)
     this.pipeline.render()
     this.#mirror.update(this.#renderer, this.camera)

@@ -13,7 +13,10 @@ interface ShadowedLightNode {
   shadowNode: Node | null
 }
 interface LightsBuilder {
-  context: { irradiance: { addAssign(node: Vec3): void } }
+  context: {
+    irradiance: { addAssign(node: Vec3): void }
+    reflectedLight: { directDiffuse: { assign(node: Vec3): void } }
+  }
   lightsNode: {
     getLightNodes(builder: unknown): ShadowedLightNode[]
     setupLights(builder: unknown, nodes: ShadowedLightNode[]): void
@@ -45,14 +48,16 @@ function ofCloudsAlone(shadow: CloudShadowNode): CloudShadowNode {
   return alone
 }
 
-/** A colour at the vertices, black where its light is off. */
-const atVertices = (light: Light, color: Vec3): Vec3 =>
+/** Sum of the colours of lights at the vertices; a light that is off is left out. */
+const atVertices = (colors: readonly (readonly [light: Light, color: Vec3])[]): Vec3 =>
   varying(
     Fn(() => {
       const result = vec3(0).toVar()
-      If(litOf(light).greaterThan(0), () => {
-        result.assign(color)
-      })
+      for (const [light, color] of colors) {
+        If(litOf(light).greaterThan(0), () => {
+          result.addAssign(color)
+        })
+      }
       return result
     })()
   )
@@ -67,33 +72,37 @@ class VertexLightingModel extends PhongLightingModel {
     const lit = builder as unknown as LightsBuilder
     const { context, lightsNode } = lit
     const { irradiance } = context
+    // Before branches: three would begin the sum anew in each.
+    context.reflectedLight.directDiffuse.assign(vec3(0))
+    const received: [Light, Vec3][] = []
     for (const node of lightsNode.getLightNodes(lit)) {
-      context.irradiance = {
-        addAssign: received => irradiance.addAssign(atVertices(node.light, received))
-      }
+      context.irradiance = { addAssign: color => received.push([node.light, color]) }
       lightsNode.setupLights(lit, [node])
     }
     context.irradiance = irradiance
+    // One colour for all of them: what vertices hand on costs each pixel.
+    if (received.length > 0) irradiance.addAssign(atVertices(received))
     this.indirect(builder)
   }
 
   override direct(input: LightingModelDirectInput, builder: NodeBuilder): void {
-    const { light, baseColorNode, shadowNode } = input.lightNode as unknown as ShadowedLightNode
-    if (light.isDirectionalLight !== true) {
-      super.direct(input, builder)
-      return
-    }
-    const base = baseColorNode ?? (input.lightColor as Vec3)
+    const { light } = input.lightNode as unknown as ShadowedLightNode
+    const lightColor = this.#colorOf(input)
+    If(litOf(light).greaterThan(0), () => super.direct({ ...input, lightColor }, builder))
+  }
+
+  /** Colour of a light: of a directional one all but the shadows of things is of the vertices. */
+  #colorOf({ lightColor, lightNode }: LightingModelDirectInput): Vec3 {
+    const { light, baseColorNode, shadowNode } = lightNode as unknown as ShadowedLightNode
+    if (light.isDirectionalLight !== true) return lightColor as Vec3
+    const base = baseColorNode ?? (lightColor as Vec3)
     if (shadowNode instanceof CloudShadowNode && shadowNode.shadowNode !== null) {
       // Shadows of clouds are soft: they are found at the vertices, too.
-      const color = atVertices(light, base.mul(ofCloudsAlone(shadowNode)))
-      const lightColor = color.mul(shadowNode.shadowNode as Vec3)
-      super.direct({ ...input, lightColor }, builder)
-      return
+      const color = atVertices([[light, base.mul(ofCloudsAlone(shadowNode))]])
+      return color.mul(shadowNode.shadowNode as Vec3)
     }
-    const color = atVertices(light, base)
-    const lightColor = baseColorNode === null ? color : color.mul(shadowNode as Vec3)
-    super.direct({ ...input, lightColor }, builder)
+    const color = atVertices([[light, base]])
+    return baseColorNode === null ? color : color.mul(shadowNode as Vec3)
   }
 }
 

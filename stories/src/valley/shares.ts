@@ -15,8 +15,8 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Bloom', 'bloom'],
   // A pass of three's, of what stands in the scene.
   ['output', 'land, trees, village and lake, lit'],
-  // Texture that exposure meters.
-  ['RTT', 'sky and haze']
+  // The picture, which exposure meters.
+  ['Picture', 'sky and haze']
 ]
 
 const featureOf = (pass: string): string =>

@@ -26,7 +26,7 @@ import {
 } from 'three/tsl'
 import { randomSequence } from '../random'
 import { groundHeight, VILLAGE } from './ground'
-import { VertexLitMaterial } from './VertexLitMaterial'
+import { setLit, VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
 /** Luminance of a lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
@@ -144,6 +144,7 @@ export function createVillage(
       lit.value = share
       luminance.value = WINDOW * luminanceScale
       lamp.intensity = share * LAMP * luminanceScale
+      setLit(lamp, share > 0)
     },
     dispose() {
       object.traverse(child => {

@@ -42,6 +42,7 @@ class HillsInAir implements AirShadow {
 
   update(view: AtmosphereView, renderer: Renderer): void {
     const { matrix } = this.#field
+    this.#field.follow(_direction.setFromMatrixPosition(view.camera.matrixWorld))
     view.atmosphere.space.displacement(_axes.identity(), _linear)
     _axes.setFromMatrix3(_linear.invert()).copyPosition(view.camera.matrixWorld)
     const toField = this.#toField.value.copy(matrix).invert()
@@ -109,6 +110,15 @@ export class HeightFieldShadow implements AirOccluder {
   /** Called by `LightShafts.add`. */
   castInto(shafts: ShadowedShafts): AirShadow {
     return new HillsInAir(this, shafts)
+  }
+
+  /**
+   * Called for each camera that draws its shadows, before they are drawn; does nothing here.
+   *
+   * @param _position - World [units].
+   */
+  follow(_position: Vector3): void {
+    // A field that follows the camera overrides it.
   }
 
   /** Map in a light, shared by all that read it: `release` it after use. */

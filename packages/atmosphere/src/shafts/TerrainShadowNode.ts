@@ -61,6 +61,7 @@ export class TerrainShadowNode extends Node<'float'> {
 
   override updateBefore({ renderer, camera }: NodeFrame): undefined {
     if (renderer === null || camera === null) return
+    this.hills.follow(_target.setFromMatrixPosition(camera.matrixWorld))
     const toField = this.#toField.value.copy(this.hills.matrix).invert()
     const { matrixWorld, target } = this.light
     _toLight.setFromMatrixPosition(matrixWorld)

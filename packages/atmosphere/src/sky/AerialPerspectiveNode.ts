@@ -10,6 +10,7 @@ import { Backdrop, passOf } from './Backdrop'
 import { foregroundOf } from './tsl/foreground'
 import { pixelAngle, skyColor } from './tsl/sky'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
+import { seenIn } from './whereSeen'
 import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 
 /**
@@ -104,6 +105,8 @@ export class AerialPerspectiveNode extends PostEffectNode {
   override setup(builder: NodeBuilder): Node {
     const isOrthographic = (this.camera as OrthographicCamera).isOrthographicCamera
     const position = (depth: Float): Vec3 => this.#rays.position(builder.renderer, uv(), depth)
+    const seen = seenIn(builder)
+    const ifSeen = (condition: Bool): Bool => (seen === null ? condition : seen.and(condition))
 
     return Fn(() => {
       const drawn = this.#color()
@@ -118,13 +121,13 @@ export class AerialPerspectiveNode extends PostEffectNode {
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
-      If(isSky.not(), () => {
+      If(ifSeen(isSky.not()), () => {
         const air = aerialPerspectiveTo(this.view, position(depth), this.layers)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
         // Silhouettes (with multisampling) and transparent things cover a part of the pixel.
-        If(coverage.lessThan(1), () => {
+        If(ifSeen(coverage.lessThan(1)), () => {
           const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
           const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers)
           result.addAssign(sky.mul(coverage.oneMinus()))

@@ -7,7 +7,8 @@ import {
   DayCycle,
   exposureFor,
   exposureOfIlluminance,
-  moon
+  moon,
+  photographicToneMapping
 } from '@welkin/atmosphere'
 import { noOptions, notASource, throwsEach, wrong } from '../harness/wrong'
 
@@ -19,6 +20,14 @@ const metered = autoExposure(picture, atmosphere)
 const cycle = new DayCycle(atmosphere, { date: new Date('2026-06-21T12:00:00Z') })
 
 throwsEach('exposure', [
+  [
+    'photographicToneMapping: contrast must be > 0, got 0',
+    () => photographicToneMapping({ contrast: 0 })
+  ],
+  [
+    'photographicToneMapping: saturation must be ≥ 0, got NaN',
+    () => photographicToneMapping({ saturation: NaN })
+  ],
   [
     `DayCycle: sources[0] ${notASource}`,
     () => new DayCycle(atmosphere, { exposureOptions: { sources: [wrong(luna)] } })

@@ -12,7 +12,7 @@ import type {
   LightSource
 } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
-import { Fn, If, float, mix, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, mix, texture, uv, varying, vec2, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import { checkClouds } from '../check'
 import type { CloudsNode } from '../march/CloudsNode'
@@ -24,6 +24,9 @@ import { MOST_DIFFUSE, overcastIrradiance } from './tsl/overcast'
 
 /** Cosines of the light that the table holds. */
 const COLUMNS = 64
+
+/** Light under clouds over that under a clear sky: see {@link FogOvercast.light}. */
+type CloudyLight = ReturnType<FogOvercast['light']>
 
 /** Clouds in the light of fog: see {@link cloudFogLight}. */
 export class CloudFogLight implements FogOvercast {
@@ -37,6 +40,8 @@ export class CloudFogLight implements FogOvercast {
   readonly #altitude = number()
   /** Share of the clouds' effect on the light of each source: 0 while light shafts have it. */
   readonly #shares = new Map<LightSource, UniformNode<'float', number>>()
+  /** Light at a cosine of its source, of which shaders have one each. */
+  readonly #lights = new WeakMap<Float, CloudyLight>()
   #pass: FragmentPass | null = null
 
   /** @throws If an argument is missing, or the fog has clouds already. */
@@ -72,14 +77,21 @@ export class CloudFogLight implements FogOvercast {
     }
   }
 
-  light(source: LightSource, cosLight: Float): { direct: Float; diffuse: Vec4 } {
+  light(source: LightSource, cosLight: Float): CloudyLight {
     let share = this.#shares.get(source)
     if (share === undefined) this.#shares.set(source, (share = number()))
-    const column = columnOf(cosLight).toConst()
+    let light = this.#lights.get(cosLight)
+    if (light === undefined) this.#lights.set(cosLight, (light = this.#read(share, cosLight)))
+    return light
+  }
+
+  /** Light of a source, the same for all of a picture: read at its vertices. */
+  #read(share: Float, cosLight: Float): CloudyLight {
+    const column = columnOf(cosLight)
     const read = (row: number): Vec4 => this.#table.sample(vec2(column, row)).level(float(0))
     return {
-      diffuse: mix(vec4(1), read(0.25), share).toConst(),
-      direct: mix(float(1), read(0.75).x, share).toConst()
+      diffuse: varying(mix(vec4(1), read(0.25), share)),
+      direct: varying(mix(float(1), read(0.75).x, share))
     }
   }
 

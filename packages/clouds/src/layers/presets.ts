@@ -27,8 +27,11 @@ const altocumulus: Partial<CloudLayerParameters> = {
 const congestus: Partial<CloudLayerParameters> = {
   baseAltitude: 800,
   topAltitude: 4300,
-  coverage: 0.35,
-  profileExponent: 0.5,
+  profileExponent: 1,
+  coverage: 0.25,
+  weatherScale: 0.6,
+  shapeScale: 0.6,
+  turbulence: 0.5,
   wind: { east: 9, north: 3 }
 }
 

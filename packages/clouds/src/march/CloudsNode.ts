@@ -1,4 +1,4 @@
-import { AtmosphereNode } from '@welkin/atmosphere'
+import { AtmosphereNode, whereSeen } from '@welkin/atmosphere'
 import type { Atmosphere, ScreenShadows, ShadowedShafts } from '@welkin/atmosphere'
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
 import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
@@ -305,8 +305,8 @@ export class CloudsNode extends AtmosphereNode {
 
   override setup(): Node {
     return Fn(() => {
-      const color = vec4(this.colorNode as Vec4).toConst()
       const clouds = this.passes.accumulated.light.sample(uv()).level(0).toConst()
+      const color = vec4(whereSeen(this.colorNode, clouds.a.greaterThan(0)) as Vec4).toConst()
       const light = clouds.rgb.mul(this.#exposure)
       const result = color.rgb.mul(clouds.a).add(light).toVar()
       for (const screen of this.screens) result.assign(screen.dim(result))

@@ -294,7 +294,7 @@ export class HeightTiles implements PageSource {
     const { size } = this.#pyramid
     const count = size * size
     if (pixels?.width !== size || pixels.height !== size || pixels.data.length !== 4 * count) {
-      throw new PermanentFailure(`tile ${z}/${x}/${y} is no picture of ${size} × ${size} pixels`)
+      throw new PermanentFailure(`no picture of ${size} × ${size} pixels`)
     }
     const { lowest, highest } = this.#options
     const { data } = pixels
@@ -306,7 +306,7 @@ export class HeightTiles implements PageSource {
       heights[i] = isHeight ? height : NaN
       if (!isHeight) holes++
     }
-    if (holes === count) throw new PermanentFailure(`tile ${z}/${x}/${y} has no heights`)
+    if (holes === count) throw new PermanentFailure('no heights')
     const tile = { heights, hasHoles: holes > 0 }
     this.#cache.set(key, tile, heights.byteLength)
     this.#version++

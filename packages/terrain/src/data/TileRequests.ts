@@ -48,11 +48,6 @@ export class TileRequests<T> {
     this.#options = options
   }
 
-  /** Loads that are under way. */
-  get loading(): number {
-    return this.#loading
-  }
-
   /** Keys that somebody waits for. */
   get size(): number {
     return this.#requests.size

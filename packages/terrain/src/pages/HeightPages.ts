@@ -70,12 +70,7 @@ export class HeightPages {
 
   /** Number of pages that tiles have. */
   get count(): number {
-    return this.#owners.reduce((sum, owner) => sum + (owner === null ? 0 : 1), 0)
-  }
-
-  /** Heights that are on their way. */
-  get loading(): number {
-    return this.#loading.size
+    return this.#owners.filter(owner => owner !== null).length
   }
 
   /**
@@ -165,8 +160,8 @@ export class HeightPages {
     const { lowest, highest } = this.#source
     const spacing = spacingOf(tile, this.#baker.ellipsoid, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
-    const least = heights.reduce((a, b) => Math.min(a, b))
-    const most = heights.reduce((a, b) => Math.max(a, b))
+    const least = Math.min(...heights)
+    const most = Math.max(...heights)
     tile.lowest = Math.min(Math.max(least - margin, lowest), least)
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }

@@ -103,9 +103,9 @@ export function grainTexture(): DataTexture {
   for (let n = 0; n < BLADES; n++) addBlade(light, random)
   const stones = center(raised)
   const blades = center(light)
-  const bytes = new Uint8Array(4 * SIZE ** 2)
-  const encode = (value: number, most: number): number =>
-    Math.round(127.5 + 127.5 * Math.min(Math.max(value / most, -1), 1))
+  // Rounds and clamps by itself.
+  const bytes = new Uint8ClampedArray(4 * SIZE ** 2)
+  const encode = (value: number, most: number): number => 127.5 + (127.5 * value) / most
   for (let n = 0; n < SIZE ** 2; n++) {
     const [x, y] = [n % SIZE, Math.floor(n / SIZE)]
     const rise = (i: number, j: number): number =>

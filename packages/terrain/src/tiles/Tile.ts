@@ -34,6 +34,8 @@ export class Tile {
   lastDrawn = 0
   /** Distance from the viewer then, see `distanceTo` [m]. */
   distance = 0
+  /** Size as seen [rad], or thereabouts, twice that in view: for the order in which missing pages come. */
+  urgency = 0
   /** Place of its page in the atlas; −1 without one. */
   slot = -1
   /** Share of the parent's page in what is drawn, in [0, 1]: 1 as its own page arrives, then ever less. */

@@ -79,7 +79,6 @@ export class TileTree {
   select(viewer: Viewer, most: number, target: TileSelection, isPaged = true): TileSelection {
     this.#selections++
     const unseen: Tile[] = []
-    const urgency = new Map<Tile, number>()
     target.tiles.length = target.missing.length = 0
     target.lag = 0
     // Nearest level by level: if room runs out, what is coarse is far away.
@@ -110,7 +109,8 @@ export class TileTree {
         target.lag = Math.max(target.lag, Math.ceil(finer) + 1)
         if (tile.slot < 0) {
           // Half of what tiles in view are, at the same size in the picture.
-          urgency.set(tile, this.#size(tile, distance) * (isVisible ? 2 : 1))
+          const near = Math.max(distance, tile.radius / 8)
+          tile.urgency = (tile.radius / near) * (isVisible ? 2 : 1)
           target.missing.push(tile)
         }
       }
@@ -120,7 +120,7 @@ export class TileTree {
     target.tiles.sort((a, b) => a.distance - b.distance)
     target.inView = target.tiles.length
     target.tiles.push(...unseen)
-    target.missing.sort((a, b) => urgency.get(b)! - urgency.get(a)!)
+    target.missing.sort((a, b) => b.urgency - a.urgency)
     if (this.#selections % FORGET_EVERY === 0) for (const root of this.roots) this.#forget(root)
     return target
   }
@@ -128,11 +128,6 @@ export class TileTree {
   /** Number of selections so far. */
   get selections(): number {
     return this.#selections
-  }
-
-  /** Size of a tile as seen [rad], or thereabouts. */
-  #size({ radius }: Tile, distance: number): number {
-    return radius / Math.max(distance, radius / 8)
   }
 
   /**

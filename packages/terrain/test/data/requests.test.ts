@@ -75,7 +75,7 @@ describe('requests', () => {
     requests.clear()
     expect(await rest).toContain('aborted')
     await vi.advanceTimersByTimeAsync(5000)
-    expect([count, requests.loading, requests.size]).toEqual([2, 0, 0])
+    expect([count, requests.size]).toEqual([2, 0])
   })
 })
 

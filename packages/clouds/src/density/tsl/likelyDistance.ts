@@ -34,14 +34,14 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
  * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
  * regions, as grain (*Cumulus*).
  */
-const MOST_BILLOWS = 2
+const MOST_BILLOWS = 1.4
 const ANVIL = 99
 
 /**
  * Distance over which the background's part of the strength changes by 1 [periods of the weather]. Greater: faster, and
  * edges of clear regions get ragged (*Cockpit*).
  */
-const BACKGROUND_LIKELY = 0.08
+const BACKGROUND_LIKELY = 0.12
 
 /** Distance that is taken off per footprint: from afar clouds blur [–]. Smaller: far clouds vanish (*Cockpit*). */
 const BLUR = 32

@@ -9,6 +9,9 @@ import { faceAxes, unitDifference } from './cubeSphere'
 /** Part of a level's range at which its tiles begin to morph: beyond it no finer neighbour is. */
 export const morphStart = (detail: number): number => (detail + 1) / (2 * detail)
 
+/** Distance within which the ceiling holds; beyond, it rises by as much as distance does [cells]. */
+const CLOSE = 3
+
 /** Depth of skirts that are deeper than a cell, at most [m]. */
 const DEEPEST_SKIRT = 2e4
 
@@ -48,7 +51,7 @@ export function tileVertex(
   const tileOffset = instance('tileOffset')
   const tileCube = instance('tileCube')
   const { x: own, y: parent, z: quarter, w: fade } = instance('tilePage')
-  const { radii, stretch, datum, groundHeight, seaLevel, skirt: skirtScale } = uniforms
+  const { radii, stretch, datum, groundHeight, seaLevel, ceiling, skirt: skirtScale } = uniforms
   const { first, second } = faceAxes(tileCube.w)
   const cube = tileCube.xyz
   const extent = tileOffset.w
@@ -66,6 +69,7 @@ export function tileVertex(
     .add(fromCenter(alongCube(cells)))
     .sub(datum)
     .length()
+    .toConst()
   const morph = distance
     .div(base.w)
     .sub(start)
@@ -86,10 +90,12 @@ export function tileVertex(
   const moved = mix(cells, even, morph).toConst('moved') as Vec2
   const delta = alongCube(moved)
   const subpoint = fromCenter(delta)
-  const height = mixed.x.max(seaLevel)
+  const cell = extent.mul(radii.x).mul(2 / resolution)
+  // Vertices of the triangle under the viewer are within three cells, morphed or not.
+  const room = distance.sub(cell.mul(CLOSE)).max(0)
+  const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
   const up = cube.add(delta).mul(stretch).normalize().toConst('up')
   const tilt = unitDifference(cube.mul(stretch), delta.mul(stretch))
-  const cell = extent.mul(radii.x).mul(2 / resolution)
   const skirt = positionGeometry.z.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)

@@ -1,0 +1,79 @@
+import { DataUtils, Vector3 } from 'three'
+import { expect, it } from 'vitest'
+import { Atmosphere, groundShadow, type GroundShadow } from '@welkin/atmosphere'
+
+const atmosphere = new Atmosphere({ frame: 'ecef' })
+const { ellipsoid } = atmosphere
+const WIDTH = 100_000
+const TEXELS = 32
+
+/** Ground that rises to the north-east, as seen from 47° N, 1° E [m]. */
+const heightAt = (longitude: number, latitude: number): number =>
+  1000 + 900 * Math.sin(8 * longitude) + 2000 * (latitude - 47)
+
+let asked = 0
+const ground = {
+  heightBelow(position: Vector3): number {
+    asked++
+    const { longitude, latitude } = ellipsoid.ecefToGeodetic(position)
+    return heightAt(longitude, latitude)
+  }
+}
+
+const above = (longitude: number, latitude: number): Vector3 =>
+  ellipsoid.geodeticToECEF({ longitude, latitude, height: 5000 })
+
+/** Heights in use, and how far they are from the ground, at most [m]. */
+function worstError(shadow: GroundShadow, heights: Uint16Array): number {
+  let worst = 0
+  const point = new Vector3()
+  for (const [n, height] of heights.entries()) {
+    const [x, y] = [n % TEXELS, Math.floor(n / TEXELS)].map(texel => (texel + 0.5) / TEXELS)
+    point.set(x, y, DataUtils.fromHalfFloat(height)).applyMatrix4(shadow.matrix)
+    const place = ellipsoid.ecefToGeodetic(point)
+    worst = Math.max(worst, Math.abs(place.height - heightAt(place.longitude, place.latitude)))
+  }
+  return worst
+}
+
+it('has the ground where it is, on the round planet, and follows the viewer', () => {
+  const shadow = groundShadow(atmosphere, ground, { width: WIDTH, texels: TEXELS })
+  const { heights: held } = shadow
+  shadow.follow(above(1, 47))
+  expect(shadow.version).toBe(1)
+  expect(asked).toBe(TEXELS ** 2)
+  // The plane's own up differs from the ground's by half a degree at its corners.
+  expect(worstError(shadow, held.image.data as Uint16Array)).toBeLessThan(3)
+
+  // Near the middle it stays; farther off, the next square is made row by row.
+  shadow.follow(above(1.1, 47))
+  expect(asked).toBe(TEXELS ** 2)
+  const before = shadow.matrix.clone()
+  for (let frame = 0; frame < TEXELS / 2 - 1; frame++) shadow.follow(above(1.4, 47))
+  expect(shadow.version).toBe(1)
+  expect(shadow.matrix).toEqual(before)
+  shadow.follow(above(1.4, 47))
+  expect(shadow.version).toBe(2)
+  expect(asked).toBe(2 * TEXELS ** 2)
+  expect(worstError(shadow, held.image.data as Uint16Array)).toBeLessThan(3)
+  const { longitude, latitude } = ellipsoid.ecefToGeodetic(
+    new Vector3(0.5, 0.5, 0).applyMatrix4(shadow.matrix)
+  )
+  expect([longitude, latitude]).toEqual([expect.closeTo(1.4, 6), expect.closeTo(47, 6)])
+
+  shadow.refresh()
+  shadow.follow(above(1.4, 47))
+  expect([shadow.version, asked]).toEqual([3, 3 * TEXELS ** 2])
+  shadow.dispose()
+})
+
+it.each([
+  ['atmosphere must not be flat', () => groundShadow(new Atmosphere({ flat: true }), ground)],
+  ['ground must have heightBelow()', () => groundShadow(atmosphere, {} as never)],
+  ['width must be', () => groundShadow(atmosphere, ground, { width: 0 })],
+  ['texels must be in [16, 1024]', () => groundShadow(atmosphere, ground, { texels: 8 })],
+  ['texels must be a whole number', () => groundShadow(atmosphere, ground, { texels: 20.5 })],
+  ['unknown option', () => groundShadow(atmosphere, ground, { texel: 20 } as never)]
+])('tells what is wrong: %s', (message, make) => {
+  expect(make).toThrow(`GroundShadow: ${message}`)
+})
