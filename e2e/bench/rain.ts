@@ -23,7 +23,7 @@ import { median } from './statistics'
 
 const WARM_UP = 15
 
-/** What falls in a street with four lamps. */
+/** Rain or snow in a street with four lamps. */
 interface Falling {
   readonly name: string
   /** Rates of water [mm/h]. */

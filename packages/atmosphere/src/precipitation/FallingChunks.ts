@@ -47,7 +47,7 @@ export class FallingChunks {
     this.#speeds = kind.reach.map(() => [])
   }
 
-  /** Takes a rate [mm/h]. @returns What is drawn of each class. */
+  /** Takes a rate [mm/h]. @returns Classes as they are drawn. */
   setRate(rate: number): readonly DrawnClass[] {
     this.#classes = drawnParticles(this.kind, rate, this.most)
     return this.#classes

@@ -54,7 +54,7 @@ export class PrecipitationUniforms {
    * Takes a rate.
    *
    * @param rate - [mm/h].
-   * @param classes - What is drawn at it.
+   * @param classes - Classes as they are drawn at it.
    */
   setRate(rate: number, classes: readonly DrawnClass[]): void {
     const { kind } = this

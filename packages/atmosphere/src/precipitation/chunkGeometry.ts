@@ -2,7 +2,7 @@ import { Float32BufferAttribute, InstancedBufferGeometry } from 'three'
 import type { InstancedBufferAttribute } from 'three'
 import { CHUNK } from './FallingChunks'
 
-/** Chunk of quads: corners in [−1, 1]², and the quad's number. @param chunks - What instances have. */
+/** Chunk of quads: corners in [−1, 1]², and the quad's number. @param chunks - Attribute of instances, by `FallingChunks`. */
 export function chunkGeometry(chunks: InstancedBufferAttribute): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry()
   const corners: number[] = []

@@ -4,7 +4,6 @@ import {
   attribute,
   cameraProjectionMatrix,
   cross,
-  float,
   hash,
   int,
   log,
