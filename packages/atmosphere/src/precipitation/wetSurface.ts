@@ -66,7 +66,7 @@ const INDEX_SQUARED = 1.333 ** 2
 const FILM_ROUGHNESS = 0.15
 const PUDDLE_ROUGHNESS = 0.04
 const SNOW_ROUGHNESS = 0.9
-/** Albedo of new snow in red, green and blue (Wiscombe & Warren 1980, fig. 8). */
+/** Albedo of clean new snow in red, green and blue: about 0.95 (Wiscombe & Warren 1980). */
 const SNOW_ALBEDO = [0.93, 0.95, 0.96] as const
 /** Upward component of normals from which puddles stand, and snow lies. */
 const LEVEL = [0.97, 0.995] as const
@@ -76,7 +76,7 @@ const HOLDS_SNOW = [0.45, 0.75] as const
  * Albedo of a rough surface under a film of water: of the light that it scatters, 1 − 1/n² comes back by total reflection.
  *
  * @param albedo - When dry, in [0, 1].
- * @see Ångström 1925, "The albedo of various surfaces of ground"; Lekner & Dorf 1988, "Why some things are darker when wet", eq. 5
+ * @see Ångström 1925, "The albedo of various surfaces of ground", Geogr. Ann. 7, pp. 323–342; Lekner & Dorf 1988, "Why some things are darker when wet", Appl. Opt. 27, pp. 1278–1280
  */
 const wetAlbedo = (albedo: Vec3): Vec3 =>
   albedo.div(albedo.oneMinus().mul(INDEX_SQUARED).add(albedo))
@@ -88,7 +88,7 @@ const wetAlbedo = (albedo: Vec3): Vec3 =>
  * Object.assign(road, wetSurface(water, { porosity: float(0.8) }))
  * ```
  *
- * @param water - What weather has left. Shared, not owned.
+ * @param water - Water and snow on the surface. Shared, not owned.
  * @returns `colorNode`, `roughnessNode` and `normalNode` of a `MeshStandardNodeMaterial`.
  * @throws If an argument is of the wrong kind.
  */

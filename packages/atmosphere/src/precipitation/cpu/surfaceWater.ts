@@ -17,7 +17,7 @@ const ROUGHNESS_LENGTH = 0.01
  * Pressure of saturated vapour over water [kPa].
  *
  * @param temperature - [°C].
- * @see Tetens 1930, with the constants of Murray 1967
+ * @see Murray 1967, "On the computation of saturation vapor pressure", J. Appl. Meteor. 6, pp. 203–204 (Tetens's formula)
  */
 export const saturationPressure = (temperature: number): number =>
   0.6108 * Math.exp((17.27 * temperature) / (temperature + 237.3))
@@ -27,11 +27,11 @@ export const saturationPressure = (temperature: number): number =>
  *
  * Radiation is the absorbed sunlight: what the surface loses as infrared light is left out.
  *
- * @param temperature - Of the air [°C].
+ * @param temperature - Air temperature [°C].
  * @param humidity - Relative humidity, in [0, 1] [–].
  * @param wind - Speed at 2 m [m/s].
  * @param absorbed - Sunlight that the surface absorbs [W/m²].
- * @see Penman 1948, "Natural evaporation from open water, bare soil and grass", in the units of Shuttleworth 1993, eq. 4.2.30
+ * @see Penman 1948, "Natural evaporation from open water, bare soil and grass", Proc. R. Soc. A 194, pp. 120–145, in the units of Shuttleworth 1993
  */
 export function evaporation(
   temperature: number,
@@ -50,10 +50,10 @@ export function evaporation(
 /**
  * Melt of snow, as water [mm/h].
  *
- * @param temperature - Of the air [°C]; at 1 °C and below nothing melts.
- * @param irradiance - Of the sun and sky on the snow [W/m²].
- * @param albedo - Of the snow [–].
- * @see Pellicciotti et al. 2005, "An enhanced temperature-index glacier melt model", eq. 2 and table 4
+ * @param temperature - Air temperature [°C]; at 1 °C and below nothing melts.
+ * @param irradiance - Sunlight and skylight on the snow [W/m²].
+ * @param albedo - Albedo of the snow [–].
+ * @see Pellicciotti et al. 2005, "An enhanced temperature-index glacier melt model", J. Glaciol. 51, pp. 573–587
  */
 export const snowmelt = (temperature: number, irradiance: number, albedo = 0.8): number =>
   temperature > 1 ? 0.05 * temperature + 0.0094 * (1 - albedo) * irradiance : 0
@@ -62,7 +62,7 @@ export const snowmelt = (temperature: number, irradiance: number, albedo = 0.8):
  * Density of snow after some hours [kg/m³].
  *
  * @param density - Before [kg/m³].
- * @see Verseghy 1991, "CLASS – a Canadian land surface scheme for GCMs, I", eq. 28
+ * @see Verseghy 1991, "CLASS – a Canadian land surface scheme for GCMs, I", Int. J. Climatol. 11, pp. 111–133
  */
 export const settledDensity = (density: number, hours: number): number =>
   SETTLED_SNOW + (density - SETTLED_SNOW) * Math.exp(-SETTLING * hours)
@@ -70,9 +70,9 @@ export const settledDensity = (density: number, hours: number): number =>
 /**
  * Share of the ground that snow covers, in [0, 1) [–].
  *
- * @param water - Of the snow when it melts, ≥ 0 [mm].
+ * @param water - Water equivalent of the snow, ≥ 0 [mm].
  * @param density - [kg/m³].
- * @see Niu & Yang 2007, "An observation-based formulation of snow cover fraction", eq. 4
+ * @see Niu & Yang 2007, "An observation-based formulation of snow cover fraction", J. Geophys. Res. vol. 112, D21101
  */
 export function snowCoverFraction(water: number, density: number): number {
   const depth = water / density // mm of water are kg/m²
@@ -83,6 +83,6 @@ export function snowCoverFraction(water: number, density: number): number {
  * Share of a surface that is wet, in [0, 1] [–].
  *
  * @param film - Water on it, over what it can hold, in [0, 1] [–].
- * @see Deardorff 1978, "Efficient prediction of ground surface temperature and moisture", eq. 19 (of leaves)
+ * @see Deardorff 1978, "Efficient prediction of ground surface temperature and moisture", J. Geophys. Res. 83, pp. 1889–1903 (of leaves)
  */
 export const wetFraction = (film: number): number => Math.min(film, 1) ** (2 / 3)

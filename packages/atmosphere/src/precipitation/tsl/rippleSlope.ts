@@ -6,7 +6,7 @@ const CELL = 0.24
 const PERIOD = 0.6
 /** Layers of cells, each shifted: rings overlap. */
 const LAYERS = 3
-/** Speed of rings: capillary–gravity waves are never slower (Lamb 1932, §267) [m/s]. */
+/** Speed of rings: capillary–gravity waves are never slower (Lamb 1932, ch. IX) [m/s]. */
 const SPEED = 0.23
 /** Length of their waves: that of the slowest [m]. */
 const WAVELENGTH = 0.017
