@@ -6,6 +6,8 @@ import {
   SkyLightProbe,
   snowfall,
   SunDirectionalLight,
+  SurfaceWater,
+  wetSurface,
   type Precipitation
 } from '@welkin/atmosphere'
 import {
@@ -18,8 +20,8 @@ import {
   Scene,
   SpotLight
 } from 'three'
-import { float, vec4 } from 'three/tsl'
-import { RenderPipeline } from 'three/webgpu'
+import { float, vec3, vec4 } from 'three/tsl'
+import { MeshBasicNodeMaterial, MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
 import { rain, snow } from '../../../packages/atmosphere/src/precipitation/ParticleKind'
 import {
   drawnDepth,
@@ -172,6 +174,63 @@ gpuTest(
     expectTrue(drawn[0] > 1000 && drawn[1] === 0, `${drawn.join(' and ')} values changed`)
     pipeline.dispose()
     atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'a surface darkens, puddles and whitens as its water and snow say',
+  async t => {
+    const small = { width: 32, height: 32 }
+    const renderer = await t.createRenderer(small)
+    const camera = new PerspectiveCamera(50, 1, 0.1, 100)
+    camera.position.set(0, 2, 0)
+    camera.rotation.x = -Math.PI / 2
+    const water = new SurfaceWater()
+    const options = { color: vec3(0.3), roughness: float(0.9), hollows: float(0.5), time: float(7) }
+    const nodes = wetSurface(water, options)
+    const shown = new MeshBasicNodeMaterial()
+    const ground = new Mesh(new PlaneGeometry(8, 8), shown)
+    ground.rotation.x = -Math.PI / 2
+    const scene = new Scene()
+    scene.add(ground)
+    const values = async (color: typeof shown.colorNode): Promise<Picture> => {
+      shown.colorNode = color
+      shown.needsUpdate = true
+      return t.render(renderer, scene, camera, small)
+    }
+    const look = async (): Promise<number[]> => [
+      mean(await values(nodes.colorNode), 0),
+      mean(await values(vec3(nodes.roughnessNode)), 0)
+    ]
+    const expectLook = async (albedo: number, roughness: number, what: string): Promise<void> => {
+      const [a, r] = await look()
+      expectClose(a, albedo, { absolute: 1e-3 }, `albedo, ${what}`)
+      expectClose(r, roughness, { absolute: 1e-3 }, `roughness, ${what}`)
+    }
+    await expectLook(0.3, 0.9, 'dry')
+    // A share 1 − 1/n² of what is scattered is reflected back, again and again: A/n² Σ (A(1 − 1/n²))ᵏ.
+    const back = 1 - 1 / 1.333 ** 2
+    const wet = (0.3 * (1 - back)) / (1 - 0.3 * back)
+    water.water = water.filmCapacity
+    await expectLook(wet, 0.15, 'wet')
+    water.water = 2.5
+    await expectLook(wet, 0.04, 'puddle')
+    const still = await values(nodes.normalNode)
+    water.update(0, { rain: 25 })
+    const rippled = await values(nodes.normalNode)
+    expectClose(mean(still, 2), 1, { absolute: 1e-3 }, 'a still puddle is level')
+    const spread = rippled.data.filter((x, i) => i % 4 === 0 && Math.abs(x) > 0.01).length
+    expectTrue(spread > 10, `rings tilt ${spread} of ${32 * 32} pixels`)
+    water.snow = 40
+    await expectLook(0.93, 0.9, 'snow')
+
+    const lit = new MeshStandardNodeMaterial({ color: 0x808080 })
+    Object.assign(lit, wetSurface(water))
+    water.snow = 1
+    ground.material = lit as never
+    scene.add(new AmbientLight('#ffffff', 3))
+    expectLight(await t.render(renderer, scene, camera, small), 'a lit surface')
   },
   { backends: ['webgpu'] }
 )

@@ -5,6 +5,8 @@ import type { ParticleKind } from '../ParticleKind'
 
 /** Depth over which particles vanish in front of what the picture's depth has [m]. */
 const SOFTNESS = 0.1
+/** Growth of a lobed flake's mean opacity per squared unevenness, integrated numerically [–]. */
+const LOBED_AREA = 0.09
 
 /** Values that a streak's corners hand to its pixels. */
 export interface ParticleVaryings {
@@ -40,13 +42,14 @@ export function particleFragment(
     const radius = end.length().toVar() as Float
     const opacity = light.w.toVar() as Float
     if (unevenness > 0) {
-      // Flakes have lobes; blurred ones are round again. Radius 1/(1 + ε sin) has the area (1 − ε²)^−1.5.
+      // Flakes have lobes, which vanish towards the outer radius, or the quad would cut them; blurred ones are round again.
       const sharp = shape.y.mul(unevenness).toConst() as Float
       const angle = atan(end.y, end.x) as unknown as Float
       const three = sin(angle.mul(3).add(shape.z.mul(40)))
       const two = sin(angle.mul(2).add(shape.z.mul(91)))
-      radius.mulAssign(three.add(two).mul(Math.SQRT1_2).mul(sharp).add(1))
-      opacity.mulAssign(sharp.mul(sharp).oneMinus().pow(1.5))
+      const lobes = three.add(two).mul(Math.SQRT1_2).mul(sharp)
+      radius.mulAssign(lobes.mul(radius.mul(radius).min(1).oneMinus()).add(1))
+      opacity.mulAssign(sharp.mul(sharp).mul(LOBED_AREA).add(1).reciprocal())
     }
     opacity.mulAssign(smoothstep(isSoft ? 0 : shape.y, 1, radius).oneMinus())
     if (rays !== null) {
