@@ -24,6 +24,7 @@ import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
 import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
+import { seaSlopeVariance } from './surface/seaWaves'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
@@ -83,6 +84,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   readonly #tiles: PagedTiles
   readonly #grain: Texture
   #seaLevel = 0
+  #windSpeed = 0
   #shadowDistance = 0
   #camera: Camera | null = null
 
@@ -105,7 +107,14 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     const uniforms = new TerrainUniforms(ellipsoid)
     const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory)
     const grain = grainTexture()
-    const material = terrainMaterial(tiles.pages.atlas, grain, uniforms, resolution, detail)
+    const material = terrainMaterial(
+      atmosphere,
+      tiles.pages.atlas,
+      grain,
+      uniforms,
+      resolution,
+      detail
+    )
     super(tileGrid(resolution, CAPACITY), material)
     this.atmosphere = atmosphere
     this.source = source
@@ -140,6 +149,27 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     if (value !== -Infinity) checkRange('Terrain', 'seaLevel', value, -1e5, 1e5)
     this.#seaLevel = value
     this.#uniforms.seaLevel.value = Math.max(value, NO_SEA)
+  }
+
+  /** Wind over the sea, in [0, 40] [m/s]. */
+  get windSpeed(): number {
+    return this.#windSpeed
+  }
+
+  set windSpeed(value: number) {
+    checkRange('Terrain', 'windSpeed', value, 0, 40)
+    this.#windSpeed = value
+    this.#uniforms.seaVariance.value = seaSlopeVariance(value)
+  }
+
+  /** Time that the sea's waves move by [s]. */
+  get waveTime(): number {
+    return this.#uniforms.waveTime.value
+  }
+
+  set waveTime(value: number) {
+    checkFinite('Terrain', 'waveTime', value)
+    this.#uniforms.waveTime.value = value
   }
 
   /** Distance within which ground out of view casts shadows into it, if it casts any, ≥ 0 [m]. */
