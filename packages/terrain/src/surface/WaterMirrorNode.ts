@@ -65,7 +65,7 @@ export class WaterMirrorNode extends AtmosphereNode {
   #mirrored(normalView: Vec3, variance: Float): Vec3 {
     const { view } = this
     const { uniforms, diffuse } = view.air
-    const offset = view.toMapped(positionView as unknown as Vec3).toConst() as Vec3
+    const offset = view.toMapped(positionView).toConst() as Vec3
     const distance = offset.length().toConst()
     const incoming = offset.div(distance).toConst() as Vec3
     const { altitude, cosLight, up } = view.localCoordinates(offset)
@@ -78,7 +78,7 @@ export class WaterMirrorNode extends AtmosphereNode {
     const even = smoothstep(NEAR, FAR, distance).toConst('evenSky') as Float
     const sky = vec3(0).toVar('skyOfWater') as unknown as Variable
     If(even.lessThan(1), () => {
-      sky.assign(skyColor(view, raised.normalize().toConst() as Vec3, null, []))
+      sky.assign(skyColor(view, raised.normalize().toConst(), null, []))
     })
     If(even.greaterThan(0), () => {
       const level = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight).up

@@ -34,10 +34,11 @@ export interface SeaWave {
  */
 export const SEA_WAVES: readonly SeaWave[] = Array.from({ length: COUNT }, (_, i) => {
   const wanted = LONGEST * (SHORTEST / LONGEST) ** (i / (COUNT - 1))
-  // In turn over all heights of the sphere, so that neighbours in length differ in direction.
-  const z = ((((i * 5) % COUNT) + 0.5) / COUNT) * 2 - 1
+  // Even over the sphere, in an order in which neighbours in length differ in direction.
+  const place = (i * 5) % COUNT
+  const z = ((place + 0.5) / COUNT) * 2 - 1
   const level = Math.sqrt(1 - z * z)
-  const unit = [level * Math.cos(TURN * i), level * Math.sin(TURN * i), z]
+  const unit = [level * Math.cos(TURN * place), level * Math.sin(TURN * place), z]
   const vector = unit.map(part => Math.round((part * PERIOD) / wanted)) as [number, number, number]
   const periods = Math.hypot(...vector)
   const length = PERIOD / periods
