@@ -57,7 +57,9 @@ export class WaterMirrorNode extends AtmosphereNode {
     return Fn(() => {
       const { cover, normal, variance } = this.water
       const radiance = vec3(0).toVar('mirrored') as unknown as Variable
-      If(cover.greaterThan(0), () => radiance.assign(this.#mirrored(normal, variance).mul(cover)))
+      If(cover.greaterThan(0), () => {
+        radiance.assign(this.#mirrored(normal, variance).mul(cover))
+      })
       return radiance
     })()
   }
