@@ -1,4 +1,4 @@
-import { Matrix4, Mesh, Quaternion, Vector3 } from 'three'
+import { Matrix4, Quaternion, Vector3 } from 'three'
 import type {
   Camera,
   InstancedBufferGeometry,
@@ -24,7 +24,7 @@ import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
 import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
-import { seaSlopeVariance } from './surface/seaWaves'
+import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
@@ -40,9 +40,6 @@ const SHALLOW = 0.1
 
 /** Height of "no ceiling", above all ground [m]. */
 const NO_CEILING = 1e9
-
-/** Level of "no sea", below all ground [m]. */
-const NO_SEA = -1e9
 
 const positionWorld = new Vector3()
 const positionECEF = new Vector3()
@@ -69,7 +66,7 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
  *
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3
  */
-export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
+export class Terrain extends SeaMesh {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
@@ -83,8 +80,6 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
-  #seaLevel = 0
-  #windSpeed = 0
   #shadowDistance = 0
   #camera: Camera | null = null
 
@@ -115,7 +110,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       resolution,
       detail
     )
-    super(tileGrid(resolution, CAPACITY), material)
+    super(tileGrid(resolution, CAPACITY), material, uniforms)
     this.atmosphere = atmosphere
     this.source = source
     this.resolution = resolution
@@ -138,38 +133,6 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    */
   set(settings: Pick<TerrainOptions, (typeof SETTINGS)[number]>): this {
     return setOptions('Terrain', this, settings, ...SETTINGS)
-  }
-
-  /** Surface of the sea above the ellipsoid [m]; −Infinity for none. */
-  get seaLevel(): number {
-    return this.#seaLevel
-  }
-
-  set seaLevel(value: number) {
-    if (value !== -Infinity) checkRange('Terrain', 'seaLevel', value, -1e5, 1e5)
-    this.#seaLevel = value
-    this.#uniforms.seaLevel.value = Math.max(value, NO_SEA)
-  }
-
-  /** Wind over the sea, in [0, 40] [m/s]. */
-  get windSpeed(): number {
-    return this.#windSpeed
-  }
-
-  set windSpeed(value: number) {
-    checkRange('Terrain', 'windSpeed', value, 0, 40)
-    this.#windSpeed = value
-    this.#uniforms.seaVariance.value = seaSlopeVariance(value)
-  }
-
-  /** Time that the sea's waves move by [s]. */
-  get waveTime(): number {
-    return this.#uniforms.waveTime.value
-  }
-
-  set waveTime(value: number) {
-    checkFinite('Terrain', 'waveTime', value)
-    this.#uniforms.waveTime.value = value
   }
 
   /** Distance within which ground out of view casts shadows into it, if it casts any, ≥ 0 [m]. */
@@ -265,7 +228,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
 
   /** Height of the surface at a point of the ellipsoid [m]. */
   #heightAtSubpoint(position: Vector3): number {
-    return Math.max(this.source.sampleAt(position, sample).height, this.#seaLevel)
+    return Math.max(this.source.sampleAt(position, sample).height, this.seaLevel)
   }
 
   /**
@@ -289,7 +252,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     positionECEF.copy(positionWorld).applyMatrix4(worldToECEF)
     const ground = this.#heightAtSubpoint(ellipsoid.footPoint(positionECEF, subpoint))
     const clearance = Math.max(ellipsoid.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
-    const lowest = Math.max(source.lowest, this.#seaLevel)
+    const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
       camera,
@@ -299,7 +262,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       worldToECEF,
       ellipsoid,
       shadowDistance,
-      this.#seaLevel
+      this.seaLevel
     )
     this.#uniforms.update(viewer, ground)
     this.#tiles.update(renderer, viewer, most)

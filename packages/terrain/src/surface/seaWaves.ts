@@ -60,6 +60,7 @@ export const WAVE_SLOPE = Math.sqrt((3 * WAVE_SHARE) / COUNT)
  * Mean square slope of the sea's surface in a wind.
  *
  * @param windSpeed - 12.5 m above the water [m/s].
- * @see Cox & Munk 1954, "Measurement of the roughness of the sea surface from photographs of the sun's glitter"
+ * @see Mobley 2021, "Ocean Optics Web Book", "Cox-Munk sea surface slope statistics", after Cox & Munk 1954,
+ * "Measurement of the roughness of the sea surface from photographs of the sun's glitter"
  */
 export const seaSlopeVariance = (windSpeed: number): number => 0.003 + 5.12e-3 * windSpeed
