@@ -1,13 +1,6 @@
 import { Matrix4, Quaternion, Vector3 } from 'three'
-import type {
-  Camera,
-  InstancedBufferGeometry,
-  Intersection,
-  Raycaster,
-  Scene,
-  Texture
-} from 'three'
-import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
+import type { Camera, Intersection, Raycaster, Scene, Texture } from 'three'
+import type { Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
 import {
   checkDirection,
