@@ -1,13 +1,6 @@
-import { Matrix4, Mesh, Quaternion, Vector3 } from 'three'
-import type {
-  Camera,
-  InstancedBufferGeometry,
-  Intersection,
-  Raycaster,
-  Scene,
-  Texture
-} from 'three'
-import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
+import { Matrix4, Quaternion, Vector3 } from 'three'
+import type { Camera, Intersection, Raycaster, Scene, Texture } from 'three'
+import type { Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
 import {
   checkDirection,
@@ -24,6 +17,7 @@ import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
 import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
+import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
@@ -39,9 +33,6 @@ const SHALLOW = 0.1
 
 /** Height of "no ceiling", above all ground [m]. */
 const NO_CEILING = 1e9
-
-/** Level of "no sea", below all ground [m]. */
-const NO_SEA = -1e9
 
 const positionWorld = new Vector3()
 const positionECEF = new Vector3()
@@ -68,7 +59,7 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
  *
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3
  */
-export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
+export class Terrain extends SeaMesh {
   /** Shared, not owned. */
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
@@ -82,7 +73,6 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
-  #seaLevel = 0
   #shadowDistance = 0
   #camera: Camera | null = null
 
@@ -105,8 +95,15 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     const uniforms = new TerrainUniforms(ellipsoid)
     const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory)
     const grain = grainTexture()
-    const material = terrainMaterial(tiles.pages.atlas, grain, uniforms, resolution, detail)
-    super(tileGrid(resolution, CAPACITY), material)
+    const material = terrainMaterial(
+      atmosphere,
+      tiles.pages.atlas,
+      grain,
+      uniforms,
+      resolution,
+      detail
+    )
+    super(tileGrid(resolution, CAPACITY), material, uniforms)
     this.atmosphere = atmosphere
     this.source = source
     this.resolution = resolution
@@ -129,17 +126,6 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
    */
   set(settings: Pick<TerrainOptions, (typeof SETTINGS)[number]>): this {
     return setOptions('Terrain', this, settings, ...SETTINGS)
-  }
-
-  /** Surface of the sea above the ellipsoid [m]; −Infinity for none. */
-  get seaLevel(): number {
-    return this.#seaLevel
-  }
-
-  set seaLevel(value: number) {
-    if (value !== -Infinity) checkRange('Terrain', 'seaLevel', value, -1e5, 1e5)
-    this.#seaLevel = value
-    this.#uniforms.seaLevel.value = Math.max(value, NO_SEA)
   }
 
   /** Distance within which ground out of view casts shadows into it, if it casts any, ≥ 0 [m]. */
@@ -235,7 +221,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
 
   /** Height of the surface at a point of the ellipsoid [m]. */
   #heightAtSubpoint(position: Vector3): number {
-    return Math.max(this.source.sampleAt(position, sample).height, this.#seaLevel)
+    return Math.max(this.source.sampleAt(position, sample).height, this.seaLevel)
   }
 
   /**
@@ -259,7 +245,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
     positionECEF.copy(positionWorld).applyMatrix4(worldToECEF)
     const ground = this.#heightAtSubpoint(ellipsoid.footPoint(positionECEF, subpoint))
     const clearance = Math.max(ellipsoid.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
-    const lowest = Math.max(source.lowest, this.#seaLevel)
+    const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
       camera,
@@ -269,7 +255,7 @@ export class Terrain extends Mesh<InstancedBufferGeometry, MeshStandardNodeMater
       worldToECEF,
       ellipsoid,
       shadowDistance,
-      this.#seaLevel
+      this.seaLevel
     )
     this.#uniforms.update(viewer, ground)
     this.#tiles.update(renderer, viewer, most)

@@ -11,6 +11,10 @@ export interface TerrainOptions {
   detail?: number
   /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
   seaLevel?: number
+  /** Wind over the sea, in [0, 40], default 7 [m/s]: more of it has steeper waves, and a wider glint of the sun. */
+  windSpeed?: number
+  /** Time that the sea's waves move by, default 0 [s]: yours to advance. */
+  waveTime?: number
   /** Distance within which ground out of view casts shadows into it, default 3,000 [m]. */
   shadowDistance?: number
   /** Camera that tiles are chosen for; null, the default, for each one that draws. */
@@ -22,13 +26,22 @@ export interface TerrainOptions {
 }
 
 /** Options that may change later. */
-export const SETTINGS = ['seaLevel', 'shadowDistance', 'camera', 'pagesPerFrame'] as const
+export const SETTINGS = [
+  'seaLevel',
+  'windSpeed',
+  'waveTime',
+  'shadowDistance',
+  'camera',
+  'pagesPerFrame'
+] as const
 
 /** Options that are left out. */
 export const DEFAULTS: Required<TerrainOptions> = {
   resolution: 16,
   detail: 1.5,
   seaLevel: 0,
+  windSpeed: 7,
+  waveTime: 0,
   shadowDistance: 3000,
   camera: null,
   pageMemory: 190,

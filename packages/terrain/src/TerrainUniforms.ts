@@ -16,6 +16,10 @@ export class TerrainUniforms {
   readonly groundHeight = number()
   /** Surface of the sea [m]; far below all ground where there is none. */
   readonly seaLevel = number()
+  /** Variance of the sea's slopes. */
+  readonly seaVariance = number()
+  /** Time that the waves move by [s]. */
+  readonly waveTime = number()
   /** Height below which ground stays about the viewer, who would be under it else while pages are missing [m]. */
   readonly ceiling = number()
   /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */

@@ -1,7 +1,19 @@
-import { Fn, If, mix, texture, transformNormalToView, varyingProperty, vec2, vec4 } from 'three/tsl'
+import {
+  Fn,
+  If,
+  float,
+  mix,
+  positionViewDirection,
+  texture,
+  transformNormalToView,
+  varyingProperty,
+  vec2,
+  vec4
+} from 'three/tsl'
 import type { Texture } from 'three'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node, NodeBuilder } from 'three/webgpu'
+import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
@@ -9,6 +21,8 @@ import { faceAxes } from '../tiles/tsl/cubeSphere'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
+import { seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
 const isShadowPass = (material: object): boolean =>
@@ -28,6 +42,7 @@ const handedOn = <T extends Node>(type: string, name: string): T & { assign(valu
  * @param detail - As of `TileTree`.
  */
 export function terrainMaterial(
+  atmosphere: Atmosphere,
   atlas: PageAtlas,
   grain: Texture,
   uniforms: TerrainUniforms,
@@ -37,7 +52,7 @@ export function terrainMaterial(
   const material = new MeshStandardNodeMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
-  const { reference, radii, stretch, seaLevel } = uniforms
+  const { reference, radii, stretch, seaLevel, seaVariance, waveTime } = uniforms
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
@@ -78,13 +93,11 @@ export function terrainMaterial(
   const place = reference.mul(REFERENCE_STEP).add(offset)
   const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
   const { first, second } = faceAxes(face)
-  const isLand = ground.z.greaterThan(seaLevel).select(1, 0) as unknown as Float
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')
   const along = first.mul(ground.x).add(second.mul(ground.y)).toConst('along')
   const gradient = along
     .sub(outward.mul(along.dot(up).div(outward.dot(up))))
-    .mul(isLand)
     .toConst('gradient') as Vec3
   const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst('cosSlope') as Float
   const normal = up.sub(gradient).normalize().toConst('groundNormal') as Vec3
@@ -104,15 +117,33 @@ export function terrainMaterial(
     },
     seaLevel
   )
+  const depth = seaLevel.sub(ground.z).toConst('depth') as Float
+  const { footprint, spread } = surface
+  const sea = seaSurface({ offset, depth, up, footprint, spread }, seaVariance, waveTime)
+  const { cover } = sea
+  const dry = normal.sub(surface.grain)
+  const lit = mix(dry, up.sub(sea.slope), cover).normalize()
+  const litView = (transformNormalToView(lit) as unknown as Vec3).toConst('litNormal')
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
     // Ahead of the branches of near ground: each would find the page's texel and the normal anew.
     ;(surface.frame as unknown as { toStack(): void }).toStack()
-    return vec4(surface.color, 1)
+    const color = surface.color.toVar('groundColor') as unknown as Vec3 & {
+      assign(value: Vec3): void
+    }
+    If(cover.greaterThan(0), () => {
+      const cosViewer = litView.dot(positionViewDirection).max(0).toConst() as Float
+      const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
+      color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
+    })
+    return vec4(color, 1)
   })()
-  material.roughnessNode = surface.roughness
-  material.aoNode = surface.occlusion.mul(blend.w)
-  material.normalNode = transformNormalToView(normal.sub(surface.grain).normalize())
+  // Beckmann's α² is the variance of slopes.
+  material.roughnessNode = mix(surface.roughness, sea.variance.sqrt().sqrt(), cover)
+  material.aoNode = mix(surface.occlusion, float(1), cover).mul(blend.w)
+  material.normalNode = litView
+  const water = { cover, normal: litView, variance: sea.variance }
+  material.emissiveNode = new WaterMirrorNode(atmosphere, water)
   return material
 }

@@ -23,7 +23,6 @@ const GRASS = [0.073, 0.108, 0.031]
 const STRAW = [0.2, 0.172, 0.078]
 const FOREST = [0.02, 0.034, 0.013]
 const SNOW = [0.83, 0.86, 0.9]
-const SEA = [0.008, 0.02, 0.03]
 
 const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
 
@@ -33,6 +32,9 @@ export interface GroundSurface {
   readonly color: Vec3
   /** A vector along the ground that stones are laid by: what they need is known when it is. */
   readonly frame: Vec3
+  /** Longer side of the pixel on the ground, and differences of height within it [m]. */
+  readonly footprint: Float
+  readonly spread: Float
   /** Roughness as of three's materials. */
   readonly roughness: Float
   /** Gradient of stones, along the ground [–]. */
@@ -55,7 +57,7 @@ export interface GroundPlace extends GrainPlace {
 }
 
 /**
- * Rock, scree, grass, forest, sand, snow and sea, by height, slope, latitude and noise.
+ * Rock, scree, grass, forest, sand and snow, by height, slope, latitude and noise.
  *
  * @param seaLevel - [m]
  */
@@ -131,15 +133,12 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
-  const isSea = overSea.lessThan(0).select(1, 0)
   const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
-  const water = mix(color(SEA), color(SAND).mul(0.35), overSea.mul(0.35).exp().min(1))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
   const bump = mix(float(0.12), stones, inland.max(bare))
     .mul(snow.mul(-0.85).add(1))
-    .mul(isSea.oneMinus())
     .toConst('bump')
   const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
@@ -153,8 +152,10 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.4))
   return {
     frame: grain.frame,
-    color: mix(dry, water, isSea),
-    roughness: mix(alpha.sqrt().sqrt().min(1), float(0.22), isSea),
+    footprint: grain.footprint,
+    spread,
+    color: dry,
+    roughness: alpha.sqrt().sqrt().min(1),
     grain: grain.gradient(bump, bump.mul(bareness.max(bare).mul(0.6))),
     occlusion: hollow.mul(0.9).add(1).max(0.3)
   }

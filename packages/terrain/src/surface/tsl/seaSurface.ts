@@ -1,0 +1,108 @@
+import { Fn, If, exp, float, mix, smoothstep, vec3, vec4 } from 'three/tsl'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import { SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
+import { gradientAlong } from './gradientAlong'
+
+/** Reflectance of deep clear water, linear sRGB: that of the sea of `planetGround`. */
+const DEEP = [0.007, 0.022, 0.042]
+
+/**
+ * Extinction of clear water, linear sRGB [1/m]: absorption by pure water at 610, 550 and 465 nm, and 0.03 by what floats in it.
+ *
+ * @see Pope & Fry 1997, "Absorption spectrum (380–700 nm) of pure water", table 3
+ */
+const EXTINCTION = [0.294, 0.087, 0.04]
+
+/** Way of light through water of depth 1, down and up, both bent towards the vertical. */
+const PATH = 2.4
+
+/** Depth at which water has its whole surface [m], and part of the differences of height within a pixel. */
+const SHALLOW = 0.12
+const SHALLOW_SPREAD = 0.5
+
+/** Reflectance of water at normal incidence, refractive index 1.34. */
+export const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
+
+/** The sea at a pixel. */
+export interface SeaSurface {
+  /** Share of the pixel that is water, in [0, 1]. */
+  readonly cover: Float
+  /** Slopes of waves along the ground, ECEF axes [–]. */
+  readonly slope: Vec3
+  /** Variance of the slopes that no wave shows. */
+  readonly variance: Float
+}
+
+/** A place of the sea. */
+export interface SeaPlace {
+  /** As of `latticeNoise`. */
+  readonly offset: Vec3
+  /** Depth of the ground below the surface; negative on land [m]. */
+  readonly depth: Float
+  /** Geodetic up, ECEF axes. */
+  readonly up: Vec3
+  /** Longer side of the pixel on the ground [m]. */
+  readonly footprint: Float
+  /** Differences of height within a pixel [m]. */
+  readonly spread: Float
+}
+
+type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
+
+/**
+ * Water and its waves.
+ *
+ * @param seaVariance - Variance of all slopes, see `seaSlopeVariance`.
+ * @param seconds - Time that waves move by [s].
+ */
+export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float): SeaSurface {
+  const { offset, depth, up, footprint, spread } = place
+  const shallow = spread.mul(SHALLOW_SPREAD).max(SHALLOW)
+  const cover = smoothstep(0, shallow, depth).toConst('cover')
+  const waves = Fn(() => {
+    const sum = vec4(0).toVar('waves') as unknown as Variable
+    If(cover.greaterThan(0), () => {
+      const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
+      for (const { vector, direction, length, frequency } of SEA_WAVES) {
+        const periods = offset
+          .dot(vec3(...vector))
+          .div(256)
+          .sub(seconds.mul(frequency))
+        const kept = footprint.div(length).oneMinus().max(0).mul(steepest).toConst()
+        const tilt = periods
+          .fract()
+          .mul(2 * Math.PI)
+          .cos()
+          .mul(kept)
+        sum.addAssign(vec4(vec3(...direction).mul(tilt), kept.mul(kept).div(3)))
+      }
+      sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
+    })
+    return sum
+  })().toConst('sea') as unknown as Vec4
+  return { cover, slope: waves.xyz.mul(cover), variance: seaVariance.sub(waves.w) }
+}
+
+/**
+ * Fresnel reflectance of rough water: at a mean slope.
+ *
+ * @param cosViewer - Cosine between normal and viewer.
+ * @param variance - Variance of slopes.
+ * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994
+ */
+export function waterFresnel(cosViewer: Float, variance: Float): Float {
+  const rest = cosViewer.mul(cosViewer).add(variance).sqrt().oneMinus().clamp().toConst()
+  const square = rest.mul(rest).toConst()
+  return mix(float(WATER_FRESNEL), float(1), square.mul(square).mul(rest))
+}
+
+/**
+ * Colour of water over its bed: what the way through it leaves of the bed, and deep water.
+ *
+ * @param depth - [m]
+ */
+export function waterColor(bed: Vec3, depth: Float): Vec3 {
+  const [r, g, b] = EXTINCTION
+  const left = exp(vec3(r, g, b).mul(depth.max(0).mul(-PATH)))
+  return mix(vec3(DEEP[0], DEEP[1], DEEP[2]), bed, left)
+}
