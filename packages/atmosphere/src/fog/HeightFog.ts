@@ -11,13 +11,12 @@ import type { ScatteringPhase } from '../optics/ScatteringPhase'
 import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { FogMoments } from './FogMoments'
+import { diffuseMoments } from '../diffuseLight/tsl/diffuseLight'
 import type { FogOvercast } from './FogOvercast'
 import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
-import { partAhead } from './tsl/partAhead'
 import { applyMoments, momentBasis } from '../diffuseLight/tsl/moments'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { volumeSegment } from '../skyVolume/tsl/skyVolume'
+import { radianceBetween, volumeSegment } from '../skyVolume/tsl/skyVolume'
 import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Float, Vec4 } from '../tsl-types'
 import { number, vector3, vector4 } from '../uniforms'
@@ -78,7 +77,6 @@ export class HeightFog implements SkyLayer {
   readonly #falloff = number(1)
   readonly #height = number(0)
   readonly #asymmetry = number(0)
-  readonly #moments = new FogMoments()
   readonly #albedo = vector4()
   readonly #lights: readonly FogLight[]
   #options: Required<HeightFogOptions>
@@ -150,7 +148,6 @@ export class HeightFog implements SkyLayer {
     this.#falloff.value = falloff
     // In float64: float32 of a camera high above sea level has no millimetres.
     this.#height.value = view.height - base
-    this.#moments.altitude = Math.min(Math.max(view.height, base), base + falloff)
     this.#asymmetry.value = this.droplets?.asymmetry ?? asymmetry
     this.#albedo.value.set(...albedo)
     _position.setFromMatrixPosition(view.camera.matrixWorld)
@@ -169,7 +166,9 @@ export class HeightFog implements SkyLayer {
       const { cosViewLight } = ray
       const fog = this.#along(ray)
       // The light of the air in front of that point stays; fog dims the rest.
-      const front = air.radiance.mul(partAhead(ray, air.depth, fog.segment)).toConst()
+      const { uniforms } = ray.view.air
+      const ahead = radianceBetween(uniforms, ray.view.volume, viewpoint, fog.segment, cosViewLight)
+      const front = ahead.mul(source.irradiance).min(air.radiance).toConst()
       const lightOf = (source: LightSource, cosLight: Float, cosViewLight: Float): Vec4 => {
         const { once, often } = this.#light(ray, source, fog.middle, cosLight, cosViewLight)
         return once.add(often)
@@ -286,7 +285,7 @@ export class HeightFog implements SkyLayer {
     const multiple = multipleScattering(above, total, cosSlant)
     const clouds = this.overcast?.light(source, cosLight)
     const light = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).toConst()
-    const moments = this.#moments.of(air, cosLight)
+    const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
     const basis = momentBasis(cosView, cosLight, cosViewLight)
     const asymmetry = vec4(this.#asymmetry)
     const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry)).max(0)
