@@ -91,6 +91,10 @@ const meta: Meta<ValleyArgs> = {
     airglow: factor('Airglow', 'Light of the upper air itself, by night'),
     earthshine: factor('Earthshine', "On the moon's dark side"),
     ambient: factor('Ambient of clouds', 'Light of sky and ground on clouds'),
+    purkinjeShift: {
+      ...factor('Sight by night', 'Bluish grey, as eyes see nights; 0 has the colours of a camera'),
+      control: { type: 'range', min: 0, max: 1, step: 0.05 }
+    },
     ...rendererArgTypes,
     path: { table: { disable: true } }
   },

@@ -1,4 +1,12 @@
-import type { Airglow, AirStyle, LightShafts, MilkyWay, Moon, Stars } from '@welkin/atmosphere'
+import type {
+  Airglow,
+  AirStyle,
+  AutoExposureNode,
+  LightShafts,
+  MilkyWay,
+  Moon,
+  Stars
+} from '@welkin/atmosphere'
 import type { CloudsNode } from '@welkin/clouds'
 
 /** Artistic factors of the valley, 1 where it is as physics has it. */
@@ -10,6 +18,7 @@ export interface ValleyFactors {
   airglow: number
   earthshine: number
   ambient: number
+  purkinjeShift: number
 }
 
 /** Parts of the valley that factors act on. */
@@ -18,6 +27,7 @@ export interface FactorTargets {
   readonly node: CloudsNode
   readonly sky: readonly [MilkyWay, Stars, Airglow]
   readonly luna: Moon
+  readonly exposure: AutoExposureNode
 }
 
 /**
@@ -28,7 +38,7 @@ export interface FactorTargets {
 export function applyFactors(
   factors: ValleyFactors,
   air: AirStyle,
-  { shafts, node, sky: [galaxy, starlight, glow], luna }: FactorTargets,
+  { shafts, node, sky: [galaxy, starlight, glow], luna, exposure }: FactorTargets,
   on: { shafts: number; nightSky: number }
 ): void {
   const { haze, twilightSaturation, ambient } = factors
@@ -39,5 +49,6 @@ export function applyFactors(
   galaxy.intensity = starlight.intensity = on.nightSky * factors.starlight
   glow.intensity = on.nightSky * factors.airglow
   luna.set({ strength: on.nightSky, earthshine: factors.earthshine })
+  exposure.purkinjeShift = factors.purkinjeShift // nights as eyes see them
   // #endregion
 }

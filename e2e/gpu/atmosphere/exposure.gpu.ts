@@ -1,4 +1,9 @@
-import { Atmosphere, autoExposure, photographicToneMapping } from '@welkin/atmosphere'
+import {
+  Atmosphere,
+  autoExposure,
+  photographicToneMapping,
+  purkinjeShift
+} from '@welkin/atmosphere'
 import {
   ACESFilmicToneMapping,
   AgXToneMapping,
@@ -16,6 +21,7 @@ import {
   meterForm
 } from '../../../packages/atmosphere/src/exposure/cpu/meteredLuminance'
 import { ExposureMeter } from '../../../packages/atmosphere/src/exposure/ExposureMeter'
+import { purkinjeShift as shiftTwin } from '../../../packages/atmosphere/test/twins/exposure/purkinjeShift'
 import { tonesOf } from '../../harness/tones'
 import { days, ExposureStage, nights, type ExposureScene } from '../harness/exposure-scenes'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -188,6 +194,43 @@ gpuTest(
   },
   { backends: ['webgpu'] }
 )
+
+gpuTest("Purkinje's shift agrees with its float64 twin, from stars to daylight", async t => {
+  const renderer = await t.createRenderer(size)
+  const hues = [
+    [1, 1, 1],
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [1, 0.7, 0.4],
+    [0, 0, 0]
+  ] as const
+  const levels = Array.from({ length: 33 }, (_, i) => 10 ** (i / 4 - 5))
+  for (const [scale, adaptation, strength] of [
+    [1, 1e-5, 1],
+    [1e3, 1e-5, 1],
+    [1e-4, 0.1, 0.6],
+    [50, 20, 1]
+  ] as const) {
+    const inputs = hues.flatMap(hue =>
+      levels.map(level => hue.map(value => value * level * scale) as [number, number, number])
+    )
+    const got = await evaluateOnGpu(renderer, inputs, input => {
+      const sight = { luminanceScale: scale, adaptation, strength }
+      const [a, b, c] = Object.values(sight).map(value => float(value))
+      return vec4(purkinjeShift(input.xyz, { luminanceScale: a, adaptation: b, strength: c }), 0)
+    })
+    const sight = { luminanceScale: scale, adaptation, strength }
+    for (const [i, input] of inputs.entries()) {
+      const expected = shiftTwin(input, sight)
+      const most = Math.max(...input, ...expected)
+      const label = `colour ${input.join(', ')} per ${scale}`
+      expectClose(got.subarray(4 * i, 4 * i + 3), expected, { absolute: 2e-4 * most }, label)
+      if (adaptation > 5)
+        expectClose(got.subarray(4 * i, 4 * i + 3), input, { relative: 1e-6 }, label)
+    }
+  }
+})
 
 /** Checks a scene's tones as viewers see them. */
 async function judge(

@@ -206,7 +206,9 @@ export class Valley {
     if (hour !== before.hour) this.cycle.hour = hour
     this.#node.quality = quality
     this.#shafts.quality = SHAFTS[typeof quality === 'string' ? quality : 'low']
-    const targets = { shafts: this.#shafts, node: this.#node, sky: this.#glows, luna: this.#moon }
+    const sky = this.#glows
+    const { exposure } = this
+    const targets = { shafts: this.#shafts, node: this.#node, sky, luna: this.#moon, exposure }
     const on = { shafts: Number(this.#state.shafts), nightSky: Number(nightSky) }
     applyFactors(this.#state, this.#style, targets, on)
     for (const each of this.#trees) each.visible = trees

@@ -27,5 +27,6 @@ export const openingState = {
   starlight: 1,
   airglow: 1,
   earthshine: 1,
-  ambient: 1
+  ambient: 1,
+  purkinjeShift: 1
 } satisfies ValleyState

@@ -1,4 +1,4 @@
-import { convertToTexture } from 'three/tsl'
+import { convertToTexture, vec4 } from 'three/tsl'
 import { Node, NodeUpdateType } from 'three/webgpu'
 import type { NodeFrame, TextureNode } from 'three/webgpu'
 import { checkBoolean, checkFinite, checkNonNegative, fail, setOptions } from '@welkin/geo'
@@ -8,6 +8,9 @@ import { checkAtmosphere } from '../view/ViewNodes'
 import { adaptedScale, exposedScale } from './cpu/exposedScale'
 import { cellWeights, meteredLogLuminance, meterForm } from './cpu/meteredLuminance'
 import { ExposureMeter, type MeterReading } from './ExposureMeter'
+import { purkinjeShift } from './tsl/purkinjeShift'
+import type { Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
 
 /** Options of {@link AutoExposureNode}. */
 export interface AutoExposureOptions {
@@ -25,6 +28,8 @@ export interface AutoExposureOptions {
   darkSeconds?: number
   /** See {@link AutoExposureNode.darkNights}; by default true. */
   darkNights?: boolean
+  /** See {@link AutoExposureNode.purkinjeShift}; by default 1. */
+  purkinjeShift?: number
 }
 
 const WHERE = 'AutoExposureNode'
@@ -36,8 +41,12 @@ const SETTINGS = [
   'centerWeight',
   'lightSeconds',
   'darkSeconds',
-  'darkNights'
+  'darkNights',
+  'purkinjeShift'
 ] as const
+
+/** Luminance that eyes are adapted to before the first reading, daylight's [cd/m²]. */
+const DAYLIGHT = 5000
 
 /** @throws If they are not two numbers from `min` to `max` that rise. */
 function checkRising(
@@ -65,8 +74,8 @@ function checkRising(
  * pipeline.render()
  * ```
  *
- * Put it after air and clouds, before bloom; the picture passes unchanged. A scene whose materials draw the air
- * themselves has `pass(scene, camera)` as colour. What is no texture yet is drawn to one of the picture's size.
+ * Put it after air and clouds, before bloom; by day the picture passes unchanged, by night as eyes see it:
+ * {@link purkinjeShift}. A scene whose materials draw the air themselves has `pass(scene, camera)` as colour. What is no texture yet is drawn to one of the picture's size.
  *
  * From a histogram of log2 luminance the mean between two {@link percentiles} becomes 0.17, and the upper percentile no more
  * than 8: for tone mappings with soft highlights, such as `AgXToneMapping` and `ACESFilmicToneMapping`. What is over
@@ -102,6 +111,8 @@ export class AutoExposureNode extends Node<'vec4'> {
   #lightSeconds = 0.4
   #darkSeconds = 1.2
   #darkNights = true
+  #purkinjeShift = 1
+  readonly #sight = { luminanceScale: number(1), adaptation: number(DAYLIGHT), strength: number() }
 
   /** @throws If an argument is missing or of the wrong kind, or an option is unknown or out of range. */
   constructor(colorNode: Node, atmosphere: Atmosphere, options: AutoExposureOptions = {}) {
@@ -200,6 +211,19 @@ export class AutoExposureNode extends Node<'vec4'> {
     this.#darkNights = value
   }
 
+  /**
+   * Strength, in [0, 1], by which night scenes lose their colours to a bluish grey, as rods see them: fully below
+   * 0.005 cd/m², less up to 5 cd/m². 0 shows moonlight as warm as a camera does. None without {@link darkNights} [–].
+   */
+  get purkinjeShift(): number {
+    return this.#purkinjeShift
+  }
+
+  set purkinjeShift(value: number) {
+    checkRange(WHERE, 'purkinjeShift', value, 0, 1)
+    this.#purkinjeShift = value
+  }
+
   /** Luminance last metered; null before the first reading [cd/m²]. */
   get luminance(): number | null {
     return this.#luminance?.mean ?? null
@@ -219,13 +243,17 @@ export class AutoExposureNode extends Node<'vec4'> {
    */
   adapt(deltaSeconds: number): void {
     checkNonNegative(`${WHERE}.adapt`, 'deltaSeconds', deltaSeconds)
-    const { atmosphere, targetScale } = this
-    if (targetScale === null) return
+    const { atmosphere, targetScale, luminance } = this
+    if (targetScale === null || luminance === null) return
     const from = atmosphere.luminanceScale
     const timeConstant = targetScale < from ? this.#lightSeconds : this.#darkSeconds
     atmosphere.luminanceScale = this.#hasAdapted
       ? adaptedScale(from, targetScale, deltaSeconds, timeConstant)
       : targetScale
+    const { adaptation } = this.#sight
+    adaptation.value = this.#hasAdapted
+      ? adaptedScale(adaptation.value, luminance, deltaSeconds, timeConstant)
+      : luminance
     // A picture that is black may wait for its first light.
     this.#hasAdapted ||= !this.#isBlack
   }
@@ -244,6 +272,8 @@ export class AutoExposureNode extends Node<'vec4'> {
 
   override updateBefore({ renderer }: NodeFrame): undefined {
     const { luminanceScale, bakeStepsPerFrame, tables } = this.atmosphere
+    this.#sight.luminanceScale.value = luminanceScale
+    this.#sight.strength.value = this.#darkNights ? this.#purkinjeShift : 0
     // Skies are black before their tables are baked.
     const isBaking = tables.version === 0 && bakeStepsPerFrame < Infinity
     if (renderer === null || isBaking) return
@@ -263,7 +293,8 @@ export class AutoExposureNode extends Node<'vec4'> {
   }
 
   override setup(): Node {
-    return this.#picture
+    const picture = this.#picture as unknown as Vec4
+    return vec4(purkinjeShift(picture.rgb, this.#sight), picture.a)
   }
 
   /** Frees its textures. It can be used again. */
@@ -271,6 +302,7 @@ export class AutoExposureNode extends Node<'vec4'> {
     this.#meter.dispose()
     if ('isRTTNode' in this.#picture) this.#picture.dispose()
     this.#hasAdapted = false
+    this.#sight.adaptation.value = DAYLIGHT
     this.#reading = this.#luminance = null
     super.dispose()
   }

@@ -79,7 +79,8 @@ throwsEach('exposure', [
       [{ centerWeight: -1 }, 'centerWeight must be in [0, 1], got -1'],
       [{ lightSeconds: -1 }, 'lightSeconds must be finite and ≥ 0, got -1'],
       [{ darkSeconds: Infinity }, 'darkSeconds must be finite and ≥ 0, got Infinity'],
-      [{ darkNights: wrong(1) }, 'darkNights must be true or false, got 1']
+      [{ darkNights: wrong(1) }, 'darkNights must be true or false, got 1'],
+      [{ purkinjeShift: 1.5 }, 'purkinjeShift must be in [0, 1], got 1.5']
     ] satisfies [AutoExposureOptions, string][]
   ).map(
     ([options, message]) =>
