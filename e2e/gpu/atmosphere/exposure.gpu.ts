@@ -225,7 +225,7 @@ gpuTest("Purkinje's shift agrees with its float64 twin, from stars to daylight",
       const expected = shiftTwin(input, sight)
       const most = Math.max(...input, ...expected)
       const label = `colour ${input.join(', ')} per ${scale}`
-      expectClose(got.subarray(4 * i, 4 * i + 3), expected, { absolute: 2e-4 * most }, label)
+      expectClose(got.subarray(4 * i, 4 * i + 3), expected, { absolute: 2e-5 * most }, label)
       if (adaptation > 5)
         expectClose(got.subarray(4 * i, 4 * i + 3), input, { relative: 1e-6 }, label)
     }

@@ -5,15 +5,15 @@ import type { Float, Vec3 } from '../../tsl-types'
 const MESOPIC = [0.005, 5] as const
 
 // Rows of linear sRGB to CIE XYZ: X, Y, and the sum X + Y + Z.
-const X = [0.4123908, 0.3575843, 0.1804808] as const
-const Y = [0.212639, 0.7151687, 0.0721923] as const
-const SUM = [0.6443606, 1.1919478, 1.2032052] as const
+const X = [0.4124564, 0.3575761, 0.1804375] as const
+const Y = [0.2126729, 0.7151522, 0.072175] as const
+const SUM = [0.6444632, 1.1919203, 1.2029166] as const
 
 /** Scotopic over photopic luminance of white (D65), by the fit of Larson et al. */
-const WHITE_RATIO = 2.573279
+const WHITE_RATIO = 2.572916
 
 /** Colour of what rods see, of luminance 1: chromaticity (0.25, 0.25), the mean of night paintings. Jensen et al. 2000. */
-const NIGHT = [0.7063651, 0.9898341, 1.9655961] as const
+const NIGHT = [0.7062529, 0.9898568, 1.9660679] as const
 
 /** Darkest X that a ratio is taken of, far below what half floats hold. */
 const LEAST = 1e-12

@@ -2,13 +2,13 @@ import { type Triple, xyzToLinearSRGB } from '../../../src/air/cpu/color'
 
 /** Chromaticities of linear sRGB's primaries (IEC 61966-2-1), and their parts of white's luminance. */
 const PRIMARIES = [
-  { x: 0.64, y: 0.33, luminance: 0.212639 },
-  { x: 0.3, y: 0.6, luminance: 0.7151687 },
-  { x: 0.15, y: 0.06, luminance: 0.0721923 }
+  { x: 0.64, y: 0.33, luminance: 0.2126729 },
+  { x: 0.3, y: 0.6, luminance: 0.7151522 },
+  { x: 0.15, y: 0.06, luminance: 0.072175 }
 ]
 
-/** Chromaticity x of white, D65. */
-const WHITE_X = 0.3127
+/** Chromaticity x of white, D65, by its X, Y and Z. */
+const WHITE_X = 0.95047 / (0.95047 + 1 + 1.08883)
 
 /** Scotopic luminance over photopic by chromaticity: 1 + (Y + Z)/X = 1/x. */
 const scotopicRatio = (x: number): number => 1.33 / x - 1.68
