@@ -10,6 +10,7 @@ import {
   SphereGeometry,
   Vector3
 } from 'three'
+import { renderGroup, uniform } from 'three/tsl'
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
 import { randomSequence } from './random'
@@ -49,6 +50,9 @@ const GROUND_RADIUS = 15_000
 /** Suffices for a small picture, and takes a sixteenth of the time [texels]. */
 const FRAME_MAP_SIZE = 256
 
+/** Light that eyes are adapted to, as it shows in the picture. */
+const MIDDLE_GREY = 0.17
+
 /** Distance from shadow casters to the light [m]. */
 const SHADOW_DISTANCE = 150
 
@@ -86,7 +90,9 @@ export async function createMoon(
   canvas: HTMLCanvasElement,
   args: MoonArgs
 ): Promise<SceneHandle<MoonArgs>> {
-  const renderer = await createRenderer(canvas, args.forceWebGL)
+  const sight = { luminanceScale: uniform(1), adaptation: uniform(1), strength: uniform(1) }
+  for (const each of Object.values(sight)) each.setGroup(renderGroup) // for all materials
+  const renderer = await createRenderer(canvas, args.forceWebGL, false, false, sight)
   const scene = new Scene()
   const camera = new PerspectiveCamera(40, 1, 0.5, 2 * GROUND_RADIUS)
   camera.position.set(0, 1.8, 0)
@@ -141,6 +147,8 @@ export async function createMoon(
     camera.updateProjectionMatrix()
     // Not in the tone mapping: half floats hold neither a night's light nor the sun's disc.
     atmosphere.luminanceScale = 1e-4 * exposureOf(current.exposure)
+    sight.luminanceScale.value = atmosphere.luminanceScale
+    sight.adaptation.value = MIDDLE_GREY / atmosphere.luminanceScale
   }
   apply()
 

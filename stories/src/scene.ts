@@ -1,7 +1,13 @@
-import { photographicToneMapping, type AutoExposureNode } from '@welkin/atmosphere'
+import {
+  photographicToneMapping,
+  purkinjeShift,
+  type AutoExposureNode,
+  type Sight
+} from '@welkin/atmosphere'
 import { CustomToneMapping, InstancedMesh } from 'three'
 import type { Camera, Mesh, PerspectiveCamera, Scene } from 'three'
 import { WebGPURenderer } from 'three/webgpu'
+import type { Node } from 'three/webgpu'
 import type { Air, AirPath } from './air'
 import type { Explorer } from './moving/Explorer'
 
@@ -122,12 +128,14 @@ export function disposeMeshes(meshes: readonly Mesh[]): void {
 /**
  * @param trackTimestamp - True to keep the GPU's time.
  * @param isPost - True where a pipeline draws all of the canvas, which then needs neither samples nor depth.
+ * @param sight - Eyes that see nights, where no `autoExposure` does that.
  */
 export async function createRenderer(
   canvas: HTMLCanvasElement,
   forceWebGL: boolean,
   trackTimestamp = false,
-  isPost = false
+  isPost = false,
+  sight?: Sight
 ): Promise<WebGPURenderer> {
   // One float depth buffer, reversed, holds from 1 m to several Earth radii on both backends.
   const renderer = new WebGPURenderer({
@@ -140,7 +148,11 @@ export async function createRenderer(
   })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
-  renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
+  // #region tone mapping
+  const tones = photographicToneMapping()
+  const seen = (color: Node): Node => (sight ? purkinjeShift(color as Node<'vec3'>, sight) : color)
+  renderer.library.addToneMapping((color, factor) => tones(seen(color), factor), CustomToneMapping)
+  // #endregion
   renderer.toneMapping = CustomToneMapping
   await renderer.init()
   return renderer

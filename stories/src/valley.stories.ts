@@ -123,4 +123,7 @@ export const Evening: Story = {
 }
 
 /** The village's windows are lit; the moon and the stars are. */
-export const Night: Story = { args: { hour: 22.5, season: 0.27, dayLength: 1800 } }
+export const Night: Story = {
+  args: { hour: 22.5, season: 0.27, dayLength: 1800 },
+  tags: ['screenshot', 'webgpu-only']
+}

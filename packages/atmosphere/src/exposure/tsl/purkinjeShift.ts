@@ -12,8 +12,11 @@ const SUM = [0.6444632, 1.1919203, 1.2029166] as const
 /** Scotopic over photopic luminance of white (D65), by the fit of Larson et al. */
 const WHITE_RATIO = 2.572916
 
-/** Colour of what rods see, of luminance 1: chromaticity (0.25, 0.25), the mean of night paintings. Jensen et al. 2000. */
-const NIGHT = [0.7062529, 0.9898568, 1.9660679] as const
+/**
+ * Colour of what rods see, of luminance 1: chromaticity (0.27, 0.277). Tone mappings add contrast, so a picture shows about
+ * (0.25, 0.25), the mean hue of night paintings (Jensen et al. 2000); taken before them, that would show as navy blue.
+ */
+const NIGHT = [0.806139, 0.999199, 1.579175] as const
 
 /** Darkest X that a ratio is taken of, far below what half floats hold. */
 const LEAST = 1e-12

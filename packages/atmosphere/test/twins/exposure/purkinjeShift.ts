@@ -10,6 +10,9 @@ const PRIMARIES = [
 /** Chromaticity x of white, D65, by its X, Y and Z. */
 const WHITE_X = 0.95047 / (0.95047 + 1 + 1.08883)
 
+/** Chromaticity of night. */
+export const NIGHT = { x: 0.27, y: 0.277 }
+
 /** Scotopic luminance over photopic by chromaticity: 1 + (Y + Z)/X = 1/x. */
 const scotopicRatio = (x: number): number => 1.33 / x - 1.68
 
@@ -40,7 +43,7 @@ export function purkinjeShift(
   const t = Math.min(Math.max(decades / 3, 0), 1)
   // 1 − smoothstep, about the middle of the range.
   const rods = strength * (0.5 + (0.5 - t) * (1.5 - 2 * (0.5 - t) ** 2))
-  // x = y = 0.25 has X : Y : Z = 1 : 1 : 2.
-  const night = xyzToLinearSRGB([grey, grey, 2 * grey])
+  const sumOfNight = grey / NIGHT.y
+  const night = xyzToLinearSRGB([NIGHT.x * sumOfNight, grey, (1 - NIGHT.x - NIGHT.y) * sumOfNight])
   return color.map((value, i) => value * (1 - rods) + night[i] * rods) as Triple
 }
