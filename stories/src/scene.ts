@@ -148,11 +148,9 @@ export async function createRenderer(
   })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
-  // #region tone mapping
   const tones = photographicToneMapping()
   const seen = (color: Node): Node => (sight ? purkinjeShift(color as Node<'vec3'>, sight) : color)
   renderer.library.addToneMapping((color, factor) => tones(seen(color), factor), CustomToneMapping)
-  // #endregion
   renderer.toneMapping = CustomToneMapping
   await renderer.init()
   return renderer

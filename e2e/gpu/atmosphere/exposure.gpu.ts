@@ -2,7 +2,8 @@ import {
   Atmosphere,
   autoExposure,
   photographicToneMapping,
-  purkinjeShift
+  purkinjeShift,
+  type AutoExposureOptions
 } from '@welkin/atmosphere'
 import {
   ACESFilmicToneMapping,
@@ -13,7 +14,7 @@ import {
   NearestFilter,
   type Texture
 } from 'three'
-import { agxToneMapping, float, texture, vec3, vec4 } from 'three/tsl'
+import { agxToneMapping, float, texture, uniform, vec3, vec4 } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import {
   cellWeights,
@@ -229,6 +230,50 @@ gpuTest("Purkinje's shift agrees with its float64 twin, from stars to daylight",
       if (adaptation > 5)
         expectClose(got.subarray(4 * i, 4 * i + 3), input, { relative: 1e-6 }, label)
     }
+  }
+})
+
+/** Mean colour of an even, warm scene through an exposure that has adapted to it. */
+async function shownWarm(
+  t: GpuContext,
+  luminanceOfScene: number,
+  options: AutoExposureOptions
+): Promise<number[]> {
+  const renderer = await t.createRenderer(size)
+  const atmosphere = new Atmosphere()
+  const scale = uniform(atmosphere.luminanceScale)
+  const color = vec4(vec3(1.3, 0.95, 0.6).mul(luminanceOfScene).mul(scale), 1)
+  const exposure = autoExposure(color, atmosphere, options)
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputNode = exposure
+  for (let frame = 0; frame < 4; frame++) {
+    await nextFrame()
+    scale.value = atmosphere.luminanceScale
+    pipeline.render()
+    await exposure.settle()
+  }
+  scale.value = atmosphere.luminanceScale
+  const { data } = await t.capture(renderer, () => pipeline.render())
+  const pixels = data.length / 4
+  const mean = [0, 1, 2].map(i => data.reduce((sum, v, k) => (k % 4 === i ? sum + v : sum), 0))
+  exposure.dispose()
+  pipeline.dispose()
+  atmosphere.dispose()
+  return mean.map(sum => sum / pixels)
+}
+
+gpuTest('automatic exposure shows a warm night bluish, unless told otherwise', async t => {
+  for (const [luminance, options, isBluish] of [
+    [0.01, {}, true],
+    [0.01, { purkinjeShift: 0 }, false],
+    [0.01, { darkNights: false }, false],
+    [20, {}, false]
+  ] as const) {
+    const [r, g, b] = await shownWarm(t, luminance, options)
+    const figures = [r, g, b].map(value => value.toFixed(3)).join(', ')
+    const label = `${luminance} cd/m², ${JSON.stringify(options)}: ${figures}`
+    t.note(label)
+    expectTrue(isBluish ? b > 1.1 * g && g > r : r > 1.1 * g && g > 1.1 * b, label)
   }
 })
 
