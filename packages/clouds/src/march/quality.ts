@@ -56,7 +56,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   medium: {
     steps: 288,
-    stepGrowth: 0.0035,
+    stepGrowth: 0.005,
     shortestStep: 4,
     depthStep: 0.3,
     layerSteps: 14,
