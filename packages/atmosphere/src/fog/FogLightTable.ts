@@ -11,8 +11,8 @@ const ALTITUDES = 512
 const LOWEST = -20
 const HIGHEST = 40
 
-/** Rows of a source: direct light twice, and six moments. */
-const ROWS = 8
+/** Rows of a source: direct light, and six moments. */
+const ROWS = 7
 
 /** Light in the fog about a camera. */
 interface CameraLight {
@@ -35,7 +35,8 @@ interface TableState {
 }
 
 /**
- * Light of all sources by altitude in a fog, drawn once a frame for a camera: pixels of fog read it in place of computing it.
+ * Light of all sources by altitude in a fog of smooth phase function, drawn once a frame for a camera: pixels of fog read it in
+ * place of computing it.
  */
 export class FogLightTable {
   readonly #cosines: readonly UniformNode<'float', number>[]
@@ -81,10 +82,10 @@ export class FogLightTable {
     const rows = ROWS * this.#cosines.length
     const read = (row: number): Vec4 => {
       const at = vec2(column, (ROWS * source + row + 0.5) / rows) as Vec2
-      return sampleLevel0(light.texels, at).toConst() as Vec4
+      return sampleLevel0(light.texels, at).toConst()
     }
-    const [m00, m10, m11, m20, m21, m22] = [2, 3, 4, 5, 6, 7].map(read)
-    return { direct: read(0), sharp: read(1), diffuse: { m00, m10, m11, m20, m21, m22 } }
+    const [direct, m00, m10, m11, m20, m21, m22] = Array.from({ length: ROWS }, (_, i) => read(i))
+    return { direct, diffuse: { m00, m10, m11, m20, m21, m22 } }
   }
 
   #lightFor(camera: Camera): CameraLight {
@@ -111,11 +112,9 @@ export class FogLightTable {
       this.#cosines.forEach((cosLight, source) => {
         const row = texel.y.sub(ROWS * source).toConst()
         If(row.greaterThan(-0.5).and(row.lessThan(ROWS - 0.5)), () => {
-          const { direct, sharp, diffuse } = lightOf(source, middle, cosLight as Float)
+          const { direct, diffuse } = lightOf(source, middle, cosLight)
           const { m00, m10, m11, m20, m21, m22 } = diffuse
-          const all = [direct, sharp, m00, m10, m11, m20, m21, m22].map(each =>
-            vec4(each).toConst()
-          )
+          const all = [direct, m00, m10, m11, m20, m21, m22].map(each => vec4(each).toConst())
           for (const [i, value] of all.entries()) {
             If(row.equal(i), () => {
               result.assign(value)

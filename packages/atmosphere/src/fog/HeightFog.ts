@@ -119,6 +119,7 @@ export class HeightFog implements SkyLayer {
     if (view.viewpoint === null) return
     const isNeeded = this.density > 0
     if (isNeeded) this.overcast?.prepare(renderer, view, this.base)
+    if (this.droplets !== null) return
     // The table is drawn now, and reads what it depends on.
     this.update(view)
     const others = this.#lights.map(({ directionMapped }) => view.up.dot(directionMapped.value))
@@ -168,9 +169,10 @@ export class HeightFog implements SkyLayer {
       const fog = this.#along(ray)
       // The light of the air in front of that point stays; fog dims the rest.
       const front = air.radiance.mul(partAhead(ray, fog.segment, air.depth)).toConst()
+      // Materials have no texture to spare, and droplets take one for themselves.
       const lightOf = (index: number, from: LightSource, cosLight: Float, seen: LayerRay): Vec4 => {
         const light =
-          view.camera === null
+          view.camera === null || this.droplets !== null
             ? this.#lightAt(view.air, from, fog.middle, cosLight)
             : this.#tableOf(source, view.air).light(view.camera, index, fog.middle)
         const { once, often } = this.#scattered(light, seen, cosLight)
@@ -280,7 +282,7 @@ export class HeightFog implements SkyLayer {
   ): { once: Vec4; often: Vec4 } {
     const angles = { cosView, cosLight, cosViewLight }
     const phase = this.droplets?.phase(angles)
-    return scatteredByFog(light, angles, this.#asymmetry as Float, phase)
+    return scatteredByFog(light, angles, this.#asymmetry, phase)
   }
 
   /** Frees the tables of its light, which are drawn again when needed. */

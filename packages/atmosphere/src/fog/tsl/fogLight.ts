@@ -19,8 +19,8 @@ export interface FogMedium extends FogLayerNodes {
 export interface FogLight {
   /** Light that arrives unscattered, forward-scattered light included. */
   direct: Vec4
-  /** Light that arrives without any scattering by the fog, for what droplets scatter exactly once. */
-  sharp: Vec4
+  /** Light that arrives without any scattering by the fog, for what droplets with a phase function scatter exactly once. */
+  sharp?: Vec4
   /** Moments of what droplets make of all other light, times `RADIANCE_SCALE` [1/sr]. */
   diffuse: Moments<Vec4>
 }
@@ -93,7 +93,7 @@ export function scatteredByFog(
   const sky = applyMoments(diffuse, momentBasis(cosView, cosLight, cosViewLight), 1, 1)
   return {
     // What light scattered exactly once has of fine structure: depths unscaled.
-    once: phase === undefined ? once : once.add(sharp.mul(phase.sub(smooth))),
+    once: phase === undefined ? once : once.add(sharp!.mul(phase.sub(smooth))),
     often: sky.max(0).div(RADIANCE_SCALE)
   }
 }
