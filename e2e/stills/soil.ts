@@ -34,7 +34,7 @@ export const meadow: Soil = {
 export const snow: Soil = { low: [0.85, 0.86, 0.87], high: [0.8, 0.81, 0.83], variation: 0.05 }
 export const redDust: Soil = { low: [0.3, 0.13, 0.06], high: [0.22, 0.11, 0.06], variation: 0.3 }
 
-/** What grows on fields, linear sRGB: grass, young and ripe corn, hay, earth. */
+/** Colours of fields, linear sRGB: grass, young and ripe corn, hay, earth. */
 const CROPS: readonly Color[] = [
   [0.17, 0.2, 0.068],
   [0.09, 0.155, 0.042],

@@ -96,7 +96,7 @@ export function forestAt(x: number, z: number): number {
   return share * smooth(32, 18, slope)
 }
 
-/** What grows in the strips of fields, linear sRGB: hay, ripe and young corn, earth. */
+/** Colours of fields, linear sRGB: hay, ripe and young corn, earth. */
 const CROPS = [
   [0.17, 0.16, 0.06],
   [0.24, 0.19, 0.08],

@@ -24,7 +24,7 @@ interface CameraLight {
   drawnFor: number | undefined | null
 }
 
-/** What a table is drawn for. */
+/** State that a table is drawn for. */
 interface TableState {
   /** μ_s of each source. */
   readonly cosines: readonly number[]
