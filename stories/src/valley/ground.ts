@@ -98,10 +98,10 @@ export function forestAt(x: number, z: number): number {
 
 /** Colours of fields, linear sRGB: hay, ripe and young corn, earth. */
 const CROPS = [
-  [0.17, 0.16, 0.06],
-  [0.24, 0.19, 0.08],
-  [0.07, 0.115, 0.028],
-  [0.15, 0.115, 0.075]
+  [0.145, 0.145, 0.053],
+  [0.185, 0.165, 0.07],
+  [0.075, 0.115, 0.032],
+  [0.13, 0.115, 0.068]
 ] as const
 
 /** Height up to which land is farmed [m]. */
@@ -148,23 +148,19 @@ function groundMaterial(): VertexLitMaterial {
   // Each of its many scales is blurred far away: there are coarser ones.
   picture.anisotropy = 1
   material.addEventListener('dispose', () => picture.dispose())
-  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned, and
-  // sheared along heights its own way: cliffs have rock on them, and no slope has streaks of all.
+  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
+  // above: with heights in it, slopes that go with them have streaks.
   const noise = (period: number): Node<'float'> => {
     const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-    const [over, aside] = [Math.cos(2.4 * period), Math.sin(2.4 * period)].map(t => t / period)
-    const at = vec2(
-      positionWorld.dot(vec3(cos, over, sine)),
-      positionWorld.dot(vec3(-sine, aside, cos))
-    )
-    return texture(picture, at).r.sub(0.5).mul(2)
+    const turned = vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
+    return texture(picture, turned).r.sub(0.5).mul(2)
   }
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
   const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
   const patches = noise(390).mul(upTo(24_000)).toVar()
-  const grain = noise(3.7).mul(1.6).toVar()
+  const grain = noise(1.9).mul(0.8).add(noise(7.3)).toVar()
   const fine = grain
     .add(noise(71).mul(upTo(2500)))
     .add(patches)

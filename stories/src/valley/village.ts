@@ -30,7 +30,7 @@ import { setLit, VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
 /** Luminances of the darkest and the brightest lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
-const WINDOWS = [0.05, 0.7] as const
+const WINDOWS = [0.12, 1.2] as const
 const LAMP = 40
 /** Part of the windows that are lit. */
 const LIT = 0.42
@@ -107,7 +107,7 @@ export function createVillage(
     .exp2()
   const shown = glow.mul(inRoom).mul(isPane.mul(0.8).add(0.2))
   walls.colorNode = mix(vec3(1), vec3(0.12, 0.13, 0.15), isWindow)
-  walls.emissiveNode = mix(vec3(1, 0.42, 0.11), vec3(1, 0.66, 0.34), hue).mul(
+  walls.emissiveNode = mix(vec3(1, 0.27, 0.02), vec3(1, 0.44, 0.09), hue).mul(
     isWindow.mul(isLit).mul(shown).mul(luminance)
   )
   const tiles = new VertexLitMaterial({ color: '#5b3a2e' })
