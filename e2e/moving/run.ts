@@ -30,6 +30,16 @@ async function until(
   }
 }
 
+/** Waits until the view has stood still for a while. */
+async function atRest(page: Page): Promise<ExplorerState> {
+  for (let last = await look(page); ;) {
+    await page.waitForTimeout(500)
+    const view = await look(page)
+    if (JSON.stringify(view) === JSON.stringify(last)) return view
+    last = view
+  }
+}
+
 /** Waits until the address has another view than before. */
 async function addressAfter(page: Page, before: string): Promise<string> {
   await page.waitForFunction(url => location.href !== url, before, { timeout: 10_000 })
@@ -46,6 +56,34 @@ async function open(browser: Browser, url: string): Promise<Page> {
   await page.waitForFunction(() => 'welkinMoving' in window)
   await page.evaluate(() => window.welkinMoving.show('plain', 'Afternoon'))
   return page
+}
+
+/** One finger draws the picture along, two move. All below what the page shows over the canvas. */
+async function touch(page: Page): Promise<void> {
+  const devtools = await page.context().newCDPSession(page)
+  type Finger = readonly [x: number, y: number]
+  const put = (
+    type: 'touchStart' | 'touchMove' | 'touchEnd',
+    ...fingers: Finger[]
+  ): Promise<unknown> =>
+    devtools.send('Input.dispatchTouchEvent', {
+      type,
+      touchPoints: fingers.map(([x, y], id) => ({ x, y, id }))
+    })
+  const before = await look(page)
+  await put('touchStart', [80, 75])
+  for (const x of [76, 70, 60]) await put('touchMove', [x, 75])
+  await put('touchEnd')
+  const turned = await until(page, ({ heading }) => Math.abs(heading - before.heading) > 5)
+  report.pass('a finger looks around', `${(turned.heading - before.heading).toFixed(1)}°`)
+
+  await put('touchStart', [60, 80])
+  await put('touchStart', [60, 80], [100, 80])
+  await put('touchMove', [60, 30], [100, 30])
+  const far = ({ x, z }: ExplorerState): number => Math.hypot(x - turned.x, z - turned.z)
+  const moved = await until(page, view => far(view) > 0.2)
+  await put('touchEnd')
+  report.pass('two fingers move', `${far(moved).toFixed(2)} m`)
 }
 
 async function move(browser: Browser, origin: string): Promise<void> {
@@ -81,6 +119,8 @@ async function move(browser: Browser, origin: string): Promise<void> {
   const last = await until(page, ({ y }) => Math.abs(y - 1.7) < 1e-6)
   report.pass('Space jumps', `and lands at ${last.y.toFixed(2)} m`)
 
+  await touch(page)
+  const rest = await atRest(page)
   const link = await addressAfter(page, start)
   report.check(link.includes('#view='), 'the address has the view', link)
   await page.close()
@@ -88,7 +128,7 @@ async function move(browser: Browser, origin: string): Promise<void> {
   const again = await open(browser, link)
   const back = await look(again)
   const keys = ['x', 'y', 'z', 'heading', 'pitch', 'walking'] as const
-  const worst = Math.max(...keys.map(key => Math.abs(back[key] - last[key])))
+  const worst = Math.max(...keys.map(key => Math.abs(back[key] - rest[key])))
   report.check(worst < 0.011, 'the link brings the view back', `within ${worst.toFixed(3)}`)
   await again.close()
 }

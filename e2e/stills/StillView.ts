@@ -40,8 +40,9 @@ import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass, shadow } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
-import { Landscape, meadow, redDust, snow } from './landscape'
+import { Landscape } from './landscape'
 import type { Still } from './scenes'
+import { meadow, redDust, snow } from './soil'
 import { readPicture } from './readPicture'
 
 /** Vertical field of view [°]. */

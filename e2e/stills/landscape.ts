@@ -1,34 +1,32 @@
 import {
   type BufferAttribute,
-  ConeGeometry,
+  Color,
+  DoubleSide,
   Float32BufferAttribute,
   Group,
   InstancedMesh,
   Matrix4,
   Mesh,
-  MeshStandardMaterial,
   PlaneGeometry,
   Quaternion,
-  SphereGeometry,
   Vector3
 } from 'three'
+import { vec3 } from 'three/tsl'
+import { MeshStandardNodeMaterial } from 'three/webgpu'
+import { limetree, spruce } from '../../stories/src/valley/forest'
+import { mottled } from '../../stories/src/valley/Trees'
+import { hedgeDistance, soilMaterial, type Soil } from './soil'
 
 /** Half width of the hills [m]. */
 const EXTENT = 60_000
 /** Quads along a side. */
 const QUADS = 500
-const TREES = 700
-
-/** Colours of low ground and of heights, and how much each varies, linear sRGB. */
-export interface Soil {
-  low: readonly [number, number, number]
-  high: readonly [number, number, number]
-  variation: number
-}
-
-export const meadow: Soil = { low: [0.1, 0.13, 0.045], high: [0.22, 0.18, 0.14], variation: 0.3 }
-export const snow: Soil = { low: [0.85, 0.86, 0.87], high: [0.8, 0.81, 0.83], variation: 0.04 }
-export const redDust: Soil = { low: [0.3, 0.13, 0.06], high: [0.22, 0.11, 0.06], variation: 0.2 }
+/** Trees of either kind, and distances within which they stand [m]. */
+const TREES = 420
+const NEAREST_TREE = 55
+const FARTHEST_TREE = 2600
+/** Groves, of spruces every other one. */
+const GROVES = 16
 
 /** Pseudo-random number of a lattice point, in [0, 1). */
 function random(x: number, y: number): number {
@@ -49,7 +47,15 @@ function valueNoise(x: number, y: number): number {
   return mix(near, far, fade(y - row))
 }
 
-/** Height of the hills: ridged noise of seven octaves, level within 1.5 km of the middle [m]. */
+/** Low swells of the level middle, by which one sees its fields; none at the camera [m]. */
+function swell(x: number, z: number): number {
+  const distance = Math.hypot(x, z)
+  const part = Math.min(Math.max((distance - 40) / 400, 0), 1)
+  const noise = valueNoise(x / 330 + 40, z / 330) + 0.4 * valueNoise(x / 120, z / 120 + 7)
+  return 13 * fade(part) * (noise - 0.55)
+}
+
+/** Height of the hills: ridged noise of seven octaves, nearly level within 1.5 km of the middle [m]. */
 function hillHeight(x: number, z: number): number {
   let sum = 0
   for (let octave = 0; octave < 7; octave++) {
@@ -58,54 +64,74 @@ function hillHeight(x: number, z: number): number {
     sum += 0.45 ** octave * (1 - Math.abs(2 * noise - 1)) ** 2
   }
   const rise = Math.min(Math.max((Math.hypot(x, z) - 1500) / 6000, 0), 1)
-  return 900 * rise * sum - 2
+  return 900 * rise * sum - 2 + swell(x, z) * (1 - rise)
 }
 
 /** Hills that bend with a planet, finer about the middle. */
 function hills(radius: number, soil: Soil): Mesh {
   const geometry = new PlaneGeometry(2, 2, QUADS, QUADS).rotateX(-Math.PI / 2)
   const positions = geometry.attributes.position as BufferAttribute
-  const colors: number[] = []
+  const heights = new Float32Array(positions.count)
   const stretch = (t: number): number => EXTENT * (0.08 * t + 0.92 * t ** 3)
   for (let i = 0; i < positions.count; i++) {
     const x = stretch(positions.getX(i))
     const z = stretch(positions.getZ(i))
-    const height = hillHeight(x, z)
-    positions.setXYZ(i, x, height - (x * x + z * z) / (2 * radius), z)
-    const patches = (valueNoise(x / 300, z / 300) + valueNoise(x / 40, z / 40)) / 2
-    const rock = Math.min(Math.max((height - 500) / 500, 0), 1)
-    const shade = 1 + soil.variation * (patches - 0.5)
-    for (const channel of [0, 1, 2]) {
-      colors.push(shade * mix(soil.low[channel], soil.high[channel], rock))
-    }
+    heights[i] = hillHeight(x, z)
+    positions.setXYZ(i, x, heights[i] - (x * x + z * z) / (2 * radius), z)
   }
-  geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
+  geometry.setAttribute('height', new Float32BufferAttribute(heights, 1))
   geometry.computeVertexNormals()
-  const mesh = new Mesh(geometry, new MeshStandardMaterial({ vertexColors: true, roughness: 1 }))
+  const mesh = new Mesh(geometry, soilMaterial(soil))
   mesh.castShadow = mesh.receiveShadow = true
   mesh.frustumCulled = false
   return mesh
 }
 
-/** Round and pointed trees in the level middle, 4 to 14 m high. */
+/** A random place about a middle, at a distance up to `reach` [m]. */
+function placeAbout(x: number, z: number, seed: number, nearest: number, reach: number): Vector3 {
+  const angle = 2 * Math.PI * random(seed, 1)
+  const distance = nearest + (reach - nearest) * random(seed, 2) ** 1.5
+  return new Vector3(x + distance * Math.cos(angle), 0, z + distance * Math.sin(angle))
+}
+
+/** Place of a tree: in a hedge between fields, or in one of the groves, most of which are of its kind. */
+function treePlace(seed: number, kind: number): Vector3 | null {
+  if (random(seed, 3) > (kind === 0 ? 0.15 : 0.85)) {
+    const place = placeAbout(0, 0, seed, NEAREST_TREE, FARTHEST_TREE)
+    return hedgeDistance(place.x, place.z) < 4 ? place : null
+  }
+  const grove =
+    2 * Math.floor((GROVES / 2) * random(seed, 4)) + Number(random(seed, 5) < 0.2) + kind
+  const middle = placeAbout(0, 0, 1000 + grove, 500, FARTHEST_TREE)
+  return placeAbout(middle.x, middle.z, seed + 0.5, 0, 30 + 50 * random(grove, 6))
+}
+
+/** Broad-leaved trees and spruces, 4 to 10 m high. */
 function trees(): Group {
-  const kinds = [
-    new SphereGeometry(3, 12, 8).scale(1, 1.2, 1).translate(0, 4, 0),
-    new ConeGeometry(2.2, 9, 10).translate(0, 5, 0)
-  ]
+  const kinds = [limetree(5, 1), spruce(5, 8)]
+  const material = new MeshStandardNodeMaterial({
+    roughness: 1,
+    vertexColors: true,
+    side: DoubleSide
+  })
+  material.colorNode = vec3(mottled())
   const group = new Group()
   for (const [kind, geometry] of kinds.entries()) {
-    const material = new MeshStandardMaterial({ color: '#33421f', roughness: 1 })
     const mesh = new InstancedMesh(geometry, material, TREES)
-    for (let i = 0; i < TREES; i++) {
-      const angle = 2 * Math.PI * random(i, 10 * kind + 1)
-      const distance = 40 + 3000 * random(i, 10 * kind + 2)
-      const x = distance * Math.cos(angle)
-      const z = distance * Math.sin(angle)
-      const size = new Vector3().setScalar(0.6 + 0.8 * random(i, 10 * kind + 3))
-      const place = new Vector3(x, hillHeight(x, z), z)
-      mesh.setMatrixAt(i, new Matrix4().compose(place, new Quaternion(), size))
+    let count = 0
+    for (let seed = kind * 50_000; count < TREES && seed < kind * 50_000 + 40_000; seed++) {
+      const place = treePlace(seed, kind)
+      if (place === null) continue
+      place.y = hillHeight(place.x, place.z) - 0.2
+      const size = 0.45 + 0.55 * random(seed, 7)
+      const width = size * (0.85 + 0.35 * random(seed, 8))
+      const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), 6.3 * random(seed, 9))
+      mesh.setMatrixAt(count, new Matrix4().compose(place, turn, new Vector3(width, size, width)))
+      const tint = random(seed, 10)
+      mesh.setColorAt(count, new Color(1.3 + tint, 1.3 + 0.6 * tint, 1.3))
+      count++
     }
+    mesh.count = count
     mesh.castShadow = mesh.receiveShadow = true
     group.add(mesh)
   }

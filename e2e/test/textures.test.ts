@@ -7,6 +7,7 @@ import {
   airglow,
   airStyle,
   distanceFog,
+  droplets,
   heightFieldShadow,
   heightFog,
   iceCrystals,
@@ -153,10 +154,9 @@ it('features of the atmosphere sample as many textures as its README says', asyn
     ['`stars`', () => [stars()]],
     ['`milkyWay`', () => [milkyWay()]],
     ['`planetGround`', () => [planetGround({ surface: picture() })]],
-    [
-      '`sunFlare`',
-      () => [sunFlare(), airglow(), heightFog(), distanceFog(), planetGround(), airStyle()]
-    ]
+    ['`heightFog` without', () => [heightFog()]],
+    ['`heightFog` with', () => [heightFog({ droplets: droplets() })]],
+    ['`sunFlare`', () => [sunFlare(), airglow(), distanceFog(), planetGround(), airStyle()]]
   ]
   for (const [feature, layers] of rows) {
     const [sky, lit] = await withLayers(layers)

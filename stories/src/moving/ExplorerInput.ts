@@ -44,6 +44,8 @@ export class ExplorerInput {
 
   constructor(canvas: HTMLElement) {
     this.canvas = canvas
+    // Else the browser takes the first finger for a scroll.
+    canvas.style.touchAction = 'none'
     const { signal } = this.listeners
     const page = canvas.ownerDocument
     const view = page.defaultView ?? window
@@ -123,7 +125,6 @@ export class ExplorerInput {
 
   private touch({ pointerId, pointerType, button, clientX, clientY }: PointerEvent): void {
     if (!this.isLooking || (pointerType === 'mouse' && button !== 0)) return
-    this.canvas.style.touchAction = 'none'
     this.canvas.setPointerCapture(pointerId)
     const start = new Vector2(clientX, clientY)
     this.fingers.set(pointerId, { start, at: start.clone() })

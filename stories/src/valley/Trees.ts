@@ -1,6 +1,6 @@
 import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
 import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
-import { positionGeometry, sin, vec3 } from 'three/tsl'
+import { positionGeometry, sin, smoothstep, vec3 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
 import { VertexLitMaterial } from './VertexLitMaterial'
@@ -26,11 +26,11 @@ const _place = new Vector3()
 const _direction = new Vector3()
 
 /** Brightness of leaves and the gaps between them, about 1. */
-function mottled(): Node<'float'> {
-  const { x, y, z } = positionGeometry.mul(5.3)
+export function mottled(): Node<'float'> {
+  const { x, y, z } = positionGeometry.mul(6.7)
   const across = sin(x.add(sin(z.mul(1.3)).mul(2.1)))
   const up = sin(y.mul(1.4).add(sin(x.mul(0.8)).mul(1.7)))
-  return across.mul(up).mul(0.3).add(1)
+  return smoothstep(-0.6, 0.6, across.mul(up)).mul(0.5).add(0.75)
 }
 
 /** Trees of a kind, drawn with fewer triangles the farther they are from the camera. */

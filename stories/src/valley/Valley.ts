@@ -58,7 +58,7 @@ export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactor
 /** Quads of the ground along a side, by quality. */
 const QUADS: Readonly<Record<CloudQualityName, number>> = {
   low: 256,
-  medium: 384,
+  medium: 320,
   high: 640,
   ultra: 800
 }

@@ -53,7 +53,7 @@ function painted(
  * @param tiers - Tiers of branches about the trunk.
  * @param sides - Sides of a tier.
  */
-function spruce(tiers: number, sides: number): BufferGeometry {
+export function spruce(tiers: number, sides: number): BufferGeometry {
   const height = 9 / (tiers + 0.6)
   const cones = Array.from({ length: tiers }, (_, i) =>
     painted(
@@ -77,7 +77,7 @@ function spruce(tiers: number, sides: number): BufferGeometry {
 function leafy(x: number, y: number, z: number, size: number, detail: number): BufferGeometry {
   const crown = new IcosahedronGeometry(size, detail)
   const { position, normal } = crown.attributes
-  const vertex = new Vector3()
+  const [vertex, leaf] = [new Vector3(), new Vector3()]
   const middle = new Vector3(x, y, z).sub(new Vector3(0, 4.8, 0))
   for (let i = 0; i < position.count; i++) {
     vertex.fromBufferAttribute(position, i)
@@ -87,10 +87,15 @@ function leafy(x: number, y: number, z: number, size: number, detail: number): B
       .multiplyScalar(7 / size)
       .round()
     const bump = Math.abs(Math.sin(12.9 * a + 78.2 * b + 37.7 * c + 10 * size) * 43_758.5) % 1
-    vertex.multiplyScalar(0.84 + 0.3 * bump)
+    vertex.multiplyScalar(0.72 + 0.46 * bump)
     position.setXYZ(i, vertex.x, vertex.y, vertex.z)
-    // Half of the crown, half of the whole tree.
+    // Half of the crown, half of the whole tree, with leaves turned this way and that.
     vertex.normalize().addScaledVector(middle, 0.25).normalize()
+    vertex.addScaledVector(
+      leaf.set(Math.sin(40 * bump), Math.sin(71 * bump), Math.sin(97 * bump)),
+      0.3
+    )
+    vertex.normalize()
     normal.setXYZ(i, vertex.x, vertex.y, vertex.z)
   }
   // All that a vertex has follows from its place: faces share them.
@@ -103,7 +108,7 @@ function leafy(x: number, y: number, z: number, size: number, detail: number): B
  * @param crowns - Balls of leaves, in [1, 5].
  * @param detail - Times that their faces are divided.
  */
-function limetree(crowns: number, detail: number): BufferGeometry {
+export function limetree(crowns: number, detail: number): BufferGeometry {
   const balls =
     crowns === 1
       ? [leafy(0, 5.4, 0, 3.3, detail)]
@@ -162,7 +167,10 @@ function plant(
       new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), 6.3 * random()),
       new Vector3(size * (0.8 + 0.3 * random()), size * (0.9 + 0.5 * random()), size)
     )
-    trees.push({ matrix, color: new Color().setScalar(0.75 + 0.5 * random()) })
+    // Some are yellower, some nearly blue.
+    const [brightness, yellow] = [0.75 + 0.55 * random(), random() ** 1.5]
+    const color = new Color(0.85 + 0.75 * yellow, 0.95 + 0.25 * yellow, 1.1 - 0.4 * yellow)
+    trees.push({ matrix, color: color.multiplyScalar(brightness) })
   }
   return trees
 }

@@ -3,10 +3,15 @@ import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
   float,
+  floor,
+  Fn,
+  fract,
+  If,
   mix,
   normalWorld,
   positionView,
   positionWorld,
+  sin,
   smoothstep,
   texture,
   vec2,
@@ -91,40 +96,92 @@ export function forestAt(x: number, z: number): number {
   return share * smooth(32, 18, slope)
 }
 
+/** Colours of fields, linear sRGB: hay, ripe and young corn, earth. */
+const CROPS = [
+  [0.145, 0.145, 0.053],
+  [0.185, 0.165, 0.07],
+  [0.075, 0.115, 0.032],
+  [0.13, 0.115, 0.068]
+] as const
+
+/** Height up to which land is farmed [m]. */
+const FARMED = 40
+
+/** Half width of the road from the village to the lake [m]. */
+const HALF_ROAD = 2.2
+
+/** Fields in strips, with their furrows; grass in some. */
+function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
+  const { x, z } = positionWorld
+  const across = x
+    .div(70)
+    .add(sin(z.div(300)).mul(0.3))
+    .toConst()
+  const strip = floor(across).toConst()
+  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
+  const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
+  let color = grass
+  for (const [i, crop] of CROPS.entries()) {
+    color = chance.greaterThan(0.4 + 0.15 * i).select(vec3(...crop), color)
+  }
+  // Furrows along the strips, until they are as fine as pixels.
+  const furrows = sin(across.mul((2 * Math.PI * 70) / 2.6)).mul(smoothstep(170, 40, distance))
+  return color.mul(furrows.mul(0.08).add(1))
+}
+
+/** 1 on the road that leads through the village to the lake. */
+function roadAt(): Node<'float'> {
+  const { x, z } = positionWorld
+  const middle = sin(z.div(95))
+    .mul(14)
+    .add(sin(z.div(310)).mul(38))
+    .add(VILLAGE.x - 44)
+  const isSouth = smoothstep(-300, -285, z)
+  return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
+}
+
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
 function groundMaterial(): VertexLitMaterial {
   const material = new VertexLitMaterial()
   const place = positionWorld.xz
-  // Sheared, so that cliffs have rock on them and no streaks.
-  const sheared = place.add(positionWorld.y.mul(vec2(0.83, 0.57))).toVar()
   const picture = createNoiseTexture()
   // Each of its many scales is blurred far away: there are coarser ones.
   picture.anisotropy = 1
   material.addEventListener('dispose', () => picture.dispose())
-  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned.
+  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
+  // above: with heights in it, slopes that go with them have streaks.
   const noise = (period: number): Node<'float'> => {
-    const [cos, sin] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-    const turned = vec2(sheared.dot(vec2(cos, sin)), sheared.dot(vec2(-sin, cos)))
+    const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
+    const turned = vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
     return texture(picture, turned).r.sub(0.5).mul(2)
   }
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
   const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
-  const fine = noise(1.9)
-    .mul(0.7)
-    .add(noise(7.3))
+  const patches = noise(390).mul(upTo(24_000)).toVar()
+  const grain = noise(1.9).mul(0.8).add(noise(7.3)).toVar()
+  const fine = grain
     .add(noise(71).mul(upTo(2500)))
-    .add(noise(390).mul(upTo(12_000)))
+    .add(patches)
     .toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
-  const slope = normalWorld.y.oneMinus().add(fine.mul(0.025)).toVar()
+  const rough = broad.mul(0.5).add(patches).toVar()
+  const slope = normalWorld.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
   const [forest, field] = [
     attribute<'vec2'>('cover', 'vec2').x,
     attribute<'vec2'>('cover', 'vec2').y
   ]
-  const meadow = mix(vec3(0.06, 0.095, 0.025), vec3(0.13, 0.13, 0.045), broad.mul(0.6).add(0.5))
-  const crops = mix(meadow, vec3(0.19, 0.16, 0.06), field)
+  const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
+  const meadow = mix(vec3(0.05, 0.09, 0.02), vec3(0.14, 0.135, 0.05), dry).toVar()
+  const farmed = Fn(() => {
+    const ground = meadow.toVar()
+    If(height.lessThan(FARMED), () => {
+      const tilled = mix(meadow, crops(meadow, distance), field)
+      ground.assign(mix(tilled, vec3(0.24, 0.21, 0.17), roadAt()))
+    })
+    return ground
+  })()
   const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
   const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
   const alpine = mix(
@@ -132,13 +189,14 @@ function groundMaterial(): VertexLitMaterial {
     rock,
     smoothstep(1050, 1700, height.add(broad.mul(150)))
   )
-  const lit = float(0.95).add(fine.mul(0.3))
-  let color: Node<'vec3'> = mix(crops, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
+  const lit = float(0.95).add(fine.mul(0.3)).add(grain.mul(0.12))
+  let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)
   color = mix(color.mul(lit), rock.mul(lit), smoothstep(0.27, 0.42, slope))
   const snow = smoothstep(1350, 1750, height.add(broad.mul(170)).add(fine.mul(40)))
-  color = mix(color, vec3(0.82, 0.84, 0.87), snow.mul(smoothstep(0.5, 0.3, slope)))
+  const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
+  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
   material.colorNode = color
   return material
 }
@@ -203,12 +261,9 @@ export function createGround(quads: number): Group {
   return ground
 }
 
-/** 1 on fields of the valley's floor, in strips of random sizes. */
+/** 1 where fields may be: on the valley's floor, away from the village. */
 function fieldAt(x: number, z: number): number {
-  const strip = Math.floor(x / 70 + 0.3 * Math.sin(z / 300))
-  const row = Math.floor(z / 160 + 0.7 * strip)
-  const isField = Math.abs(Math.sin(127.1 * strip + 311.7 * row)) > 0.62
-  if (!isField) return 0
   const height = flatHeight(x, z)
-  return smooth(40, 20, height) * smooth(4, 8, height)
+  const village = smooth(130, 175, Math.hypot(x - VILLAGE.x, z - VILLAGE.z))
+  return smooth(FARMED, 20, height) * smooth(4, 8, height) * village
 }

@@ -29,9 +29,11 @@ import { groundHeight, VILLAGE } from './ground'
 import { setLit, VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
-/** Luminance of a lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
-const WINDOW = 1.5
+/** Luminances of the darkest and the brightest lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
+const WINDOWS = [0.12, 1.2] as const
 const LAMP = 40
+/** Part of the windows that are lit. */
+const LIT = 0.42
 
 /** A gabled roof over the unit square, of unit height. */
 function roof(): BufferGeometry {
@@ -91,9 +93,23 @@ export function createVillage(
     .dot(vec3(1, 7, 13))
     .add(float(instanceIndex).mul(101))
     .add(500)
-  const isLit = step(hash(number), lit.mul(0.55))
+  const isLit = step(hash(number), lit.mul(LIT))
+  // Lamps of rooms are of many strengths and hues; light is strongest below the ceiling, and less behind the bars.
+  const [strength, hue] = [hash(number.add(37)), hash(number.add(91))]
+  const aside = along.sub(0.5).abs().mul(5)
+  const below = inCell.y.sub(0.62).div(0.27).toConst()
+  const inRoom = aside.mul(aside).add(below.mul(below)).mul(0.38).oneMinus().max(0.1)
+  const isPane = step(0.09, aside).mul(step(0.06, below.add(0.25).abs()))
+  const [faint, bright] = WINDOWS.map(Math.log2)
+  const glow = strength
+    .mul(bright - faint)
+    .add(faint)
+    .exp2()
+  const shown = glow.mul(inRoom).mul(isPane.mul(0.8).add(0.2))
   walls.colorNode = mix(vec3(1), vec3(0.12, 0.13, 0.15), isWindow)
-  walls.emissiveNode = vec3(1, 0.62, 0.28).mul(isWindow.mul(isLit).mul(luminance))
+  walls.emissiveNode = mix(vec3(1, 0.27, 0.02), vec3(1, 0.44, 0.09), hue).mul(
+    isWindow.mul(isLit).mul(shown).mul(luminance)
+  )
   const tiles = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
@@ -142,7 +158,7 @@ export function createVillage(
     object,
     light(share, luminanceScale) {
       lit.value = share
-      luminance.value = WINDOW * luminanceScale
+      luminance.value = luminanceScale
       lamp.intensity = share * LAMP * luminanceScale
       setLit(lamp, share > 0)
     },

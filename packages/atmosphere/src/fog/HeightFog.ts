@@ -1,48 +1,25 @@
 import type { Vector4 } from 'three'
 import { Vector3 } from 'three'
 import { If, exp, vec4 } from 'three/tsl'
-import type { Renderer, UniformNode } from 'three/webgpu'
-import { checkOptions, fail } from '@welkin/geo'
+import type { NodeFrame, Renderer, UniformNode } from 'three/webgpu'
+import { checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import { checkFade, checkRange, checkSpectrum, withDefaults } from '../check'
-import { checkSources, type LightSource } from '../view/LightSource'
+import type { LightSource } from '../view/LightSource'
 import type { ScatteringPhase } from '../optics/ScatteringPhase'
 import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
-import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { diffuseMoments } from '../diffuseLight/tsl/diffuseLight'
+import type { Air } from '../scattering/tsl/ray'
+import { FogLightTable } from './FogLightTable'
 import type { FogOvercast } from './FogOvercast'
-import { airMass, fogDepth, henyeyGreenstein, multipleScattering } from './tsl/heightFog'
-import { applyMoments, momentBasis } from '../diffuseLight/tsl/moments'
+import { checked, DEFAULTS, type HeightFogOptions } from './HeightFogOptions'
+import { fogLight, scatteredByFog, type FogLight } from './tsl/fogLight'
+import { fogDepth } from './tsl/heightFog'
+import { partAhead } from './tsl/partAhead'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { radianceBetween, volumeSegment } from '../skyVolume/tsl/skyVolume'
-import { lightTransmittance } from '../transmittance/tsl/transmittance'
+import { volumeSegment } from '../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../tsl-types'
 import { number, vector3, vector4 } from '../uniforms'
-
-/** Options of {@link HeightFog}. */
-export interface HeightFogOptions {
-  /** Extinction at the base, ≥ 0 [1/m]. Visibility is about 4/density. */
-  density?: number
-  /** Altitude over which the density falls to 1/e, in [0.1, 1e5] [m]. */
-  falloff?: number
-  /** Altitude at which the fog has its density: the valley's floor [m]. */
-  base?: number
-  /** Single-scattering albedo of the droplets at the four wavelengths, in [0, 1]. */
-  albedo?: Spectrum
-  /** Asymmetry g of the droplets' phase function, in [0, 0.95]; without effect if there are `droplets`. */
-  asymmetry?: number
-  /**
-   * Droplets of a size, `droplets({ radius: 8 })`, with fogbow, glory and corona; shared, not owned. Null,
-   * the default, for the smooth phase function of `asymmetry`.
-   */
-  droplets?: ScatteringPhase | null
-  /** Light sources besides the sun, such as the moon's `source`. */
-  sources?: readonly LightSource[]
-  /** Altitudes of the camera between which the fog fades away, rising [m]. */
-  fade?: readonly [number, number]
-}
 
 /** Options that may change later. */
 const SETTINGS = ['density', 'falloff', 'base', 'albedo', 'asymmetry', 'fade'] as const
@@ -76,9 +53,12 @@ export class HeightFog implements SkyLayer {
   readonly #density = number(0)
   readonly #falloff = number(1)
   readonly #height = number(0)
+  readonly #base = number(0)
   readonly #asymmetry = number(0)
   readonly #albedo = vector4()
-  readonly #lights: readonly FogLight[]
+  readonly #lights: readonly OtherLight[]
+  /** Light in the fog, by the sun that lights it. */
+  readonly #tables = new Map<LightSource, FogLightTable>()
   #options: Required<HeightFogOptions>
   #version = 0
 
@@ -135,8 +115,29 @@ export class HeightFog implements SkyLayer {
     return this
   }
 
-  prepare(renderer: Renderer, view: AtmosphereView): void {
-    if (this.density > 0) this.overcast?.prepare(renderer, view, this.base)
+  prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
+    if (view.viewpoint === null) return
+    const isNeeded = this.density > 0
+    if (isNeeded) this.overcast?.prepare(renderer, view, this.base)
+    if (this.droplets !== null) return
+    // The table is drawn now, and reads what it depends on.
+    this.update(view)
+    const others = this.#lights.map(({ directionMapped }) => view.up.dot(directionMapped.value))
+    const table = this.#tableOf(view.source, view.atmosphere.tables.air)
+    const cosines = [view.viewpoint.cosLight, ...others]
+    table.draw(renderer, view.camera, { cosines, isNeeded, renderId: frame?.renderId })
+  }
+
+  #tableOf(source: LightSource, air: Air): FogLightTable {
+    let table = this.#tables.get(source)
+    if (table === undefined) {
+      const sources = [source, ...this.sources]
+      table = new FogLightTable(sources.length, (index, middle, cosLight) =>
+        this.#lightAt(air, sources[index], middle, cosLight)
+      )
+      this.#tables.set(source, table)
+    }
+    return table
   }
 
   update(view: AtmosphereView): void {
@@ -148,6 +149,7 @@ export class HeightFog implements SkyLayer {
     this.#falloff.value = falloff
     // In float64: float32 of a camera high above sea level has no millimetres.
     this.#height.value = view.height - base
+    this.#base.value = base
     this.#asymmetry.value = this.droplets?.asymmetry ?? asymmetry
     this.#albedo.value.set(...albedo)
     _position.setFromMatrixPosition(view.camera.matrixWorld)
@@ -162,22 +164,26 @@ export class HeightFog implements SkyLayer {
     const depth = vec4(air.depth).toVar()
     const light = vec4(air.radiance).toVar()
     If(this.#density.greaterThan(0), () => {
-      const { source, viewpoint } = ray.view
-      const { cosViewLight } = ray
+      const { view } = ray
+      const { source, viewpoint } = view
       const fog = this.#along(ray)
       // The light of the air in front of that point stays; fog dims the rest.
-      const { uniforms } = ray.view.air
-      const ahead = radianceBetween(uniforms, ray.view.volume, viewpoint, fog.segment, cosViewLight)
-      const front = ahead.mul(source.irradiance).min(air.radiance).toConst()
-      const lightOf = (source: LightSource, cosLight: Float, cosViewLight: Float): Vec4 => {
-        const { once, often } = this.#light(ray, source, fog.middle, cosLight, cosViewLight)
+      const front = air.radiance.mul(partAhead(ray, fog.segment, air.depth)).toConst()
+      // Materials have no texture to spare, and droplets take one for themselves.
+      const lightOf = (index: number, from: LightSource, cosLight: Float, seen: LayerRay): Vec4 => {
+        const light =
+          view.camera === null || this.droplets !== null
+            ? this.#lightAt(view.air, from, fog.middle, cosLight)
+            : this.#tableOf(source, view.air).light(view.camera, index, fog.middle)
+        const { once, often } = this.#scattered(light, seen, cosLight)
         return once.add(often)
       }
-      let inScatter = lightOf(source, viewpoint.cosLight, cosViewLight).mul(source.irradiance)
-      for (const { source: other, directionMapped, irradiance } of this.#lights) {
-        const cosLight = ray.view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
+      let inScatter = lightOf(0, source, viewpoint.cosLight, ray).mul(source.irradiance)
+      for (const [i, { source: other, directionMapped, irradiance }] of this.#lights.entries()) {
+        const cosLight = view.up.dot(directionMapped).clamp(-1, 1).toConst() as Float
         const cosViewLight = ray.direction.dot(directionMapped).clamp(-1, 1).toConst() as Float
-        inScatter = inScatter.add(lightOf(other, cosLight, cosViewLight).mul(irradiance))
+        const light = lightOf(i + 1, other, cosLight, { ...ray, cosViewLight })
+        inScatter = inScatter.add(light.mul(irradiance))
       }
       const { through } = fog
       const behind = air.radiance.sub(front).mul(through)
@@ -197,9 +203,10 @@ export class HeightFog implements SkyLayer {
     const [once, often] = [vec4(0).toVar(), vec4(0).toVar()]
     If(fog.through.lessThan(1), () => {
       const { cosLight } = viewpoint
-      const light = this.#light(ray, source, fog.middle, cosLight, ray.cosViewLight)
-      once.assign(light.once.mul(fog.seen))
-      often.assign(light.often.mul(fog.seen))
+      const light = this.#lightAt(ray.view.air, source, fog.middle, cosLight)
+      const scattered = this.#scattered(light, ray, cosLight)
+      once.assign(scattered.once.mul(fog.seen))
+      often.assign(scattered.often.mul(fog.seen))
     })
     const { through, depthAt } = fog
     return {
@@ -252,68 +259,44 @@ export class HeightFog implements SkyLayer {
   }
 
   /**
-   * Light of a source that fog scatters to the camera, as if all of it were at one point [1/sr]: once, and more often.
+   * Light of a source at an altitude.
    *
-   * @param middle - Altitude of the point above the base, in falloff heights.
+   * @param middle - Altitude above the base, in falloff heights.
    */
-  #light(
-    { view, cosView }: LayerRay,
-    source: LightSource,
-    middle: Float,
-    cosLight: Float,
-    cosViewLight: Float
-  ): { once: Vec4; often: Vec4 } {
-    const { air } = view
-    const { uniforms } = air
-    const radius = uniforms.bottomRadius.add(view.height)
-    const rise = middle.mul(this.#falloff).sub(this.#height)
-    const altitude = view.height.add(rise).clamp(0, uniforms.thickness).toConst() as Float
-    // Similarity: forward-scattered light counts as not scattered.
-    const vertical = this.#density.mul(this.#falloff).mul(this.#asymmetry.oneMinus()).toConst()
-    const above = vertical.mul(middle.negate().exp()).toConst() as Float
-    const total = above.max(vertical).toConst() as Float
-    const slant = airMass(radius.div(this.#falloff), cosLight.max(0))
-    const cosSlant = slant.reciprocal().toConst() as Float
-    const scaled = above.mul(slant).toConst()
-    const smooth = henyeyGreenstein(cosViewLight, this.#asymmetry).toConst()
-    let once = vec4(smooth.mul(scaled.negate().exp())) as Vec4
-    if (this.droplets !== null) {
-      // What light scattered exactly once has of fine structure: depths unscaled.
-      const sharp = this.droplets.phase({ cosViewLight, cosView, cosLight }).sub(smooth)
-      once = once.add(sharp.mul(scaled.div(this.#asymmetry.oneMinus()).negate().exp()))
+  #lightAt(air: Air, source: LightSource, middle: Float, cosLight: Float): FogLight {
+    const medium = {
+      density: this.#density as Float,
+      falloff: this.#falloff as Float,
+      base: this.#base as Float,
+      asymmetry: this.#asymmetry as Float
     }
-    const multiple = multipleScattering(above, total, cosSlant)
     const clouds = this.overcast?.light(source, cosLight)
-    const light = lightTransmittance(uniforms, air.transmittance, altitude, cosLight).toConst()
-    const moments = diffuseMoments(uniforms, air.diffuse!, altitude, cosLight)
-    const basis = momentBasis(cosView, cosLight, cosViewLight)
-    const asymmetry = vec4(this.#asymmetry)
-    const sky = applyMoments(moments, basis, asymmetry, asymmetry.mul(asymmetry)).max(0)
-    const often = light.mul(multiple).add(sky.div(RADIANCE_SCALE))
-    const first = light.mul(once)
-    return clouds === undefined
-      ? { once: first, often }
-      : { once: first.mul(clouds.direct), often: often.mul(clouds.diffuse) }
+    return fogLight(air, medium, middle, cosLight, clouds)
+  }
+
+  /** Light that fog scatters to the camera, as if all of it were at one point [1/sr]: once, and more often. */
+  #scattered(
+    light: FogLight,
+    { cosView, cosViewLight }: LayerRay,
+    cosLight: Float
+  ): { once: Vec4; often: Vec4 } {
+    const angles = { cosView, cosLight, cosViewLight }
+    const phase = this.droplets?.phase(angles)
+    return scatteredByFog(light, angles, this.#asymmetry, phase)
+  }
+
+  /** Frees the tables of its light, which are drawn again when needed. */
+  dispose(): void {
+    for (const table of this.#tables.values()) table.dispose()
   }
 }
 
 /** Light source besides the sun, for the camera that renders. */
-interface FogLight {
+interface OtherLight {
   source: LightSource
   /** Direction to the source, mapped space, unit length. */
   directionMapped: UniformNode<'vec3', Vector3>
   irradiance: UniformNode<'vec4', Vector4>
-}
-
-const DEFAULTS: Required<HeightFogOptions> = {
-  density: 0.01,
-  falloff: 50,
-  base: 0,
-  albedo: [1, 1, 1, 1],
-  asymmetry: 0.75,
-  droplets: null,
-  sources: [],
-  fade: [5000, 15_000]
 }
 
 /** Altitude above which fog is negligible, in falloff heights. */
@@ -321,26 +304,6 @@ const MAX_ALTITUDE = 40
 
 const _position = new Vector3()
 const _direction = new Vector3()
-
-/** Checked options; undefined ones stay as they were. */
-function checked(
-  before: Required<HeightFogOptions>,
-  given: HeightFogOptions
-): Required<HeightFogOptions> {
-  const options = withDefaults('HeightFog', before, given)
-  const { density, falloff, base, albedo, asymmetry, droplets, sources, fade } = options
-  checkRange('HeightFog', 'density', density, 0, 100)
-  checkRange('HeightFog', 'falloff', falloff, 0.1, 1e5)
-  checkRange('HeightFog', 'base', base, -1e5, 1e6)
-  checkRange('HeightFog', 'asymmetry', asymmetry, 0, 0.95)
-  checkSpectrum('HeightFog', 'albedo', albedo, 1)
-  checkSources('HeightFog', sources)
-  checkFade('HeightFog', fade)
-  if (droplets !== null && typeof droplets?.phase !== 'function') {
-    fail('HeightFog', 'droplets must be droplets() or null', droplets)
-  }
-  return { ...options, albedo: [...albedo], sources: [...sources], fade: [...fade] }
-}
 
 /** Height fog: see {@link HeightFog}. */
 export const heightFog = (options?: HeightFogOptions): HeightFog => new HeightFog(options)

@@ -5,6 +5,7 @@ import type { Ellipsoid } from '@welkin/geo'
 import type { AtmosphereParameters, Spectrum } from '../parameters/AtmosphereParameters'
 import { viewpointScalars } from './cpu/viewpoint'
 import type { SphericalSpace } from './cpu/spherical'
+import type { Air } from '../scattering/tsl/ray'
 import type { LightSource } from './LightSource'
 import type { SkyVolumes, VolumeOrigins } from '../skyVolume/SkyVolumes'
 import type { Vec4 } from '../tsl-types'
@@ -26,7 +27,11 @@ export interface ViewedAtmosphere {
   /** Layers of the sky, as far as they light the planet. */
   readonly layers: readonly { readonly source?: LightSource; skyLight?(light: Vec4): Vec4 }[]
   /** `version` is 0 until the first bake is done. */
-  readonly tables: { readonly version: number; readonly volumes: Pick<SkyVolumes, 'volumeFor'> }
+  readonly tables: {
+    readonly version: number
+    readonly volumes: Pick<SkyVolumes, 'volumeFor'>
+    readonly air: Air
+  }
 }
 
 /** A camera in the space where the planet is a sphere, computed in float64. */

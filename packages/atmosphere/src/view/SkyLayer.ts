@@ -33,6 +33,8 @@ export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' 
   readonly distance?: Float
   /** True if the planet is in the way of the sky. */
   readonly hitsGround?: Bool
+  /** Part of the sky volumes up to the point, where they were asked. */
+  readonly segment?: VolumeSegment
 }
 
 /** Distance from which on shadows take a ray for one into the sky, or to the planet that is drawn with it [m]. */
