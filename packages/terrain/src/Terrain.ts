@@ -12,6 +12,7 @@ import {
 } from '@welkin/geo'
 import type { HeightSample, HeightSource } from './heights/HeightSource'
 import { CAPACITY, PagedTiles } from './pages/PagedTiles'
+import type { PageImages } from './pages/PageImages'
 import type { PageSource } from './pages/PageSource'
 import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
@@ -19,7 +20,7 @@ import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
 import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
-import { checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
+import { checkImagery, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
 import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
@@ -64,6 +65,8 @@ export class Terrain extends SeaMesh {
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
   readonly source: HeightSource | PageSource
+  /** Pictures of the ground; shared, not owned; null for its made-up colours. */
+  readonly imagery: PageImages | null
   /** Cells along a tile's edge. */
   readonly resolution: number
   /** Distance at which a tile is split, in diagonals of it. */
@@ -86,14 +89,16 @@ export class Terrain extends SeaMesh {
     checkAtmosphere(where, atmosphere)
     if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     checkSource(where, source)
-    const { resolution, detail, pageMemory, ...settings } = withDefaults(where, DEFAULTS, options)
+    const all = withDefaults(where, DEFAULTS, options)
+    const { resolution, detail, pageMemory, imagery, ...settings } = all
+    checkImagery(where, imagery)
     checkRange(where, 'resolution', resolution, 4, 128)
     if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
     checkRange(where, 'detail', detail, 1.2, 4)
     checkRange(where, 'pageMemory', pageMemory, 4, 1000)
     const { ellipsoid } = atmosphere
     const uniforms = new TerrainUniforms(ellipsoid)
-    const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory)
+    const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory, imagery)
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
@@ -106,6 +111,7 @@ export class Terrain extends SeaMesh {
     super(tileGrid(resolution, CAPACITY), material, uniforms)
     this.atmosphere = atmosphere
     this.source = source
+    this.imagery = imagery
     this.resolution = resolution
     this.detail = detail
     this.pageMemory = pageMemory
@@ -126,6 +132,16 @@ export class Terrain extends SeaMesh {
    */
   set(settings: Pick<TerrainOptions, (typeof SETTINGS)[number]>): this {
     return setOptions('Terrain', this, settings, ...SETTINGS)
+  }
+
+  /** Reflectance of white in the pictures, ≥ 0 [–]. */
+  get imageAlbedo(): number {
+    return this.#uniforms.imageAlbedo.value
+  }
+
+  set imageAlbedo(value: number) {
+    checkNonNegative('Terrain', 'imageAlbedo', value)
+    this.#uniforms.imageAlbedo.value = value
   }
 
   /** Distance within which ground out of view casts shadows into it, if it casts any, ≥ 0 [m]. */

@@ -24,6 +24,8 @@ export class TerrainUniforms {
   readonly ceiling = number()
   /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */
   readonly skirt = number(1)
+  /** Factor on the colours of pictures [–]. */
+  readonly imageAlbedo = number(1)
   /** Radii of the ellipsoid [m]. */
   readonly radii = vector()
   /** Largest radius over each radius: where the ellipsoid is a sphere, but for size [–]. */

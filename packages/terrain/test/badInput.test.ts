@@ -23,6 +23,8 @@ const cases: [message: string, call: () => unknown][] = [
   ['Terrain: resolution must be even, got 33', () => make({ resolution: 33 })],
   ['Terrain: detail must be in [1.2, 4], got 1', () => make({ detail: 1 })],
   ['Terrain: seaLevel must be in [-100000, 100000], got NaN', () => make({ seaLevel: NaN })],
+  ['Terrain: imagery must be ImageTiles', () => make({ imagery: wrong({}) })],
+  ['Terrain: imageAlbedo must be finite and ≥ 0, got -1', () => make({ imageAlbedo: -1 })],
   ['Terrain: shadowDistance must be finite and ≥ 0, got -1', () => make({ shadowDistance: -1 })],
   ['Terrain: pageMemory must be in [4, 1000], got 1', () => make({ pageMemory: 1 })],
   ['Terrain: pagesPerFrame must be in [1, 1000], got 0', () => make({ pagesPerFrame: 0 })],

@@ -11,6 +11,7 @@ import type { PageAtlas } from './PageAtlas'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
   heightsOf,
+  imageOf,
   loadedHeightsOf,
   loadedSurfaceOf,
   surfaceOf,
@@ -39,6 +40,8 @@ export class PageBaker {
   readonly #surface: FragmentPass
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
+  /** Colours of one page, and the pass that draws them; null without pictures. */
+  readonly #image: { texture: DataTexture; pass: FragmentPass } | null = null
 
   constructor(
     readonly source: HeightSource | PageSource,
@@ -53,8 +56,13 @@ export class PageBaker {
     const tile = this.#tile as unknown as PageUniforms
     const pass = (name: string, output: ReturnType<typeof heightsOf>): FragmentPass =>
       new FragmentPass(`Welkin.Terrain.${name}`, output)
+    const side = surfaceSide + 2
+    if (atlas.images !== null) {
+      const texture = new DataTexture(new Uint8ClampedArray(4 * side ** 2), side, side)
+      texture.name = 'Welkin.Terrain.image'
+      this.#image = { texture, pass: pass('images', imageOf(texture, surfaceSide)) }
+    }
     if (isPageSource(source)) {
-      const side = surfaceSide + 2
       const texture = new DataTexture(new Float32Array(side ** 2), side, side, RedFormat, FloatType)
       texture.name = 'Welkin.Terrain.loaded'
       texture.minFilter = texture.magFilter = NearestFilter
@@ -117,7 +125,18 @@ export class PageBaker {
     }
   }
 
+  /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
+  bakeImage(renderer: Renderer, slot: number, colors: Uint8ClampedArray): void {
+    const { texture, pass } = this.#image!
+    ;(texture.image.data as Uint8ClampedArray).set(colors)
+    texture.needsUpdate = true
+    this.atlas.aim(this.atlas.images!, slot)
+    pass.render(renderer, this.atlas.images!)
+  }
+
   dispose(): void {
+    this.#image?.pass.dispose()
+    this.#image?.texture.dispose()
     this.#heights.dispose()
     this.#surface.dispose()
     this.#loaded?.dispose()

@@ -4,6 +4,7 @@ import type { HeightSource } from '../heights/HeightSource'
 import type { Viewer } from '../tiles/cpu/viewer'
 import { noTiles, TileTree } from '../tiles/TileTree'
 import { HeightPages } from './HeightPages'
+import type { PageImages } from './PageImages'
 import type { PageSource } from './PageSource'
 
 /** Tiles that there is room for. */
@@ -46,12 +47,13 @@ export class PagedTiles {
     ellipsoid: Ellipsoid,
     resolution: number,
     detail: number,
-    bytes: number
+    bytes: number,
+    images: PageImages | null = null
   ) {
     const cells = (2 * ellipsoid.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.tree = new TileTree(ellipsoid, source, finestLevel, detail)
-    this.pages = new HeightPages(source, ellipsoid, resolution, bytes)
+    this.pages = new HeightPages(source, ellipsoid, resolution, bytes, images)
   }
 
   /**

@@ -4,6 +4,7 @@ import {
   float,
   mix,
   positionViewDirection,
+  sRGBTransferEOTF,
   texture,
   transformNormalToView,
   varyingProperty,
@@ -33,6 +34,13 @@ const handedOn = <T extends Node>(type: string, name: string): T & { assign(valu
   varyingProperty(type as never, `welkinTerrain${name}`) as unknown as T & {
     assign(value: T): void
   }
+
+/** Colour of a picture with the light of stones and blades, and the made-up one where there is no picture. */
+const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 =>
+  {
+  const linear = sRGBTransferEOTF(rgb.div(a.max(1 / 255))) as unknown as Vec3
+  return mix(made, linear.mul(detail), a)
+}
 
 /**
  * Material of a terrain: vertices on the ground and normals at every pixel, by pages.
@@ -74,22 +82,24 @@ export function terrainMaterial(
   const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
   const inPage = texels.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
-  const page = texture(atlas.surface.texture)
-  const pageAt = (texel: Vec2): Vec4 =>
-    (page as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } })
-      .sample(texel.add(0.5).div(vec2(width, height)))
-      .level(0)
+  /** What a texture of pages has: of the tile's own page, and by its morph of its parent's. */
+  const ofPages = (map: Texture, name: string): Vec4 => {
+    const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
+    const at = (texel: Vec2): Vec4 =>
+      page.sample(texel.add(0.5).div(vec2(width, height))).level(0)
+    return Fn(() => {
+      const mixed = at(pages.xy.add(inPage)).toVar(`${name}Page`) as unknown as Vec4 & {
+        assign(value: Vec4): void
+      }
+      If(blend.x.greaterThan(0), () => {
+        mixed.assign(mix(mixed, at(pages.zw.add(inPage.mul(0.5))), blend.x))
+      })
+      return mixed
+    })().toConst(name) as unknown as Vec4
+  }
   // Gradient along the face's axes, height and patchiness.
-  const ground = Fn(() => {
-    const mixed = pageAt(pages.xy.add(inPage)).toVar('page') as unknown as Vec4 & {
-      assign(value: Vec4): void
-    }
-    If(blend.x.greaterThan(0), () => {
-      const parent = pageAt(pages.zw.add(inPage.mul(0.5)))
-      mixed.assign(mix(mixed, parent, blend.x))
-    })
-    return mixed
-  })().toConst('ground') as unknown as Vec4
+  const ground = ofPages(atlas.surface.texture, 'ground')
+  const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
   const place = reference.mul(REFERENCE_STEP).add(offset)
   const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
   const { first, second } = faceAxes(face)
@@ -127,9 +137,10 @@ export function terrainMaterial(
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
-    // Ahead of the branches of near ground: each would find the page's texel and the normal anew.
-    ;(surface.frame as unknown as { toStack(): void }).toStack()
-    const color = surface.color.toVar('groundColor') as unknown as Vec3 & {
+    // Ahead of the branches of water: each would find waves and normals anew.
+    ;(litView as unknown as { toStack(): void }).toStack()
+    const made = surface.color
+    const color = (picture === null ? made : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))).toVar('groundColor') as unknown as Vec3 & {
       assign(value: Vec3): void
     }
     If(cover.greaterThan(0), () => {

@@ -101,6 +101,14 @@ export const surfaceOf = (
     return surfaceTexel(tile, axes, place, { gradient: ground.xyz, height: ground.w }, shortest)
   })()
 
+/** Colours that were loaded, a step beyond each edge too. */
+export const imageOf = (image: Texture, side: number): Vec4 =>
+  Fn(() =>
+    (texture(image) as unknown as { load(at: unknown): Vec4 }).load(
+      ivec2(texelOf(side).add(1) as never)
+    )
+  )()
+
 /** Heights that were loaded, a step beyond each edge too. */
 const loaded = (heights: Texture, texel: Vec2): Float =>
   (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).x
