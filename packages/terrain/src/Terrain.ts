@@ -22,8 +22,10 @@ import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { checkImagery, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
+import { figureOf, isFlat, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
+import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
 
 /** Least height of the viewer above the ground that distances count from [m]. */
@@ -55,8 +57,8 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
  * scene.add(terrain)
  * ```
  *
- * It lies on the atmosphere's ellipsoid, wherever `atmosphere.worldToECEF` puts that, and follows the camera by itself: its own position
- * and rotation are ignored. On a globe the renderer needs `highPrecision`.
+ * It lies on the atmosphere's ellipsoid, wherever `atmosphere.worldToECEF` puts that, and in a `flat` world on the plane y = 0, as a square of 2,097 km
+ * about the origin. It follows the camera by itself: its own position and rotation are ignored. On a globe the renderer needs `highPrecision`.
  *
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3
  */
@@ -73,13 +75,14 @@ export class Terrain extends SeaMesh {
   readonly detail: number
   /** Most memory of pages on the GPU [MB]. */
   readonly pageMemory: number
+  readonly #figure: Figure
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
   #shadowDistance = 0
   #camera: Camera | null = null
 
-  /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
+  /** @throws If an argument is missing or out of its range. */
   constructor(
     atmosphere: Atmosphere,
     source: HeightSource | PageSource,
@@ -87,7 +90,6 @@ export class Terrain extends SeaMesh {
   ) {
     const where = 'Terrain'
     checkAtmosphere(where, atmosphere)
-    if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     checkSource(where, source)
     const all = withDefaults(where, DEFAULTS, options)
     const { resolution, detail, pageMemory, imagery, ...settings } = all
@@ -96,20 +98,22 @@ export class Terrain extends SeaMesh {
     if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
     checkRange(where, 'detail', detail, 1.2, 4)
     checkRange(where, 'pageMemory', pageMemory, 4, 1000)
-    const { ellipsoid } = atmosphere
-    const uniforms = new TerrainUniforms(ellipsoid)
-    const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory, imagery)
+    const figure = figureOf(atmosphere)
+    const uniforms = new TerrainUniforms(figure)
+    const tiles = new PagedTiles(source, figure, resolution, detail, 1e6 * pageMemory, imagery)
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
       tiles.pages.atlas,
       grain,
       uniforms,
+      isFlat(figure) ? planeInShader : ellipsoidInShader,
       resolution,
       detail
     )
     super(tileGrid(resolution, CAPACITY), material, uniforms)
     this.atmosphere = atmosphere
+    this.#figure = figure
     this.source = source
     this.imagery = imagery
     this.resolution = resolution
@@ -198,7 +202,7 @@ export class Terrain extends SeaMesh {
    *
    * @param longitude - [°]
    * @param latitude - Geodetic, in [−90, 90] [°].
-   * @throws If one is not finite or out of its range.
+   * @throws If one is not finite or out of its range, or the world is flat: ask `heightBelow` there.
    */
   heightAt(longitude: number, latitude: number): number {
     return this.#heightAtSubpoint(this.#subpointAt('heightAt', longitude, latitude))
@@ -224,14 +228,14 @@ export class Terrain extends SeaMesh {
    */
   heightBelow(position: Vector3): number {
     checkVector('Terrain.heightBelow', 'position', position)
-    const { ellipsoid, worldToECEF } = this.atmosphere
-    subpoint.copy(position).applyMatrix4(worldToECEF)
-    return this.#heightAtSubpoint(ellipsoid.footPoint(subpoint, subpoint))
+    subpoint.copy(position).applyMatrix4(worldToGround(this.atmosphere))
+    return this.#heightAtSubpoint(this.#figure.footPoint(subpoint, subpoint))
   }
 
   #subpointAt(method: string, longitude: number, latitude: number): Vector3 {
     checkFinite(`Terrain.${method}`, 'longitude', longitude)
     checkRange(`Terrain.${method}`, 'latitude', latitude, -90, 90)
+    if (isFlat(this.#figure)) fail(`Terrain.${method}`, 'a flat world has no longitudes')
     return this.atmosphere.ellipsoid.geodeticToECEF({ longitude, latitude }, subpoint)
   }
 
@@ -255,12 +259,19 @@ export class Terrain extends SeaMesh {
    * @throws If another renderer drew the pages that was not disposed of.
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
-    const { ellipsoid, worldToECEF } = this.atmosphere
+    const figure = this.#figure
+    if (figureOf(this.atmosphere) !== figure) {
+      fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
+    }
     const { source } = this
+    const { worldToECEF } = this.atmosphere
+    const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
-    positionECEF.copy(positionWorld).applyMatrix4(worldToECEF)
-    const ground = this.#heightAtSubpoint(ellipsoid.footPoint(positionECEF, subpoint))
-    const clearance = Math.max(ellipsoid.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
+    positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
+    const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
+    const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
+    this.#uniforms.pole.value.set(0, 0, 1)
+    if (isFlat(figure)) this.#uniforms.pole.value.transformDirection(matrix.copy(worldToECEF).invert())
     const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
@@ -268,8 +279,8 @@ export class Terrain extends SeaMesh {
       positionECEF,
       clearance,
       lowest,
-      worldToECEF,
-      ellipsoid,
+      fromWorld,
+      figure,
       shadowDistance,
       this.seaLevel
     )
@@ -283,8 +294,8 @@ export class Terrain extends SeaMesh {
     writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
       tree.range(level)
     )
-    // ECEF axes at the camera.
-    matrix.copy(worldToECEF).invert().decompose(subpoint, quaternion, scale)
+    // The ground's axes at the camera.
+    matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
     this.matrix.copy(this.matrixWorld)
   }
@@ -303,7 +314,7 @@ export class Terrain extends SeaMesh {
   /**
    * Point where a ray enters the ground or the sea, with all detail that the source has.
    *
-   * @param originECEF - [m]
+   * @param originECEF - In a flat world in metres along the world's axes, as the result [m].
    * @param directionECEF - Any length but 0.
    * @returns ECEF [m], or null if the ray misses.
    * @throws If a component is not finite or the direction is zero.

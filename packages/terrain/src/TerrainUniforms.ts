@@ -1,7 +1,7 @@
 import { Vector3 } from 'three'
 import { numberUniform as number, vector3Uniform as vector } from '@welkin/atmosphere'
-import type { Ellipsoid } from '@welkin/geo'
 import { REFERENCE_STEP } from './noise/tsl/latticeNoise'
+import type { Figure } from './tiles/cpu/figure'
 import type { Viewer } from './tiles/cpu/viewer'
 
 const reference = new Vector3()
@@ -31,7 +31,10 @@ export class TerrainUniforms {
   /** Largest radius over each radius: where the ellipsoid is a sphere, but for size [–]. */
   readonly stretch = vector()
 
-  constructor({ radii, maximumRadius }: Ellipsoid) {
+  /** Unit vector to the north pole, from which latitude counts: in a flat world that of its place. */
+  readonly pole = vector()
+
+  constructor({ radii, maximumRadius }: Figure) {
     this.radii.value.copy(radii)
     this.stretch.value.setScalar(maximumRadius).divide(radii)
   }

@@ -14,8 +14,8 @@ const terrain = make({ resolution: 4 })
 const cases: [message: string, call: () => unknown][] = [
   ['Terrain: atmosphere must be an Atmosphere', () => new Terrain(wrong({}), heights)],
   [
-    'Terrain: atmosphere must not be flat',
-    () => new Terrain(new Atmosphere({ flat: true }), heights)
+    'Terrain.heightAt: a flat world has no longitudes',
+    () => new Terrain(new Atmosphere({ flat: true }), heights, { resolution: 4 }).heightAt(0, 0)
   ],
   ['Terrain: source must be a HeightSource', () => new Terrain(atmosphere, wrong({}))],
   ["Terrain: unknown option 'detial', did you mean 'detail'?", () => make({ detial: 2 })],

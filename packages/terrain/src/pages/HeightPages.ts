@@ -1,7 +1,8 @@
 import { checkOwner } from '@welkin/atmosphere'
-import { fail, type Ellipsoid } from '@welkin/geo'
+import { fail } from '@welkin/geo'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
+import type { Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
 import { ImageLoader } from './ImageLoader'
 import { PageAtlas } from './PageAtlas'
@@ -61,14 +62,14 @@ export class HeightPages {
    */
   constructor(
     source: HeightSource | PageSource,
-    ellipsoid: Ellipsoid,
+    figure: Figure,
     resolution: number,
     bytes: number,
     images: PageImages | null = null
   ) {
     this.#source = source
     this.atlas = new PageAtlas(resolution, bytes, images !== null)
-    this.#baker = new PageBaker(source, ellipsoid, this.atlas, resolution)
+    this.#baker = new PageBaker(source, figure, this.atlas, resolution)
     this.#images =
       images === null ? null : new ImageLoader(images, tile => this.#baker.request(tile))
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
@@ -173,7 +174,7 @@ export class HeightPages {
     this.#loading.delete(tile)
     if (heights === null) return
     const { lowest, highest } = this.#source
-    const spacing = spacingOf(tile, this.#baker.ellipsoid, this.atlas.surfaceSide - 1)
+    const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
     const least = Math.min(...heights)
     const most = Math.max(...heights)

@@ -19,6 +19,7 @@ import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
+import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
@@ -54,13 +55,14 @@ export function terrainMaterial(
   atlas: PageAtlas,
   grain: Texture,
   uniforms: TerrainUniforms,
+  figure: ShaderFigure,
   resolution: number,
   detail: number
 ): MeshStandardNodeMaterial {
   const material = new MeshStandardNodeMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
-  const { reference, radii, stretch, seaLevel, seaVariance, waveTime } = uniforms
+  const { reference, radii, seaLevel, seaVariance, waveTime, pole } = uniforms
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
@@ -69,7 +71,7 @@ export function terrainMaterial(
     blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
-    const vertex: TileVertex = tileVertex(atlas, uniforms, resolution, detail)
+    const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
     handed.texels.assign(vertex.texels)
     handed.pages.assign(vertex.pages)
@@ -101,7 +103,7 @@ export function terrainMaterial(
   const ground = ofPages(atlas.surface.texture, 'ground')
   const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
   const place = reference.mul(REFERENCE_STEP).add(offset)
-  const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
+  const up = figure.upAt(place, radii).toConst('up') as Vec3
   const { first, second } = faceAxes(face)
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')
@@ -123,6 +125,7 @@ export function terrainMaterial(
       patch: ground.w,
       climate: blend.y,
       up,
+      pole,
       cosSlope
     },
     seaLevel

@@ -1,4 +1,4 @@
-import { Fn, If, dFdx, dFdy, float, mat4, vec4 } from 'three/tsl'
+import { Fn, If, dFdx, dFdy, float, mat4, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
@@ -6,7 +6,6 @@ import {
   frameNear,
   pieceOf,
   tilingVertices,
-  type TilingFrame,
   type TilingVertex
 } from './stochasticTiling'
 
@@ -15,7 +14,7 @@ const COARSE = { side: 17, gone: 2 }
 const FINE = { side: 2.1, gone: 0.3 }
 
 /** Cells of the lattice in 256 m that pieces of both are moved by. */
-const CELLS = 60
+const CELLS = 36
 
 /** Part of `gone` at which a picture begins to go. */
 const FADE = 0.5
@@ -51,6 +50,7 @@ export interface Grain {
 }
 
 type Variable = Vec4 & { addAssign(value: Vec4): void }
+type Slope = Vec3 & { assign(value: Vec3): void }
 
 /** Stones and grass from 3 m to 1 cm; 0 where they are smaller than pixels. */
 export function grainAt(place: GrainPlace): Grain {
@@ -59,17 +59,20 @@ export function grainAt(place: GrainPlace): Grain {
   const across = dFdx(offset).toConst() as Vec3
   const along = dFdy(offset).toConst() as Vec3
   const footprint = across.length().max(along.length()).toConst('footprint')
-  const frame: TilingFrame = { ...frameNear(normal, place.up, first, second), across, along }
-  const { tangent, bitangent } = frame
   const share = ({ gone }: typeof FINE): Float =>
     float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
   const near = share(FINE)
   const far = share(COARSE)
-  // Two vectors in one value: what the branches of both need is found once.
+  // Several vectors in one value: what the branches of both need is found once, and none of it far away.
   const layers = Fn(() => {
     const fine = vec4(0).toVar('fineGrain') as unknown as Variable
     const coarse = vec4(0).toVar('coarseGrain') as unknown as Variable
+    const fineSlope = vec3(0).toVar('fineSlope') as unknown as Slope
+    const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
     If(far.greaterThan(0), () => {
+      const frame = { ...frameNear(normal, place.up, first, second), across, along }
+      const inSpace = ({ x, y }: Vec4): Vec3 =>
+        frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
       const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
       const add = ({ away, random }: TilingVertex, share: Float): void => {
         const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
@@ -83,19 +86,23 @@ export function grainAt(place: GrainPlace): Grain {
       If(shares.y.greaterThan(0), () => {
         add(next(), shares.y)
       })
+      fineSlope.assign(inSpace(fine))
+      coarseSlope.assign(inSpace(coarse))
     })
-    return mat4(fine, coarse, vec4(0), vec4(0))
+    return mat4(
+      vec4(fineSlope, fine.z),
+      vec4(coarseSlope, coarse.z),
+      vec4(fine.w, coarse.w, 0, 0),
+      vec4(0)
+    )
   })().toConst('grainLayers') as unknown as { element(i: number): Vec4 }
-  const [fine, coarse] = [layers.element(0), layers.element(1)]
+  const [fine, coarse, light] = [0, 1, 2].map(i => layers.element(i))
   return {
-    gradient(fineGain, coarseGain) {
-      const slope = fine.xy.mul(fineGain).add(coarse.xy.mul(coarseGain)).mul(GRAIN_SLOPE).toConst()
-      return tangent.mul(slope.x).add(bitangent.mul(slope.y))
-    },
-    stone: fine.z,
-    blade: fine.w,
-    boulder: coarse.z,
-    tuft: coarse.w,
+    gradient: (fineGain, coarseGain) => fine.xyz.mul(fineGain).add(coarse.xyz.mul(coarseGain)),
+    stone: fine.w,
+    blade: light.x,
+    boulder: coarse.w,
+    tuft: light.y,
     footprint,
     lost: footprint.div(FINE.gone / 4).min(1)
   }

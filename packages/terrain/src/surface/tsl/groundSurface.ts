@@ -51,6 +51,8 @@ export interface GroundPlace extends GrainPlace {
   /** Patchiness and climate, noise about 0. */
   readonly patch: Float
   readonly climate: Float
+  /** Unit vector to the north pole. */
+  readonly pole: Vec3
   /** Cosine of the ground's slope. */
   readonly cosSlope: Float
 }
@@ -61,16 +63,17 @@ export interface GroundPlace extends GrainPlace {
  * @param seaLevel - [m]
  */
 export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurface {
-  const { height, patch, climate, up, cosSlope } = place
+  const { height, patch, climate, up, pole, cosSlope } = place
   const grain = grainAt(place)
   const { stone, blade, boulder, tuft } = grain
-  const sinLatitude = up.z.abs().toConst('sinLatitude')
+  const northing = up.dot(pole).toConst() as Float
+  const sinLatitude = northing.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
 
   // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
   const square = sinLatitude.mul(sinLatitude).toConst('square')
   // Ground that falls towards the equator has a normal nearer to it than up is.
-  const sunny = up.z.sub(place.normal.z).mul(up.z.sign())
+  const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign())
   const snowLine = float(5200)
     .sub(square.mul(square.mul(3600).add(2000)))
     .add(climate.mul(DRY_SNOW))
@@ -96,10 +99,10 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const tone = patch.mul(0.9).add(relief.mul(0.35)).toConst('tone')
   // Dark between stones, and between blades.
   const stony = stone.mul(0.45).add(1).toConst('stony')
-  const light = blade.mul(0.75).add(tuft.mul(0.15)).toConst('light')
+  const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst('light')
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
-  const spots = boulder.mul(0.55).add(tuft.mul(0.4)).toConst('spots')
+  const spots = boulder.mul(0.8).add(tuft.mul(0.5)).toConst('spots')
   const straw = smoothstep(-0.45, 0.7, patch.mul(0.9).add(spots))
     .mul(0.6)
     .add(smoothstep(-900, 200, overTrees).mul(0.35))
