@@ -79,7 +79,7 @@ gpuTest('pictures are drawn on the ground, a bad tile shows its parent', async t
     const picture = await t.render(renderer, scene, camera, PICTURE)
     const { width, height } = PICTURE
     return [0.25, 0.75].flatMap(y =>
-      [0.25, 0.75].map(x => [...picture.at(Math.floor(x * width), Math.floor(y * height))])
+      [0.25, 0.75].map(x => Array.from(picture.at(Math.floor(x * width), Math.floor(y * height))))
     )
   }
   const check = (colors: number[][], expected: number[][], when: string): void => {

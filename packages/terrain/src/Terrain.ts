@@ -20,7 +20,13 @@ import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
 import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
-import { checkImagery, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
+import {
+  checkImagery,
+  checkSource,
+  DEFAULTS,
+  SETTINGS,
+  type TerrainOptions
+} from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
 import { figureOf, isFlat, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
@@ -271,7 +277,8 @@ export class Terrain extends SeaMesh {
     const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
     const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
     this.#uniforms.pole.value.set(0, 0, 1)
-    if (isFlat(figure)) this.#uniforms.pole.value.transformDirection(matrix.copy(worldToECEF).invert())
+    if (isFlat(figure))
+      this.#uniforms.pole.value.transformDirection(matrix.copy(worldToECEF).invert())
     const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(

@@ -43,9 +43,7 @@ function probe(
   const figure = figureOf(atmosphere)
   const { radii } = figure
   figure.surfaceNormal(position, up)
-  const support = isFlat(figure)
-    ? 0
-    : Math.hypot(radii.x * up.x, radii.y * up.y, radii.z * up.z)
+  const support = isFlat(figure) ? 0 : Math.hypot(radii.x * up.x, radii.y * up.y, radii.z * up.z)
   target.height = position.dot(up) - support
   target.cosUp = direction.dot(up)
   target.clearance = target.height - highest

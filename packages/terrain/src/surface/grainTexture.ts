@@ -91,7 +91,7 @@ function addSpot(light: Float32Array, x: number, y: number, radius: number, valu
       if (inside <= -1.5) continue
       const cover = Math.min(Math.max(inside + 0.5, 0), 1)
       const shade = Math.min(Math.max(inside + 1.5, 0), 1) * (1 - cover)
-      light[n] = (light[n] * (1 - 0.3 * shade)) * (1 - cover) + value * cover
+      light[n] = light[n] * (1 - 0.3 * shade) * (1 - cover) + value * cover
     }
   }
 }
@@ -127,10 +127,7 @@ function grass(random: () => number): Float32Array {
       // Outward from the middle, and all a little to one side.
       const away = 2 * Math.PI * random()
       const distance = TUFT_RADIUS * random() ** 0.7
-      const root: [number, number] = [
-        x + distance * Math.cos(away),
-        y + distance * Math.sin(away)
-      ]
+      const root: [number, number] = [x + distance * Math.cos(away), y + distance * Math.sin(away)]
       const turn = Math.atan2(
         Math.sin(away) + 0.7 * Math.sin(lean),
         Math.cos(away) + 0.7 * Math.cos(lean)

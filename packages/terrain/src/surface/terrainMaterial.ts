@@ -12,8 +12,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Texture } from 'three'
-import { MeshStandardNodeMaterial } from 'three/webgpu'
-import type { Node, NodeBuilder } from 'three/webgpu'
+import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
@@ -24,6 +23,7 @@ import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
 import { seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import { GroundMaterial } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
@@ -37,8 +37,7 @@ const handedOn = <T extends Node>(type: string, name: string): T & { assign(valu
   }
 
 /** Colour of a picture with the light of stones and blades, and the made-up one where there is no picture. */
-const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 =>
-  {
+const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
   const linear = sRGBTransferEOTF(rgb.div(a.max(1 / 255))) as unknown as Vec3
   return mix(made, linear.mul(detail), a)
 }
@@ -59,7 +58,7 @@ export function terrainMaterial(
   resolution: number,
   detail: number
 ): MeshStandardNodeMaterial {
-  const material = new MeshStandardNodeMaterial()
+  const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
   const { reference, radii, seaLevel, seaVariance, waveTime, pole } = uniforms
@@ -87,8 +86,7 @@ export function terrainMaterial(
   /** What a texture of pages has: of the tile's own page, and by its morph of its parent's. */
   const ofPages = (map: Texture, name: string): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
-    const at = (texel: Vec2): Vec4 =>
-      page.sample(texel.add(0.5).div(vec2(width, height))).level(0)
+    const at = (texel: Vec2): Vec4 => page.sample(texel.add(0.5).div(vec2(width, height))).level(0)
     return Fn(() => {
       const mixed = at(pages.xy.add(inPage)).toVar(`${name}Page`) as unknown as Vec4 & {
         assign(value: Vec4): void
@@ -97,7 +95,7 @@ export function terrainMaterial(
         mixed.assign(mix(mixed, at(pages.zw.add(inPage.mul(0.5))), blend.x))
       })
       return mixed
-    })().toConst(name) as unknown as Vec4
+    })().toConst(name)
   }
   // Gradient along the face's axes, height and patchiness.
   const ground = ofPages(atlas.surface.texture, 'ground')
@@ -134,6 +132,7 @@ export function terrainMaterial(
   const { footprint, spread } = surface
   const sea = seaSurface({ offset, depth, up, footprint, spread }, seaVariance, waveTime)
   const { cover } = sea
+  material.water = cover
   const dry = normal.sub(surface.grain)
   const lit = mix(dry, up.sub(sea.slope), cover).normalize()
   const litView = (transformNormalToView(lit) as unknown as Vec3).toConst('litNormal')
@@ -143,7 +142,10 @@ export function terrainMaterial(
     // Ahead of the branches of water: each would find waves and normals anew.
     ;(litView as unknown as { toStack(): void }).toStack()
     const made = surface.color
-    const color = (picture === null ? made : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))).toVar('groundColor') as unknown as Vec3 & {
+    const color = (picture === null
+      ? made
+      : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))
+    ).toVar('groundColor') as unknown as Vec3 & {
       assign(value: Vec3): void
     }
     If(cover.greaterThan(0), () => {

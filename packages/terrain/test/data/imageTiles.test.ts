@@ -151,7 +151,7 @@ describe('what is missing', () => {
     const abort = new AbortController()
     const loading = tiles.loadImage(request, abort.signal)
     abort.abort()
-    await expect(loading).rejects.toThrow()
+    await expect(loading).rejects.toThrow('abort')
     expect(tiles.tiles).toEqual({ count: 0, loading: 0, bytes: 0 })
   })
 })

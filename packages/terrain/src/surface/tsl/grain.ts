@@ -2,12 +2,7 @@ import { Fn, If, dFdx, dFdy, float, mat4, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
-import {
-  frameNear,
-  pieceOf,
-  tilingVertices,
-  type TilingVertex
-} from './stochasticTiling'
+import { frameNear, pieceOf, tilingVertices, type TilingVertex } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
 const COARSE = { side: 17, gone: 2 }

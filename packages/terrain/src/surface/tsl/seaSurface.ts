@@ -50,7 +50,7 @@ export interface SeaPlace {
 type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
 
 /**
- * Water and its waves.
+ * Water and its waves. Twin: ../cpu/seaSurface.ts
  *
  * @param seaVariance - Variance of all slopes, see `seaSlopeVariance`.
  * @param seconds - Time that waves move by [s].
@@ -88,7 +88,7 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
  *
  * @param cosViewer - Cosine between normal and viewer.
  * @param variance - Variance of slopes.
- * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994
+ * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994. Twin: ../cpu/seaSurface.ts
  */
 export function waterFresnel(cosViewer: Float, variance: Float): Float {
   const rest = cosViewer.mul(cosViewer).add(variance).sqrt().oneMinus().clamp().toConst()

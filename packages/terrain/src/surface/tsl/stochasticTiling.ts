@@ -89,7 +89,7 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
     const number = (floatBitsToUint(key) as unknown as UInt).bitAnd(uint(3)).toFloat().toConst()
     const [isOne, isTwo, isThree] = [1, 2, 3].map(n => step(n - 0.5, number))
     const threshold = mix(mix(2, most, isOne), mix(middle, 0, isThree), isTwo)
-    return step(threshold, part) as unknown as Vec3
+    return step(threshold, part)
   }
   const cellsOfReference = reference.mul(cells)
   const origin = ivec3(cellsOfReference.add(sum(cellsOfReference).div(3)).round()).toConst()
@@ -101,14 +101,14 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
     const vertex = corner.add(vertexOf(key)).toConst() as Vec3
     const away = skewed.sub(vertex).toConst() as Vec3
     return {
-      away: away.sub(sum(away).div(6)).mul(size).toConst() as Vec3,
-      random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst() as Vec3
+      away: away.sub(sum(away).div(6)).mul(size).toConst(),
+      random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst()
     }
   }
   return {
     nearest: vertexAt(nearest),
     next: vertexAt(next),
-    shares: square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst() as Vec2
+    shares: square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst()
   }
 }
 
@@ -183,10 +183,10 @@ export function frameNear(
   const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
   const rise = isSteep.mul(TILT.sine)
   return {
-    tangent: downhill.cross(up).toConst() as Vec3,
+    tangent: downhill.cross(up).toConst(),
     bitangent: downhill
       .mul(mix(1, TILT.cosine, isSteep))
       .sub(up.mul(rise))
-      .toConst() as Vec3
+      .toConst()
   }
 }
