@@ -42,7 +42,7 @@ type Story = StoryObj<ImageryArgs>
 /** The whole planet: pictures for land, and a sea with waves and the sun's glint. */
 export const Globe: Story = { tags: ['screenshot'] }
 
-/** From orbit. */
+/** The Mediterranean from orbit. */
 export const Orbit: Story = { args: { view: 'orbit' } }
 
 /** Pictures are coarse there: blades and stones make up for it. */

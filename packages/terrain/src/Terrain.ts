@@ -20,15 +20,9 @@ import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
 import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
-import {
-  checkImagery,
-  checkSource,
-  DEFAULTS,
-  SETTINGS,
-  type TerrainOptions
-} from './TerrainOptions'
+import { checkFixed, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
-import { figureOf, isFlat, worldToGround, type Figure } from './tiles/cpu/figure'
+import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
@@ -47,6 +41,7 @@ const positionWorld = new Vector3()
 const positionECEF = new Vector3()
 const subpoint = new Vector3()
 const reference = new Vector3()
+const pole = new Vector3()
 const up = new Vector3()
 const quaternion = new Quaternion()
 const scale = new Vector3()
@@ -99,11 +94,7 @@ export class Terrain extends SeaMesh {
     checkSource(where, source)
     const all = withDefaults(where, DEFAULTS, options)
     const { resolution, detail, pageMemory, imagery, ...settings } = all
-    checkImagery(where, imagery)
-    checkRange(where, 'resolution', resolution, 4, 128)
-    if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
-    checkRange(where, 'detail', detail, 1.2, 4)
-    checkRange(where, 'pageMemory', pageMemory, 4, 1000)
+    checkFixed(where, all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
     const tiles = new PagedTiles(source, figure, resolution, detail, 1e6 * pageMemory, imagery)
@@ -270,15 +261,11 @@ export class Terrain extends SeaMesh {
       fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
     }
     const { source } = this
-    const { worldToECEF } = this.atmosphere
     const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
     const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
     const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
-    this.#uniforms.pole.value.set(0, 0, 1)
-    if (isFlat(figure))
-      this.#uniforms.pole.value.transformDirection(matrix.copy(worldToECEF).invert())
     const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
@@ -291,7 +278,7 @@ export class Terrain extends SeaMesh {
       shadowDistance,
       this.seaLevel
     )
-    this.#uniforms.update(viewer, ground)
+    this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
     const isFine = selection.lag === 0

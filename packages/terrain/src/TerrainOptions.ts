@@ -1,4 +1,5 @@
 import type { Camera } from 'three'
+import { checkRange } from '@welkin/atmosphere'
 import { checkFinite, fail } from '@welkin/geo'
 import type { HeightSource } from './heights/HeightSource'
 import type { PageImages } from './pages/PageImages'
@@ -67,8 +68,15 @@ export function checkSource(where: string, source: HeightSource | PageSource): v
   checkFinite(where, 'source.highest', source.highest)
 }
 
-/** @throws If it is neither null nor pictures. */
-export function checkImagery(where: string, imagery: PageImages | null): void {
+/** @throws If an option that cannot change later is out of its range. */
+export function checkFixed(
+  where: string,
+  { resolution, detail, pageMemory, imagery }: Required<TerrainOptions>
+): void {
+  checkRange(where, 'resolution', resolution, 4, 128)
+  if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
+  checkRange(where, 'detail', detail, 1.2, 4)
+  checkRange(where, 'pageMemory', pageMemory, 4, 1000)
   if (imagery === null) return
   const isImagery =
     typeof imagery?.imageOf === 'function' && typeof imagery.loadImage === 'function'

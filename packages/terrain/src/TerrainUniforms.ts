@@ -44,8 +44,12 @@ export class TerrainUniforms {
     return target.copy(this.reference.value).multiplyScalar(REFERENCE_STEP)
   }
 
-  /** @param groundHeight - Below the viewer [m]. */
-  update({ datumPoint }: Viewer, groundHeight: number): void {
+  /**
+   * @param groundHeight - Below the viewer [m].
+   * @param pole - Unit vector to the north pole.
+   */
+  update({ datumPoint }: Viewer, groundHeight: number, pole: Vector3): void {
+    this.pole.value.copy(pole)
     this.reference.value.copy(datumPoint).divideScalar(REFERENCE_STEP).round()
     this.datum.value.copy(datumPoint).sub(this.referenceECEF(reference))
     this.groundHeight.value = groundHeight

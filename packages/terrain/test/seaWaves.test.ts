@@ -30,15 +30,24 @@ it('waves repeat with the 256 m of references, and differ in length', () => {
   expect(Math.min(...lengths)).toBeGreaterThan(0.4)
 })
 
-it('smooth water reflects as Fresnel found, but for the 0.0301 by which Schlick is off near 85°', () => {
-  for (let degrees = 0; degrees < 90; degrees++) {
-    const angle = (degrees * Math.PI) / 180
+it('smooth water reflects as Fresnel found: from all sides by 1 %, from one by 0.058', () => {
+  const step = Math.PI / 1800
+  let mean = 0
+  let expectedMean = 0
+  for (let angle = step / 2; angle < Math.PI / 2; angle += step) {
     const cosine = Math.cos(angle)
     const inside = Math.sqrt(1 - (Math.sin(angle) / 1.34) ** 2)
     const across = ((cosine - 1.34 * inside) / (cosine + 1.34 * inside)) ** 2
     const along = ((inside - 1.34 * cosine) / (inside + 1.34 * cosine)) ** 2
-    expect(Math.abs(waterFresnel(cosine, 0) - (across + along) / 2)).toBeLessThan(0.0301)
+    const expected = (across + along) / 2
+    const found = waterFresnel(cosine, 0)
+    // Schlick's approximation is farthest off at 84°.
+    expect(Math.abs(found - expected)).toBeLessThan(0.058)
+    mean += 2 * cosine * Math.sin(angle) * step * found
+    expectedMean += 2 * cosine * Math.sin(angle) * step * expected
   }
+  expect(mean / expectedMean).toBeGreaterThan(0.99)
+  expect(mean / expectedMean).toBeLessThan(1.01)
 })
 
 it('rough water reflects less at grazing angles, and as much from above', () => {

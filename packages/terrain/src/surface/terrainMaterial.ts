@@ -83,7 +83,7 @@ export function terrainMaterial(
   const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
   const inPage = texels.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
-  /** What a texture of pages has: of the tile's own page, and by its morph of its parent's. */
+  /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
   const ofPages = (map: Texture, name: string): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
     const at = (texel: Vec2): Vec4 => page.sample(texel.add(0.5).div(vec2(width, height))).level(0)

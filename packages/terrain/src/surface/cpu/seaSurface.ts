@@ -17,7 +17,7 @@ export function waterFresnel(cosViewer: number, variance: number): number {
 /**
  * Float64 twin of the waves: slopes along the ground, and the variance of those that no wave shows.
  *
- * @param offset - From a multiple of 256 m [m].
+ * @param offset - Place relative to a multiple of 256 m [m].
  * @param up - Unit vector.
  * @param footprint - Longer side of the pixel on the ground [m].
  * @param seaVariance - Variance of all slopes.

@@ -31,7 +31,7 @@ export interface TilingFrame {
 
 /** Vertex of the lattice that counts at a place. */
 export interface TilingVertex {
-  /** From it to the place [m]. */
+  /** Place relative to it [m]. */
   readonly away: Vec3
   /** Three random numbers of it, in [−1, 1). */
   readonly random: Vec3
@@ -153,7 +153,7 @@ const EIGHTHS = 1.2
  * They do not turn with every pixel's normal: at some distance from a vertex of the lattice that would bend and stretch the picture. A
  * surface is stretched by 1.2 at most, on cliffs too.
  *
- * @param normal - Of the surface.
+ * @param normal - Unit normal of the surface.
  * @param up - Geodetic up.
  * @param axis - Unit vector that is not along up, like `spare`.
  */

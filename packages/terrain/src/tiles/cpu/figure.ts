@@ -48,10 +48,18 @@ export const isFlat = (figure: Figure): figure is FlatFigure => 'isFlat' in figu
 /**
  * World units to metres in the ground's own axes: those of ECEF, or of a flat world those of the world.
  *
- * @returns The same matrix for all flat worlds: used at once.
+ * @returns One matrix for all flat worlds, good until the next call.
  */
 export const worldToGround = ({ flat, metersPerUnit = 1, worldToECEF }: GroundSpace): Matrix4 =>
   flat === true ? scaling.makeScale(metersPerUnit, metersPerUnit, metersPerUnit) : worldToECEF
+
+/** Unit vector to the north pole, in the ground's own axes. */
+export function poleOf(space: GroundSpace, target: Vector3): Vector3 {
+  target.set(0, 0, 1)
+  return space.flat === true
+    ? target.transformDirection(scaling.copy(space.worldToECEF).invert())
+    : target
+}
 
 /** Faces of the cube that have ground: all, or the one whose outward axis is y. */
 export const facesOf = (figure: Figure): readonly number[] =>
