@@ -37,6 +37,7 @@ export type GroundSpace = Pick<Atmosphere, 'ellipsoid' | 'worldToECEF'> &
 
 const PLANE = new FlatFigure()
 const scaling = new Matrix4()
+const rotation = new Matrix4()
 
 /** Figure of a world's ground. */
 export const figureOf = ({ flat, ellipsoid }: GroundSpace): Figure =>
@@ -57,7 +58,7 @@ export const worldToGround = ({ flat, metersPerUnit = 1, worldToECEF }: GroundSp
 export function poleOf(space: GroundSpace, target: Vector3): Vector3 {
   target.set(0, 0, 1)
   return space.flat === true
-    ? target.transformDirection(scaling.copy(space.worldToECEF).invert())
+    ? target.transformDirection(rotation.copy(space.worldToECEF).invert())
     : target
 }
 
