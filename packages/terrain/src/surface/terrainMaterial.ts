@@ -9,6 +9,7 @@ import {
   transformNormalToView,
   varyingProperty,
   vec2,
+  vec3,
   vec4
 } from 'three/tsl'
 import type { Texture } from 'three'
@@ -22,7 +23,7 @@ import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
-import { seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import { FOAM, foamCover, seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
 import { GroundMaterial } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
@@ -130,7 +131,8 @@ export function terrainMaterial(
   )
   const depth = seaLevel.sub(ground.z).toConst('depth') as Float
   const { footprint, spread } = surface
-  const sea = seaSurface({ offset, depth, up, footprint, spread }, seaVariance, waveTime)
+  const shore = { offset, depth, up, footprint, spread }
+  const sea = seaSurface(shore, seaVariance, waveTime)
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)
@@ -152,6 +154,8 @@ export function terrainMaterial(
       const cosViewer = litView.dot(positionViewDirection).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
+      const foam = foamCover(shore, surface.tangle, ground.w, waveTime)
+      color.assign(mix(color, vec3(FOAM), foam.mul(cover)))
     })
     return vec4(color, 1)
   })()

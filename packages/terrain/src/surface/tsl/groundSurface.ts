@@ -18,6 +18,7 @@ const ROCK = [0.2, 0.178, 0.157]
 const DARK_ROCK = [0.105, 0.098, 0.092]
 const SCREE = [0.25, 0.232, 0.208]
 const SAND = [0.4, 0.32, 0.215]
+const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
 const GRASS = [0.073, 0.108, 0.031]
 const SOIL = [0.052, 0.04, 0.027]
@@ -31,6 +32,8 @@ const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
 export interface GroundSurface {
   /** Reflectance, linear sRGB. */
   readonly color: Vec3
+  /** Strands of what floats, about 0. */
+  readonly tangle: Float
   /** Light of stones and blades over their mean, for colours of pictures. */
   readonly detail: Float
   /** Longer side of the pixel on the ground, and differences of height within it [m]. */
@@ -125,7 +128,12 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const alpine = mix(soil, scree, bareness)
   const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
   const sand = color(SAND).mul(stone.mul(0.14).add(1))
-  const shore = mix(sand, alpine, inland)
+  // What high water left lies in strands, a metre above the sea.
+  const tangle = blade.mul(0.7).add(boulder.mul(0.6)).toConst('tangle')
+  const washed = overSea.add(boulder.mul(0.3)).add(patch.mul(0.5)).toConst()
+  const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
+  const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
+  const shore = mix(mix(sand, color(SEAWEED), seaweed), alpine, inland)
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
   const land = mix(shore, rock, bare)
   const snow = smoothstep(
@@ -140,7 +148,7 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const bump = mix(float(0.12), stones, inland.max(bare))
+  const bump = mix(float(0.05), stones, inland.max(bare))
     .mul(snow.mul(-0.85).add(1))
     .toConst('bump')
   const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
@@ -154,6 +162,7 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   )
   const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.5))
   return {
+    tangle,
     detail: mix(light.mul(0.5), stone.mul(0.45), bareness.max(bare)).add(1),
     footprint: grain.footprint,
     spread,
