@@ -20,12 +20,12 @@ export const VIEWS = {
   globe: { label: 'Globe, 12,000 km', ...PLACE, height: 1.2e7, heading: 0, pitch: -90 },
   orbit: { label: 'Orbit, 900 km', ...PLACE, height: 9e5, heading: 0, pitch: -35 },
   near: {
-    label: 'Near the ground, 30 m',
-    longitude: 9.5,
-    latitude: 33.2,
-    height: 30,
+    label: 'Eye height, 2 m',
+    longitude: 10.5,
+    latitude: 45,
+    height: 2,
     heading: 40,
-    pitch: -8
+    pitch: -25
   }
 } satisfies Record<string, GroundView>
 

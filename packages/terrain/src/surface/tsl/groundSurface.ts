@@ -163,7 +163,7 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.5))
   return {
     tangle,
-    detail: mix(light.mul(0.5), stone.mul(0.45), bareness.max(bare)).add(1),
+    detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),
     footprint: grain.footprint,
     spread,
     color: dry,
