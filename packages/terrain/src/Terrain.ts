@@ -12,6 +12,7 @@ import {
 } from '@welkin/geo'
 import type { HeightSample, HeightSource } from './heights/HeightSource'
 import { CAPACITY, PagedTiles } from './pages/PagedTiles'
+import type { PageImages } from './pages/PageImages'
 import type { PageSource } from './pages/PageSource'
 import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
@@ -19,10 +20,12 @@ import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
 import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
-import { checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
+import { checkFixed, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
+import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
+import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
 
 /** Least height of the viewer above the ground that distances count from [m]. */
@@ -38,6 +41,7 @@ const positionWorld = new Vector3()
 const positionECEF = new Vector3()
 const subpoint = new Vector3()
 const reference = new Vector3()
+const pole = new Vector3()
 const up = new Vector3()
 const quaternion = new Quaternion()
 const scale = new Vector3()
@@ -54,8 +58,8 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
  * scene.add(terrain)
  * ```
  *
- * It lies on the atmosphere's ellipsoid, wherever `atmosphere.worldToECEF` puts that, and follows the camera by itself: its own position
- * and rotation are ignored. On a globe the renderer needs `highPrecision`.
+ * It lies on the atmosphere's ellipsoid, wherever `atmosphere.worldToECEF` puts that, and in a `flat` world on the plane y = 0, as a square of 2,097 km
+ * about the origin. It follows the camera by itself: its own position and rotation are ignored. On a globe the renderer needs `highPrecision`.
  *
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3
  */
@@ -64,19 +68,22 @@ export class Terrain extends SeaMesh {
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
   readonly source: HeightSource | PageSource
+  /** Pictures of the ground; shared, not owned; null for its made-up colours. */
+  readonly imagery: PageImages | null
   /** Cells along a tile's edge. */
   readonly resolution: number
   /** Distance at which a tile is split, in diagonals of it. */
   readonly detail: number
   /** Most memory of pages on the GPU [MB]. */
   readonly pageMemory: number
+  readonly #figure: Figure
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
   #shadowDistance = 0
   #camera: Camera | null = null
 
-  /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
+  /** @throws If an argument is missing or out of its range. */
   constructor(
     atmosphere: Atmosphere,
     source: HeightSource | PageSource,
@@ -84,28 +91,28 @@ export class Terrain extends SeaMesh {
   ) {
     const where = 'Terrain'
     checkAtmosphere(where, atmosphere)
-    if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     checkSource(where, source)
-    const { resolution, detail, pageMemory, ...settings } = withDefaults(where, DEFAULTS, options)
-    checkRange(where, 'resolution', resolution, 4, 128)
-    if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
-    checkRange(where, 'detail', detail, 1.2, 4)
-    checkRange(where, 'pageMemory', pageMemory, 4, 1000)
-    const { ellipsoid } = atmosphere
-    const uniforms = new TerrainUniforms(ellipsoid)
-    const tiles = new PagedTiles(source, ellipsoid, resolution, detail, 1e6 * pageMemory)
+    const all = withDefaults(where, DEFAULTS, options)
+    const { resolution, detail, pageMemory, imagery, ...settings } = all
+    checkFixed(where, all)
+    const figure = figureOf(atmosphere)
+    const uniforms = new TerrainUniforms(figure)
+    const tiles = new PagedTiles(source, figure, resolution, detail, 1e6 * pageMemory, imagery)
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
       tiles.pages.atlas,
       grain,
       uniforms,
+      isFlat(figure) ? planeInShader : ellipsoidInShader,
       resolution,
       detail
     )
     super(tileGrid(resolution, CAPACITY), material, uniforms)
     this.atmosphere = atmosphere
+    this.#figure = figure
     this.source = source
+    this.imagery = imagery
     this.resolution = resolution
     this.detail = detail
     this.pageMemory = pageMemory
@@ -126,6 +133,16 @@ export class Terrain extends SeaMesh {
    */
   set(settings: Pick<TerrainOptions, (typeof SETTINGS)[number]>): this {
     return setOptions('Terrain', this, settings, ...SETTINGS)
+  }
+
+  /** Reflectance of white in the pictures, ≥ 0 [–]. */
+  get imageAlbedo(): number {
+    return this.#uniforms.imageAlbedo.value
+  }
+
+  set imageAlbedo(value: number) {
+    checkNonNegative('Terrain', 'imageAlbedo', value)
+    this.#uniforms.imageAlbedo.value = value
   }
 
   /** Distance within which ground out of view casts shadows into it, if it casts any, ≥ 0 [m]. */
@@ -182,7 +199,7 @@ export class Terrain extends SeaMesh {
    *
    * @param longitude - [°]
    * @param latitude - Geodetic, in [−90, 90] [°].
-   * @throws If one is not finite or out of its range.
+   * @throws If one is not finite or out of its range, or the world is flat: ask `heightBelow` there.
    */
   heightAt(longitude: number, latitude: number): number {
     return this.#heightAtSubpoint(this.#subpointAt('heightAt', longitude, latitude))
@@ -208,14 +225,14 @@ export class Terrain extends SeaMesh {
    */
   heightBelow(position: Vector3): number {
     checkVector('Terrain.heightBelow', 'position', position)
-    const { ellipsoid, worldToECEF } = this.atmosphere
-    subpoint.copy(position).applyMatrix4(worldToECEF)
-    return this.#heightAtSubpoint(ellipsoid.footPoint(subpoint, subpoint))
+    subpoint.copy(position).applyMatrix4(worldToGround(this.atmosphere))
+    return this.#heightAtSubpoint(this.#figure.footPoint(subpoint, subpoint))
   }
 
   #subpointAt(method: string, longitude: number, latitude: number): Vector3 {
     checkFinite(`Terrain.${method}`, 'longitude', longitude)
     checkRange(`Terrain.${method}`, 'latitude', latitude, -90, 90)
+    if (isFlat(this.#figure)) fail(`Terrain.${method}`, 'a flat world has no longitudes')
     return this.atmosphere.ellipsoid.geodeticToECEF({ longitude, latitude }, subpoint)
   }
 
@@ -239,12 +256,16 @@ export class Terrain extends SeaMesh {
    * @throws If another renderer drew the pages that was not disposed of.
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
-    const { ellipsoid, worldToECEF } = this.atmosphere
+    const figure = this.#figure
+    if (figureOf(this.atmosphere) !== figure) {
+      fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
+    }
     const { source } = this
+    const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
-    positionECEF.copy(positionWorld).applyMatrix4(worldToECEF)
-    const ground = this.#heightAtSubpoint(ellipsoid.footPoint(positionECEF, subpoint))
-    const clearance = Math.max(ellipsoid.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
+    positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
+    const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
+    const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
     const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
@@ -252,12 +273,12 @@ export class Terrain extends SeaMesh {
       positionECEF,
       clearance,
       lowest,
-      worldToECEF,
-      ellipsoid,
+      fromWorld,
+      figure,
       shadowDistance,
       this.seaLevel
     )
-    this.#uniforms.update(viewer, ground)
+    this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
     const isFine = selection.lag === 0
@@ -267,8 +288,8 @@ export class Terrain extends SeaMesh {
     writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
       tree.range(level)
     )
-    // ECEF axes at the camera.
-    matrix.copy(worldToECEF).invert().decompose(subpoint, quaternion, scale)
+    // The ground's axes at the camera.
+    matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
     this.matrix.copy(this.matrixWorld)
   }
@@ -287,7 +308,7 @@ export class Terrain extends SeaMesh {
   /**
    * Point where a ray enters the ground or the sea, with all detail that the source has.
    *
-   * @param originECEF - [m]
+   * @param originECEF - In a flat world in metres along the world's axes, as the result [m].
    * @param directionECEF - Any length but 0.
    * @returns ECEF [m], or null if the ray misses.
    * @throws If a component is not finite or the direction is zero.

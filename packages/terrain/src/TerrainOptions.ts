@@ -1,14 +1,20 @@
 import type { Camera } from 'three'
+import { checkRange } from '@welkin/atmosphere'
 import { checkFinite, fail } from '@welkin/geo'
 import type { HeightSource } from './heights/HeightSource'
+import type { PageImages } from './pages/PageImages'
 import { isPageSource, type PageSource } from './pages/PageSource'
 
 /** Options of `Terrain`. */
 export interface TerrainOptions {
-  /** Cells along a tile's edge, even, in [4, 128], default 16: 24 has finer ridges, for a fifth more time at eye height. */
+  /** Cells along a tile's edge, even, in [4, 128], default 12: 16 has finer ridges, for an eighth more time at eye height. */
   resolution?: number
   /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
   detail?: number
+  /** Pictures of the ground, such as `ImageTiles`, in place of its made-up colours; null, the default, for none. */
+  imagery?: PageImages | null
+  /** Reflectance of white in the pictures, ≥ 0, default 1 [–]: many are brighter than what they show. */
+  imageAlbedo?: number
   /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
   seaLevel?: number
   /** Wind over the sea, in [0, 40], default 7 [m/s]: more of it has steeper waves, and a wider glint of the sun. */
@@ -27,6 +33,7 @@ export interface TerrainOptions {
 
 /** Options that may change later. */
 export const SETTINGS = [
+  'imageAlbedo',
   'seaLevel',
   'windSpeed',
   'waveTime',
@@ -37,8 +44,10 @@ export const SETTINGS = [
 
 /** Options that are left out. */
 export const DEFAULTS: Required<TerrainOptions> = {
-  resolution: 16,
+  resolution: 12,
   detail: 1.5,
+  imagery: null,
+  imageAlbedo: 1,
   seaLevel: 0,
   windSpeed: 7,
   waveTime: 0,
@@ -57,4 +66,19 @@ export function checkSource(where: string, source: HeightSource | PageSource): v
   if (!isSource) fail(where, 'source must be a HeightSource', source)
   checkFinite(where, 'source.lowest', source.lowest)
   checkFinite(where, 'source.highest', source.highest)
+}
+
+/** @throws If an option that cannot change later is out of its range. */
+export function checkFixed(
+  where: string,
+  { resolution, detail, pageMemory, imagery }: Required<TerrainOptions>
+): void {
+  checkRange(where, 'resolution', resolution, 4, 128)
+  if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
+  checkRange(where, 'detail', detail, 1.2, 4)
+  checkRange(where, 'pageMemory', pageMemory, 4, 1000)
+  if (imagery === null) return
+  const isImagery =
+    typeof imagery?.imageOf === 'function' && typeof imagery.loadImage === 'function'
+  if (!isImagery) fail(where, 'imagery must be ImageTiles, PageImages or null', imagery)
 }

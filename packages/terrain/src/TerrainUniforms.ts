@@ -1,7 +1,7 @@
 import { Vector3 } from 'three'
 import { numberUniform as number, vector3Uniform as vector } from '@welkin/atmosphere'
-import type { Ellipsoid } from '@welkin/geo'
 import { REFERENCE_STEP } from './noise/tsl/latticeNoise'
+import type { Figure } from './tiles/cpu/figure'
 import type { Viewer } from './tiles/cpu/viewer'
 
 const reference = new Vector3()
@@ -24,12 +24,17 @@ export class TerrainUniforms {
   readonly ceiling = number()
   /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */
   readonly skirt = number(1)
+  /** Factor on the colours of pictures [–]. */
+  readonly imageAlbedo = number(1)
   /** Radii of the ellipsoid [m]. */
   readonly radii = vector()
   /** Largest radius over each radius: where the ellipsoid is a sphere, but for size [–]. */
   readonly stretch = vector()
 
-  constructor({ radii, maximumRadius }: Ellipsoid) {
+  /** Unit vector to the north pole, from which latitude counts: in a flat world that of its place. */
+  readonly pole = vector()
+
+  constructor({ radii, maximumRadius }: Figure) {
     this.radii.value.copy(radii)
     this.stretch.value.setScalar(maximumRadius).divide(radii)
   }
@@ -39,8 +44,12 @@ export class TerrainUniforms {
     return target.copy(this.reference.value).multiplyScalar(REFERENCE_STEP)
   }
 
-  /** @param groundHeight - Below the viewer [m]. */
-  update({ datumPoint }: Viewer, groundHeight: number): void {
+  /**
+   * @param groundHeight - Below the viewer [m].
+   * @param pole - Unit vector to the north pole.
+   */
+  update({ datumPoint }: Viewer, groundHeight: number, pole: Vector3): void {
+    this.pole.value.copy(pole)
     this.reference.value.copy(datumPoint).divideScalar(REFERENCE_STEP).round()
     this.datum.value.copy(datumPoint).sub(this.referenceECEF(reference))
     this.groundHeight.value = groundHeight

@@ -9,6 +9,7 @@ export type Vec2 = Node<'vec2'>
 export type Vec3 = Node<'vec3'>
 export type Vec4 = Node<'vec4'>
 export type UVec3 = Node<'uvec3'>
+export type UVec4 = Node<'uvec4'>
 
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {

@@ -14,8 +14,8 @@ const terrain = make({ resolution: 4 })
 const cases: [message: string, call: () => unknown][] = [
   ['Terrain: atmosphere must be an Atmosphere', () => new Terrain(wrong({}), heights)],
   [
-    'Terrain: atmosphere must not be flat',
-    () => new Terrain(new Atmosphere({ flat: true }), heights)
+    'Terrain.heightAt: a flat world has no longitudes',
+    () => new Terrain(new Atmosphere({ flat: true }), heights, { resolution: 4 }).heightAt(0, 0)
   ],
   ['Terrain: source must be a HeightSource', () => new Terrain(atmosphere, wrong({}))],
   ["Terrain: unknown option 'detial', did you mean 'detail'?", () => make({ detial: 2 })],
@@ -23,6 +23,8 @@ const cases: [message: string, call: () => unknown][] = [
   ['Terrain: resolution must be even, got 33', () => make({ resolution: 33 })],
   ['Terrain: detail must be in [1.2, 4], got 1', () => make({ detail: 1 })],
   ['Terrain: seaLevel must be in [-100000, 100000], got NaN', () => make({ seaLevel: NaN })],
+  ['Terrain: imagery must be ImageTiles', () => make({ imagery: wrong({}) })],
+  ['Terrain: imageAlbedo must be finite and ≥ 0, got -1', () => make({ imageAlbedo: -1 })],
   ['Terrain: shadowDistance must be finite and ≥ 0, got -1', () => make({ shadowDistance: -1 })],
   ['Terrain: pageMemory must be in [4, 1000], got 1', () => make({ pageMemory: 1 })],
   ['Terrain: pagesPerFrame must be in [1, 1000], got 0', () => make({ pagesPerFrame: 0 })],

@@ -1,4 +1,6 @@
+import fc from 'fast-check'
 import { expect, it } from 'vitest'
+import { seaWaves, waterFresnel } from '../src/surface/cpu/seaSurface'
 import { SEA_WAVES, seaSlopeVariance, WAVE_SHARE, WAVE_SLOPE } from '../src/surface/seaWaves'
 
 it('waves have their share of the slopes that Cox and Munk measured, wherever up is', () => {
@@ -26,4 +28,63 @@ it('waves repeat with the 256 m of references, and differ in length', () => {
   expect(new Set(lengths).size).toBe(lengths.length)
   expect(Math.max(...lengths)).toBeLessThan(16)
   expect(Math.min(...lengths)).toBeGreaterThan(0.4)
+})
+
+it('smooth water reflects as Fresnel found: from all sides by 1 %, from one by 0.058', () => {
+  const step = Math.PI / 1800
+  let mean = 0
+  let expectedMean = 0
+  for (let angle = step / 2; angle < Math.PI / 2; angle += step) {
+    const cosine = Math.cos(angle)
+    const inside = Math.sqrt(1 - (Math.sin(angle) / 1.34) ** 2)
+    const across = ((cosine - 1.34 * inside) / (cosine + 1.34 * inside)) ** 2
+    const along = ((inside - 1.34 * cosine) / (inside + 1.34 * cosine)) ** 2
+    const expected = (across + along) / 2
+    const found = waterFresnel(cosine, 0)
+    // Schlick's approximation is farthest off at 84°.
+    expect(Math.abs(found - expected)).toBeLessThan(0.058)
+    mean += 2 * cosine * Math.sin(angle) * step * found
+    expectedMean += 2 * cosine * Math.sin(angle) * step * expected
+  }
+  expect(mean / expectedMean).toBeGreaterThan(0.99)
+  expect(mean / expectedMean).toBeLessThan(1.01)
+})
+
+it('rough water reflects less at grazing angles, and as much from above', () => {
+  expect(waterFresnel(1, 0.04)).toBeCloseTo(0.0211, 4)
+  fc.assert(
+    fc.property(
+      fc.double({ min: 0, max: 1, noNaN: true }),
+      fc.double({ min: 1e-3, max: 0.2, noNaN: true }),
+      (cosine, variance) => {
+        const rough = waterFresnel(cosine, variance)
+        expect(rough).toBeLessThanOrEqual(waterFresnel(cosine, 0))
+        expect(rough).toBeGreaterThan(0.021)
+      }
+    )
+  )
+  expect(waterFresnel(0, 0.039)).toBeLessThan(0.4)
+})
+
+it('waves have the variance that roughness lacks, and lie along the ground', () => {
+  const up = [0.6, 0, 0.8] as const
+  const variance = seaSlopeVariance(7)
+  const rest = seaWaves([0, 0, 0], up, 0.01, variance, 0)
+  let square = 0
+  const count = 4000
+  for (let i = 0; i < count; i++) {
+    // Low-discrepancy places of the period of 256 m.
+    const [a, b] = [(i * 0.7548776662) % 1, (i * 0.569840291) % 1]
+    const offset = [256 * a, 256 * b, 256 * ((i * 0.430159709) % 1)] as const
+    const { slope } = seaWaves(offset, up, 0.01, variance, 12)
+    const [x, y, z] = slope
+    expect(Math.abs(x * up[0] + y * up[1] + z * up[2])).toBeLessThan(1e-12)
+    square += (x * x + y * y + z * z) / count
+  }
+  expect(square / (variance - rest.variance)).toBeGreaterThan(0.85)
+  expect(square / (variance - rest.variance)).toBeLessThan(1.15)
+  // From afar there are none.
+  const far = seaWaves([3, 4, 5], up, 20, variance, 12)
+  expect(Math.hypot(...far.slope)).toBe(0)
+  expect(far.variance).toBe(variance)
 })

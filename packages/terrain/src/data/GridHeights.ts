@@ -26,12 +26,14 @@ export interface GridHeightsOptions {
   width: number
   /** Rows from north to south, ≥ 2. */
   height: number
-  /** Outer edges of the first and last columns [°]; east is more than west, by at most 360. */
+  /** Outer edges of the first and last columns [°], or as `units` says; east is more than west, by at most 360°. */
   west: number
   east: number
-  /** Outer edges of the last and first rows [°]. */
+  /** Outer edges of the last and first rows [°], or as `units` says. */
   south: number
   north: number
+  /** Units of the edges: `'degrees'`, the default, or for a flat world `'meters'`, to the east along +X and to the north along −Z. */
+  units?: 'degrees' | 'meters'
   /** Value that says that there is none; numbers that are not finite say so, too. */
   noData?: number
   /** Factor on the numbers, default 1 [m]. */
@@ -53,6 +55,7 @@ const OPTIONS = [
   'east',
   'south',
   'north',
+  'units',
   'noData',
   'scale',
   'outside',
@@ -86,7 +89,9 @@ export class GridHeights implements PageSource {
   readonly #levels: readonly Raster[]
   readonly #west: number
   readonly #north: number
-  /** Width of a column and height of a row [rad]. */
+  /** True of a grid on the plane of a flat world. */
+  readonly #isFlat: boolean
+  /** Width of a column and height of a row [rad], or [m] where it is flat. */
   readonly #stepX: number
   readonly #stepY: number
   readonly #radii: Vector3
@@ -106,7 +111,11 @@ export class GridHeights implements PageSource {
     const where = 'GridHeights'
     checkOptions(where, options, ...OPTIONS)
     const { width, height, west, east, south, north, noData, scale = 1, outside = 0 } = options
-    const { ellipsoid = Ellipsoid.WGS84, attribution = '' } = options
+    const { ellipsoid = Ellipsoid.WGS84, attribution = '', units = 'degrees' } = options
+    if (units !== 'degrees' && units !== 'meters') {
+      fail(where, 'units must be degrees or meters', units)
+    }
+    const isFlat = (this.#isFlat = units === 'meters')
     for (const [name, value] of Object.entries({ width, height })) {
       if (!Number.isInteger(value) || value < 2)
         fail(where, `${name} must be a whole number ≥ 2`, value)
@@ -114,25 +123,29 @@ export class GridHeights implements PageSource {
     for (const [name, value] of Object.entries({ west, east, south, north, scale, outside })) {
       checkFinite(where, name, value)
     }
-    if (!(east > west && east <= west + 360))
-      fail(where, 'east must be in (west, west + 360]', east)
-    if (!(south >= -90)) fail(where, 'south must be in [−90, 90)', south)
-    if (!(north > south && north <= 90)) fail(where, 'north must be in (south, 90]', north)
+    const [turn, pole] = isFlat ? [Infinity, Infinity] : [360, 90]
+    if (!(east > west && east <= west + turn))
+      fail(where, `east must be in (west, west + ${turn}]`, east)
+    if (!(south >= -pole)) fail(where, `south must be in [−${pole}, ${pole})`, south)
+    if (!(north > south && north <= pole)) fail(where, `north must be in (south, ${pole}]`, north)
     if (values?.length !== width * height) {
       fail(where, `values must be ${width * height} numbers`, values?.length)
     }
     checkEllipsoid(where, ellipsoid)
     this.attribution = attribution
-    this.#west = west * MathUtils.DEG2RAD
-    this.#north = north * MathUtils.DEG2RAD
-    this.#stepX = ((east - west) / width) * MathUtils.DEG2RAD
-    this.#stepY = ((north - south) / height) * MathUtils.DEG2RAD
+    const unit = isFlat ? 1 : MathUtils.DEG2RAD
+    this.#west = west * unit
+    this.#north = north * unit
+    this.#stepX = ((east - west) / width) * unit
+    this.#stepY = ((north - south) / height) * unit
     this.#radii = ellipsoid.radii
-    this.#wraps = east - west >= 360 - 1e-9
+    this.#wraps = !isFlat && east - west >= 360 - 1e-9
     this.#outside = outside
-    const middle = Math.cos(((north + south) / 2) * MathUtils.DEG2RAD)
-    const cellX = this.#stepX * this.#radii.x * Math.max(middle, 1e-3)
-    const cellY = this.#stepY * ellipsoid.minimumRadius
+    const cosineAt = (latitude: number): number =>
+      isFlat ? 1 : Math.max(Math.cos(latitude * MathUtils.DEG2RAD), 1e-3)
+    const [radius, least] = isFlat ? [1, 1] : [this.#radii.x, ellipsoid.minimumRadius]
+    const cellX = this.#stepX * radius * cosineAt((north + south) / 2)
+    const cellY = this.#stepY * least
     this.#cell = Math.min(cellX, cellY)
     const { fade = Math.min(cellX * width, cellY * height) / 10 } = options
     checkNonNegative(where, 'fade', fade)
@@ -151,11 +164,8 @@ export class GridHeights implements PageSource {
     this.lowest = Math.min(low - over, outside)
     this.highest = Math.max(high + over, outside)
     // Columns are narrowest at the edge nearer to a pole.
-    const narrow = Math.max(
-      Math.cos(Math.max(Math.abs(north), Math.abs(south)) * MathUtils.DEG2RAD),
-      1e-3
-    )
-    const slopeX = right / (this.#stepX * this.#radii.x * narrow)
+    const narrow = cosineAt(Math.max(Math.abs(north), Math.abs(south)))
+    const slopeX = right / (this.#stepX * radius * narrow)
     const fall = (1.5 * (this.highest - this.lowest)) / this.#fade
     this.#slope = STEEPENING * Math.hypot(slopeX, down / cellY) + fall
   }
@@ -175,7 +185,9 @@ export class GridHeights implements PageSource {
     target.height = this.#sample(cell.x, cell.y, 0, raster).value
     const byLongitude = raster.x / this.#stepX
     const byLatitude = -raster.y / this.#stepY
-    geographicGradient(place, byLongitude, byLatitude, positionECEF, this.#radii, target.gradient)
+    if (this.#isFlat) target.gradient.set(byLongitude, 0, -byLatitude)
+    else
+      geographicGradient(place, byLongitude, byLatitude, positionECEF, this.#radii, target.gradient)
     return target
   }
 
@@ -203,11 +215,16 @@ export class GridHeights implements PageSource {
 
   /** Columns of a whole turn about the planet. */
   get #turn(): number {
-    return (2 * Math.PI) / this.#stepX
+    return this.#isFlat ? Infinity : (2 * Math.PI) / this.#stepX
   }
 
   /** Place in cells from the outer edges, of the turn that is nearest to the middle. */
   #cellOf(positionECEF: Vector3, target: { x: number; y: number }): void {
+    if (this.#isFlat) {
+      target.x = (positionECEF.x - this.#west) / this.#stepX
+      target.y = (positionECEF.z + this.#north) / this.#stepY
+      return
+    }
     geographicPlace(positionECEF, this.#radii, place)
     const x = (place.longitude - this.#west) / this.#stepX
     const turns = Math.round((x - this.#levels[0].width / 2) / this.#turn)
@@ -225,8 +242,10 @@ export class GridHeights implements PageSource {
     const insideX = MathUtils.clamp(x, 0, width)
     const insideY = MathUtils.clamp(y, 0, height)
     const isInside = insideX === x && insideY === y
-    const wide = this.#stepX * this.#radii.x * Math.cos(this.#north - y * this.#stepY)
-    const tall = this.#stepY * this.#radii.x
+    const isFlat = this.#isFlat
+    const parallel = isFlat ? 1 : this.#radii.x * Math.cos(this.#north - y * this.#stepY)
+    const wide = this.#stepX * parallel
+    const tall = this.#stepY * (isFlat ? 1 : this.#radii.x)
     const distance = isInside ? 0 : Math.hypot((x - insideX) * wide, (y - insideY) * tall)
     if (distance >= this.#fade) {
       target.value = this.#outside

@@ -22,17 +22,22 @@ export const isPolar = (y: number): boolean => y < POLAR_ROW || y > 1 - POLAR_RO
 /** Tiles have numbers as keys: exact up to level 23. */
 const LEVELS = 32
 
-/** Key of a tile; columns wrap around the planet, rows end at its edges. */
-export function tileKey(z: number, x: number, y: number): number {
-  const side = 2 ** z
-  const column = ((x % side) + side) % side
-  const row = Math.min(Math.max(y, 0), side - 1)
-  return (row * side + column) * LEVELS + z
+/**
+ * Key of a tile; columns wrap around the planet, rows end at its edges.
+ *
+ * @param wide - Tiles of level 0 from west to east.
+ */
+export function tileKey(z: number, x: number, y: number, wide = 1): number {
+  const columns = wide * 2 ** z
+  const column = ((x % columns) + columns) % columns
+  const row = Math.min(Math.max(y, 0), 2 ** z - 1)
+  return (row * columns + column) * LEVELS + z
 }
 
 /** Level, column and row of a key. */
-export function tileOfKey(key: number): { z: number; x: number; y: number } {
+export function tileOfKey(key: number, wide = 1): { z: number; x: number; y: number } {
   const z = key % LEVELS
   const index = Math.floor(key / LEVELS)
-  return { z, x: index % 2 ** z, y: Math.floor(index / 2 ** z) }
+  const columns = wide * 2 ** z
+  return { z, x: index % columns, y: Math.floor(index / columns) }
 }

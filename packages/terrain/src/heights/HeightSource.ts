@@ -11,7 +11,7 @@ export interface HeightSample {
 
 /** A place of the ellipsoid's surface in a shader, exact to 1e-7 of the distance from the reference. */
 export interface SurfacePoint {
-  /** Point near the viewer in whole multiples of 256 m, ECEF axes [256 m]. */
+  /** Point near the viewer in whole multiples of 256 m, ECEF axes, those of the world where that is flat [256 m]. */
   readonly reference: Vec3
   /** Place relative to the reference, ECEF axes [m]. */
   readonly offset: Vec3
@@ -35,7 +35,7 @@ export interface GroundBounds {
   /**
    * Height and gradient on the CPU, with all detail.
    *
-   * @param positionECEF - On the ellipsoid [m].
+   * @param positionECEF - On the ellipsoid, or in a flat world on the plane y = 0, world axes [m].
    */
   sampleAt(positionECEF: Vector3, target: HeightSample): HeightSample
 }

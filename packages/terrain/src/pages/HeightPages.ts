@@ -1,10 +1,13 @@
 import { checkOwner } from '@welkin/atmosphere'
-import { fail, type Ellipsoid } from '@welkin/geo'
+import { fail } from '@welkin/geo'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
+import type { Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
+import { ImageLoader } from './ImageLoader'
 import { PageAtlas } from './PageAtlas'
 import { PageBaker, spacingOf } from './PageBaker'
+import type { PageImages } from './PageImages'
 import { isPageSource, type PageSource } from './PageSource'
 
 /** Selections after which a page that none came by may be given to another tile: several cameras draw in turn. */
@@ -38,6 +41,7 @@ export class HeightPages {
   readonly atlas: PageAtlas
   readonly #source: HeightSource | PageSource
   readonly #baker: PageBaker
+  readonly #images: ImageLoader | null
   #renderer: Renderer | null = null
   /** Tiles by the place of their page. */
   readonly #owners: (Tile | null)[]
@@ -58,13 +62,16 @@ export class HeightPages {
    */
   constructor(
     source: HeightSource | PageSource,
-    ellipsoid: Ellipsoid,
+    figure: Figure,
     resolution: number,
-    bytes: number
+    bytes: number,
+    images: PageImages | null = null
   ) {
     this.#source = source
-    this.atlas = new PageAtlas(resolution, bytes)
-    this.#baker = new PageBaker(source, ellipsoid, this.atlas, resolution)
+    this.atlas = new PageAtlas(resolution, bytes, images !== null)
+    this.#baker = new PageBaker(source, figure, this.atlas, resolution)
+    this.#images =
+      images === null ? null : new ImageLoader(images, tile => this.#baker.request(tile))
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
   }
 
@@ -91,12 +98,16 @@ export class HeightPages {
     for (const root of roots) {
       if (root.slot < 0 || this.#flat.has(root)) this.#drawRoot(root, selection)
     }
+    this.#images?.update(selection, ({ slot }, colors) => {
+      this.#baker.bakeImage(renderer, slot, colors)
+    })
     return isNew
   }
 
   /** True if no page comes that is missing: its heights fail, or there is no room and stays none. */
   get isStuck(): boolean {
-    return this.#refused > 0 ? this.#refused > KEEP_FOR : this.#loading.size === 0
+    if (this.#refused > 0) return this.#refused > KEEP_FOR
+    return this.#loading.size === 0 && this.#images?.isWaiting !== true
   }
 
   /** True if a whole face that the last selection came by is still flat. */
@@ -108,6 +119,8 @@ export class HeightPages {
   #drawRoot(root: Tile, selection: number): void {
     const heights = this.#heightsOf(root, selection)
     const slot = root.slot < 0 ? this.#place(selection) : root.slot
+    const colors = root.slot < 0 ? this.#images?.colorsOf(root, selection, false) : undefined
+    if (colors !== undefined) this.#baker.bakeImage(this.#renderer!, slot, colors)
     if (heights !== undefined) {
       this.#draw(root, heights, slot)
       this.#flat.delete(root)
@@ -139,6 +152,8 @@ export class HeightPages {
       if (count >= most) break
       const heights = this.#heightsOf(tile, selection)
       if (heights === undefined) continue
+      const colors = this.#images?.colorsOf(tile, selection)
+      if (this.#images !== null && colors === undefined) continue
       const slot = this.#place(selection)
       // All pages are in use: the ground stays as coarse as it is.
       if (slot < 0) {
@@ -147,6 +162,7 @@ export class HeightPages {
       }
       this.#refused = 0
       this.#draw(tile, heights, slot)
+      if (colors !== undefined) this.#baker.bakeImage(this.#renderer!, slot, colors)
       count++
     }
     this.#abandon(selection)
@@ -158,7 +174,7 @@ export class HeightPages {
     this.#loading.delete(tile)
     if (heights === null) return
     const { lowest, highest } = this.#source
-    const spacing = spacingOf(tile, this.#baker.ellipsoid, this.atlas.surfaceSide - 1)
+    const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
     const least = Math.min(...heights)
     const most = Math.max(...heights)
@@ -258,6 +274,7 @@ export class HeightPages {
     this.#loading.clear()
     this.#failures.clear()
     this.#flat.clear()
+    this.#images?.clear()
     for (const [slot, owner] of this.#owners.entries()) {
       if (owner !== null) owner.slot = -1
       this.#owners[slot] = null

@@ -5,7 +5,8 @@ import {
   NearestFilter,
   RenderTarget,
   RGBAFormat,
-  RGFormat
+  RGFormat,
+  UnsignedByteType
 } from 'three'
 import type { PixelFormat, TextureDataType } from 'three'
 
@@ -15,10 +16,13 @@ const LONGEST = 8192
 /** Bytes of a texel: two float32 of the vertices' texture, four float16 of the pixels'. */
 const TEXEL_BYTES = 8
 
+/** Bytes of a texel of pictures. */
+const IMAGE_BYTES = 4
+
 /** Pages that a view needs where it needs the most: at eye height, with the horizon in view. */
 const ENOUGH_PAGES = 1100
 
-/** Bytes of a page. */
+/** Bytes of a page, pictures left out. */
 const bytesOfPage = (resolution: number, density: number): number =>
   TEXEL_BYTES * ((resolution + 1) ** 2 + (density * resolution + 1) ** 2)
 
@@ -27,7 +31,7 @@ const FINEST_TEXELS = 128
 
 /** Texels of a page per cell of its tile, for pixels: fewer if there is not the memory. */
 function densityOf(resolution: number, bytes: number): number {
-  let density = Math.max(Math.round(FINEST_TEXELS / resolution), 1)
+  let density = Math.max(Math.floor(FINEST_TEXELS / resolution), 1)
   while (density > 1 && bytes < ENOUGH_PAGES * bytesOfPage(resolution, density)) density >>= 1
   return density
 }
@@ -50,7 +54,7 @@ function target(name: string, width: number, height: number, type: TextureDataTy
   return made
 }
 
-/** Two textures with a fixed number of pages: a tile's heights for vertices, and slopes and patches for pixels. */
+/** Textures with a fixed number of pages: a tile's heights for vertices, slopes and patches for pixels, and pictures if there are any. */
 export class PageAtlas {
   /** Number of pages that there is room for. */
   readonly capacity: number
@@ -68,17 +72,20 @@ export class PageAtlas {
   readonly heights: RenderTarget
   /** Gradient along the face's two axes [–], height [m] and patchiness, float16, for pixels. */
   readonly surface: RenderTarget
+  /** Colours of pictures for pixels, sRGB, RGBA of 8 bits; null without any. */
+  readonly images: RenderTarget | null
 
   /**
    * @param resolution - Cells along a tile's edge.
-   * @param bytes - Most memory that both may take; they take that of `LEAST_PAGES` at least.
+   * @param bytes - Most memory that all may take; they take that of `LEAST_PAGES` at least.
    */
-  constructor(resolution: number, bytes: number) {
+  constructor(resolution: number, bytes: number, hasImages = false) {
     this.heightSide = resolution + 1
     this.density = densityOf(resolution, bytes)
     this.surfaceSide = this.density * resolution + 1
     const most = Math.floor(LONGEST / this.surfaceSide)
-    const bytesPerPage = bytesOfPage(resolution, this.density)
+    const imageBytes = hasImages ? IMAGE_BYTES * this.surfaceSide ** 2 : 0
+    const bytesPerPage = bytesOfPage(resolution, this.density) + imageBytes
     const wanted = Math.max(Math.floor(bytes / bytesPerPage), LEAST_PAGES)
     this.columns = Math.min(Math.ceil(Math.sqrt(wanted)), most)
     const rows = Math.min(Math.floor(wanted / this.columns), most)
@@ -88,6 +95,7 @@ export class PageAtlas {
       target(`Welkin.Terrain.${name}`, this.columns * side, rows * side, type)
     this.heights = pages('heights', this.heightSide, FloatType)
     this.surface = pages('surface', this.surfaceSide, HalfFloatType)
+    this.images = hasImages ? pages('images', this.surfaceSide, UnsignedByteType) : null
   }
 
   /** Has the next drawing go to a page alone. */
@@ -101,5 +109,6 @@ export class PageAtlas {
   dispose(): void {
     this.heights.dispose()
     this.surface.dispose()
+    this.images?.dispose()
   }
 }

@@ -1,16 +1,18 @@
 import { DataTexture, FloatType, NearestFilter, RedFormat, Vector3 } from 'three'
 import { FragmentPass } from '@welkin/atmosphere'
-import type { Ellipsoid } from '@welkin/geo'
 import { uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
-import { cubeToEllipsoid, faceAxes } from '../tiles/cpu/cubeSphere'
+import { faceAxes } from '../tiles/cpu/cubeSphere'
+import { cubeToFigure, isFlat, type Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
+import { ellipsoidInShader, planeInShader } from '../tiles/tsl/figure'
 import type { PageAtlas } from './PageAtlas'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
   heightsOf,
+  imageOf,
   loadedHeightsOf,
   loadedSurfaceOf,
   surfaceOf,
@@ -20,7 +22,7 @@ import {
 const reference = new Vector3()
 
 /** Largest step between heights of a page with so many steps along an edge [m]. */
-export const spacingOf = ({ extent }: Tile, { maximumRadius }: Ellipsoid, steps: number): number =>
+export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: number): number =>
   (2 * extent * maximumRadius) / steps
 
 /** Draws pages, in two passes each. */
@@ -39,22 +41,30 @@ export class PageBaker {
   readonly #surface: FragmentPass
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
+  /** Colours of one page, and the pass that draws them; null without pictures. */
+  readonly #image: { texture: DataTexture; pass: FragmentPass } | null = null
 
   constructor(
     readonly source: HeightSource | PageSource,
-    readonly ellipsoid: Ellipsoid,
+    readonly figure: Figure,
     readonly atlas: PageAtlas,
     /** Cells along a tile's edge. */
     readonly resolution: number
   ) {
-    this.#tile.radii.value.copy(ellipsoid.radii)
+    this.#tile.radii.value.copy(figure.radii)
     this.#tile.seed.value = source.seed ?? 0
     const { heightSide, surfaceSide, density } = atlas
-    const tile = this.#tile as unknown as PageUniforms
+    const shape = isFlat(figure) ? planeInShader : ellipsoidInShader
+    const tile = { ...this.#tile, figure: shape } as unknown as PageUniforms
     const pass = (name: string, output: ReturnType<typeof heightsOf>): FragmentPass =>
       new FragmentPass(`Welkin.Terrain.${name}`, output)
+    const side = surfaceSide + 2
+    if (atlas.images !== null) {
+      const texture = new DataTexture(new Uint8ClampedArray(4 * side ** 2), side, side)
+      texture.name = 'Welkin.Terrain.image'
+      this.#image = { texture, pass: pass('images', imageOf(texture, surfaceSide)) }
+    }
     if (isPageSource(source)) {
-      const side = surfaceSide + 2
       const texture = new DataTexture(new Float32Array(side ** 2), side, side, RedFormat, FloatType)
       texture.name = 'Welkin.Terrain.loaded'
       texture.minFilter = texture.magFilter = NearestFilter
@@ -72,19 +82,19 @@ export class PageBaker {
     const steps = this.atlas.density * this.resolution
     const { face, level, x, y, extent } = tile
     const { first, second } = faceAxes(face)
-    const { radii } = this.ellipsoid
+    const { figure } = this
     return {
       face,
       level,
       x,
       y,
       side: steps + 3,
-      spacing: spacingOf(tile, this.ellipsoid, steps),
+      spacing: spacingOf(tile, figure, steps),
       placeOf(column, row, target) {
         const across = ((2 * (column - 1)) / steps - 1) * extent
         const along = ((2 * (row - 1)) / steps - 1) * extent
         target.copy(tile.cube).addScaledVector(first, across).addScaledVector(second, along)
-        return cubeToEllipsoid(target, radii, target)
+        return cubeToFigure(target, figure, target)
       }
     }
   }
@@ -107,7 +117,7 @@ export class PageBaker {
     reference.copy(tile.center).divideScalar(REFERENCE_STEP).round()
     uniforms.reference.value.copy(reference)
     uniforms.center.value.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
-    uniforms.shortest.value = 2 * spacingOf(tile, this.ellipsoid, this.resolution)
+    uniforms.shortest.value = 2 * spacingOf(tile, this.figure, this.resolution)
     for (const [pass, target] of [
       [this.#heights, atlas.heights],
       [this.#surface, atlas.surface]
@@ -117,7 +127,18 @@ export class PageBaker {
     }
   }
 
+  /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
+  bakeImage(renderer: Renderer, slot: number, colors: Uint8ClampedArray): void {
+    const { texture, pass } = this.#image!
+    ;(texture.image.data as Uint8ClampedArray).set(colors)
+    texture.needsUpdate = true
+    this.atlas.aim(this.atlas.images!, slot)
+    pass.render(renderer, this.atlas.images!)
+  }
+
   dispose(): void {
+    this.#image?.pass.dispose()
+    this.#image?.texture.dispose()
     this.#heights.dispose()
     this.#surface.dispose()
     this.#loaded?.dispose()

@@ -1,9 +1,10 @@
-import type { Ellipsoid } from '@welkin/geo'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
+import type { Figure } from '../tiles/cpu/figure'
 import type { Viewer } from '../tiles/cpu/viewer'
 import { noTiles, TileTree } from '../tiles/TileTree'
 import { HeightPages } from './HeightPages'
+import type { PageImages } from './PageImages'
 import type { PageSource } from './PageSource'
 
 /** Tiles that there is room for. */
@@ -43,15 +44,16 @@ export class PagedTiles {
    */
   constructor(
     source: HeightSource | PageSource,
-    ellipsoid: Ellipsoid,
+    figure: Figure,
     resolution: number,
     detail: number,
-    bytes: number
+    bytes: number,
+    images: PageImages | null = null
   ) {
-    const cells = (2 * ellipsoid.maximumRadius) / resolution / FINEST_CELL
+    const cells = (2 * figure.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
-    this.tree = new TileTree(ellipsoid, source, finestLevel, detail)
-    this.pages = new HeightPages(source, ellipsoid, resolution, bytes)
+    this.tree = new TileTree(figure, source, finestLevel, detail)
+    this.pages = new HeightPages(source, figure, resolution, bytes, images)
   }
 
   /**

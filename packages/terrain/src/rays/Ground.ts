@@ -1,12 +1,12 @@
 import { Vector3 } from 'three'
-import type { Atmosphere } from '@welkin/atmosphere'
 import type { GroundBounds, HeightSample } from '../heights/HeightSource'
+import { figureOf, type GroundSpace } from '../tiles/cpu/figure'
 
 /** Ground of a planet that rays hit and feet stand on; a `Terrain` is one. */
 export interface Ground {
-  /** Its ellipsoid, and where that is in the world. */
-  readonly atmosphere: Pick<Atmosphere, 'ellipsoid' | 'worldToECEF'>
-  /** Heights over the ellipsoid. */
+  /** Its ellipsoid and where that is in the world, or that the world is flat. */
+  readonly atmosphere: GroundSpace
+  /** Heights over the ellipsoid, or in a flat world over y = 0. */
   readonly source: GroundBounds
   /** Surface of the sea [m]; −Infinity for none. */
   readonly seaLevel: number
@@ -25,7 +25,7 @@ export function groundNormal(
   subpoint: Vector3,
   target: Vector3
 ): Vector3 {
-  atmosphere.ellipsoid.surfaceNormal(subpoint, target)
+  figureOf(atmosphere).surfaceNormal(subpoint, target)
   const { height, gradient } = source.sampleAt(subpoint, sample)
   if (height <= seaLevel) return target
   gradient.addScaledVector(target, -gradient.dot(target))

@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
 import type { HeightSample } from '../heights/HeightSource'
+import { figureOf, isFlat } from '../tiles/cpu/figure'
 import type { Ground } from './Ground'
 
 /** Length to which a hit is found [m]. */
@@ -39,9 +40,10 @@ function probe(
   target: Probe
 ): Probe {
   position.copy(origin).addScaledVector(direction, distance)
-  const { radii } = atmosphere.ellipsoid
-  atmosphere.ellipsoid.surfaceNormal(position, up)
-  const support = Math.hypot(radii.x * up.x, radii.y * up.y, radii.z * up.z)
+  const figure = figureOf(atmosphere)
+  const { radii } = figure
+  figure.surfaceNormal(position, up)
+  const support = isFlat(figure) ? 0 : Math.hypot(radii.x * up.x, radii.y * up.y, radii.z * up.z)
   target.height = position.dot(up) - support
   target.cosUp = direction.dot(up)
   target.clearance = target.height - highest
@@ -73,7 +75,7 @@ export function distanceToGround(
   far: number
 ): number | null {
   const { source, seaLevel } = ground
-  const { minimumRadius, maximumRadius } = ground.atmosphere.ellipsoid
+  const { minimumRadius, maximumRadius } = figureOf(ground.atmosphere)
   const highest = Math.max(source.highest, seaLevel)
   const lowest = Math.max(source.lowest, seaLevel)
   // Smallest radius of curvature of the ellipsoid: up turns no faster.

@@ -1,6 +1,7 @@
 import { Matrix3, Vector3 } from 'three'
 import type { Intersection, Object3D, Raycaster } from 'three'
 import { distanceToGround } from './distanceToGround'
+import { figureOf, worldToGround } from '../tiles/cpu/figure'
 import { groundNormal, type Ground } from './Ground'
 
 const origin = new Vector3()
@@ -20,9 +21,9 @@ export function raycastGround(
   { ray, near, far }: Raycaster,
   intersects: Intersection[]
 ): void {
-  const { ellipsoid, worldToECEF } = ground.atmosphere
-  origin.copy(ray.origin).applyMatrix4(worldToECEF)
-  direction.copy(ray.direction).applyMatrix3(axes.setFromMatrix4(worldToECEF))
+  const fromWorld = worldToGround(ground.atmosphere)
+  origin.copy(ray.origin).applyMatrix4(fromWorld)
+  direction.copy(ray.direction).applyMatrix3(axes.setFromMatrix4(fromWorld))
   const metersPerUnit = direction.length()
   direction.divideScalar(metersPerUnit)
   const meters = distanceToGround(
@@ -34,7 +35,7 @@ export function raycastGround(
   )
   if (meters === null) return
   subpoint.copy(origin).addScaledVector(direction, meters)
-  ellipsoid.footPoint(subpoint, subpoint)
+  figureOf(ground.atmosphere).footPoint(subpoint, subpoint)
   const distance = meters / metersPerUnit
   intersects.push({
     distance,

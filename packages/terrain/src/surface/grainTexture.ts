@@ -17,9 +17,28 @@ const STONES = 6500
 /** Sides of a stone. */
 const SIDES = 6
 
-/** Blades of grass, and their lengths: the least, and the rest [texels]. */
-const BLADES = 9000
-const BLADE_LENGTH = [10, 26] as const
+/** Tufts of grass and blades of each, their lengths [texels], and half of their width at the root [texels]. */
+const TUFTS = 520
+const BLADES = 17
+const BLADE_LENGTH = { least: 8, more: 34 }
+const BLADE_WIDTH = 1.55
+
+/** Distance between the spots that a blade is made of [texels]. */
+const STEP = 1.2
+
+/** Mean distance of a blade's root from its tuft [texels]. */
+const TUFT_RADIUS = 15
+
+/** Part of the blades that is dry, and light of those: greater than of any green one. */
+const DRY_BLADES = 0.09
+const DRY_LIGHT = 0.92
+
+/** Difference of light from its mean that is 1 in alpha. */
+const BLADE_CONTRAST = 0.6
+
+/** Tufts to a plant with three round leaves, and the radius of a leaf [texels]. */
+const TUFTS_TO_HERB = 3
+const LEAF = { least: 1.4, more: 1.8 }
 
 /** Repeatable random numbers in [0, 1). */
 function randomNumbers(seed: number): () => number {
@@ -62,22 +81,74 @@ function addStone(heights: Float32Array, radius: number, random: () => number): 
   }
 }
 
-/** Lays a blade of grass over darker ones: a bent stroke, light at its tip. */
-function addBlade(light: Float32Array, random: () => number): void {
-  let [x, y] = [random() * SIZE, random() * SIZE]
-  let turn = 2 * Math.PI * random()
-  const bend = (random() - 0.5) * 0.12
-  const brightness = random()
-  const length = BLADE_LENGTH[0] + BLADE_LENGTH[1] * random()
-  for (let step = 0; step < length; step++) {
-    x += Math.cos(turn)
-    y += Math.sin(turn)
-    turn += bend
-    const value = brightness * (0.45 + (0.55 * step) / length)
-    const [i, j] = [Math.floor(x), Math.floor(y)]
-    for (const n of [texel(i, j), texel(i + 1, j), texel(i, j + 1)]) {
-      light[n] = Math.max(light[n], value)
+/** Lays a round spot over what is there: soft at its edge, with a shadow about it. */
+function addSpot(light: Float32Array, x: number, y: number, radius: number, value: number): void {
+  const reach = radius + 1.5
+  for (let j = Math.floor(y - reach); j <= y + reach; j++) {
+    for (let i = Math.floor(x - reach); i <= x + reach; i++) {
+      const n = texel(i, j)
+      const inside = radius - Math.sqrt((i - x) ** 2 + (j - y) ** 2)
+      if (inside <= -1.5) continue
+      const cover = Math.min(Math.max(inside + 0.5, 0), 1)
+      const shade = Math.min(Math.max(inside + 1.5, 0), 1) * (1 - cover)
+      light[n] = light[n] * (1 - 0.3 * shade) * (1 - cover) + value * cover
     }
+  }
+}
+
+/** Lays a blade of grass over what is there: bent, pointed, dark at its root. */
+function addBlade(
+  light: Float32Array,
+  [x, y]: [number, number],
+  turn: number,
+  random: () => number
+): void {
+  const length = BLADE_LENGTH.least + BLADE_LENGTH.more * random() ** 2
+  const bend = (random() - 0.5) * (1.8 / length)
+  const width = BLADE_WIDTH * (0.5 + 0.6 * random())
+  const brightness = random() < DRY_BLADES ? DRY_LIGHT : 0.42 + 0.3 * random()
+  for (let step = 0; step < length; step += STEP) {
+    const part = step / length
+    addSpot(light, x, y, width * (1 - part ** 2), brightness * (0.62 + 0.38 * part))
+    x += STEP * Math.cos(turn)
+    y += STEP * Math.sin(turn)
+    turn += STEP * bend
+  }
+}
+
+/** Soil, tufts of grass about their middles, and leaves of herbs, as light. */
+function grass(random: () => number): Float32Array {
+  const light = new Float32Array(SIZE ** 2)
+  for (let n = 0; n < light.length; n++) light[n] = 0.1 + 0.14 * random()
+  for (let n = 0; n < TUFTS; n++) {
+    const [x, y] = [random() * SIZE, random() * SIZE]
+    const lean = 2 * Math.PI * random()
+    for (let blade = 0; blade < BLADES; blade++) {
+      // Outward from the middle, and all a little to one side.
+      const away = 2 * Math.PI * random()
+      const distance = TUFT_RADIUS * random() ** 0.7
+      const root: [number, number] = [x + distance * Math.cos(away), y + distance * Math.sin(away)]
+      const turn = Math.atan2(
+        Math.sin(away) + 0.7 * Math.sin(lean),
+        Math.cos(away) + 0.7 * Math.cos(lean)
+      )
+      addBlade(light, root, turn + 0.8 * (random() - 0.5), random)
+    }
+    if (n % TUFTS_TO_HERB === 0) addHerb(light, random)
+  }
+  return light
+}
+
+/** Lays a plant with three round leaves over what is there. */
+function addHerb(light: Float32Array, random: () => number): void {
+  const [x, y] = [random() * SIZE, random() * SIZE]
+  const radius = LEAF.least + LEAF.more * random()
+  const turn = 2 * Math.PI * random()
+  const value = 0.36 + 0.14 * random()
+  for (let leaf = 0; leaf < 3; leaf++) {
+    const angle = turn + (leaf * 2 * Math.PI) / 3
+    const [i, j] = [x + 1.1 * radius * Math.cos(angle), y + 1.1 * radius * Math.sin(angle)]
+    addSpot(light, i, j, radius, value)
   }
 }
 
@@ -99,10 +170,8 @@ export function grainTexture(): DataTexture {
     const share = random() * (1 / SMALLEST ** 2 - 1 / LARGEST ** 2) + 1 / LARGEST ** 2
     addStone(raised, share ** -0.5, random)
   }
-  const light = new Float32Array(SIZE ** 2)
-  for (let n = 0; n < BLADES; n++) addBlade(light, random)
   const stones = center(raised)
-  const blades = center(light)
+  const blades = center(grass(random))
   // Rounds and clamps by itself.
   const bytes = new Uint8ClampedArray(4 * SIZE ** 2)
   const encode = (value: number, most: number): number => 127.5 + (127.5 * value) / most
@@ -113,7 +182,7 @@ export function grainTexture(): DataTexture {
     bytes[4 * n] = encode(rise(1, 0), GRAIN_SLOPE)
     bytes[4 * n + 1] = encode(rise(0, 1), GRAIN_SLOPE)
     bytes[4 * n + 2] = encode(stones[n], STONE_HEIGHT)
-    bytes[4 * n + 3] = encode(blades[n], 1)
+    bytes[4 * n + 3] = encode(blades[n], BLADE_CONTRAST)
   }
   const texture = new DataTexture(bytes, SIZE, SIZE)
   texture.name = 'Welkin.Terrain.grain'

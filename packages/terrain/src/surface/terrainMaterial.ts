@@ -4,24 +4,27 @@ import {
   float,
   mix,
   positionViewDirection,
+  sRGBTransferEOTF,
   texture,
   transformNormalToView,
   varyingProperty,
   vec2,
+  vec3,
   vec4
 } from 'three/tsl'
 import type { Texture } from 'three'
-import { MeshStandardNodeMaterial } from 'three/webgpu'
-import type { Node, NodeBuilder } from 'three/webgpu'
+import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
+import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { groundSurface } from './tsl/groundSurface'
-import { seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import { FOAM, foamCover, seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import { GroundMaterial } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
@@ -33,6 +36,12 @@ const handedOn = <T extends Node>(type: string, name: string): T & { assign(valu
   varyingProperty(type as never, `welkinTerrain${name}`) as unknown as T & {
     assign(value: T): void
   }
+
+/** Colour of a picture with the light of stones and blades, and the made-up one where there is no picture. */
+const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
+  const linear = sRGBTransferEOTF(rgb.div(a.max(1 / 255))) as unknown as Vec3
+  return mix(made, linear.mul(detail), a)
+}
 
 /**
  * Material of a terrain: vertices on the ground and normals at every pixel, by pages.
@@ -46,13 +55,14 @@ export function terrainMaterial(
   atlas: PageAtlas,
   grain: Texture,
   uniforms: TerrainUniforms,
+  figure: ShaderFigure,
   resolution: number,
   detail: number
 ): MeshStandardNodeMaterial {
-  const material = new MeshStandardNodeMaterial()
+  const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
-  const { reference, radii, stretch, seaLevel, seaVariance, waveTime } = uniforms
+  const { reference, radii, seaLevel, seaVariance, waveTime, pole } = uniforms
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
@@ -61,7 +71,7 @@ export function terrainMaterial(
     blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
-    const vertex: TileVertex = tileVertex(atlas, uniforms, resolution, detail)
+    const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
     handed.texels.assign(vertex.texels)
     handed.pages.assign(vertex.pages)
@@ -74,24 +84,25 @@ export function terrainMaterial(
   const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
   const inPage = texels.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
-  const page = texture(atlas.surface.texture)
-  const pageAt = (texel: Vec2): Vec4 =>
-    (page as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } })
-      .sample(texel.add(0.5).div(vec2(width, height)))
-      .level(0)
+  /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
+  const ofPages = (map: Texture, name: string): Vec4 => {
+    const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
+    const at = (texel: Vec2): Vec4 => page.sample(texel.add(0.5).div(vec2(width, height))).level(0)
+    return Fn(() => {
+      const mixed = at(pages.xy.add(inPage)).toVar(`${name}Page`) as unknown as Vec4 & {
+        assign(value: Vec4): void
+      }
+      If(blend.x.greaterThan(0), () => {
+        mixed.assign(mix(mixed, at(pages.zw.add(inPage.mul(0.5))), blend.x))
+      })
+      return mixed
+    })().toConst(name)
+  }
   // Gradient along the face's axes, height and patchiness.
-  const ground = Fn(() => {
-    const mixed = pageAt(pages.xy.add(inPage)).toVar('page') as unknown as Vec4 & {
-      assign(value: Vec4): void
-    }
-    If(blend.x.greaterThan(0), () => {
-      const parent = pageAt(pages.zw.add(inPage.mul(0.5)))
-      mixed.assign(mix(mixed, parent, blend.x))
-    })
-    return mixed
-  })().toConst('ground') as unknown as Vec4
+  const ground = ofPages(atlas.surface.texture, 'ground')
+  const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
   const place = reference.mul(REFERENCE_STEP).add(offset)
-  const up = place.div(radii).mul(stretch).normalize().toConst('up') as Vec3
+  const up = figure.upAt(place, radii).toConst('up') as Vec3
   const { first, second } = faceAxes(face)
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')
@@ -113,29 +124,38 @@ export function terrainMaterial(
       patch: ground.w,
       climate: blend.y,
       up,
+      pole,
       cosSlope
     },
     seaLevel
   )
   const depth = seaLevel.sub(ground.z).toConst('depth') as Float
   const { footprint, spread } = surface
-  const sea = seaSurface({ offset, depth, up, footprint, spread }, seaVariance, waveTime)
+  const shore = { offset, depth, up, footprint, spread }
+  const sea = seaSurface(shore, seaVariance, waveTime)
   const { cover } = sea
+  material.water = cover
   const dry = normal.sub(surface.grain)
   const lit = mix(dry, up.sub(sea.slope), cover).normalize()
   const litView = (transformNormalToView(lit) as unknown as Vec3).toConst('litNormal')
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
-    // Ahead of the branches of near ground: each would find the page's texel and the normal anew.
-    ;(surface.frame as unknown as { toStack(): void }).toStack()
-    const color = surface.color.toVar('groundColor') as unknown as Vec3 & {
+    // Ahead of the branches of water: each would find waves and normals anew.
+    ;(litView as unknown as { toStack(): void }).toStack()
+    const made = surface.color
+    const color = (picture === null
+      ? made
+      : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))
+    ).toVar('groundColor') as unknown as Vec3 & {
       assign(value: Vec3): void
     }
     If(cover.greaterThan(0), () => {
       const cosViewer = litView.dot(positionViewDirection).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
+      const foam = foamCover(shore, surface.tangle, ground.w, waveTime)
+      color.assign(mix(color, vec3(FOAM), foam.mul(cover)))
     })
     return vec4(color, 1)
   })()

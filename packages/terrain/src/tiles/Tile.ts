@@ -1,8 +1,8 @@
 import { Vector3 } from 'three'
-import type { Ellipsoid } from '@welkin/geo'
 import type { GroundBounds, HeightSample } from '../heights/HeightSource'
 import { isPageSource } from '../pages/PageSource'
-import { cubeToEllipsoid, faceAxes } from './cpu/cubeSphere'
+import { faceAxes } from './cpu/cubeSphere'
+import { cubeToFigure, isFlat, type Figure } from './cpu/figure'
 
 const sample: HeightSample = { height: 0, gradient: new Vector3() }
 const corner = new Vector3()
@@ -17,7 +17,7 @@ export class Tile {
   readonly normal: Vector3
   /** Distance of the farthest corner from the centre, on the ellipsoid [m]. */
   readonly radius: number
-  /** Unit normals, outward, of the planes through the planet's centre and the four edges. */
+  /** Unit normals, outward, of the planes through the planet's centre and the four edges; none in a flat world. */
   readonly edges: readonly Vector3[]
   /** Unit vector to the centre where the ellipsoid is the unit sphere. */
   readonly direction: Vector3
@@ -54,14 +54,14 @@ export class Tile {
     readonly level: number,
     readonly x: number,
     readonly y: number,
-    ellipsoid: Ellipsoid,
+    figure: Figure,
     source: GroundBounds,
     readonly parent: Tile | null = null
   ) {
     const { outward, first, second } = faceAxes(face)
     this.cube = outward.clone().addScaledVector(first, x).addScaledVector(second, y)
-    this.center = cubeToEllipsoid(this.cube, ellipsoid.radii, new Vector3())
-    this.normal = ellipsoid.surfaceNormal(this.center)
+    this.center = cubeToFigure(this.cube, figure, new Vector3())
+    this.normal = figure.surfaceNormal(this.center)
     const { extent } = this
     let square = 0
     for (const [i, j] of CORNERS) {
@@ -69,20 +69,20 @@ export class Tile {
         .copy(this.cube)
         .addScaledVector(first, i * extent)
         .addScaledVector(second, j * extent)
-      cubeToEllipsoid(corner, ellipsoid.radii, corner)
+      cubeToFigure(corner, figure, corner)
       square = Math.max(square, corner.distanceToSquared(this.center))
     }
     this.radius = Math.sqrt(square)
-    const { radii } = ellipsoid
+    const { radii } = figure
     const { x: cubeX, y: cubeY } = this
     const edge = (axis: Vector3, place: number, sign: number): Vector3 =>
       axis.clone().addScaledVector(outward, -place).divide(radii).normalize().multiplyScalar(sign)
-    this.edges = [-1, 1].flatMap(sign => [
+    this.edges = (isFlat(figure) ? [] : [-1, 1]).flatMap(sign => [
       edge(first, cubeX + sign * extent, sign),
       edge(second, cubeY + sign * extent, sign)
     ])
     this.direction = this.cube.clone().normalize()
-    this.spread = 2 * Math.asin(Math.min(this.radius / ellipsoid.minimumRadius / 2, 1))
+    this.spread = 2 * Math.asin(Math.min(this.radius / figure.minimumRadius / 2, 1))
     const { lowest, highest } = parent ?? source
     this.lowest = lowest
     this.highest = highest
@@ -114,7 +114,7 @@ export class Tile {
   }
 
   /** Quarters, made at the first call. */
-  split(ellipsoid: Ellipsoid, source: GroundBounds): Tile[] {
+  split(figure: Figure, source: GroundBounds): Tile[] {
     const half = this.extent / 2
     return (this.children ??= CORNERS.map(
       ([i, j]) =>
@@ -123,7 +123,7 @@ export class Tile {
           this.level + 1,
           this.x + i * half,
           this.y + j * half,
-          ellipsoid,
+          figure,
           source,
           this
         )

@@ -1,7 +1,6 @@
 import type { Vector3 } from 'three'
-import type { Ellipsoid } from '@welkin/geo'
 import type { GroundBounds } from '../heights/HeightSource'
-import { FACES } from './cpu/cubeSphere'
+import { facesOf, type Figure } from './cpu/figure'
 import { horizonAngle, type Viewer } from './cpu/viewer'
 import { Tile } from './Tile'
 
@@ -27,7 +26,7 @@ export interface TileSelection {
 export const noTiles = (): TileSelection => ({ tiles: [], inView: 0, missing: [], lag: 0 })
 
 /**
- * Quadtree of tiles on the six faces of a cube about the planet, and the choice of those to draw.
+ * Quadtree of tiles on the six faces of a cube about the planet, or on one for a flat world, and the choice of those to draw.
  *
  * A tile is split where its nearest point is within the range of the next level; ranges double from a level to
  * the one above. That alone keeps neighbours within one level of each other, and the finer of two is wholly
@@ -48,21 +47,18 @@ export class TileTree {
    * @param detail - Distance at which a tile is split, in diagonals of it; > 1.
    */
   constructor(
-    readonly ellipsoid: Ellipsoid,
+    readonly figure: Figure,
     readonly source: GroundBounds,
     finestLevel: number,
     detail: number
   ) {
     this.finestLevel = finestLevel
     // Longest diagonal of a tile of level 0: that of the cube's face, at the face's middle.
-    const diagonal = 2 * Math.SQRT2 * ellipsoid.maximumRadius
+    const diagonal = 2 * Math.SQRT2 * figure.maximumRadius
     this.#ranges = Array.from({ length: finestLevel + 1 }, (_, level) =>
       level === 0 ? Infinity : (detail * diagonal) / 2 ** (level - 1)
     )
-    this.roots = Array.from(
-      { length: FACES },
-      (_, face) => new Tile(face, 0, 0, 0, ellipsoid, source)
-    )
+    this.roots = facesOf(figure).map(face => new Tile(face, 0, 0, 0, figure, source))
   }
 
   /** Distance from the viewer at which a level ends; infinity for the coarsest [m]. */
@@ -83,7 +79,7 @@ export class TileTree {
     target.lag = 0
     // Nearest level by level: if room runs out, what is coarse is far away.
     let open: Tile[] = [...this.roots]
-    const radius = this.ellipsoid.minimumRadius
+    const radius = this.figure.minimumRadius
     while (open.length > 0) {
       const next: Tile[] = []
       for (const [i, tile] of open.entries()) {
@@ -99,7 +95,7 @@ export class TileTree {
         const isNear = tile.level < this.finestLevel && distance < range
         const isShown = !isPaged || (tile.slot >= 0 && tile.fade === 0)
         if (isNear && isShown && taken + 4 <= most) {
-          next.push(...tile.split(this.ellipsoid, this.source))
+          next.push(...tile.split(this.figure, this.source))
           continue
         }
         if (isVisible) target.tiles.push(tile)
@@ -145,9 +141,15 @@ export class TileTree {
 
 /**
  * Lower bound of the distance from a point to a tile on the ellipsoid [m]: outside of the sphere about the tile, and of the planes
- * through the planet's centre and its edges.
+ * through the planet's centre and its edges; in a flat world that to the square.
  */
 export function distanceTo({ center, radius, edges }: Tile, point: Vector3): number {
+  if (edges.length === 0) {
+    const half = radius / Math.SQRT2
+    const x = Math.max(Math.abs(point.x - center.x) - half, 0)
+    const z = Math.max(Math.abs(point.z - center.z) - half, 0)
+    return Math.hypot(x, point.y, z)
+  }
   let distance = center.distanceTo(point) - radius
   for (const edge of edges) distance = Math.max(distance, edge.dot(point))
   return distance

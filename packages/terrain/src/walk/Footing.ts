@@ -1,6 +1,7 @@
 import { Vector3 } from 'three'
 import type { HeightSample } from '../heights/HeightSource'
 import type { Ground } from '../rays/Ground'
+import { figureOf } from '../tiles/cpu/figure'
 
 /** Distance about the feet over which the slope is taken: stones do not stop them [m]. */
 const REACH = 0.3
@@ -33,10 +34,10 @@ export class Footing {
 
   /** @param positionECEF - At any height [m]. */
   at(positionECEF: Vector3): this {
-    const { ellipsoid } = this.#ground.atmosphere
+    const figure = figureOf(this.#ground.atmosphere)
     const { up, subpoint, gradient } = this
-    ellipsoid.footPoint(positionECEF, subpoint)
-    ellipsoid.surfaceNormal(subpoint, up)
+    figure.footPoint(positionECEF, subpoint)
+    figure.surfaceNormal(subpoint, up)
     this.floor = this.#heightAt(subpoint)
     first
       .set(Math.abs(up.z) < 0.9 ? 0 : 1, 0, Math.abs(up.z) < 0.9 ? 1 : 0)

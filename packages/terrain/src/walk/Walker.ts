@@ -2,6 +2,7 @@ import { Matrix3, Matrix4, Vector3 } from 'three'
 import { checkRange } from '@welkin/atmosphere'
 import { checkNonNegative, checkPositive, checkVector, fail, setOptions } from '@welkin/geo'
 import type { Ground } from '../rays/Ground'
+import { figureOf, worldToGround } from '../tiles/cpu/figure'
 import { Footing } from './Footing'
 
 /** Options of {@link Walker}. */
@@ -91,7 +92,7 @@ export class Walker {
   readonly #there: Footing
 
   /**
-   * Someone who stands at longitude and latitude 0° until `moveTo`.
+   * Someone who stands at longitude and latitude 0°, or the origin of a flat world, until `moveTo`.
    *
    * @throws If the ground is missing, or an option is unknown or out of its range.
    */
@@ -102,7 +103,9 @@ export class Walker {
     this.#here = new Footing(ground)
     this.#there = new Footing(ground)
     this.set(DEFAULTS).set(options)
-    this.#place(ground.atmosphere.ellipsoid.geodeticToECEF({ longitude: 0, latitude: 0 }), 0)
+    const { flat, ellipsoid } = ground.atmosphere
+    const start = flat ? new Vector3() : ellipsoid.geodeticToECEF({ longitude: 0, latitude: 0 })
+    this.#place(start, 0)
   }
 
   /**
@@ -182,16 +185,16 @@ export class Walker {
    */
   moveTo(eye: Vector3): this {
     checkVector('Walker.moveTo', 'eye', eye)
-    const { ellipsoid, worldToECEF } = this.ground.atmosphere
-    point.copy(eye).applyMatrix4(worldToECEF)
-    this.#place(point, ellipsoid.heightAt(point) - this.#eyeHeight)
+    const { atmosphere } = this.ground
+    point.copy(eye).applyMatrix4(worldToGround(atmosphere))
+    this.#place(point, figureOf(atmosphere).heightAt(point) - this.#eyeHeight)
     return this
   }
 
   /** Position of the eyes in the world, wherever that is on the planet by now [units]. */
   eyePosition(target: Vector3): Vector3 {
     const { subpoint, up } = this.#here
-    ecefToWorld.copy(this.ground.atmosphere.worldToECEF).invert()
+    ecefToWorld.copy(worldToGround(this.ground.atmosphere)).invert()
     target.copy(subpoint).addScaledVector(up, this.#height + this.#eyeHeight)
     return target.applyMatrix4(ecefToWorld)
   }
@@ -209,7 +212,7 @@ export class Walker {
     checkNonNegative('Walker.update', 'seconds', seconds)
     const time = Math.min(seconds, LONGEST_UPDATE)
     const steps = Math.ceil(time / STEP - 1e-9)
-    axes.setFromMatrix4(this.ground.atmosphere.worldToECEF)
+    axes.setFromMatrix4(worldToGround(this.ground.atmosphere))
     const length = direction.length()
     for (let i = 0; i < steps; i++) {
       const { up } = this.#here

@@ -5,7 +5,8 @@ import { heightAndSky } from './skyShare'
 import { packed } from './packing'
 import { gradientAlong } from '../../surface/tsl/gradientAlong'
 import { climates, patches } from '../../surface/tsl/groundNoise'
-import { faceAxes, unitDifference } from '../../tiles/tsl/cubeSphere'
+import { faceAxes } from '../../tiles/tsl/cubeSphere'
+import type { ShaderFigure } from '../../tiles/tsl/figure'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
 /** Tile that a page is drawn for, as uniforms. */
@@ -22,6 +23,7 @@ export interface PageUniforms {
   /** Shortest wavelength that vertices show [m]. */
   readonly shortest: Float
   readonly radii: Vec3
+  readonly figure: ShaderFigure
   /** Seed of patches and climate. */
   readonly seed: Float
 }
@@ -40,22 +42,22 @@ const texelOf = (side: number): Vec2 => (uv() as unknown as Vec2).mul(side).floo
 
 /** @param cells - Steps between texels from the tile's first corner. */
 function placeAt(
-  { cube, extent, reference, center, radii }: PageUniforms,
+  { cube, extent, reference, center, radii, figure }: PageUniforms,
   { first, second }: Axes,
   cells: Vec2,
   side: number
 ): PagePlace {
   const place = cells.mul(2 / (side - 1)).sub(1)
   const delta = first.mul(place.x).add(second.mul(place.y)).mul(extent)
-  const fromCenter = unitDifference(cube, delta).mul(radii).toConst() as Vec3
+  const fromCenter = figure.difference(cube, delta, radii).toConst() as Vec3
   return { fromCenter, reference, offset: center.add(fromCenter).toConst() }
 }
 
 /** Geodetic up at a place. */
 const upAt = (tile: PageUniforms, { fromCenter }: PagePlace): Vec3 => {
-  const { cube, radii } = tile
+  const { cube, radii, figure } = tile
   const center = cube.normalize().mul(radii)
-  return center.add(fromCenter).div(radii.mul(radii)).normalize().toConst()
+  return figure.upAt(center.add(fromCenter), radii).toConst()
 }
 
 const patchAt = (tile: PageUniforms, { reference, offset }: PagePlace, shortest: Float): Float =>
@@ -100,6 +102,14 @@ export const surfaceOf = (
     const ground = source.sample(place, shortest).toConst('ground') as Vec4
     return surfaceTexel(tile, axes, place, { gradient: ground.xyz, height: ground.w }, shortest)
   })()
+
+/** Colours that were loaded, a step beyond each edge too. */
+export const imageOf = (image: Texture, side: number): Vec4 =>
+  Fn(() =>
+    (texture(image) as unknown as { load(at: unknown): Vec4 }).load(
+      ivec2(texelOf(side).add(1) as never)
+    )
+  )()
 
 /** Heights that were loaded, a step beyond each edge too. */
 const loaded = (heights: Texture, texel: Vec2): Float =>

@@ -1,12 +1,15 @@
-import { Fn, If, dFdx, dFdy, float, vec4 } from 'three/tsl'
+import { Fn, If, dFdx, dFdy, float, mat4, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
-import { frameOf, stochasticTiling, type TilingPlace } from './stochasticTiling'
+import { frameNear, pieceOf, tilingVertices, type TilingVertex } from './stochasticTiling'
 
-/** Sides of the picture on the ground [m], cells that it is moved in per 256 m, and longer side of a pixel's footprint at which nothing is left [m]. */
-const COARSE = { side: 17, cells: 24, gone: 2 }
-const FINE = { side: 2.1, cells: 192, gone: 0.3 }
+/** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
+const COARSE = { side: 17, gone: 2 }
+const FINE = { side: 2.1, gone: 0.3 }
+
+/** Cells of the lattice in 256 m that pieces of both are moved by. */
+const CELLS = 36
 
 /** Part of `gone` at which a picture begins to go. */
 const FADE = 0.5
@@ -20,8 +23,9 @@ export interface GrainPlace {
   /** The face's axes. */
   readonly first: Vec3
   readonly second: Vec3
-  /** Normal of the ground. */
+  /** Normal of the ground, and geodetic up. */
   readonly normal: Vec3
+  readonly up: Vec3
 }
 
 /** Stones and blades of grass at a place. */
@@ -36,13 +40,12 @@ export interface Grain {
   readonly tuft: Float
   /** Longer side of the pixel on the ground [m]. */
   readonly footprint: Float
-  /** The second of two vectors along the ground that pictures are laid by. */
-  readonly frame: Vec3
   /** Share of the slopes that are smaller than a pixel. */
   readonly lost: Float
 }
 
-type Variable = Vec4 & { assign(value: Vec4): void }
+type Variable = Vec4 & { addAssign(value: Vec4): void }
+type Slope = Vec3 & { assign(value: Vec3): void }
 
 /** Stones and grass from 3 m to 1 cm; 0 where they are smaller than pixels. */
 export function grainAt(place: GrainPlace): Grain {
@@ -51,37 +54,51 @@ export function grainAt(place: GrainPlace): Grain {
   const across = dFdx(offset).toConst() as Vec3
   const along = dFdy(offset).toConst() as Vec3
   const footprint = across.length().max(along.length()).toConst('footprint')
-  const { tangent, bitangent } = frameOf(normal, first, second)
-  const tiling: TilingPlace = {
-    reference: place.reference,
-    offset,
-    across,
-    along,
-    tangent,
-    bitangent
-  }
-  const layer = ({ side, cells, gone }: typeof FINE, name: string): Vec4 =>
-    Fn(() => {
-      const total = vec4(0).toVar(name) as unknown as Variable
-      const kept = float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
-      If(kept.greaterThan(0), () => {
-        total.assign(stochasticTiling(grain, tiling, side, cells).mul(kept))
+  const share = ({ gone }: typeof FINE): Float =>
+    float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
+  const near = share(FINE)
+  const far = share(COARSE)
+  // Several vectors in one value: what the branches of both need is found once, and none of it far away.
+  const layers = Fn(() => {
+    const fine = vec4(0).toVar('fineGrain') as unknown as Variable
+    const coarse = vec4(0).toVar('coarseGrain') as unknown as Variable
+    const fineSlope = vec3(0).toVar('fineSlope') as unknown as Slope
+    const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
+    If(far.greaterThan(0), () => {
+      const frame = { ...frameNear(normal, place.up, first, second), across, along }
+      const inSpace = ({ x, y }: Vec4): Vec3 =>
+        frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
+      const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
+      const add = ({ away, random }: TilingVertex, share: Float): void => {
+        const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
+        coarse.addAssign(boulders.mul(share.mul(far)))
+        If(near.greaterThan(0), () => {
+          const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
+          fine.addAssign(stones.mul(share.mul(near)))
+        })
+      }
+      add(nearest(), shares.x)
+      If(shares.y.greaterThan(0), () => {
+        add(next(), shares.y)
       })
-      return total
-    })().toConst(`${name}Layer`)
-  const coarse = layer(COARSE, 'coarseGrain')
-  const fine = layer(FINE, 'fineGrain')
+      fineSlope.assign(inSpace(fine))
+      coarseSlope.assign(inSpace(coarse))
+    })
+    return mat4(
+      vec4(fineSlope, fine.z),
+      vec4(coarseSlope, coarse.z),
+      vec4(fine.w, coarse.w, 0, 0),
+      vec4(0)
+    )
+  })().toConst('grainLayers') as unknown as { element(i: number): Vec4 }
+  const [fine, coarse, light] = [0, 1, 2].map(i => layers.element(i))
   return {
-    gradient(fineGain, coarseGain) {
-      const slope = fine.xy.mul(fineGain).add(coarse.xy.mul(coarseGain)).mul(GRAIN_SLOPE).toConst()
-      return tangent.mul(slope.x).add(bitangent.mul(slope.y))
-    },
-    stone: fine.z,
-    blade: fine.w,
-    boulder: coarse.z,
-    tuft: coarse.w,
+    gradient: (fineGain, coarseGain) => fine.xyz.mul(fineGain).add(coarse.xyz.mul(coarseGain)),
+    stone: fine.w,
+    blade: light.x,
+    boulder: coarse.w,
+    tuft: light.y,
     footprint,
-    frame: bitangent,
     lost: footprint.div(FINE.gone / 4).min(1)
   }
 }

@@ -18,8 +18,10 @@ const ROCK = [0.2, 0.178, 0.157]
 const DARK_ROCK = [0.105, 0.098, 0.092]
 const SCREE = [0.25, 0.232, 0.208]
 const SAND = [0.4, 0.32, 0.215]
+const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
 const GRASS = [0.073, 0.108, 0.031]
+const SOIL = [0.052, 0.04, 0.027]
 const STRAW = [0.2, 0.172, 0.078]
 const FOREST = [0.02, 0.034, 0.013]
 const SNOW = [0.83, 0.86, 0.9]
@@ -30,8 +32,10 @@ const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
 export interface GroundSurface {
   /** Reflectance, linear sRGB. */
   readonly color: Vec3
-  /** A vector along the ground that stones are laid by: what they need is known when it is. */
-  readonly frame: Vec3
+  /** Strands of what floats, about 0. */
+  readonly tangle: Float
+  /** Light of stones and blades over their mean, for colours of pictures. */
+  readonly detail: Float
   /** Longer side of the pixel on the ground, and differences of height within it [m]. */
   readonly footprint: Float
   readonly spread: Float
@@ -50,8 +54,8 @@ export interface GroundPlace extends GrainPlace {
   /** Patchiness and climate, noise about 0. */
   readonly patch: Float
   readonly climate: Float
-  /** Geodetic up, ECEF axes. */
-  readonly up: Vec3
+  /** Unit vector to the north pole. */
+  readonly pole: Vec3
   /** Cosine of the ground's slope. */
   readonly cosSlope: Float
 }
@@ -62,16 +66,17 @@ export interface GroundPlace extends GrainPlace {
  * @param seaLevel - [m]
  */
 export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurface {
-  const { height, patch, climate, up, cosSlope } = place
+  const { height, patch, climate, up, pole, cosSlope } = place
   const grain = grainAt(place)
   const { stone, blade, boulder, tuft } = grain
-  const sinLatitude = up.z.abs().toConst('sinLatitude')
+  const northing = up.dot(pole).toConst() as Float
+  const sinLatitude = northing.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
 
   // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
   const square = sinLatitude.mul(sinLatitude).toConst('square')
   // Ground that falls towards the equator has a normal nearer to it than up is.
-  const sunny = up.z.sub(place.normal.z).mul(up.z.sign())
+  const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign())
   const snowLine = float(5200)
     .sub(square.mul(square.mul(3600).add(2000)))
     .add(climate.mul(DRY_SNOW))
@@ -97,19 +102,20 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const tone = patch.mul(0.9).add(relief.mul(0.35)).toConst('tone')
   // Dark between stones, and between blades.
   const stony = stone.mul(0.45).add(1).toConst('stony')
-  const light = blade.mul(1.5).add(tuft.mul(0.35)).toConst('light')
+  const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst('light')
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
-  const meadow = mix(
-    color(GRASS),
-    color(STRAW),
-    smoothstep(-0.3, 0.6, patch.mul(0.9).add(light.mul(0.5)))
-      .mul(0.55)
-      .add(smoothstep(-900, 200, overTrees).mul(0.35))
-  ).mul(light.add(1).max(0.2))
+  // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
+  const spots = boulder.mul(0.8).add(tuft.mul(0.5)).toConst('spots')
+  const straw = smoothstep(-0.45, 0.7, patch.mul(0.9).add(spots))
+    .mul(0.6)
+    .add(smoothstep(-900, 200, overTrees).mul(0.35))
+    .max(smoothstep(0.36, 0.6, blade).mul(0.9))
+  const blades = mix(color(GRASS), color(STRAW), straw).mul(light.add(1).max(0.2))
+  const meadow = mix(blades, color(SOIL), smoothstep(0.1, 0.32, blade.negate()).mul(0.85))
   const woods = smoothstep(-0.12, 0.1, patch.sub(dryness).add(tuft.mul(0.12)))
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
     .mul(smoothstep(15, 60, overSea))
-  const floor = color(FOREST).mul(light.add(1).max(0.3))
+  const floor = color(FOREST).mul(light.mul(1.3).add(1).max(0.3))
   const green = mix(meadow, floor, woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
   const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
@@ -121,8 +127,13 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   ).toConst('bareness')
   const alpine = mix(soil, scree, bareness)
   const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
-  const sand = color(SAND).mul(blade.mul(0.12).add(stone.mul(0.1)).add(1))
-  const shore = mix(sand, alpine, inland)
+  const sand = color(SAND).mul(stone.mul(0.14).add(1))
+  // What high water left lies in strands, a metre above the sea.
+  const tangle = blade.mul(0.7).add(boulder.mul(0.6)).toConst('tangle')
+  const washed = overSea.add(boulder.mul(0.3)).add(patch.mul(0.5)).toConst()
+  const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
+  const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
+  const shore = mix(mix(sand, color(SEAWEED), seaweed), alpine, inland)
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
   const land = mix(shore, rock, bare)
   const snow = smoothstep(
@@ -137,7 +148,7 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const bump = mix(float(0.12), stones, inland.max(bare))
+  const bump = mix(float(0.05), stones, inland.max(bare))
     .mul(snow.mul(-0.85).add(1))
     .toConst('bump')
   const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
@@ -149,9 +160,10 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
       .mul(grain.lost)
       .mul(2 * GRAIN_VARIANCE)
   )
-  const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.4))
+  const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.5))
   return {
-    frame: grain.frame,
+    tangle,
+    detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),
     footprint: grain.footprint,
     spread,
     color: dry,

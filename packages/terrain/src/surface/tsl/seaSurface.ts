@@ -50,7 +50,7 @@ export interface SeaPlace {
 type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
 
 /**
- * Water and its waves.
+ * Water and its waves. Twin: ../cpu/seaSurface.ts
  *
  * @param seaVariance - Variance of all slopes, see `seaSlopeVariance`.
  * @param seconds - Time that waves move by [s].
@@ -88,12 +88,51 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
  *
  * @param cosViewer - Cosine between normal and viewer.
  * @param variance - Variance of slopes.
- * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994
+ * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994. Twin: ../cpu/seaSurface.ts
  */
 export function waterFresnel(cosViewer: Float, variance: Float): Float {
   const rest = cosViewer.mul(cosViewer).add(variance).sqrt().oneMinus().clamp().toConst()
   const square = rest.mul(rest).toConst()
   return mix(float(WATER_FRESNEL), float(1), square.mul(square).mul(rest))
+}
+
+/** Reflectance of foam. */
+export const FOAM = 0.6
+
+/** Depths between which foam lies at the water's edge, in and out of it [m], and how far it comes and goes [m]. */
+const FOAM_DEPTHS = [0.02, 0.08, 0.14, 0.4] as const
+const FOAM_SWAY = 0.07
+
+/** Time in which it comes and goes [s], and size of a pixel at which there is none [m]. */
+const FOAM_PERIOD = 7
+const FOAM_GONE = 3
+
+/**
+ * Share of foam at the water's edge, in [0, 1].
+ *
+ * @param tangle - Strands, about 0.
+ * @param patch - Noise by which it comes and goes at other times elsewhere.
+ * @param seconds - Time that waves move by [s].
+ */
+export function foamCover(
+  { depth, footprint }: SeaPlace,
+  tangle: Float,
+  patch: Float,
+  seconds: Float
+): Float {
+  const [a, b, c, d] = FOAM_DEPTHS
+  const phase = seconds.div(FOAM_PERIOD).add(patch.mul(2)).fract()
+  const swayed = depth
+    .add(
+      phase
+        .mul(2 * Math.PI)
+        .sin()
+        .mul(FOAM_SWAY)
+    )
+    .toConst() as Float
+  const band = smoothstep(a, b, swayed).mul(smoothstep(c, d, swayed).oneMinus())
+  const lace = smoothstep(-0.12, 0.22, tangle.add(band.mul(0.1)))
+  return band.mul(lace).mul(footprint.div(FOAM_GONE).oneMinus().max(0))
 }
 
 /**

@@ -1,97 +1,192 @@
-import { ivec3, mix, step, texture, uvec3, vec2, vec4 } from 'three/tsl'
+import {
+  bitAnd,
+  bitOr,
+  floatBitsToUint,
+  ivec3,
+  max,
+  min,
+  mix,
+  step,
+  texture,
+  uint,
+  uintBitsToFloat,
+  uvec3,
+  uvec4,
+  vec2,
+  vec4
+} from 'three/tsl'
 import type { Texture } from 'three'
 import { latticeGradient } from '../../noise/tsl/latticeNoise'
-import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, UInt, UVec4, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
-/** Place of a pixel, and the frame that pictures are laid in. */
-export interface TilingPlace {
-  /** As of `latticeNoise`. */
-  readonly reference: Vec3
-  readonly offset: Vec3
-  /** Change of the offset from a pixel to the next, across and along [m]. */
-  readonly across: Vec3
-  readonly along: Vec3
+/** Directions in which pictures are laid, and the change of a place from a pixel to the next. */
+export interface TilingFrame {
   /** Orthonormal vectors along the surface. */
   readonly tangent: Vec3
   readonly bitangent: Vec3
+  /** Change of the offset from a pixel to the next, across and along [m]. */
+  readonly across: Vec3
+  readonly along: Vec3
 }
+
+/** Vertex of the lattice that counts at a place. */
+export interface TilingVertex {
+  /** Place relative to it [m]. */
+  readonly away: Vec3
+  /** Three random numbers of it, in [−1, 1). */
+  readonly random: Vec3
+}
+
+/** The two vertices that count at a place, each found when it is asked for. */
+export interface TilingVertices {
+  readonly nearest: () => TilingVertex
+  readonly next: () => TilingVertex
+  /** Factors on their pictures; the second is often 0, the sum of the squares is 1. */
+  readonly shares: Vec2
+}
+
+/** Part of the nearest vertex's weight that the next must exceed to count. */
+const LEAST = 0.3
 
 const sum = ({ x, y, z }: Vec3): Float => x.add(y).add(z)
 
 /**
- * Picture on a surface of any slope, with no visible repetition, by two reads.
+ * The two vertices that count at a place, of a lattice of tetrahedra that is fixed to the planet and fills space.
  *
- * Space is filled with tetrahedra of a lattice fixed to the planet. Each vertex has a piece of the picture, moved at random and laid
- * along the surface through the vertex: so nothing is stretched on cliffs, and no plane meets another. Of the four vertices about a place the two
- * nearest count, by how much they exceed the third: what is left out had no share. As in Heitz and Neyret's by-example noise (2018), the blend keeps
- * the variance.
+ * Of the four about a place the two nearest count, by how much their weights exceed the third's: what is left out had no share. Where the next is
+ * much farther than the nearest it does not count. As in Heitz and Neyret's by-example noise (2018), the blend keeps the variance. Weights are sorted with the number of their vertex in
+ * their two lowest bits.
  *
- * @param picture - Repeats; its mean is half of its bytes' range.
- * @param side - Length of its side [m].
+ * @param reference - As of `latticeNoise`, like `offset`.
  * @param cells - Cells of the lattice in 256 m, a multiple of 3.
- * @returns Its four channels in about [−1, 1].
  */
-export function stochasticTiling(
-  picture: Texture,
-  { reference, offset, across, along, tangent, bitangent }: TilingPlace,
-  side: number,
-  cells: number
-): Vec4 {
+export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): TilingVertices {
   const size = 256 / cells
   const place = offset.div(size).toConst() as Vec3
   const skewed = place.add(sum(place).div(3)).toConst() as Vec3
   const corner = skewed.floor().toConst() as Vec3
   const part = skewed.sub(corner).toConst() as Vec3
-  // Vertices in the order of the path from the cell's first corner to its last, along the longest part first.
-  const isMore = step(part.yzx, part).toConst() as Vec3
-  const isLess = isMore.oneMinus()
-  const second = isMore.min(isLess.zxy)
-  const third = isMore.max(isLess.zxy)
-  const most = part.x.max(part.y).max(part.z).toConst()
-  const least = part.x.min(part.y).min(part.z).toConst()
-  const middle = sum(part).sub(most).sub(least).toConst()
-  const vertices = [
-    vec4(0, 0, 0, most.oneMinus()),
-    vec4(second, most.sub(middle)),
-    vec4(third, middle.sub(least)),
-    vec4(1, 1, 1, least)
-  ].map(vertex => vertex.toConst()) as unknown as Vec4[]
-  const sorted = (a: Vec4, b: Vec4): [Vec4, Vec4] => {
-    const isFirst = step(b.w, a.w).toConst()
-    return [mix(b, a, isFirst).toConst(), mix(a, b, isFirst).toConst()]
-  }
-  const [a, b] = sorted(vertices[0], vertices[1])
-  const [c, d] = sorted(vertices[2], vertices[3])
-  const [nearest, other] = sorted(a, c)
-  const [next, left] = sorted(other, sorted(b, d)[0])
+  const { x, y, z } = part
+  const [high, low] = [max(x, y).toConst() as Float, min(x, y).toConst() as Float]
+  const most = max(high, z).toConst() as Float
+  const least = min(low, z).toConst() as Float
+  const middle = max(low, min(high, z)).toConst() as Float
 
-  const along2 = (vector: Vec3): Vec2 => vec2(vector.dot(tangent), vector.dot(bitangent))
-  const [dx, dy] = [across, along].map(change => along2(change).div(side).toConst() as Vec2)
+  const weights = vec4(most.oneMinus(), most.sub(middle), middle.sub(least), least)
+  const bits = floatBitsToUint(weights) as unknown as UVec4
+  const cleared = bitAnd(bits as never, uvec4(0xfffffffc) as never)
+  const numbered = bitOr(cleared as never, uvec4(0, 1, 2, 3) as never)
+  const keys = (uintBitsToFloat(numbered) as unknown as Vec4).toConst() as Vec4
+  const [a, b] = [max(keys.x, keys.y).toConst(), min(keys.x, keys.y).toConst()] as Float[]
+  const [c, d] = [max(keys.z, keys.w).toConst(), min(keys.z, keys.w).toConst()] as Float[]
+  const [second, third] = [min(a, c).toConst(), max(b, d).toConst()] as Float[]
+  const nearest = max(a, c).toConst() as Float
+  const next = max(second, third).toConst() as Float
+  const left = min(second, third).toConst() as Float
+
+  // A vertex is 1 along the axes of as many of the largest parts as its number says.
+  const vertexOf = (key: Float): Vec3 => {
+    const number = (floatBitsToUint(key) as unknown as UInt).bitAnd(uint(3)).toFloat().toConst()
+    const [isOne, isTwo, isThree] = [1, 2, 3].map(n => step(n - 0.5, number))
+    const threshold = mix(mix(2, most, isOne), mix(middle, 0, isThree), isTwo)
+    return step(threshold, part)
+  }
   const cellsOfReference = reference.mul(cells)
   const origin = ivec3(cellsOfReference.add(sum(cellsOfReference).div(3)).round()).toConst()
-  const read = ({ xyz }: Vec4): Vec4 => {
-    const vertex = corner.add(xyz).toConst() as Vec3
+  const first = nearest.sub(left).toConst() as Float
+  const other = next.sub(left).sub(first.mul(LEAST)).max(0)
+  const weight = vec2(first, other).toConst() as Vec2
+  const square = weight.mul(weight).toConst() as Vec2
+  const vertexAt = (key: Float) => (): TilingVertex => {
+    const vertex = corner.add(vertexOf(key)).toConst() as Vec3
     const away = skewed.sub(vertex).toConst() as Vec3
-    const meters = away.sub(sum(away).div(6)).mul(size)
-    const moved = latticeGradient(uvec3(ivec3(vertex).add(origin)))
-    const node = texture(picture, along2(meters).div(side).add(moved.xy)) as unknown as {
-      grad(dx: Vec2, dy: Vec2): Vec4
+    return {
+      away: away.sub(sum(away).div(6)).mul(size).toConst(),
+      random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst()
     }
-    return node.grad(dx, dy).mul(2).sub(1)
   }
-  const share = ({ w }: Vec4): Float => w.sub(left.w).pow(2).toConst()
-  const [first, other2] = [share(nearest), share(next)]
-  const scale = first.mul(first).add(other2.mul(other2)).max(1e-9).inverseSqrt()
-  return read(nearest).mul(first).add(read(next).mul(other2)).mul(scale).toConst()
+  return {
+    nearest: vertexAt(nearest),
+    next: vertexAt(next),
+    shares: square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst()
+  }
 }
 
-/** Orthonormal vectors along a surface: the first follows an axis, or a spare one where that points out of the surface. */
-export function frameOf(normal: Vec3, axis: Vec3, spare: Vec3): { tangent: Vec3; bitangent: Vec3 } {
-  const isAlong = step(normal.dot(axis).abs(), 0.9)
-  const guide = mix(spare, axis, isAlong).toConst() as Vec3
-  const tangent = guide
-    .sub(normal.mul(guide.dot(normal)))
+/** Vector along a surface in the directions of its frame. */
+const alongFrame = ({ tangent, bitangent }: TilingFrame, vector: Vec3): Vec2 =>
+  vec2(vector.dot(tangent), vector.dot(bitangent))
+
+/**
+ * Piece of a picture that a vertex of the lattice has, moved at random and laid along the surface through the vertex: nothing is stretched
+ * on cliffs, and no plane meets another. Two of them, by their shares, have no visible repetition.
+ *
+ * @param picture - Repeats; its mean is half of its bytes' range.
+ * @param side - Length of its side [m].
+ * @param moved - Random numbers of the vertex.
+ * @returns Its four channels in about [−1, 1].
+ */
+export function pieceOf(
+  picture: Texture,
+  frame: TilingFrame,
+  side: number,
+  away: Vec3,
+  moved: Vec2
+): Vec4 {
+  const [dx, dy] = [frame.across, frame.along].map(
+    change => alongFrame(frame, change).div(side) as Vec2
+  )
+  const place = alongFrame(frame, away).div(side).add(moved)
+  const node = texture(picture, place) as unknown as { grad(dx: Vec2, dy: Vec2): Vec4 }
+  return node.grad(dx, dy).mul(2).sub(1)
+}
+
+/** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */
+const STEEP = 0.53
+const TILT = { sine: 0.82, cosine: 0.57 }
+
+/** Factor by which rounding finds the nearest of eight azimuths, each 45° wide to 2°. */
+const EIGHTHS = 1.2
+
+/**
+ * Orthonormal vectors of a plane near to a surface: level where it is flat, else tilted to the nearest of eight azimuths.
+ *
+ * They do not turn with every pixel's normal: at some distance from a vertex of the lattice that would bend and stretch the picture. A
+ * surface is stretched by 1.2 at most, on cliffs too.
+ *
+ * @param normal - Unit normal of the surface.
+ * @param up - Geodetic up.
+ * @param axis - Unit vector that is not along up, like `spare`.
+ */
+export function frameNear(
+  normal: Vec3,
+  up: Vec3,
+  axis: Vec3,
+  spare: Vec3
+): { tangent: Vec3; bitangent: Vec3 } {
+  const isLevel = step(up.dot(axis).abs(), 0.9)
+  const guide = mix(spare, axis, isLevel).toConst() as Vec3
+  const east = guide
+    .sub(up.mul(guide.dot(up)))
     .normalize()
     .toConst() as Vec3
-  return { tangent, bitangent: normal.cross(tangent).toConst() }
+  const north = up.cross(east).toConst() as Vec3
+  const level = vec2(normal.dot(east), normal.dot(north)).toConst() as Vec2
+  const sine = level.length().toConst() as Float
+  const isSteep = step(STEEP, sine).toConst() as Float
+  const eighth = level
+    .mul(sine.max(1e-6).reciprocal().mul(EIGHTHS))
+    .round()
+    .add(vec2(1e-6, 0))
+    .normalize()
+  // To the north where it is flat: along the axes.
+  const azimuth = mix(vec2(0, 1), eighth, isSteep).toConst() as Vec2
+  const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
+  const rise = isSteep.mul(TILT.sine)
+  return {
+    tangent: downhill.cross(up).toConst(),
+    bitangent: downhill
+      .mul(mix(1, TILT.cosine, isSteep))
+      .sub(up.mul(rise))
+      .toConst()
+  }
 }

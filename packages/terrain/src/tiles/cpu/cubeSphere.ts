@@ -1,8 +1,5 @@
 import { Vector3 } from 'three'
 
-/** Faces of the cube about the planet: +X, −X, +Y, −Y, +Z, −Z of ECEF. */
-export const FACES = 6
-
 /** Axes of a face: outward, and two along it so that first × second is outward. */
 export interface FaceAxes {
   readonly outward: Vector3

@@ -1,6 +1,6 @@
 import { Frustum, Matrix4, Vector3 } from 'three'
 import type { Camera, Plane } from 'three'
-import type { Ellipsoid } from '@welkin/geo'
+import { isFlat, type Figure } from './figure'
 
 /** Viewer that tiles are chosen for. ECEF axes. */
 export interface Viewer {
@@ -21,7 +21,7 @@ export interface Viewer {
   readonly direction: Vector3
   /** Radius of what hides things, where the ellipsoid is the unit sphere; at most 1. */
   readonly occluder: number
-  /** Angle at the planet's centre from the viewer to the horizon [rad]. */
+  /** Angle at the planet's centre from the viewer to the horizon; infinite in a flat world [rad]. */
   readonly horizon: number
 }
 
@@ -48,21 +48,21 @@ export function viewerOf(
   clearance: number,
   lowest: number,
   worldToECEF: Matrix4,
-  ellipsoid: Ellipsoid,
+  figure: Figure,
   shadowDistance: number,
   seaLevel = -Infinity
 ): Viewer {
-  ellipsoid.footPoint(positionECEF, subpoint)
-  const up = ellipsoid.surfaceNormal(positionECEF)
+  figure.footPoint(positionECEF, subpoint)
+  const up = figure.surfaceNormal(positionECEF)
   // From ECEF axes at the camera to clip space.
   rotation.copy(worldToECEF).setPosition(0, 0, 0).invert()
   const view = camera.matrixWorldInverse.clone().setPosition(0, 0, 0).multiply(rotation)
   view.premultiply(camera.projectionMatrix)
   frustum.setFromProjectionMatrix(view, camera.coordinateSystem)
-  const direction = positionECEF.clone().divide(ellipsoid.radii)
+  const direction = positionECEF.clone().divide(figure.radii)
   const radius = direction.length()
   // Heights shrink by the largest radius at least, where the ellipsoid is the unit sphere.
-  const occluder = 1 + Math.min(lowest, 0) / ellipsoid.minimumRadius
+  const occluder = 1 + Math.min(lowest, 0) / figure.minimumRadius
   return {
     position: positionECEF.clone(),
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
@@ -72,6 +72,6 @@ export function viewerOf(
     shadowDistance,
     direction: direction.divideScalar(radius),
     occluder,
-    horizon: horizonAngle(radius, occluder)
+    horizon: isFlat(figure) ? Infinity : horizonAngle(radius, occluder)
   }
 }

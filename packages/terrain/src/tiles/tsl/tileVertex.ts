@@ -4,7 +4,8 @@ import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { unpacked } from '../../pages/tsl/packing'
-import { faceAxes, unitDifference } from './cubeSphere'
+import { faceAxes } from './cubeSphere'
+import type { ShaderFigure } from './figure'
 
 /** Part of a level's range at which its tiles begin to morph: beyond it no finer neighbour is. */
 export const morphStart = (detail: number): number => (detail + 1) / (2 * detail)
@@ -43,6 +44,7 @@ export interface TileVertex {
 export function tileVertex(
   { heights, columns, heightSide, surfaceSide, density }: PageAtlas,
   uniforms: TerrainUniforms,
+  figure: ShaderFigure,
   resolution: number,
   detail: number
 ): TileVertex {
@@ -60,7 +62,7 @@ export function tileVertex(
     const place = cells.mul(2 / resolution).sub(1)
     return first.mul(place.x).add(second.mul(place.y)).mul(extent).toConst()
   }
-  const fromCenter = (delta: Vec3): Vec3 => unitDifference(cube, delta).mul(radii).toConst()
+  const fromCenter = (delta: Vec3): Vec3 => figure.difference(cube, delta, radii).toConst()
 
   const cells = positionGeometry.xy as unknown as Vec2
   const even = cells.mul(0.5).floor().mul(2).toConst('even') as Vec2
@@ -94,8 +96,8 @@ export function tileVertex(
   // Vertices of the triangle under the viewer are within three cells, morphed or not.
   const room = distance.sub(cell.mul(CLOSE)).max(0)
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
-  const up = cube.add(delta).mul(stretch).normalize().toConst('up')
-  const tilt = unitDifference(cube.mul(stretch), delta.mul(stretch))
+  const up = figure.upOfCube(cube.add(delta), stretch).toConst('up')
+  const tilt = figure.turnOfUp(cube, delta, stretch)
   const skirt = positionGeometry.z.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)

@@ -1,0 +1,34 @@
+import { vec3 } from 'three/tsl'
+import type { Vec3 } from '../../tsl-types'
+import { unitDifference } from './cubeSphere'
+
+/** Figure that ground lies on, in shaders. Twin: ../cpu/figure.ts */
+export interface ShaderFigure {
+  /** Place above a point of the cube and a difference from it, relative to the place above the point [m]. */
+  readonly difference: (cube: Vec3, delta: Vec3, radii: Vec3) => Vec3
+  /** Up above both, relative to that above the point. */
+  readonly turnOfUp: (cube: Vec3, delta: Vec3, stretch: Vec3) => Vec3
+  /** Up above a point of the cube. */
+  readonly upOfCube: (cube: Vec3, stretch: Vec3) => Vec3
+  /** Up at a place, from the figure's centre [m]. */
+  readonly upAt: (position: Vec3, radii: Vec3) => Vec3
+}
+
+/** An ellipsoid. */
+export const ellipsoidInShader: ShaderFigure = {
+  difference: (cube, delta, radii) => unitDifference(cube, delta).mul(radii),
+  turnOfUp: (cube, delta, stretch) => unitDifference(cube.mul(stretch), delta.mul(stretch)),
+  upOfCube: (cube, stretch) => cube.mul(stretch).normalize(),
+  upAt: (position, radii) => {
+    const onSphere = position.div(radii)
+    return onSphere.mul(radii.x.div(radii)).normalize()
+  }
+}
+
+/** The plane of a flat world. */
+export const planeInShader: ShaderFigure = {
+  difference: (_, delta, radii) => delta.mul(radii),
+  turnOfUp: () => vec3(0),
+  upOfCube: () => vec3(0, 1, 0),
+  upAt: () => vec3(0, 1, 0)
+}
