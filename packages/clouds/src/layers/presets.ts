@@ -42,6 +42,7 @@ const storm: Partial<CloudLayerParameters> = {
   density: 0.08,
   anvil: 1,
   turbulence: 0.8,
+  shear: 0.2,
   weatherWeights: [0, 0, 1, 0],
   wind: { east: 12, north: 3 }
 }
