@@ -147,7 +147,7 @@ export const columnForm = {
    */
   slantAspect: 5,
   /** Share of that in storms, whose anvils are flat [–]. Greater: storms are too many and too bright from afar, aslant. */
-  slantOfStorms: 0.2,
+  slantOfStorms: 0,
   /**
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).

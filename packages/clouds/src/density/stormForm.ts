@@ -49,14 +49,14 @@ export const stormBillows = {
   unit: 0.02,
   /** Coarse, fine and finest billows [–]: slopes of about 1 make heads that stand on heads. Greater: rags; smaller: balloons. */
   coarse: 2,
-  fine: 0.55,
-  detail: 0.26,
+  fine: 0.8,
+  detail: 0.3,
   /** Factor of all of them in ice [–]: anvils are smooth. */
   inIce: 0.75,
   /** Softness of edges in ice: factor of their width less 1 [–]. */
   softIce: 3,
   /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
-  offset: 0.8,
+  offset: 0.65,
   /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
   most: 10
 } as const

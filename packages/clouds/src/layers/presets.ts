@@ -115,7 +115,14 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     { ...cirrus, coverage: 0.4 }
   ],
   shower: [
-    { ...storm, baseAltitude: 1000, topAltitude: 7000, anvil: 0.4, precipitation: { rate: 12 } },
+    {
+      ...storm,
+      baseAltitude: 1000,
+      topAltitude: 7000,
+      weatherScale: 0.5,
+      anvil: 0.4,
+      precipitation: { rate: 12 }
+    },
     cumulus
   ],
   nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],

@@ -5,7 +5,7 @@ import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
-import { footprintOf, type CloudSample } from './sample'
+import { footprintOf, zenithAt, type CloudSample } from './sample'
 import { isStorm, stormAround, stormRadius } from './storm'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
@@ -67,8 +67,7 @@ export function cloudWeather(
   const stormDistance = float(0).toVar() as Float
   const radius = float(0).toVar() as Float
   If(isStorm(layer), () => {
-    const up = field.view.up.mul(field.radius).add(subpoint).normalize().toConst() as Vec3
-    const storm = stormAround(layer, subpoint, up, bent)
+    const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent)
     stormDistance.assign(storm.distance)
     radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
     single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))

@@ -11,7 +11,7 @@ import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
 import { weatherLevel } from './resolution'
-import type { CloudSample } from './sample'
+import { zenithAt, type CloudSample } from './sample'
 import { cycloneAround, frontsAndBelts } from './weatherSystems'
 
 /**
@@ -52,12 +52,12 @@ function weatherSystems(
   field: CloudField,
   layer: LayerNodes,
   subpoint: Vec3,
-  up: Vec3,
   footprint: Float
 ): WeatherSystems {
   const isAlone = field.layers.length === 1
   const first = isAlone ? layer : layerAt(field, int(0))
-  const zenith = first.directionInSystems(up).toConst() as Vec3
+  // Of the subpoint itself: what cyclones displace it by must fit to the metre.
+  const zenith = first.directionInSystems(zenithAt(field, subpoint)).normalize().toConst() as Vec3
   const waves = planetWaves(zenith).toConst() as Vec3
   const cyclone = cycloneAround(zenith)
   const displacement = first
@@ -99,7 +99,7 @@ export function weatherBackground(
   sample: Pick<CloudSample, 'up'>,
   footprint: Float
 ): PackedBackground {
-  const around = weatherSystems(field, layer, subpoint, sample.up, footprint)
+  const around = weatherSystems(field, layer, subpoint, footprint)
   const { regions, systems } = around
   const scale = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
   const fields = field.textures.weather
