@@ -86,11 +86,11 @@ const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, { place
   Object.entries(suns).map(([name, { elevation, turn, about }]) => ({
     name: `${preset}-${name}`,
     about,
-    ...(place && { place }),
     clouds: { preset: preset as CloudPresetName },
     altitude: 2,
     sun: { elevation, azimuth: (view.azimuth + turn + 360) % 360 },
     view,
+    place,
     land: 'hills' as const
   }))
 )

@@ -164,5 +164,7 @@ export const columnForm = {
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
    * that are dark from afar (*World clouds*).
    */
-  inside: 1.25
+  inside: 1.25,
+  /** Factor of the same in storms, of which much is in the shade of their anvils [–]. Greater: storms are too bright from afar. */
+  insideStorms: 0.7
 } as const

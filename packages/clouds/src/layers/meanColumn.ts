@@ -211,7 +211,7 @@ export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanCol
   return {
     columnDensity: column.density,
     fullDensity: columnAt(layer, 1, depth, diffuse).density,
-    insideDensity: column.inside,
+    insideDensity: column.inside * (isStorm(layer) ? columnForm.insideStorms : 1),
     profileMean: Math.max(
       meanOverHeights(height => seenShare(layer, height)),
       1e-3

@@ -139,7 +139,7 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `congestus`: towering cumulus, up to 4 km
  * - `stratocumulus`: a deck with gaps
  * - `overcast`: a closed grey sky
- * - `cumulonimbus`: towers up to 11 km among small cumulus
+ * - `cumulonimbus`: storms up to 11 km, with tower and anvil, among small cumulus
  * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other

@@ -31,10 +31,11 @@ const mirrored = (v: Vector3, isSouth: boolean, turn: number): Vector3 =>
 export function cycloneAround(zenith: Vector3): CycloneAround {
   const isSouth = zenith.z < 0
   const here = mirrored(zenith, isSouth, SOUTHERN_TURN)
-  const nearest = cyclones
-    .map(each => ({ ...each, centre: new Vector3(...each.centre) }))
-    .reduce((a, b) => (b.centre.distanceTo(here) < a.centre.distanceTo(here) ? b : a))
-  const { centre, radius, turn, front } = nearest
+  const away = (each: (typeof cyclones)[number]): number =>
+    new Vector3(...each.centre).distanceTo(here)
+  const nearest = cyclones.reduce((a, b) => (away(b) < away(a) ? b : a))
+  const { radius, turn, front } = nearest
+  const centre = new Vector3(...nearest.centre)
   const square = centre.distanceToSquared(here)
   const share = Math.max(1 - square / radius ** 2, 0)
   const source = here.clone().applyAxisAngle(centre, -turn * share ** 2)

@@ -69,11 +69,11 @@ const cellLength = (layer: LayerNodes): Float =>
 export function stormAround(layer: LayerNodes, subpoint: Vec3, up: Vec3, bent: Vec2): StormAround {
   const perPeriod = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
   const place = layer.fieldLattice(subpoint).add(inLattice(bent).mul(perPeriod)).toConst() as Vec3
-  const cells = stormDistance(place, layer.directionInFields(up).toConst() as Vec3)
+  const cells = stormDistance(place, layer.directionInFields(up).toConst())
   const { scale, power } = stormPlaces
   return {
     distance: cells.mul(cellLength(layer)).toConst(),
-    rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst() as Float
+    rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()
   }
 }
 
@@ -92,7 +92,7 @@ export function stormRadius(layer: LayerNodes, background: Float, quantile: Floa
     .negate()
     .pow(1 / power)
     .mul(cellLength(layer).mul(scale))
-    .toConst() as Float
+    .toConst()
 }
 
 /**

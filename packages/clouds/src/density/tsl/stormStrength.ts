@@ -26,7 +26,7 @@ export const smoothStormStrength = (
   stormBody(stormDistance, stormRadius, height, layer.thickness, layer.anvil)
     .mul(layer.perShapePeriod.div(stormBillows.unit))
     .sub(layer.shapeAmount.mul(stormBillows.offset))
-    .toConst() as Float
+    .toConst()
 
 /** Strength of a storm: its surface with billows that stand out as far to all sides. Twin: test/twins/storm.ts */
 export function stormStrength(

@@ -49,9 +49,9 @@ export function cycloneAround(zenith: Vec3): CycloneAround {
   for (const { centre, radius, turn, front } of cyclones) {
     const cosine = here.dot(vec3(...centre)).toConst() as Float
     const isNearer = cosine.greaterThan(nearest.w).toConst()
-    nearest.assign(isNearer.select(vec4(...centre, cosine), nearest) as Vec4)
+    nearest.assign(isNearer.select(vec4(...centre, cosine), nearest))
     const own = vec4(1 / radius ** 2, turn, Math.cos(front), Math.sin(front))
-    form.assign(isNearer.select(own, form) as Vec4)
+    form.assign(isNearer.select(own, form))
   }
   const centre = nearest.xyz.toConst() as Vec3
   const fromMiddle = here.sub(centre).toConst() as Vec3
@@ -77,11 +77,11 @@ export function cycloneAround(zenith: Vec3): CycloneAround {
     drift.z.mul(side)
   )
   return {
-    displacement: displacement.toConst() as Vec3,
-    from: vec2(east, north).toConst() as Vec2,
+    displacement: displacement.toConst(),
+    from: vec2(east, north).toConst(),
     square,
     share,
-    front: form.zw.toConst() as Vec2
+    front: form.zw.toConst()
   }
 }
 
