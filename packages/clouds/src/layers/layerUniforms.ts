@@ -182,7 +182,7 @@ export function weatherScales(
  * Levels of detail by which the weather of cumulonimbus is coarser than that of cumulus. Smaller: storms thin out
  * between 1,000 and 4,000 km (*World clouds*).
  */
-const CUMULONIMBUS_COARSENESS = 1.4
+const CUMULONIMBUS_COARSENESS = 1.35
 
 /** Forms that a layer's kind of weather gives its clouds. */
 export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameters): {
