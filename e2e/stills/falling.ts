@@ -5,7 +5,7 @@ export const falling = [
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
     clouds: { preset: 'shower' },
-    place: { longitude: 139.65, latitude: 35.48 },
+    place: { longitude: 140.376, latitude: 36.952 },
     altitude: 60,
     sun: { elevation: 30, azimuth: 280 },
     view: { azimuth: 20, pitch: 8 },
@@ -16,7 +16,7 @@ export const falling = [
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
     clouds: { preset: 'shower', coverage: 0.15 },
-    place: { longitude: 140.49, latitude: 36.33 },
+    place: { longitude: 140.608, latitude: 35.227 },
     altitude: 60,
     sun: { elevation: 12, azimuth: 206 },
     view: { azimuth: 60, pitch: 10 },

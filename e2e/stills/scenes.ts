@@ -61,11 +61,13 @@ export interface TerrainStill {
 export type AnyStill = Still | ValleyStill | TerrainStill | StreetStill
 
 /** The presets from the ground: where to look. */
-const presets: Partial<Record<CloudPresetName, { azimuth: number; pitch: number }>> = {
+const presets: Partial<
+  Record<CloudPresetName, { azimuth: number; pitch: number; place?: Still['place'] }>
+> = {
   fairWeather: { azimuth: 330, pitch: 14 },
   stratocumulus: { azimuth: 30, pitch: 14 },
   overcast: { azimuth: 30, pitch: 10 },
-  cumulonimbus: { azimuth: 20, pitch: 14 },
+  cumulonimbus: { azimuth: 20, pitch: 14, place: { longitude: 139.853, latitude: 35.845 } },
   congestus: { azimuth: 330, pitch: 14 },
   altocumulus: { azimuth: 30, pitch: 24 },
   cirrus: { azimuth: 20, pitch: 18 },
@@ -80,7 +82,7 @@ const suns = {
   set: { elevation: -3, turn: 15, about: 'after sunset: only high clouds still have sun' }
 }
 
-const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, view]) =>
+const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, { place, ...view }]) =>
   Object.entries(suns).map(([name, { elevation, turn, about }]) => ({
     name: `${preset}-${name}`,
     about,
@@ -88,6 +90,7 @@ const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, view]) 
     altitude: 2,
     sun: { elevation, azimuth: (view.azimuth + turn + 360) % 360 },
     view,
+    place,
     land: 'hills' as const
   }))
 )
@@ -139,9 +142,9 @@ const shafts: Still[] = [
     name: 'shafts-storm',
     about: "a storm's shadow on its own anvil's haze and on the air below, from 10 km",
     clouds: { preset: 'cumulonimbus' },
-    place: { longitude: 142.4, latitude: 35.7 },
-    sun: { elevation: 9, azimuth: 60 },
-    view: { azimuth: 35, pitch: -3 },
+    place: { longitude: 139.571, latitude: 35.995 },
+    sun: { elevation: 9, azimuth: 20 },
+    view: { azimuth: 0, pitch: -3 },
     altitude: 9000,
     land: 'planet',
     shafts: true
@@ -318,9 +321,10 @@ export const stills: readonly AnyStill[] = [
     name: 'among-towers',
     about: 'between the towers of a storm, sun aside',
     clouds: { preset: 'cumulonimbus' },
+    place: { longitude: 139.571, latitude: 36.122 },
     altitude: 2500,
-    sun: { elevation: 35, azimuth: 120 },
-    view: { azimuth: 20, pitch: 8 },
+    sun: { elevation: 35, azimuth: 240 },
+    view: { azimuth: 0, pitch: 14 },
     land: 'hills'
   },
   {
@@ -345,10 +349,10 @@ export const stills: readonly AnyStill[] = [
     name: '10km-storm',
     about: 'from an airliner: a tower and its anvil aside, small cumulus below',
     clouds: { preset: 'cumulonimbus' },
-    place: { longitude: 142.4, latitude: 35.7 },
-    altitude: 9000,
-    sun: { elevation: 35, azimuth: 300 },
-    view: { azimuth: 20, pitch: -2 },
+    place: { longitude: 139.571, latitude: 35.995 },
+    altitude: 7000,
+    sun: { elevation: 35, azimuth: 280 },
+    view: { azimuth: 0, pitch: -4 },
     land: 'planet'
   },
   {

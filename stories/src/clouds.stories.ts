@@ -146,11 +146,11 @@ export const Cockpit: Story = {
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    longitude: -85.5,
-    latitude: 35.12,
+    longitude: -84.918,
+    latitude: 34.769,
     altitude: 600,
     heading: 348,
-    pitch: 9,
+    pitch: 12,
     hour: 21.5
   },
   tags: ['screenshot', 'webgpu-only']

@@ -58,7 +58,7 @@ export const VIEWS = {
     label: "Storm's shadow",
     ...valley,
     height: 10_000,
-    heading: 40,
+    heading: 152,
     pitch: -6,
     clouds: { preset: 'cumulonimbus' }
   },

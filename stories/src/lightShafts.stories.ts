@@ -73,7 +73,7 @@ export const Towers: Story = {
 /** A storm's shadow on its anvil and on the haze below, from 10 km. */
 export const Storm: Story = {
   name: "Storm's shadow from 10 km",
-  args: { view: 'storm', turbidity: 3, elevation: 12, azimuth: 80, exposure: -2 }
+  args: { view: 'storm', turbidity: 3, elevation: 12, azimuth: 192, exposure: -2 }
 }
 
 /** Rays that run together opposite the sunset. */

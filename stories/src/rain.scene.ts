@@ -54,7 +54,7 @@ export const VIEWS = {
     azimuth: 206,
     heading: 60,
     pitch: 10,
-    place: { longitude: 140.49, latitude: 36.33 }
+    place: { longitude: 140.608, latitude: 35.227 }
   },
   virga: {
     label: 'Virga',

@@ -94,6 +94,39 @@ for (const [where, place] of places) {
   })
 }
 
+gpuTest('puts storms where float64 does', async t => {
+  const layers = cloudPreset('cumulonimbus')
+  const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+  scene.update(3600)
+  const { baseAltitude, topAltitude, density } = layers.at(0).parameters
+  const inputs = offsets(
+    scene.viewpoint,
+    120,
+    30_000,
+    9,
+    share => baseAltitude + (topAltitude - baseAltitude) * share
+  )
+  for (const detail of [false, true]) {
+    const results = await evaluateOnGpu(scene.renderer, inputs, input =>
+      scene.extinction(input.xyz, input.w, detail)
+    )
+    const state = scene.state()
+    let cloudy = 0
+    const differences = inputs.map(([x, y, z, distance], i) => {
+      const position = scene.viewpoint.clone().add(new Vector3(x, y, z))
+      const expected = extinctionTwin(state, twin, position, distance, detail)
+      if (expected > 0) cloudy++
+      return Math.abs(results[4 * i] - expected) / density
+    })
+    const worst = differences.toSorted((a, b) => b - a)
+    const told = worst.slice(0, 3).map(x => x.toFixed(4))
+    t.note(`detail ${detail}: ${cloudy} cloudy points, worst ${told.join(' ')}`)
+    expectTrue(worst[0] < 0.015, `worst difference ${worst[0]} of full density`)
+    expectTrue(cloudy > 15, `${cloudy} cloudy points`)
+  }
+  scene.dispose()
+})
+
 /** Twin of the noise without shape, whose coarse levels take float64 minutes. */
 class ShapelessTwin extends NoiseTextures {
   override sample(name: NoiseName, p: readonly [number, number, number], level: number): number[] {

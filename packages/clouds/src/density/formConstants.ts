@@ -146,6 +146,8 @@ export const columnForm = {
    * them at the horizon (*Cockpit*).
    */
   slantAspect: 5,
+  /** Share of that in storms, whose anvils are flat [–]. Greater: storms are too many and too bright from afar, aslant. */
+  slantOfStorms: 0,
   /**
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
@@ -162,5 +164,7 @@ export const columnForm = {
    * Density inside of columns, as light meets it, over what tall ones have in the mean [–]. Smaller: thin clouds
    * that are dark from afar (*World clouds*).
    */
-  inside: 1.25
+  inside: 1.25,
+  /** Factor of the same in storms, of which much is in the shade of their anvils [–]. Greater: storms are too bright from afar. */
+  insideStorms: 0.4
 } as const

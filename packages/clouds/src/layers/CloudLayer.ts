@@ -23,7 +23,7 @@ export interface CloudLayerParameters {
   /**
    * Exponent t of the strength ĥ^t that a column needs to reach a height, in (0, 8], with ĥ the height
    * in the layer from 0 to 1. Smaller: only the strongest columns grow tall, and tops lie at all heights;
-   * greater: nearly all of them reach the same height, as under an inversion.
+   * greater: nearly all of them reach the same height, as under an inversion. Storms do without it.
    */
   readonly profileExponent: number
   /** Amount of billows, bulges that meet in creases, in [0, 1]; 0 leaves smooth mounds. */
@@ -53,7 +53,7 @@ export interface CloudLayerParameters {
   readonly densityGrowth: number
   /**
    * Weights of the four kinds of weather in the layer, each in [0, 1]: cumulus, stratocumulus,
-   * cumulonimbus, cirrus.
+   * cumulonimbus, cirrus. A layer of cumulonimbus alone is made of single storms, each with a tower.
    */
   readonly weatherWeights: readonly [number, number, number, number]
   readonly wind: CloudWind

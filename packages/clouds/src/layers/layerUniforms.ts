@@ -78,9 +78,10 @@ export const scaleWeights = {
   fields: 0.6,
   cells: 0.5,
   /** Clusters and bands of 15 to 170 km. */
-  mesoscale: 0.65,
-  regions: 0.65,
-  planet: 0.4,
+  mesoscale: 0.52,
+  regions: 0.4,
+  /** Fronts and belts: density/systemsForm.ts. */
+  planet: 0.75,
   /** Share of finer cells in the regions. 0: their edges have no finer structure. */
   regionCells: 0.6,
   /** Share of bands in the mesoscale and in the regions. 0: round clusters alone, no fronts. */
@@ -181,7 +182,7 @@ export function weatherScales(
  * Levels of detail by which the weather of cumulonimbus is coarser than that of cumulus. Smaller: storms thin out
  * between 1,000 and 4,000 km (*World clouds*).
  */
-const CUMULONIMBUS_COARSENESS = 1.15
+const CUMULONIMBUS_COARSENESS = 1.35
 
 /** Forms that a layer's kind of weather gives its clouds. */
 export function layerForms({ weatherWeights, edgeSoftness }: CloudLayerParameters): {

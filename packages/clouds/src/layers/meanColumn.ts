@@ -7,7 +7,9 @@ import {
   heightForm,
   strengthForm
 } from '../density/formConstants'
-import { layerForms } from './layerUniforms'
+import { stormBillows } from '../density/stormForm'
+import { layerForms, layerPeriods, weatherScales } from './layerUniforms'
+import { isStorm, stormBody, stormRadius } from './storms'
 
 // Integrals over a layer's columns and heights in float64, for clouds that are not seen one by one. The
 // functions of the height are those of density/tsl/heightForm.ts.
@@ -47,28 +49,44 @@ export function densityAtHeight(
   { densityGrowth, anvil }: CloudLayerParameters,
   height: number
 ): number {
-  const { grown, iceHeights, iceDensity } = heightForm
-  const ice = anvil * MathUtils.smoothstep(height, ...iceHeights)
+  const { grown, iceDensity } = heightForm
+  const ice = iceAt(anvil, height)
   return MathUtils.clamp(height / grown, 1e-4, 1) ** densityGrowth * (1 + ice * (iceDensity - 1))
 }
+
+/** Share of ice at a height of a layer with a share of anvils: `iceAt` of density/tsl/heightForm.ts. */
+export const iceAt = (anvil: number, height: number): number =>
+  anvil * MathUtils.smoothstep(height, ...heightForm.iceHeights)
+
+/** Factor of a storm's billows at a height. */
+export const stormRoughness = (
+  { anvil, shapeAmount }: CloudLayerParameters,
+  height: number
+): number => shapeAmount * MathUtils.lerp(1, stormBillows.inIce, iceAt(anvil, height))
+
+/** Strength over which density rises at a storm's edges [–]. */
+export const stormEdge = (layer: CloudLayerParameters, height: number): number =>
+  layerForms(layer).edge * (1 + stormBillows.softIce * iceAt(layer.anvil, height))
+
+/** Strength of a storm without billows [–]: `smoothStormStrength` of density/tsl/stormStrength.ts. Lengths [m]. */
+export const smoothStormStrength = (
+  layer: CloudLayerParameters,
+  distance: number,
+  radius: number,
+  height: number
+): number =>
+  stormBody(layer, distance, radius, height) / (stormBillows.unit * layerPeriods(layer).shape) -
+  stormBillows.offset * layer.shapeAmount
 
 /** Strength over which density rises at edges at a height [–]: `edgeAt` of density/tsl/density.ts. */
 export const edgeAt = (layer: CloudLayerParameters, height: number): number =>
   layerForms(layer).edge * (1 + densityForm.softerBase * (1 - height) ** 2)
 
 /** Density of a strength over the layer's at that height: `densityOf` of density/tsl/density.ts. */
-export function densityOf(
-  layer: CloudLayerParameters,
-  strength: number,
-  body: number,
-  height: number
-): number {
+export function densityOf(edge: number, strength: number, body: number): number {
   const { edgeDensity, core } = densityForm
   const inside = Math.sqrt(MathUtils.clamp(body / core, 0, 1))
-  return (
-    MathUtils.clamp(strength / edgeAt(layer, height), 0, 1) *
-    (edgeDensity + (1 - edgeDensity) * inside)
-  )
+  return MathUtils.clamp(strength / edge, 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
 }
 
 /** Factor of the billows of a column of a strength: `topBillows` of density/tsl/billows.ts. */
@@ -118,6 +136,34 @@ const diffuse: Passing = {
   depthOf: through => (1 / through - 1) / DIFFUSION
 }
 
+/** Strength of the i-th of a layer's columns at a height, without billows and with one deviation of coarse ones [–]. */
+type Strengths = (i: number, height: number) => { column: number; needed: number; rough: number }
+
+/** Columns of a layer whose strength is as frequent at any value of a range of `strongest`. */
+function strengthsOf(layer: CloudLayerParameters, coverage: number): Strengths {
+  const { strongest, offset, coverageOffset, fullCoverageExcess } = strengthForm
+  const { shapeAmount } = layer
+  const least =
+    shapeAmount * (offset + coverageOffset * coverage) + fullCoverageExcess * coverage ** 32
+  return (i, height) => {
+    const column = least + ((i + 0.5) / COLUMNS) * strongest
+    const rough = shapeAmount * billowForm.coarse * topBillows(column)
+    return { column, needed: neededStrength(layer, height), rough }
+  }
+}
+
+/** Columns of a storm, where the weather on large scales is as in the mean: rings of the same area. */
+function strengthsOfStorm(layer: CloudLayerParameters, coverage: number): Strengths {
+  const { weatherWeights, openCells } = layer
+  const [, , weight] = weatherScales(weatherWeights, false, openCells).clouds
+  const radius = stormRadius(layer, 0, coverage, weight)
+  return (i, height) => {
+    const distance = radius * Math.sqrt(1 - (i + 0.5) / COLUMNS)
+    const column = smoothStormStrength(layer, distance, radius, height)
+    return { column, needed: 0, rough: stormRoughness(layer, height) * stormBillows.coarse }
+  }
+}
+
 /** Density of an even column for a coverage, and the mean density of the strongest columns [–]. */
 function columnAt(
   layer: CloudLayerParameters,
@@ -125,23 +171,18 @@ function columnAt(
   depth: number,
   passing: Passing
 ): { density: number; inside: number } {
-  const { strongest, offset, coverageOffset, fullCoverageExcess } = strengthForm
-  const { shapeAmount } = layer
-  const least =
-    shapeAmount * (offset + coverageOffset * coverage) + fullCoverageExcess * coverage ** 32
-  const amount = shapeAmount * billowForm.coarse
+  const storm = isStorm(layer)
+  const strengths = storm ? strengthsOfStorm(layer, coverage) : strengthsOf(layer, coverage)
   let through = 0
   let inside = 0
   for (let i = 0; i < COLUMNS; i++) {
-    const column = least + ((i + 0.5) / COLUMNS) * strongest
-    const rough = amount * topBillows(column)
     const mean = meanOverHeights(height => {
-      const needed = neededStrength(layer, height)
-      const body = column - needed
+      const { column, needed, rough } = strengths(i, height)
+      const edge = storm ? stormEdge(layer, height) : edgeAt(layer, height)
+      const crumbs = storm ? 1 : crumbDensity(column, needed)
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
-        const strength = body + rough * deviation
-        const density = densityOf(layer, strength, strength, height)
-        return part + weight * density * crumbDensity(column, needed)
+        const strength = column - needed + rough * deviation
+        return part + weight * densityOf(edge, strength, strength) * crumbs
       }, 0)
       return here * densityAtHeight(layer, height)
     })
@@ -159,7 +200,7 @@ function meanOverHeights(value: (height: number) => number): number {
 }
 
 /**
- * Means over a layer's columns, whose strength is as frequent at any value of a range of `strongest`.
+ * Means over a layer's columns.
  *
  * @param depthScale - Scaled optical depth over optical depth, by which light comes through [–].
  */
@@ -170,7 +211,7 @@ export function meanColumn(layer: CloudLayerParameters, depthScale = 1): MeanCol
   return {
     columnDensity: column.density,
     fullDensity: columnAt(layer, 1, depth, diffuse).density,
-    insideDensity: column.inside,
+    insideDensity: column.inside * (isStorm(layer) ? columnForm.insideStorms : 1),
     profileMean: Math.max(
       meanOverHeights(height => seenShare(layer, height)),
       1e-3

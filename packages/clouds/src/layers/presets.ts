@@ -42,6 +42,7 @@ const storm: Partial<CloudLayerParameters> = {
   density: 0.08,
   anvil: 1,
   turbulence: 0.8,
+  shear: 0.2,
   weatherWeights: [0, 0, 1, 0],
   wind: { east: 12, north: 3 }
 }
@@ -114,7 +115,14 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     { ...cirrus, coverage: 0.4 }
   ],
   shower: [
-    { ...storm, baseAltitude: 1000, topAltitude: 7000, anvil: 0.4, precipitation: { rate: 12 } },
+    {
+      ...storm,
+      baseAltitude: 1000,
+      topAltitude: 7000,
+      weatherScale: 0.5,
+      anvil: 0.4,
+      precipitation: { rate: 12 }
+    },
     cumulus
   ],
   nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
@@ -131,7 +139,7 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `congestus`: towering cumulus, up to 4 km
  * - `stratocumulus`: a deck with gaps
  * - `overcast`: a closed grey sky
- * - `cumulonimbus`: towers up to 11 km among small cumulus
+ * - `cumulonimbus`: storms up to 11 km, with tower and anvil, among small cumulus
  * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high
  * - `mixed`: cumulus, altocumulus and cirrus above each other

@@ -1,7 +1,7 @@
 import { Vector3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { billowForm, strengthForm } from '../../src/density/formConstants'
-import { latticeRotations } from '../../src/density/lattice'
+import { latticeRotations, layerRotation } from '../../src/density/lattice'
 import {
   MESOSCALE_PER_REGIONS,
   MESOSCALE_WARP,
@@ -25,11 +25,14 @@ import {
   seenShare,
   topBillows
 } from '../../src/layers/meanColumn'
+import { isStorm, stormRadius } from '../../src/layers/storms'
 import { windAxis } from '../../src/layers/wind'
 import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE } from '../../src/noise/noiseSizes'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
+import { stormAround, stormStrength } from './storm'
+import { cycloneAround, frontsAndBelts } from './weatherSystems'
 
 /** State of a field of clouds: what a `CloudField` tells its shaders. */
 export interface CloudState {
@@ -60,6 +63,8 @@ export interface CloudWeather {
   readonly unresolvedFraction: number
   /** Displacement of noise along the axes of its lattices [m]. */
   readonly shift: Vector3
+  /** The nearest storm, in layers of storms: distance from its axis, and its radius [m]. */
+  readonly storm: { readonly distance: number; readonly radius: number } | undefined
 }
 
 const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
@@ -113,8 +118,7 @@ function coverageAt(
 }
 
 /** Waves around the planet, in [−1, 1]. */
-function planetWaves(zenith: Vector3, layerRotation: Quaternion): Vec3Array {
-  const { x, y, z } = zenith.clone().applyQuaternion(layerRotation)
+function planetWaves({ x, y, z }: Vector3): Vec3Array {
   return [
     Math.sin(waveForm.next * y + waveForm.last * z),
     Math.sin(waveForm.next * z + waveForm.last * x),
@@ -140,7 +144,7 @@ export function weatherAt(
   bendAt: (shift: Vector3) => readonly [number, number] = () => [0, 0]
 ): CloudWeather {
   const layer = state.layers[index]
-  const layerRotation = state.rotations[index]
+  const ownRotation = state.rotations[index]
   const zenith = position.clone().normalize()
   const subpoint = zenith.clone().multiplyScalar(state.bottomRadius)
   const footprint = distance * state.pixelAngle
@@ -152,22 +156,38 @@ export function weatherAt(
   const dot = (values: readonly number[]): number =>
     values.reduce((sum, value, i) => sum + value * scales.clouds[i], 0)
 
-  const waves = planetWaves(zenith, state.rotations[0])
-  const inSystems = subpoint.clone().applyQuaternion(state.rotations[0])
+  const fromFirst = layerRotation(0).invert()
+  const zenithThere = zenith.clone().applyQuaternion(state.rotations[0]).applyQuaternion(fromFirst)
+  const waves = planetWaves(zenithThere)
+  const cyclone = cycloneAround(zenithThere)
+  const displacement = cyclone.displacement
+    .clone()
+    .applyQuaternion(layerRotation(0))
+    .applyQuaternion(state.rotations[0].clone().invert())
+    .multiplyScalar(state.bottomRadius)
+  const source = subpoint.clone().add(displacement)
   const regionLevel = levelOf(footprint, noisePeriods.regions / NOISE_SIZE.weather)
   const region = sample(
     shifted(
-      placeIn(inSystems, latticeRotations.region, noisePeriods.regions),
+      placeIn(
+        source.clone().applyQuaternion(state.rotations[0]),
+        latticeRotations.region,
+        noisePeriods.regions
+      ),
       waves,
       waveForm.warp
     ),
     regionLevel
   )
-  const inLayer = subpoint.clone().applyQuaternion(layerRotation)
+  const inLayer = subpoint.clone().applyQuaternion(ownRotation)
   const mesoscaleLevel = levelOf(footprint, noisePeriods.mesoscale / NOISE_SIZE.weather)
   const mesoscale = sample(
     shifted(
-      placeIn(inLayer, latticeRotations.mesoscale, noisePeriods.mesoscale),
+      placeIn(
+        source.clone().applyQuaternion(ownRotation),
+        latticeRotations.mesoscale,
+        noisePeriods.mesoscale
+      ),
       region,
       MESOSCALE_WARP
     ),
@@ -195,7 +215,7 @@ export function weatherAt(
       .multiplyScalar(layer.shear * rise)
   }
   const [bendX, bendY] = bendAt(shift)
-  const subpointInLayer = subpoint.sub(lean).applyQuaternion(layerRotation)
+  const subpointInLayer = subpoint.sub(lean).applyQuaternion(ownRotation)
   const bend = new Vector3(bendX, bendY, (bendX - bendY) / Math.SQRT2).add(shift).toArray()
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const clouds = sample(
@@ -203,14 +223,28 @@ export function weatherAt(
     level
   )
 
-  const blurred =
-    dot(clouds) +
+  const background =
     scaleWeights.fields * dot(fields) +
     scales.cells * fields[2] +
     mesoscaleFactor * (mesoscale[0] + scaleWeights.bands * mesoscale[3]) +
     scales.regions *
       (region[2] + scaleWeights.regionCells * region[0] + scaleWeights.regionBands * region[3]) +
-    (scales.planet * (waves[0] + waves[1] + waves[2])) / Math.sqrt(1.5)
+    scales.planet * frontsAndBelts(zenithThere, waves, region, cyclone)
+  const storm = isStorm(layer)
+    ? stormAround(
+        layer,
+        shifted(
+          placeIn(subpointInLayer, latticeRotations.fields, fieldPeriod),
+          bend,
+          1 / fieldPeriod
+        ),
+        zenith.clone().applyQuaternion(ownRotation).applyQuaternion(latticeRotations.fields)
+      )
+    : undefined
+  const single = storm
+    ? scales.clouds[2] * (storm.rank - 0.5) * Math.sqrt(1 - lostShare(level - coarseness))
+    : dot(clouds)
+  const blurred = background + single
   const lost =
     scales.cloudVariance * lostShare(level - coarseness) +
     scales.fieldVariance * lostShare(fieldLevel - 0.5) +
@@ -227,7 +261,11 @@ export function weatherAt(
     coverage,
     filteredCoverage: coverage > 0 ? clamp(0.5 + strengthForm.contrast * (chance - 0.5), 0, 1) : 0,
     unresolvedFraction: smoothstep(0.5, 4.5, level - coarseness),
-    shift
+    shift,
+    storm: storm && {
+      distance: storm.distance,
+      radius: stormRadius(layer, background, coverage, scales.clouds[2])
+    }
   }
 }
 
@@ -328,19 +366,27 @@ export function sampleLayer(
   const unbillowed = columnStrength(layer, weather, lost)
   const rough = topBillows(unbillowed)
   const needed = neededStrength(layer, height)
-  const body = unbillowed - needed + ofCoarse * coarse * rough
-  const share = clamp(1 + (body - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
-  let strength = body + ofFine * share * fine * rough
+  const inColumn = unbillowed - needed + ofCoarse * coarse * rough
+  const share = clamp(1 + (inColumn - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
   const ofDetail =
     shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share
-  const most = 2.5 * Math.abs(ofDetail)
-  if (hasDetail && most > 0 && strength > -most && strength < edgeAt(layer, height) + most) {
-    strength += ofDetail * detailAt(noise, stretched, periods.detail, footprint)
+  const parts = weather.storm
+    ? stormStrength(layer, weather.storm, coarse, fine, height)
+    : {
+        body: inColumn,
+        strength: inColumn + ofFine * share * fine * rough,
+        detail: ofDetail,
+        edge: edgeAt(layer, height),
+        crumbs: crumbDensity(unbillowed, needed)
+      }
+  let { strength } = parts
+  const most = 2.5 * Math.abs(parts.detail)
+  if (hasDetail && most > 0 && strength > -most && strength < parts.edge + most) {
+    strength += parts.detail * detailAt(noise, stretched, periods.detail, footprint)
   }
 
   const atHeight = densityAtHeight(layer, height)
-  const near =
-    atHeight * densityOf(layer, strength, body, height) * crumbDensity(unbillowed, needed)
+  const near = atHeight * densityOf(parts.edge, strength, parts.body) * parts.crumbs
   const { unresolvedFraction, filteredCoverage } = weather
   if (unresolvedFraction === 0 || filteredCoverage === 0) {
     return { extinction: density * near, strength }

@@ -1,7 +1,7 @@
 import { If, int, vec3, vec4 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
-import { latticeRotations } from '../lattice'
+import { latticeRotations, layerRotation } from '../lattice'
 import { LAYER_STRIDE, MESOSCALE_PER_REGIONS, noisePeriods } from '../../layers/layerUniforms'
 import {
   loop,
@@ -73,12 +73,19 @@ export interface LayerNodes {
   fieldLattice: Lattice
   mesoscaleLattice: Lattice
   regionLattice: Lattice
-  /** Turns directions into the frame that drifts with the layer. */
-  directionInLayer: (direction: Vec3) => Vec3
+  /** Turns directions into the fields' lattice, unit length. */
+  directionInFields: (direction: Vec3) => Vec3
+  /**
+   * Turns directions into the frame that drifts with the weather of the first layer, and at first is the planet's; and
+   * back.
+   */
+  directionInSystems: (direction: Vec3) => Vec3
+  directionFromSystems: (direction: Vec3) => Vec3
 }
 
-/** Rotation from the regions' lattice to the layer's frame. */
-const fromRegions = /*#__PURE__*/ latticeRotations.region.clone().invert()
+/** Rotation from the frame of fronts and belts to the regions' lattice, of the first layer. */
+const toRegions = /*#__PURE__*/ latticeRotations.region.clone().multiply(layerRotation(0))
+const fromRegions = /*#__PURE__*/ toRegions.clone().invert()
 
 /** A vector turned by a constant rotation. */
 const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
@@ -120,13 +127,20 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     fieldLattice: lattice(12),
     mesoscaleLattice: lattice(23),
     regionLattice: lattice(15),
-    directionInLayer: v => {
+    directionInFields: v => {
+      const [x, y, z] = [0, 1, 2].map(row => read(12 + row).xyz.dot(v))
+      return vec3(x, y, z).normalize()
+    },
+    directionInSystems: v => {
+      const [x, y, z] = [0, 1, 2].map(row => read(15 + row).xyz.dot(v))
+      return rotate(fromRegions, vec3(x, y, z).mul(noisePeriods.regions).toConst())
+    },
+    directionFromSystems: v => {
+      const inRegions = rotate(toRegions, v).mul(noisePeriods.regions).toConst() as Vec3
       const [x, y, z] = [0, 1, 2].map(row =>
-        read(15 + row)
-          .xyz.dot(v)
-          .mul(noisePeriods.regions)
+        read(15 + row).xyz.mul([inRegions.x, inRegions.y, inRegions.z][row])
       )
-      return rotate(fromRegions, vec3(x, y, z))
+      return x.add(y).add(z)
     },
     shearAxis: shear.xyz,
     bend: shear.w,

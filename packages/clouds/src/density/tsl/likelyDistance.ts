@@ -1,8 +1,14 @@
-import { float } from 'three/tsl'
-import type { Float } from '../../tsl-types'
+import { float, vec2 } from 'three/tsl'
+import type { CloudField } from '../CloudField'
+import { stormBillows } from '../stormForm'
+import type { Float, Vec2 } from '../../tsl-types'
 import { neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
+import { resolutionAt } from './resolution'
+import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
+import { cloudWeather, leanAt } from './weather'
 import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
@@ -68,4 +74,47 @@ export function likelyDistanceByBackground(
     .mul(BACKGROUND_LIKELY)
     .div(layer.perWeatherPeriod)
     .sub(footprint.mul(BLUR))
+}
+
+/**
+ * Part of a storm's distance that counts: a pair is two steps long, and the distance is that of the middle of the one before. Greater:
+ * towers are missed by level rays, as blades (*Storm*).
+ */
+const PAIRED = 0.5
+
+/**
+ * Likely distance of the storms of a layer, whatever billows and turbulence add: there these need not be looked up [m]. 0
+ * or less elsewhere.
+ *
+ * @param sample - The place.
+ */
+export function likelyDistanceOfStorms(
+  field: CloudField,
+  layer: LayerNodes,
+  background: PackedBackground,
+  sample: CloudSample,
+  height: Float
+): Float {
+  const still = vec2(0) as Vec2
+  const subpoint = subpointOffset(field, sample)
+    .sub(leanAt(layer, sample.up, height))
+    .toConst()
+  const resolution = resolutionAt(layer, footprintOf(field, sample))
+  const around = unpackBackground(background)
+  const weather = cloudWeather(
+    field,
+    layer,
+    around,
+    subpoint,
+    still,
+    resolution,
+    'where unresolved'
+  )
+  const isResolved = resolution.unresolvedFraction.equal(0)
+  return smoothStormStrength(layer, weather, height)
+    .negate()
+    .sub(stormBillows.most)
+    .mul(stormBillows.unit * PAIRED)
+    .div(layer.perShapePeriod)
+    .mul(isResolved.select(1, 0))
 }

@@ -5,7 +5,7 @@ import type { Vec3 } from '../../tsl-types'
  * sin x to 10⁻⁶. A GPU's own may be off by 2⁻¹¹, and by more beyond ±π: as the waves shift the regions, and
  * these all that is smaller, it would move clouds by metres, and otherwise on every GPU.
  */
-function sine(x: Vec3): Vec3 {
+export function sine(x: Vec3): Vec3 {
   // Folded into [−π/2, π/2], where a polynomial of least maximum error is good.
   const turns = x.div(2 * Math.PI).add(0.25)
   const fold = turns.fract().sub(0.5).abs().sub(0.25)

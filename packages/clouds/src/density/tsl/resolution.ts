@@ -18,6 +18,8 @@ export interface Resolution {
   /** Variance of the weather's sum that is lost, and the factor that makes up for it [–]. */
   readonly lostVariance: Float
   readonly gain: Float
+  /** Share of the variance of single clouds that is lost, in [0, 1]. */
+  readonly cloudsLost: Float
   /** Share of the billows that is lost, in [0, 1]. */
   readonly billowsLost: Float
 }
@@ -74,6 +76,7 @@ export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
     unresolvedFraction: smoothstep(...UNRESOLVED_LEVELS, cloudLevel).toConst(),
     lostVariance: variance,
     gain,
+    cloudsLost: lostShare(cloudLevel).toConst(),
     billowsLost: smoothstep(...strengthForm.billowLevels, shapeLevel).toConst()
   }
 }

@@ -18,3 +18,7 @@ export function subpointOffset(field: CloudField, { offset, altitude }: CloudSam
   const scale = field.radius.div(field.radius.add(altitude))
   return offset.sub(up.mul(rise)).mul(scale)
 }
+
+/** Zenith over a displacement from the camera's subpoint, in the mapped space. */
+export const zenithAt = ({ view, radius }: CloudField, subpoint: Vec3): Vec3 =>
+  view.up.mul(radius).add(subpoint).normalize().toConst()

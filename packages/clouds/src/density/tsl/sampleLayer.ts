@@ -7,6 +7,8 @@ import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from '.
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { isStorm } from './storm'
+import { stormStrength } from './stormStrength'
 import { columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
 import { cloudWeather, leanAt, type CloudWeather } from './weather'
@@ -42,14 +44,15 @@ interface Body {
   readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
-  /** Strength of the column without billows, and what its height needs. */
-  readonly column: Float
-  readonly needed: Float
   /** Strength with coarse billows, and with fine ones, too. */
   readonly body: Float
   readonly strength: Float
   /** Strength of detail, per deviation of its noise [–]. */
   readonly detailStrength: Float
+  /** Strength over which density rises at edges [–]. */
+  readonly edge: Float
+  /** Factor of the density: `crumbDensity`. */
+  readonly crumbs: Float
 }
 
 /** Weather → column → billows: two texture reads, of which the second waits for the first. */
@@ -72,16 +75,28 @@ function bodyAt(
     resolution,
     'where unresolved'
   )
-  const amount = billowStrength(layer, height)
-  const column = columnStrength(layer, weather, background.coverage, resolution)
-  const rough = topBillows(column)
-  const needed = neededStrength(layer, height).toConst() as Float
-  const body = column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)).toConst() as Float
-  const share = fineShare(body)
-  const fine = shape.fine.mul(amount.fine).mul(rough)
-  const strength = body.add(fine.mul(share)).toConst() as Float
-  const detailStrength = amount.detail.mul(share).toConst() as Float
-  return { sample, height, weather, column, needed, body, strength, detailStrength }
+  const [body, strength, detailStrength] = [0, 1, 2].map(() => float(0).toVar() as Float)
+  const edge = edgeAt(layer, height).toVar() as Float
+  const crumbs = float(1).toVar() as Float
+  If(isStorm(layer), () => {
+    const storm = stormStrength(layer, weather, shape, height)
+    body.assign(storm.body)
+    strength.assign(storm.strength)
+    detailStrength.assign(storm.detail)
+    edge.assign(storm.edge)
+  }).Else(() => {
+    const amount = billowStrength(layer, height)
+    const column = columnStrength(layer, weather, background.coverage, resolution)
+    const rough = topBillows(column)
+    const needed = neededStrength(layer, height).toConst() as Float
+    body.assign(column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)))
+    const share = fineShare(body)
+    const fine = shape.fine.mul(amount.fine).mul(rough)
+    strength.assign(body.add(fine.mul(share)))
+    detailStrength.assign(amount.detail.mul(share))
+    crumbs.assign(crumbDensity(column, needed))
+  })
+  return { sample, height, weather, body, strength, detailStrength, edge, crumbs }
 }
 
 /**
@@ -116,7 +131,7 @@ export function sampleLayerAt(
   const { footprint, unresolvedFraction } = resolution
   const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution))
   return bodies.map(body => {
-    const { sample, height, strength, detailStrength } = body
+    const { sample, height, strength, detailStrength, edge } = body
     const { filteredCoverage } = body.weather
     const whole = strength.toVar() as Float
     const density = float(0).toVar() as Float
@@ -125,14 +140,13 @@ export function sampleLayerAt(
       .mul(hasDetail ? MOST_DETAIL : 0)
       .toConst()
     If(strength.greaterThan(mostDetail.negate()), () => {
-      const edge = edgeAt(layer, height)
       if (hasDetail) {
         If(strength.lessThan(mostDetail.add(edge)).and(mostDetail.greaterThan(0)), () => {
           const fine = detail(field, layer, sample.offset, footprint)
           whole.addAssign(fine.mul(detailStrength))
         })
       }
-      const full = densityAtHeight(layer, height).mul(crumbDensity(body.column, body.needed))
+      const full = densityAtHeight(layer, height).mul(body.crumbs)
       density.assign(densityOf(whole, body.body, edge).mul(full))
     })
     If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {

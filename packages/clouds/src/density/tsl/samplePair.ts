@@ -5,10 +5,17 @@ import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
 import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
-import { CAUTION, likelyDistance, likelyDistanceByBackground, NOWHERE } from './likelyDistance'
+import {
+  CAUTION,
+  likelyDistance,
+  likelyDistanceByBackground,
+  likelyDistanceOfStorms,
+  NOWHERE
+} from './likelyDistance'
 import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
+import { isStorm } from './storm'
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -66,6 +73,9 @@ export function samplePair(
       const background = backgroundAt(field, layer, middle, { map, index })
       const footprint = footprintOf(field, middle)
       const likely = likelyDistanceByBackground(layer, background, height, footprint).toVar()
+      If(isStorm(layer), () => {
+        likely.assign(likelyDistanceOfStorms(field, layer, background, middle, height))
+      })
       If(likely.lessThanEqual(0), () => {
         const [first, second] = sampleLayerAt(field, layer, background, middle, places, {
           detail: true,

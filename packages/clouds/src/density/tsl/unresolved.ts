@@ -5,6 +5,7 @@ import type { Float } from '../../tsl-types'
 import { iceAt, neededStrength } from './heightForm'
 import type { LayerNodes } from './layer'
 import { squared } from './squared'
+import { isStorm } from './storm'
 
 // Clouds too small or too far to be seen one by one, as mean columns that let the same light through.
 // Integrals over columns and heights come from the CPU: layers/meanColumn.ts.
@@ -58,7 +59,9 @@ const LEAST_COSINE = 0.05
  */
 export function slantCoverFactor(layer: LayerNodes, cosine: Float): Float {
   const { slantAspect } = columnForm
-  const tall = layer.thickness.mul(layer.perWeatherPeriod).mul(slantAspect).min(1)
+  const { slantOfStorms } = columnForm
+  const share = isStorm(layer).select(float(slantOfStorms), float(1)) as Float
+  const tall = layer.thickness.mul(layer.perWeatherPeriod).mul(slantAspect).min(1).mul(share)
   return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }
 

@@ -1,11 +1,12 @@
 import { If, float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
-import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
-import { footprintOf, type CloudSample } from './sample'
+import { footprintOf, zenithAt, type CloudSample } from './sample'
+import { isStorm, stormAround, stormRadius } from './storm'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
 /** The weather of a layer at a place. */
@@ -14,6 +15,15 @@ export interface CloudWeather {
   readonly sum: Float
   /** Share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
   readonly filteredCoverage: Float
+  /** In layers of storms, distance from the axis of the nearest one, and its radius [m]; 0 in others. */
+  readonly stormDistance: Float
+  readonly stormRadius: Float
+}
+
+/** ln(c / (1 − c)) / 1.702 of a coverage c: z of Φ(z) = c. */
+const quantileOf = (coverage: Float): Float => {
+  const odds = coverage.clamp(1e-6, 1 - 1e-6).toConst() as Float
+  return odds.div(odds.oneMinus()).log().div(1.702)
 }
 
 /**
@@ -23,9 +33,9 @@ export interface CloudWeather {
 function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage: Float): Float {
   const { edgeSoftness, leastEdgeSoftness, contrast } = strengthForm
   const edges = layer.shapeAmount.mul(edgeSoftness).max(leastEdgeSoftness)
-  const odds = coverage.clamp(1e-6, 1 - 1e-6).toConst() as Float
-  const quantile = odds.div(odds.oneMinus()).log().div(1.702)
-  const chance = cumulative(weather.add(quantile).div(variance.add(edges.mul(edges)).sqrt()))
+  const chance = cumulative(
+    weather.add(quantileOf(coverage)).div(variance.add(edges.mul(edges)).sqrt())
+  )
   // Neither more nor less than all: the distribution has tails.
   const all = chance.sub(0.5).mul(contrast).add(0.5).clamp(0, 1)
   return coverage.greaterThan(0).select(all, 0)
@@ -36,7 +46,7 @@ export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
   layer.shearAxis.cross(up).mul(height.mul(layer.thickness))
 
 /**
- * Weather of a layer at a place: the background, and single clouds, one texture read.
+ * Weather of a layer at a place: the background, and single clouds, one texture read; or the nearest storm.
  *
  * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
  *   `leanAt`.
@@ -49,24 +59,34 @@ export function cloudWeather(
   background: WeatherBackground,
   subpoint: Vec3,
   bend: Vec2,
-  { weatherLevel: level, unresolvedFraction, lostVariance, gain }: Resolution,
+  { weatherLevel: level, unresolvedFraction, lostVariance, gain, cloudsLost }: Resolution,
   where: 'everywhere' | 'where unresolved'
 ): CloudWeather {
-  const scale = layer.perWeatherPeriod
-  const bent = inLattice(bend.add(background.shift))
-  const clouds = field.textures.weather
-    .sample(layer.weatherLattice(subpoint).add(bent.mul(scale)))
-    .level(level)
-    .sub(0.5)
-    .toConst() as Vec4
-  const blurred = clouds.dot(layer.weights).add(background.sum).toConst() as Float
+  const bent = bend.add(background.shift).toConst() as Vec2
+  const single = float(0).toVar() as Float
+  const stormDistance = float(0).toVar() as Float
+  const radius = float(0).toVar() as Float
+  If(isStorm(layer), () => {
+    const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent)
+    stormDistance.assign(storm.distance)
+    radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
+    single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
+  }).Else(() => {
+    const clouds = field.textures.weather
+      .sample(layer.weatherLattice(subpoint).add(inLattice(bent).mul(layer.perWeatherPeriod)))
+      .level(level)
+      .sub(0.5)
+    single.assign(clouds.dot(layer.weights))
+  })
+  const blurred = single.add(background.sum).toConst() as Float
   const filteredCoverage = float(0).toVar()
   const filter = (): void => {
     filteredCoverage.assign(coverageOf(layer, blurred, lostVariance, background.coverage))
   }
   if (where === 'everywhere') filter()
   else If(unresolvedFraction.greaterThan(0), filter)
-  return { sum: blurred.mul(gain).toConst(), filteredCoverage }
+  const sum = blurred.mul(gain).toConst() as Float
+  return { sum, filteredCoverage, stormDistance, stormRadius: radius }
 }
 
 /**

@@ -11,7 +11,8 @@ import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
 import { weatherLevel } from './resolution'
-import type { CloudSample } from './sample'
+import { zenithAt, type CloudSample } from './sample'
+import { cycloneAround, frontsAndBelts } from './weatherSystems'
 
 /**
  * Weather of a layer on all scales larger than single clouds, packed: its part of the weather's sum, coverage,
@@ -36,23 +37,39 @@ export const unpackBackground = (packed: PackedBackground): WeatherBackground =>
   shift: vec2(packed.z, packed.w).toConst()
 })
 
-/** Weather of whole regions and of the planet, which all layers share: where one is clear, others are. */
+/** Weather of whole regions, which all layers share: where one is clear, others are. */
+interface WeatherSystems {
+  /** Noise of the regions, each channel in [−½, ½]. */
+  readonly regions: Vec4
+  /** Fronts and belts, of variance 1. */
+  readonly systems: Float
+  /** Displacement to where cyclones have brought the air from, in the mapped space [m]. */
+  readonly displacement: Vec3
+}
+
+/** Weather of whole regions at a place: a texture read. */
 function weatherSystems(
   field: CloudField,
   layer: LayerNodes,
   subpoint: Vec3,
-  up: Vec3,
   footprint: Float
-): { regions: Vec4; waves: Vec3 } {
+): WeatherSystems {
   const isAlone = field.layers.length === 1
-  const systems = isAlone ? layer : layerAt(field, int(0))
-  const waves = planetWaves(systems.directionInLayer(up).toConst())
+  const first = isAlone ? layer : layerAt(field, int(0))
+  // Of the subpoint itself: what cyclones displace it by must fit to the metre.
+  const zenith = first.directionInSystems(zenithAt(field, subpoint)).normalize().toConst() as Vec3
+  const waves = planetWaves(zenith).toConst() as Vec3
+  const cyclone = cycloneAround(zenith)
+  const displacement = first
+    .directionFromSystems(cyclone.displacement)
+    .mul(field.radius)
+    .toConst() as Vec3
   const regions = field.textures.weather
-    .sample(systems.regionLattice(subpoint).add(waves.mul(waveForm.warp)))
+    .sample(first.regionLattice(subpoint.add(displacement)).add(waves.mul(waveForm.warp)))
     .level(weatherLevel(footprint, 1 / noisePeriods.regions))
     .sub(0.5)
     .toConst() as Vec4
-  return { regions, waves }
+  return { regions, systems: frontsAndBelts(zenith, waves, regions, cyclone), displacement }
 }
 
 /** Clusters and bands in which fields gather: a texture read. */
@@ -60,11 +77,11 @@ const mesoscaleAt = (
   field: CloudField,
   layer: LayerNodes,
   subpoint: Vec3,
-  regions: Vec4,
+  { regions, displacement }: WeatherSystems,
   footprint: Float
 ): Vec4 =>
   field.textures.weather
-    .sample(layer.mesoscaleLattice(subpoint).add(regions.xyz.mul(MESOSCALE_WARP)))
+    .sample(layer.mesoscaleLattice(subpoint.add(displacement)).add(regions.xyz.mul(MESOSCALE_WARP)))
     .level(weatherLevel(footprint, 1 / noisePeriods.mesoscale))
     .sub(0.5)
     .toConst()
@@ -82,14 +99,15 @@ export function weatherBackground(
   sample: Pick<CloudSample, 'up'>,
   footprint: Float
 ): PackedBackground {
-  const { regions, waves } = weatherSystems(field, layer, subpoint, sample.up, footprint)
+  const around = weatherSystems(field, layer, subpoint, footprint)
+  const { regions, systems } = around
   const scale = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
   const fields = field.textures.weather
     .sample(layer.fieldLattice(subpoint).add(regions.xyz.mul(weatherShifts.regions)))
     .level(weatherLevel(footprint, scale))
     .sub(0.5)
     .toConst() as Vec4
-  const mesoscale = mesoscaleAt(field, layer, subpoint, regions, footprint)
+  const mesoscale = mesoscaleAt(field, layer, subpoint, around, footprint)
   const sum = fields
     .dot(layer.weights)
     .mul(scaleWeights.fields)
@@ -101,13 +119,7 @@ export function weatherBackground(
         .add(regions.w.mul(scaleWeights.regionBands))
         .mul(layer.regions)
     )
-    .add(
-      waves.x
-        .add(waves.y)
-        .add(waves.z)
-        .mul(layer.planet)
-        .mul(Math.sqrt(2 / 3))
-    )
+    .add(systems.mul(layer.planet))
   const period = layer.perWeatherPeriod.reciprocal()
   const shift = fields.xy
     .mul(weatherShifts.fields)

@@ -1,0 +1,62 @@
+// Constants of storms: layers of the weather of cumulonimbus alone. Each storm has a place and a shape of its own. All are seen
+// in *Storm*, and most in the stills of 10 km.
+
+/** Where storms are: jittered points of a lattice that the planet's surface cuts. */
+export const stormPlaces = {
+  /** Storms in a period of the fields' lattice. More: storms stand closer together, and are smaller. */
+  cells: 9,
+  /** Seed of their places. */
+  seed: 977,
+  /** Part of a cell that a storm may stand in. 1: walls where a storm reaches beyond the next cells; 0: rows. */
+  jitter: 0.8,
+  /** Distance that height z of a point over the surface counts as: its square is `away` z⁶ [cells]. Smaller: walls between storms. */
+  away: 7.72,
+  /**
+   * Rank of a distance d from the nearest storm, e^(−(d/scale)^power), and its exponent: as counted over the planet [cells].
+   * Wrong: more or fewer storms than asked for.
+   */
+  scale: 0.5068,
+  power: 2.7,
+  /** Least and greatest rank at a storm's rim: storms reach from 0 to 0.8 cells. */
+  ranks: [0.03, 0.9999]
+} as const
+
+/** Shape of a storm: a tower under an anvil. Heights are parts of the layer's thickness. */
+export const stormShape = {
+  /** Radius of the tower over that of the anvil, and over the thickness at least [–]. Greater: a storm as wide as its anvil. */
+  tower: 0.35,
+  leastTower: 0.15,
+  /** Factor of the tower's radius at its base and at the top [–]. */
+  widening: [0.9, 1.15],
+  /** Height that the tower's dome reaches: it overshoots the anvil. */
+  dome: 0.93,
+  /** Height of the anvil, and its greatest depth above and below that. Greater below: a funnel. */
+  anvil: 0.66,
+  above: 0.15,
+  below: 0.24,
+  /** Length over which tower and anvil grow into each other. 0: a table on a leg. */
+  blend: 0.12,
+  /** Radius over the thickness between which storms get anvils, and from which they reach the layer's top [–]. */
+  anvilFrom: [0.15, 0.4],
+  grown: 0.4,
+  /** Least height of a storm. */
+  least: 0.2
+} as const
+
+/** Billows of storms, in units of strength per deviation of their noise: displacements outwards and inwards. */
+export const stormBillows = {
+  /** Length that strength changes by 1 over [periods of the shape]. Smaller: hard edges. */
+  unit: 0.02,
+  /** Coarse, fine and finest billows [–]: slopes of about 1 make heads that stand on heads. Greater: rags; smaller: balloons. */
+  coarse: 2,
+  fine: 0.8,
+  detail: 0.3,
+  /** Factor of all of them in ice [–]: anvils are smooth. */
+  inIce: 0.75,
+  /** Softness of edges in ice: factor of their width less 1 [–]. */
+  softIce: 3,
+  /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
+  offset: 0.65,
+  /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
+  most: 10
+} as const
