@@ -1,7 +1,7 @@
 // Constants of storms: layers of the weather of cumulonimbus alone. Each storm has a place and a shape of its own. All are seen
 // in *Storm*, and most in the stills of 10 km.
 
-/** Where storms are: jittered points of a lattice that the planet's surface cuts. */
+/** Places of storms: jittered points of a lattice that the planet's surface cuts. */
 export const stormPlaces = {
   /** Storms in a period of the fields' lattice. More: storms stand closer together, and are smaller. */
   cells: 9,

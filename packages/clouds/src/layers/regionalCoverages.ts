@@ -14,12 +14,6 @@ const quantile = (share: number): number => Math.log(share / (1 - share)) / 1.70
 const BLUR_LEVELS = [-0.9, 4] as const
 
 /**
- * Deviation of the weather over that of a normal distribution of the same quantiles' tails: fronts and belts have short ones, as
- * measured [–].
- */
-const SHORT_TAILS = 0.88
-
-/**
  * Shares of the sky that a layer covers in regions of the planet that are equally frequent: the distribution of
  * `filteredCoverageAt` of density/tsl/weather.ts, of weather whose single clouds a footprint blurs.
  *
@@ -39,7 +33,7 @@ export function regionalCoverages(
   const median = quantile(MathUtils.clamp(layer.coverage, 1e-6, 1 - 1e-6))
   const spread = Math.sqrt(1 - cloudVariance * MathUtils.smoothstep(level, ...BLUR_LEVELS))
   return Array.from({ length: REGIONS }, (_, i) => {
-    const weather = SHORT_TAILS * spread * quantile((i + 0.5) / REGIONS)
+    const weather = spread * quantile((i + 0.5) / REGIONS)
     const chance = 1 / (1 + Math.exp((-1.702 * (weather + median)) / width))
     return MathUtils.clamp(0.5 + (chance - 0.5) * contrast, 0, 1)
   })

@@ -99,7 +99,7 @@ export function stormRadius(layer: LayerNodes, background: Float, quantile: Floa
  * Distance into a storm's body, without billows [m]: a tower with a dome, an anvil, and a smooth union of both. Negative
  * outside. Float64: layers/stormBody.ts.
  *
- * @param distance - From its axis [m].
+ * @param distance - Distance from its axis [m].
  * @param radius - `stormRadius` [m].
  * @param height - ĥ in the layer, in [0, 1].
  */

@@ -30,7 +30,7 @@ export interface CycloneAround {
  * To be called inside of a shader function.
  *
  * @param zenith - In the frame that drifts with the weather, unit length.
- * @see Doswell 1984, "A kinematic analysis of frontogenesis associated with a nondivergent vortex", J. Atmos. Sci. 41. Twin:
+ * @see Doswell 1984, "A kinematic analysis of frontogenesis associated with a nondivergent vortex", J. Atmos. Sci. 41, pp. 1242–1248. Twin:
  *   test/twins/weatherSystems.ts
  */
 export function cycloneAround(zenith: Vec3): CycloneAround {
