@@ -15,6 +15,8 @@ export interface Still {
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
   fog?: { density: number; falloff: number; dropletRadius: number }
+  /** A flash whose light the picture gathers: its kind, azimuth [°] and distance over the ground [m]. */
+  lightning?: { kind: 'ground' | 'cloud'; azimuth: number; distance: number }
   /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */
   rain?: number
   /** Light shafts, of hills and clouds. */
@@ -443,6 +445,37 @@ export const stills: readonly AnyStill[] = [
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 150, pitch: 18 },
     land: 'hills'
+  },
+  {
+    name: 'lightning-ground',
+    about: 'a flash to the ground at night: a forked channel, the cloud above glows from inside',
+    clouds: { preset: 'cumulonimbus' },
+    lightning: { kind: 'ground', azimuth: 294, distance: 8500 },
+    altitude: 60,
+    sun: new Date('2026-06-14T14:00:00Z'),
+    view: { azimuth: 294, pitch: 14 },
+    land: 'hills'
+  },
+  {
+    name: 'lightning-cloud',
+    about: 'a flash in a storm, from the ground: soft light, no bright outlines',
+    clouds: { preset: 'cumulonimbus' },
+    lightning: { kind: 'cloud', azimuth: 20, distance: 20_000 },
+    altitude: 60,
+    sun: new Date('2026-06-14T14:00:00Z'),
+    view: { azimuth: 20, pitch: 14 },
+    land: 'hills'
+  },
+  {
+    name: 'lightning-10km',
+    about: 'a tower lit from inside, from an airliner',
+    clouds: { preset: 'cumulonimbus' },
+    place: { longitude: 142.4, latitude: 35.7 },
+    lightning: { kind: 'cloud', azimuth: 118, distance: 13_000 },
+    altitude: 9000,
+    sun: new Date('2026-06-14T14:00:00Z'),
+    view: { azimuth: 115, pitch: -4 },
+    land: 'planet'
   },
   {
     name: 'mars-noon',

@@ -20,6 +20,14 @@ export {
   precipitationShafts,
   type PrecipitationShaftsOptions
 } from './precipitation/PrecipitationShafts'
+export {
+  Lightning,
+  lightning,
+  type LightningEvent,
+  type LightningEventMap,
+  type LightningOptions,
+  type StrikeOptions
+} from './lightning/Lightning'
 export { CloudVelocityNode, cloudVelocity } from './temporal/CloudVelocityNode'
 export { CloudsDebugNode, cloudsDebug, type CloudsDebug } from './march/CloudsDebugNode'
 export { cloudQualities, type CloudQuality, type CloudQualityName } from './march/quality'
