@@ -2,9 +2,12 @@ import { lightning } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
 import { vec3 } from 'three/tsl'
 import { meanInverseSquareOf } from '../../../packages/clouds/test/twins/lightning'
-import { lightningChannel, type Point } from '../../../packages/clouds/src/lightning/channel'
+import {
+  CHANNEL_COLOR,
+  lightningChannel,
+  type Point
+} from '../../../packages/clouds/src/lightning/channel'
 import { flashCurve, lightBetween } from '../../../packages/clouds/src/lightning/flashCurve'
-import { CHANNEL_COLOR } from '../../../packages/clouds/src/lightning/LightningPasses'
 import { seeded } from '../../../packages/clouds/src/lightning/random'
 import { meanInverseSquare } from '../../../packages/clouds/src/lightning/tsl/lineLight'
 import { random } from '../harness/atmosphere'

@@ -18,7 +18,7 @@ import type { CloudsNode } from '../march/CloudsNode'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
 import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3 } from '../uniforms'
-import { CHANNEL_COLOR, type PlacedChannel } from './LightningPasses'
+import { CHANNEL_COLOR, type PlacedChannel } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8

@@ -7,11 +7,11 @@ import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { Vec3 } from '../tsl-types'
-import { lightningChannel } from './channel'
+import { CHANNEL_COLOR, lightningChannel, type PlacedChannel } from './channel'
 import { flashCurve, lightBetween, type FlashCurve, type FlashKind } from './flashCurve'
 import { seeded, type Random } from './random'
 import { FlashLimit } from './FlashLimit'
-import { CHANNEL_COLOR, LightningPasses, type PlacedChannel } from './LightningPasses'
+import { LightningPasses } from './LightningPasses'
 import { COLUMNS_REACH, StormColumns, type Column } from './StormColumns'
 
 /** Thickness of the shallowest storm [m]. */

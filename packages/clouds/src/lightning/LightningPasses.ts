@@ -25,7 +25,7 @@ import {
 } from '../tsl-types'
 import { number } from '../uniforms'
 import { BoltPass } from './BoltPass'
-import { STEM_POINTS, type Channel } from './channel'
+import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel } from './channel'
 import { meanInverseSquare } from './tsl/lineLight'
 
 /**
@@ -41,19 +41,8 @@ const LONGEST_HAZE = 60_000
 /** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
 const STORED_POWER = 1e9
 
-/** Light of a channel as colour: that of a body of 20,000 K, of luminance 1, linear sRGB (Orville 1968, J. Atmos. Sci. 25, 852: 20,000 to 30,000 K). */
-export const CHANNEL_COLOR = [0.747, 0.99, 1.844] as const
-
 const _offset = new Vector3()
 const _row = new Vector3()
-
-/** A flash as it stands in the planet's mapped space. */
-export interface PlacedChannel extends Channel {
-  /** Where it meets the ground, or would, from the planet's centre [m]. */
-  readonly place: Vector3
-  /** East, north and up there. */
-  readonly axes: readonly [Vector3, Vector3, Vector3]
-}
 
 /** What is drawn of a flash: its light in clouds and in haze, and its channel. */
 export class LightningPasses {

@@ -1,3 +1,4 @@
+import type { Vector3 } from 'three'
 import type { FlashKind } from './flashCurve'
 import { normal, type Random } from './random'
 
@@ -20,6 +21,17 @@ export interface Channel {
   readonly stem: readonly Point[]
   /** Length of all pieces, each by its brightness [m]. */
   readonly brightLength: number
+}
+
+/** Light of a channel as colour: that of a body of 20,000 K, of luminance 1, linear sRGB (Orville 1968, J. Atmos. Sci. 25, 852: 20,000 to 30,000 K). */
+export const CHANNEL_COLOR = [0.747, 0.99, 1.844] as const
+
+/** A flash as it stands in the planet's mapped space. */
+export interface PlacedChannel extends Channel {
+  /** Where it meets the ground, or would, from the planet's centre [m]. */
+  readonly place: Vector3
+  /** East, north and up there. */
+  readonly axes: readonly [Vector3, Vector3, Vector3]
 }
 
 /** Extent of a storm's cloud at the flash, above the ground [m]. */
