@@ -450,11 +450,12 @@ export const stills: readonly AnyStill[] = [
     name: 'lightning-ground',
     about: 'a flash to the ground at night: a forked channel, the cloud above glows from inside',
     clouds: { preset: 'cumulonimbus' },
-    lightning: { kind: 'ground', azimuth: 294, distance: 8500 },
-    altitude: 60,
+    place: { longitude: 142.4, latitude: 35.7 },
+    lightning: { kind: 'ground', azimuth: 118, distance: 12_000 },
+    altitude: 200,
     sun: new Date('2026-06-14T14:00:00Z'),
-    view: { azimuth: 294, pitch: 14 },
-    land: 'hills'
+    view: { azimuth: 118, pitch: 16 },
+    land: 'planet'
   },
   {
     name: 'lightning-cloud',

@@ -8,6 +8,7 @@ import {
   type Point
 } from '../../../packages/clouds/src/lightning/channel'
 import { flashCurve, lightBetween } from '../../../packages/clouds/src/lightning/flashCurve'
+import { OPEN, REACH } from '../../../packages/clouds/src/lightning/StormDensity'
 import { seeded } from '../../../packages/clouds/src/lightning/random'
 import { meanInverseSquare } from '../../../packages/clouds/src/lightning/tsl/lineLight'
 import { random } from '../harness/atmosphere'
@@ -38,6 +39,17 @@ gpuTest('light of a line is that of float64, near and far, along and aside', asy
 const FRAMES = 8
 const EXPOSURE = 0.5
 const SEED = 9
+
+/** Harmonic mean of the depths out of the fog and `OPEN`, over 20,000 directions. */
+function meanWayOut([, , height]: Point, scaled: number): number {
+  let sum = 0
+  for (let i = 0; i < 20_000; i++) {
+    const z = -1 + (2 * (i + 0.5)) / 20_000
+    const boundary = z > 0 ? fog.topAltitude! - height : height - fog.baseAltitude!
+    sum += 1 / (scaled * Math.min(boundary / Math.abs(z), REACH) + OPEN)
+  }
+  return 20_000 / sum
+}
 
 gpuTest('fog glows about a flash as in float64, and not before or after it', t =>
   inFog(t, async view => {
@@ -79,7 +91,12 @@ gpuTest('fog glows about a flash as in float64, and not before or after it', t =
         sum += meanInverseSquareOf(points[i - 1], points[i], 250) / (points.length - 1) / parts
     }
     const [r, g, b] = CHANNEL_COLOR
-    const expected = (((r + g + b) / 3) * power * sum) / (4 * Math.PI ** 2)
+    const source = stem[2]
+    const seen = 1 / scaled
+    const way = [-at.x - source[0], at.z + seen - source[1], camera.position.y - source[2]]
+    const depth = scaled * Math.hypot(...way)
+    const out = meanWayOut(source, scaled) / (depth + OPEN)
+    const expected = (((r + g + b) / 3) * power * sum * out) / (4 * Math.PI ** 2)
     const added = middle(lit) - middle(before)
     t.note(`${added.toExponential(3)} for ${expected.toExponential(3)}`)
     expectClose([added], [expected], { relative: 0.05 }, 'glow')

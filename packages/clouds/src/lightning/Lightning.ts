@@ -103,8 +103,8 @@ interface Flash extends PlacedChannel {
  * Flashes may harm people with photosensitive epilepsy: ask before you switch them on. `limit`, on by default, lets three a second through and caps
  * their brightness.
  *
- * Light in clouds is that which diffuses out of them, Q/(4π²) ⟨1/(r² + s²)⟩ over the channel: all of it gets out, where nothing absorbs. That one
- * cloud shades another from it is left out. The light on the ground is a frame late.
+ * Light in clouds is that which diffuses out of them, Q/(4π²) ⟨1/(r² + s²)⟩ over the channel, on thin sides more than through thick ones:
+ * all of it gets out, where nothing absorbs. The light on the ground is a frame late.
  */
 export class Lightning extends EventDispatcher<LightningEventMap> {
   /** Clouds that it lights; shared, not owned. */
@@ -324,7 +324,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
       axes: [east, up.clone().cross(east), up]
     }
     this.#flash = flash
-    this.#passes.channel = flash
+    this.#passes.begin(renderer, _viewpoint, flash, { base, top }, [...layers].indexOf(storm))
     const event = eventOf(flash, _viewpoint)
     this.#thunder.push({ time: now + event.delay, event })
     this.dispatchEvent({ type: 'strike', ...event })
@@ -374,8 +374,6 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
       all: power.all * luminanceScale,
       branches: power.branches * luminanceScale
     }
-    const { rayleighScattering, mieScattering } = view.atmosphere.parameters
-    this.#passes.haze.value = rayleighScattering[1] + mieScattering[1]
     this.#passes.render(renderer, view, _viewpoint, flash, scaled)
     this.#light(view, flash, scaled.all)
   }

@@ -1,17 +1,13 @@
 import {
   aerialPerspectiveTo,
   FragmentPass,
-  outputs,
   tableTarget,
-  type AtmosphereView,
-  type Outputs
+  type AtmosphereView
 } from '@welkin/atmosphere'
 import { Vector3, Vector4 } from 'three'
-import { If, float, int, texture, uv, vec4 } from 'three/tsl'
+import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { componentAt } from '../density/tsl/componentAt'
 import type { CloudsNode } from '../march/CloudsNode'
-import { POINTS } from '../march/tsl/seenPoints'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
   loop,
@@ -25,7 +21,8 @@ import {
 } from '../tsl-types'
 import { number } from '../uniforms'
 import { BoltPass } from './BoltPass'
-import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel } from './channel'
+import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
+import { StormDensity } from './StormDensity'
 import { meanInverseSquare } from './tsl/lineLight'
 
 /**
@@ -41,75 +38,94 @@ const LONGEST_HAZE = 60_000
 /** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
 const STORED_POWER = 1e9
 
+/** Place of 550 nm between 630 and 440 nm in λ⁻⁴: exponent of blue in green. */
+const GREEN_SHARE = (550 ** -4 - 630 ** -4) / (440 ** -4 - 630 ** -4)
+
 const _offset = new Vector3()
 const _row = new Vector3()
+
+/** Scattering by molecules and aerosols at an altitude, 520 nm [1/m]. */
+function hazeAt({ atmosphere }: AtmosphereView, altitude: number): number {
+  const { rayleighScattering, rayleighScaleHeight, mieScattering, mieScaleHeight } =
+    atmosphere.parameters
+  return (
+    rayleighScattering[1] * Math.exp(-altitude / rayleighScaleHeight) +
+    mieScattering[1] * Math.exp(-altitude / mieScaleHeight)
+  )
+}
 
 /** What is drawn of a flash: its light in clouds and in haze, and its channel. */
 export class LightningPasses {
   /** Luminous power, times `luminanceScale` [lm]. */
   readonly power = number()
-  /** Scattering by haze about the flash [1/m]. */
-  readonly haze = number()
   readonly #clouds: CloudsNode
-  /** Points of the stem from the camera, in the mapped space [m]. */
+  /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
-  readonly #target = tableTarget('Welkin.LightningGlow', 1, 1, 2)
+  readonly #target = tableTarget('Welkin.LightningGlow', 1, 1)
   readonly #glow: LevelTexture<Vec2>
-  readonly #air: LevelTexture<Vec2>
   readonly #pass: FragmentPass
   readonly #bolt: BoltPass
+  readonly #density: StormDensity
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
-    const [glow, air] = this.#target.textures.map(t => texture(t))
-    this.#glow = glow as unknown as LevelTexture<Vec2>
-    this.#air = air as unknown as LevelTexture<Vec2>
+    this.#glow = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+    this.#density = new StormDensity(clouds.field)
     this.#pass = new FragmentPass('Welkin.LightningGlow', this.#light())
     this.#bolt = new BoltPass(clouds)
   }
 
-  /** Takes a channel. */
-  set channel(channel: PlacedChannel) {
+  /** Takes a channel in a storm: a layer, and its base and top. */
+  begin(
+    renderer: Renderer,
+    viewpoint: Vector3,
+    channel: PlacedChannel,
+    storm: StormColumn,
+    layer: number
+  ): void {
     this.#bolt.channel = channel
+    this.#density.bake(renderer, _offset.copy(channel.place).sub(viewpoint), channel, storm, layer)
   }
 
-  /** Light of one pixel of each block, for `STORED_POWER`: of clouds with their opacity, and of the air. */
-  #light(): Outputs {
+  /**
+   * Light of one pixel of each block, for `STORED_POWER`: of clouds, red and blue, times their opacity; that opacity; of the air. Clouds
+   * are seen in two places, the means of the nearer and of the farther half of what stands for them.
+   */
+  #light(): Vec4 {
     const { passes, field } = this.#clouds
     const { seen, viewRays } = passes
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-    return outputs<[Vec4, Vec4]>(2, ([light, air]) => {
+    return Fn(() => {
       const here = uv() as unknown as Vec2
       const ray = viewRayAt(viewRays, here)
-      const distances = seen.distances.sample(here).level(0).toConst() as Vec4
-      const shares = seen.shares.sample(here).level(0).toConst() as Vec4
-      const marched = seen.ray.sample(here).level(0).toConst() as Vec4
+      const distances = seen.distances.sample(here).level(0).toConst()
+      const shares = seen.shares.sample(here).level(0).toConst()
+      const end = seen.ray.sample(here).level(0).y.exp2().min(LONGEST_HAZE).toConst() as Float
       const opacity = shares.dot(vec4(1)).toConst() as Float
-      const radiance = float(0).toVar() as Variable<Float>
-      loop('flashPoint', POINTS, point => {
-        const own = componentAt(float(point))
-        const share = shares.dot(own).toConst() as Float
-        If(share.greaterThan(0), () => {
-          const place = ray.direction.mul(distances.dot(own)).toConst() as Vec3
-          radiance.addAssign(this.#lineLight(place).mul(share))
-        })
+      const light = vec4(0, 0, opacity, 0).toVar() as Variable<Vec4>
+      const hazeEnd = end.toVar() as Variable<Float>
+      If(opacity.greaterThan(1e-3), () => {
+        const weighted = shares.mul(distances).toConst() as Vec4
+        const halves = vec2(shares.x.add(shares.y), shares.z.add(shares.w)).toConst() as Vec2
+        const radiance = float(0).toVar() as Variable<Float>
+        for (const half of ['x', 'y'] as const) {
+          const sum = half === 'x' ? weighted.x.add(weighted.y) : weighted.z.add(weighted.w)
+          If(halves[half].greaterThan(0), () => {
+            const place = ray.direction.mul(sum.div(halves[half].max(1e-4))).toConst() as Vec3
+            radiance.addAssign(this.#lineLight(place).mul(halves[half]))
+          })
+        }
+        const mean = weighted.dot(vec4(1)).div(opacity).toConst() as Float
+        radiance.mulAssign(this.#density.lightOut(ray.direction.mul(mean).toConst()))
+        const displacement = ray.directionView.mul(mean).toConst()
+        const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
+        const lit = transmittance.mul(radiance).mul(STORED_POWER / (4 * Math.PI ** 2))
+        light.assign(vec4(lit.x, lit.z, opacity, 0))
+        hazeEnd.assign(mix(end, mean.min(end), opacity))
       })
-      const toClouds = shares.dot(distances).div(opacity.max(1e-4)).toConst() as Float
-      const isCloud = opacity.greaterThan(1e-3)
-      const seenTo = isCloud.select(toClouds, marched.x.exp2())
-      const { transmittance } = aerialPerspectiveTo(
-        field.view,
-        ray.directionView.mul(seenTo).toConst(),
-        layers
-      )
-      const lit = transmittance.mul(radiance).mul(STORED_POWER / (4 * Math.PI ** 2))
-      light.assign(vec4(lit as Vec3, opacity))
-      const end = marched.y.exp2().min(LONGEST_HAZE).toConst() as Float
-      const behind = this.#hazeLight(ray.direction, end).mul(opacity.oneMinus())
-      const before = this.#hazeLight(ray.direction, toClouds.min(end)).mul(opacity)
-      air.assign(vec4(behind.add(before), 0, 0, 1))
-    })
+      return vec4(light.xyz, this.#hazeLight(ray.direction, hazeEnd))
+    })()
   }
 
   /** Mean of 1/(r² + s²) over the stem, for a place in clouds [1/m²]. */
@@ -124,20 +140,16 @@ export class LightningPasses {
     return sum.div(STEM_POINTS - 1)
   }
 
-  /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]. */
+  /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
   #hazeLight(direction: Vec3, end: Float): Float {
     const sum = float(0).toVar() as Variable<Float>
-    If(end.greaterThan(1), () => {
-      loop('flashHaze', STEM_POINTS, index => {
-        const from = this.#stemArray.element(index).xyz.negate().toConst() as Vec3
-        const to = from.add(direction.mul(end)).toConst() as Vec3
-        sum.addAssign(meanInverseSquare(from, to, float(HAZE_SOFTNESS)))
-      })
+    loop('flashHaze', 3, index => {
+      const point = this.#stemArray.element(index.mul(int(2))).toConst() as Vec4
+      const from = point.xyz.negate().toConst() as Vec3
+      const to = from.add(direction.mul(end)).toConst() as Vec3
+      sum.addAssign(meanInverseSquare(from, to, float(HAZE_SOFTNESS)).mul(point.w))
     })
-    return sum
-      .mul(end)
-      .mul(this.haze)
-      .mul(STORED_POWER / (STEM_POINTS * 16 * Math.PI ** 2))
+    return sum.mul(end).mul(STORED_POWER / (3 * 16 * Math.PI ** 2))
   }
 
   /** Adds its light to a picture's colour. To be called inside of a shader function. */
@@ -147,14 +159,25 @@ export class LightningPasses {
     If(this.power.greaterThan(0), () => {
       const { light } = this.#clouds.passes.accumulated
       const opacity = light.sample(here).level(0).a.oneMinus()
-      const glow = this.#glow.sample(here).level(0).toConst() as Vec4
-      const haze = this.#air.sample(here).level(0).x
+      // Marched pixels are one of each block: a tent about them hides which.
+      const texel = vec2(0.5).div(this.#clouds.passes.viewRays.frame.marchedSize).toConst() as Vec2
+      const glow = vec4(0).toVar() as Variable<Vec4>
+      for (const [x, y] of [
+        [-1, -1],
+        [1, -1],
+        [-1, 1],
+        [1, 1]
+      ])
+        glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
       const [r, g, b] = CHANNEL_COLOR
-      const all = glow.rgb
-        .mul(opacity.div(glow.a.max(1e-3)))
-        .add(haze)
-        .mul(this.power.div(STORED_POWER))
-      result.addAssign(all.mul(vec4(r, g, b, 1).rgb))
+      // Green lies between red and blue as λ⁻⁴ does.
+      const green = glow.x
+        .max(1e-7)
+        .pow(1 - GREEN_SHARE)
+        .mul(glow.y.max(1e-7).pow(GREEN_SHARE))
+      const cloud = vec3(glow.x, green, glow.y).mul(opacity.div(glow.z.max(1e-3)))
+      const all = cloud.add(glow.w.div(4)).mul(this.power.div(STORED_POWER))
+      result.addAssign(all.mul(vec3(r, g, b)))
       result.addAssign(this.#bolt.sample(here))
     })
     return result
@@ -177,8 +200,9 @@ export class LightningPasses {
     stem.forEach((point, i) => {
       _row.copy(_offset)
       point.forEach((value, axis) => _row.addScaledVector(axes[axis], value))
-      this.#stem[i].set(_row.x, _row.y, _row.z, 0)
+      this.#stem[i].set(_row.x, _row.y, _row.z, hazeAt(view, point[2]))
     })
+    this.#density.update(_offset)
     this.power.value = power.all
     const { passes } = this.#clouds
     const { x, y } = passes.viewRays.frame.marchedSize.value
@@ -192,5 +216,6 @@ export class LightningPasses {
     this.#target.dispose()
     this.#pass.dispose()
     this.#bolt.dispose()
+    this.#density.dispose()
   }
 }
