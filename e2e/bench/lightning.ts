@@ -14,6 +14,8 @@ export interface LightningCost {
   /** What lightning adds between flashes, and while one is seen. */
   darkMs: number
   flashMs: number
+  /** The largest passes of a frame with a flash. */
+  passes: number[]
 }
 
 /** Times a flash to the ground in front of the camera, under and beside a storm. */
@@ -39,7 +41,13 @@ export async function timeLightning(
     const flash = await bench.time(frames, true)
     if (!storm.isFlashing) throw new Error('lightning: nothing flashes')
     const { ms } = without
-    costs.push({ name: view.name, withoutMs: ms, darkMs: dark.ms - ms, flashMs: flash.ms - ms })
+    costs.push({
+      name: view.name,
+      withoutMs: ms,
+      darkMs: dark.ms - ms,
+      flashMs: flash.ms - ms,
+      passes: flash.passes
+    })
     storm.dispose()
     bench.dispose()
     release(renderer)
@@ -48,5 +56,11 @@ export async function timeLightning(
 }
 
 /** A line of a report. */
-export const lightningLine = ({ name, withoutMs, darkMs, flashMs }: LightningCost): string =>
-  `lightning, ${name.padEnd(8)} dark ${darkMs.toFixed(3)} ms   flash ${flashMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms)`
+export const lightningLine = ({
+  name,
+  withoutMs,
+  darkMs,
+  flashMs,
+  passes
+}: LightningCost): string =>
+  `lightning, ${name.padEnd(8)} dark ${darkMs.toFixed(3)} ms   flash ${flashMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; passes ${passes.map(ms => ms.toFixed(3)).join(' ')})`

@@ -1,6 +1,6 @@
 import { lightning } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
-import { vec3 } from 'three/tsl'
+import { float, vec3 } from 'three/tsl'
 import { meanInverseSquareOf } from '../../../packages/clouds/test/twins/lightning'
 import {
   CHANNEL_COLOR,
@@ -12,7 +12,8 @@ import { OPEN, REACH } from '../../../packages/clouds/src/lightning/StormDensity
 import { seeded } from '../../../packages/clouds/src/lightning/random'
 import { meanInverseSquare } from '../../../packages/clouds/src/lightning/tsl/lineLight'
 import { random } from '../harness/atmosphere'
-import { fog, inFog, middle } from '../harness/cloud-view'
+import { fog, inFog, middle, type CloudView } from '../harness/cloud-view'
+import { cloudExtinction } from '../harness/cloud-extinction'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -40,13 +41,44 @@ const FRAMES = 8
 const EXPOSURE = 0.5
 const SEED = 9
 
-/** Harmonic mean of the depths out of the fog and `OPEN`, over 20,000 directions. */
-function meanWayOut([, , height]: Point, scaled: number): number {
+/** Steps of the fog's height over which its density is summed up. */
+const HEIGHTS = 400
+
+/** Scaled depths of the fog from its base up to even heights: that of its ends is less. */
+async function depthsUpwards({ renderer, node }: CloudView): Promise<number[]> {
+  const { field } = node
+  const [base, thickness] = [fog.baseAltitude!, fog.topAltitude! - fog.baseAltitude!]
+  const altitudes = Array.from(
+    { length: HEIGHTS },
+    (_, i) => base + (thickness * (i + 0.5)) / HEIGHTS
+  )
+  const found = await evaluateOnGpu(
+    renderer,
+    altitudes.map(altitude => [altitude]),
+    ({ x: altitude }) => {
+      const { up, height } = field.view
+      const offset = up.mul(altitude.sub(height))
+      return cloudExtinction(field, { offset, altitude, up, distance: float(3000) }, false)
+    }
+  )
+  let sum = 0
+  const scale = (field.depthScale.value * thickness) / HEIGHTS
+  return [0, ...altitudes.map((_, i) => (sum += found[4 * i] * scale))]
+}
+
+/** Harmonic mean of the scaled depths out of the fog and `OPEN`, over 20,000 directions. */
+function meanWayOut(height: number, depths: readonly number[]): number {
+  const thickness = fog.topAltitude! - fog.baseAltitude!
+  const depthAt = (up: number): number => {
+    const at = Math.min(Math.max((up - fog.baseAltitude!) / thickness, 0), 1) * HEIGHTS
+    const first = Math.min(Math.floor(at), HEIGHTS - 1)
+    return depths[first] + (at - first) * (depths[first + 1] - depths[first])
+  }
   let sum = 0
   for (let i = 0; i < 20_000; i++) {
     const z = -1 + (2 * (i + 0.5)) / 20_000
-    const boundary = z > 0 ? fog.topAltitude! - height : height - fog.baseAltitude!
-    sum += 1 / (scaled * Math.min(boundary / Math.abs(z), REACH) + OPEN)
+    const depth = Math.abs(depthAt(height + z * REACH) - depthAt(height)) / Math.abs(z)
+    sum += 1 / (depth + OPEN)
   }
   return 20_000 / sum
 }
@@ -95,7 +127,7 @@ gpuTest('fog glows about a flash as in float64, and not before or after it', t =
     const seen = 1 / scaled
     const way = [-at.x - source[0], at.z + seen - source[1], camera.position.y - source[2]]
     const depth = scaled * Math.hypot(...way)
-    const out = meanWayOut(source, scaled) / (depth + OPEN)
+    const out = meanWayOut(source[2], await depthsUpwards(view)) / (depth + OPEN)
     const expected = (((r + g + b) / 3) * power * sum * out) / (4 * Math.PI ** 2)
     const added = middle(lit) - middle(before)
     t.note(`${added.toExponential(3)} for ${expected.toExponential(3)}`)

@@ -12,7 +12,19 @@ import {
   Scene,
   type Vector3
 } from 'three'
-import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
+import {
+  bool,
+  Fn,
+  Discard,
+  If,
+  attribute,
+  screenUV,
+  texture,
+  varying,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
@@ -115,6 +127,7 @@ export class BoltPass {
     /** Place in pixels along and across the piece, its length in pixels, and the distance [m]. */
     const place = varying(vec4(0)) as unknown as Vec4 & { assign: (v: unknown) => void }
     const brightness = varying(vec2(0)) as unknown as Vec2 & { assign: (v: unknown) => void }
+    const air = varying(vec3(1)) as unknown as Vec3 & { assign: (v: unknown) => void }
     const material = new NodeMaterial()
     Object.assign(material, {
       name: 'Welkin.LightningChannel',
@@ -133,8 +146,8 @@ export class BoltPass {
     })
     material.vertexNode = Fn(() => {
       const [a, b] = [clip(from.xyz), clip(to.xyz)]
-      const [start, end] = [pixels(a), pixels(b)]
-      const line = end.sub(start).toConst() as Vec2
+      const [start, stop] = [pixels(a), pixels(b)]
+      const line = stop.sub(start).toConst() as Vec2
       const length = line.length().toConst() as Float
       const along = length
         .greaterThan(1e-3)
@@ -147,6 +160,10 @@ export class BoltPass {
       const local = corner.x.lessThan(0.5).select(from.xyz, to.xyz).add(this.#place)
       place.assign(vec4(at, across, length, local.length()))
       brightness.assign(vec2(from.w, to.w))
+      const end = corner.x.lessThan(0.5).select(from.xyz, to.xyz)
+      const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
+      const displacement = toView.mul(end).add(this.#placeView).toConst()
+      air.assign(aerialPerspectiveTo(field.view, displacement, layers).transmittance)
       // In front of the camera, or else nowhere.
       const isSeen = a.w.min(b.w).greaterThan(0)
       return isSeen.select(vec4(pixel.mul(2).div(frame.size), 0.5, 1), vec4(2, 2, 2, 1))
@@ -157,7 +174,8 @@ export class BoltPass {
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
       const ray = viewRayAt(viewRays, here)
       const distance = place.w.toConst() as Float
-      If(viewRayEnd(viewRays, here, ray).lessThan(distance.mul(0.999)), () => {
+      // The channel is above the ground.
+      If(viewRayEnd(viewRays, here, ray, bool(true)).lessThan(distance.mul(0.999)), () => {
         Discard()
       })
       const distances = seen.distances.sample(here).level(0)
@@ -169,12 +187,6 @@ export class BoltPass {
         .sub(LEAST_PASSING)
         .max(0)
         .div(1 - LEAST_PASSING)
-      const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-      const { transmittance } = aerialPerspectiveTo(
-        field.view,
-        ray.directionView.mul(distance).toConst(),
-        layers
-      )
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
       const perMetre = brightness.y.greaterThan(0.5).select(this.#branchLight, this.#stemLight)
       const luminance = square
@@ -185,7 +197,7 @@ export class BoltPass {
         .mul(passes)
         .div(width)
       return vec4(
-        transmittance
+        air
           .mul(vec3(...CHANNEL_COLOR))
           .mul(luminance)
           .min(GREATEST),

@@ -7,7 +7,10 @@ import {
 import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { componentAt } from '../density/tsl/componentAt'
 import type { CloudsNode } from '../march/CloudsNode'
+import { FAR_AWAY } from '../march/tsl/layerBoundaries'
+import { POINTS } from '../march/tsl/seenPoints'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
   loop,
@@ -89,8 +92,7 @@ export class LightningPasses {
   }
 
   /**
-   * Light of one pixel of each block, for `STORED_POWER`: of clouds, red and blue, times their opacity; that opacity; of the air. Clouds
-   * are seen in two places, the means of the nearer and of the farther half of what stands for them.
+   * Light of one pixel of each block, for `STORED_POWER`: of clouds, red and blue, times their opacity; that opacity; of the air.
    */
   #light(): Vec4 {
     const { passes, field } = this.#clouds
@@ -106,18 +108,29 @@ export class LightningPasses {
       const light = vec4(0, 0, opacity, 0).toVar() as Variable<Vec4>
       const hazeEnd = end.toVar() as Variable<Float>
       If(opacity.greaterThan(1e-3), () => {
-        const weighted = shares.mul(distances).toConst() as Vec4
-        const halves = vec2(shares.x.add(shares.y), shares.z.add(shares.w)).toConst() as Vec2
-        const radiance = float(0).toVar() as Variable<Float>
-        for (const half of ['x', 'y'] as const) {
-          const sum = half === 'x' ? weighted.x.add(weighted.y) : weighted.z.add(weighted.w)
-          If(halves[half].greaterThan(0), () => {
-            const place = ray.direction.mul(sum.div(halves[half].max(1e-4))).toConst() as Vec3
-            radiance.addAssign(this.#lineLight(place).mul(halves[half]))
-          })
+        const mean = shares.dot(distances).div(opacity).toConst() as Float
+        // Clouds before each other are lit apart: what comes out is known at the nearest and the farthest point.
+        const far = float(0).toVar() as Variable<Float>
+        const near = float(FAR_AWAY).toVar() as Variable<Float>
+        for (const i of ['x', 'y', 'z', 'w'] as const) {
+          const isSeen = shares[i].greaterThan(0)
+          far.assign(isSeen.select(far.max(distances[i]), far))
+          near.assign(isSeen.select(near.min(distances[i]), near))
         }
-        const mean = weighted.dot(vec4(1)).div(opacity).toConst() as Float
-        radiance.mulAssign(this.#density.lightOut(ray.direction.mul(mean).toConst()))
+        const [nearOut, farOut] = [near, far].map(at =>
+          this.#density.lightOut(ray.direction.mul(at).toConst()).toConst()
+        )
+        const radiance = float(0).toVar() as Variable<Float>
+        loop('flashPoint', POINTS, point => {
+          const own = componentAt(float(point))
+          const share = shares.dot(own).toConst() as Float
+          If(share.greaterThan(0), () => {
+            const distance = distances.dot(own).toConst() as Float
+            const between = distance.sub(near).div(far.sub(near).max(1))
+            const out = mix(nearOut, farOut, between).mul(share)
+            radiance.addAssign(this.#lineLight(ray.direction.mul(distance).toConst()).mul(out))
+          })
+        })
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
         const lit = transmittance.mul(radiance).mul(STORED_POWER / (4 * Math.PI ** 2))

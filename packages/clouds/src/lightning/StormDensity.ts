@@ -158,7 +158,7 @@ export class StormDensity {
     const way = place.sub(this.#source).toConst() as Vec3
     const sum = float(0).toVar() as Variable<Float>
     loop('wayStep', samples, index => {
-      const { part, slope } = partAt(float(index).add(0.5).div(samples).toConst() as Float)
+      const { part, slope } = partAt(float(index).add(0.5).div(samples).toConst())
       sum.addAssign(this.#densityAt(this.#source.add(way.mul(part)).toConst()).mul(slope))
     })
     return sum.mul(way.length()).div(samples)

@@ -18,7 +18,8 @@ export const meanInverseSquare = /*#__PURE__*/ Fn(
     const foot = start.dot(line).div(length).negate().toConst() as Float
     const aside = start.add(line.mul(foot.div(length))).toConst() as Vec3
     const b = aside.dot(aside).add(softness.mul(softness)).sqrt().toConst() as Float
-    const angle = atan(length.sub(foot).div(b)).add(atan(foot.div(b)))
+    // The sum of both, by one arctangent.
+    const angle = atan(b.mul(length), b.mul(b).sub(foot.mul(length.sub(foot)))) as unknown as Float
     return angle.div(b.mul(length))
   },
   layout('meanInverseSquare', 'float', { start: 'vec3', end: 'vec3', softness: 'float' })
