@@ -127,7 +127,22 @@ export class BoltPass {
     /** Place in pixels along and across the piece, its length in pixels, and the distance [m]. */
     const place = varying(vec4(0)) as unknown as Vec4 & { assign: (v: unknown) => void }
     const brightness = varying(vec2(0)) as unknown as Vec2 & { assign: (v: unknown) => void }
+    /** Light that air and clouds let through. */
     const air = varying(vec3(1)) as unknown as Vec3 & { assign: (v: unknown) => void }
+    /** Share of light that clouds let through from a distance, at a place in pixels from the middle. */
+    const passingAt = (pixel: Vec2, distance: Float): Float => {
+      const at = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5).clamp(0, 1).toConst() as Vec2
+      const distances = seen.distances.sample(at).level(0)
+      const before = vec4(distance).sub(distances).div(distance.mul(HIDING)).add(0.5).clamp(0, 1)
+      return seen.shares
+        .sample(at)
+        .level(0)
+        .dot(before)
+        .oneMinus()
+        .sub(LEAST_PASSING)
+        .max(0)
+        .div(1 - LEAST_PASSING)
+    }
     const material = new NodeMaterial()
     Object.assign(material, {
       name: 'Welkin.LightningChannel',
@@ -157,15 +172,20 @@ export class BoltPass {
       const at = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
       const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
-      const local = corner.x.lessThan(0.5).select(from.xyz, to.xyz).add(this.#place)
-      place.assign(vec4(at, across, length, local.length()))
+      const [near, far] = [from, to].map(p => p.xyz.add(this.#place).length().toConst() as Float)
+      const passing = vec2(passingAt(start, near), passingAt(stop, far)).toConst() as Vec2
+      const isFirst = corner.x.lessThan(0.5)
+      place.assign(vec4(at, across, length, isFirst.select(near, far)))
       brightness.assign(vec2(from.w, to.w))
-      const end = corner.x.lessThan(0.5).select(from.xyz, to.xyz)
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-      const displacement = toView.mul(end).add(this.#placeView).toConst()
-      air.assign(aerialPerspectiveTo(field.view, displacement, layers).transmittance)
-      // In front of the camera, or else nowhere.
-      const isSeen = a.w.min(b.w).greaterThan(0)
+      const displacement = toView
+        .mul(isFirst.select(from.xyz, to.xyz))
+        .add(this.#placeView)
+        .toConst()
+      const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
+      air.assign(transmittance.mul(isFirst.select(passing.x, passing.y)))
+      // In front of the camera and not in clouds, or else nowhere.
+      const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
       return isSeen.select(vec4(pixel.mul(2).div(frame.size), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
@@ -178,15 +198,6 @@ export class BoltPass {
       If(viewRayEnd(viewRays, here, ray, bool(true)).lessThan(distance.mul(0.999)), () => {
         Discard()
       })
-      const distances = seen.distances.sample(here).level(0)
-      const shares = seen.shares.sample(here).level(0)
-      const before = vec4(distance).sub(distances).div(distance.mul(HIDING)).add(0.5).clamp(0, 1)
-      const passes = shares
-        .dot(before)
-        .oneMinus()
-        .sub(LEAST_PASSING)
-        .max(0)
-        .div(1 - LEAST_PASSING)
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
       const perMetre = brightness.y.greaterThan(0.5).select(this.#branchLight, this.#stemLight)
       const luminance = square
@@ -194,7 +205,6 @@ export class BoltPass {
         .exp()
         .mul(perMetre)
         .mul(brightness.x)
-        .mul(passes)
         .div(width)
       return vec4(
         air

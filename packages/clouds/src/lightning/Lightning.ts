@@ -293,7 +293,10 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
     let place: Vector3 | undefined
     if (at !== undefined) place = view.atmosphere.space.position(at, new Vector3())
     else {
-      if (thicknessOf(storm) < SHALLOWEST) this.#asked.length = 0
+      if (thicknessOf(storm) < SHALLOWEST) {
+        this.#asked.length = 0
+        return
+      }
       const { at: before, time } = this.#looked
       if (before.distanceTo(_viewpoint) > STALE_MOVE || Math.abs(now - time) > STALE_TIME) {
         before.copy(_viewpoint)

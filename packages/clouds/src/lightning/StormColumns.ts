@@ -100,7 +100,8 @@ export class StormColumns {
             .setLength(radius)
           columns.push({ place, distance: 1000 * Math.hypot(e, n), depth })
         }
-        this.columns = columns
+        // The same order on both backends, for the same choice.
+        this.columns = columns.sort((a, b) => a.place.x - b.place.x || a.place.y - b.place.y)
       })
       .finally(() => {
         this.#isReading = false

@@ -97,7 +97,7 @@ export function lightningChannel(
         isBranch: order > 0
       })
     }
-    if (order === 3) return
+    if (order === 2) return
     const length = distance(line[0], line[line.length - 1])
     const count = order === 0 ? 9 + Math.floor(5 * random()) : Math.floor(1 + 3 * random())
     for (let i = 0; i < count; i++) {
