@@ -11,7 +11,7 @@ export interface LightningCost {
   name: string
   /** Frame with clouds alone. */
   withoutMs: number
-  /** What lightning adds between flashes, and while one is seen. */
+  /** Time that lightning adds between flashes, and while one is seen. */
   darkMs: number
   flashMs: number
   /** The largest passes of a frame with a flash. */

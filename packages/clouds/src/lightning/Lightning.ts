@@ -7,85 +7,35 @@ import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { Vec3 } from '../tsl-types'
-import { CHANNEL_COLOR, lightningChannel, type PlacedChannel } from './channel'
-import { flashCurve, lightBetween, type FlashCurve, type FlashKind } from './flashCurve'
+import { CHANNEL_COLOR, lightningChannel } from './channel'
+import { flashCurve, lightBetween } from './flashCurve'
 import { seeded, type Random } from './random'
 import { FlashLimit } from './FlashLimit'
+import { eventOf, type Flash } from './Flash'
+import type {
+  LightningEvent,
+  LightningEventMap,
+  LightningOptions,
+  StrikeOptions
+} from './LightningOptions'
 import { LightningPasses } from './LightningPasses'
-import { COLUMNS_REACH, StormColumns, type Column } from './StormColumns'
+import { StormColumns } from './StormColumns'
 
 /** Thickness of the shallowest storm [m]. */
 const SHALLOWEST = 3000
-/** Optical depth over the greatest around, of columns that charge. */
-const STRONG = 0.5
-/** Distance of flashes from the camera, at least [m]. */
-const NEAREST = 1000
 /** Time [s] and move of the camera [m] after which columns are looked for again. */
 const STALE_TIME = 30
 const STALE_MOVE = 4000
-/** Speed of sound at 15 °C [m/s]. */
-const SPEED_OF_SOUND = 340
 /** Distance from the channel to clouds whose brightness is limited [m]. */
 const LIMITED_DISTANCE = 2000
 /** Longest exposure of a frame [s]. */
 const LONGEST_FRAME = 0.1
-
-/** Options of {@link lightning}. */
-export interface LightningOptions {
-  /** See {@link Lightning.rate}; by default 0: only on call. */
-  rate?: number
-  /** See {@link Lightning.groundShare}; by default 0.3. */
-  groundShare?: number
-  /** See {@link Lightning.enabled}; by default true. */
-  enabled?: boolean
-  /** See {@link Lightning.limit}; by default 0.3. */
-  limit?: number | null
-  /** See {@link Lightning.exposure}; by default null. */
-  exposure?: number | null
-  /** See {@link Lightning.time}; by default null. */
-  time?: number | null
-  /** Flashes are the same for the same seed, a whole number; by default 1. */
-  seed?: number
-}
-
-/** What a flash is to be. */
-export interface StrikeOptions {
-  /** To the ground or in the cloud; left out, by `groundShare`. */
-  kind?: FlashKind
-  /** Place, in world space: its column is struck, whatever is there. Left out, a strong column around the camera. */
-  at?: Vector3
-}
-
-/** A flash that begins, or its thunder that arrives. */
-export interface LightningEvent {
-  kind: FlashKind
-  /** Distance of its nearest part from the camera [m]. */
-  distance: number
-  /** Time from the flash to its thunder [s]. */
-  delay: number
-  /** Time over which its thunder arrives: the way of sound to the farthest part, less that to the nearest [s]. */
-  duration: number
-}
-
-/** Events of {@link Lightning}. */
-export interface LightningEventMap {
-  strike: LightningEvent
-  thunder: LightningEvent
-}
 
 const SETTINGS = ['rate', 'groundShare', 'enabled', 'limit', 'exposure', 'time'] as const
 
 const _viewpoint = new Vector3()
 const _point = new Vector3()
 const _toView = new Matrix3()
-
-/** A flash under way. */
-interface Flash extends PlacedChannel {
-  readonly kind: FlashKind
-  readonly curve: FlashCurve
-  /** Time when it began [s]. */
-  readonly start: number
-}
 
 /**
  * Lightning in the storms of clouds: flashes in and under strong columns of the deepest layer, if that is at least 3 km thick.
@@ -304,9 +254,8 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
         this.#columns.columns = null
         this.#columns.look(renderer, view, [...layers].indexOf(storm))
       }
-      const { columns } = this.#columns
-      if (columns === null) return
-      place = this.#choose(columns)
+      if (this.#columns.columns === null) return
+      place = this.#columns.choose(this.#random)
     }
     this.#asked.shift()
     if (place === undefined) return
@@ -331,14 +280,6 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
     const event = eventOf(flash, _viewpoint)
     this.#thunder.push({ time: now + event.delay, event })
     this.dispatchEvent({ type: 'strike', ...event })
-  }
-
-  /** One of the strong columns; undefined if there is none. */
-  #choose(columns: readonly Column[]): Vector3 | undefined {
-    const near = columns.filter(({ distance }) => distance > NEAREST && distance < COLUMNS_REACH)
-    const most = near.reduce((depth, column) => Math.max(depth, column.depth), 0)
-    const strong = near.filter(({ depth }) => depth >= STRONG * most)
-    return strong[Math.floor(this.#random() * strong.length)]?.place
   }
 
   #soundThunder(now: number): void {
@@ -400,24 +341,6 @@ const thicknessOf = ({
 }: {
   parameters: { baseAltitude: number; topAltitude: number }
 }): number => parameters.topAltitude - parameters.baseAltitude
-
-/** What is heard of a flash. */
-function eventOf({ kind, pieces, place, axes }: Flash, viewpoint: Vector3): LightningEvent {
-  let [nearest, farthest] = [Infinity, 0]
-  for (const { from } of pieces) {
-    _point.copy(place).sub(viewpoint)
-    from.forEach((value, axis) => _point.addScaledVector(axes[axis], value))
-    const distance = _point.length()
-    nearest = Math.min(nearest, distance)
-    farthest = Math.max(farthest, distance)
-  }
-  return {
-    kind,
-    distance: nearest,
-    delay: nearest / SPEED_OF_SOUND,
-    duration: (farthest - nearest) / SPEED_OF_SOUND
-  }
-}
 
 /** Lightning in the storms of clouds: see {@link Lightning}. */
 export const lightning = (clouds: CloudsNode, options?: LightningOptions): Lightning =>

@@ -33,7 +33,7 @@ import { meanInverseSquare } from './tsl/lineLight'
  * channel leaves its cloud (*Storm at night*).
  */
 const CLOUD_SOFTNESS = 250
-/** The same of haze: a line is as soft as its picture's pixels are wide [m]. */
+/** Softness of light in haze: a line is as soft as its picture's pixels are wide [m]. */
 const HAZE_SOFTNESS = 25
 /** Longest way through lit haze [m]. */
 const LONGEST_HAZE = 60_000
@@ -57,7 +57,7 @@ function hazeAt({ atmosphere }: AtmosphereView, altitude: number): number {
   )
 }
 
-/** What is drawn of a flash: its light in clouds and in haze, and its channel. */
+/** Passes that draw a flash: its light in clouds and in haze, and its channel. */
 export class LightningPasses {
   /** Luminous power, times `luminanceScale` [lm]. */
   readonly power = number()

@@ -9,17 +9,22 @@ import { weatherBackground } from '../density/tsl/weatherBackground'
 import { subpointOffset, type CloudSample } from '../density/tsl/sample'
 import { loop, type Float, type Int, type Variable, type Vec2, type Vec3 } from '../tsl-types'
 import { vector3 } from '../uniforms'
+import type { Random } from './random'
 import type { AtmosphereView } from '@welkin/atmosphere'
 
 /** Columns along an edge: rows of 512 bytes, which WebGPU reads back. */
 const SIZE = 64
 /** Half width of the square about the camera's subpoint in which columns are looked for [m]. */
-export const COLUMNS_REACH = 20_000
+const COLUMNS_REACH = 20_000
+/** Optical depth over the greatest around, of columns that charge. */
+const STRONG = 0.5
+/** Distance of flashes from the camera, at least [m]. */
+const NEAREST = 1000
 /** Samples of a column. */
 const SAMPLES = 8
 
 /** A column of cloud. */
-export interface Column {
+interface Column {
   /** Its place on the sphere of altitude 0, from the planet's centre, in the mapped space [m]. */
   readonly place: Vector3
   /** Distance over the ground from the camera that it was looked for from [m]. */
@@ -108,6 +113,17 @@ export class StormColumns {
       })
   }
 
+  /** Place of one of the strong columns; undefined if there is none. */
+  choose(random: Random): Vector3 | undefined {
+    const near = (this.columns ?? []).filter(
+      ({ distance }) => distance > NEAREST && distance < COLUMNS_REACH
+    )
+    const most = near.reduce((depth, column) => Math.max(depth, column.depth), 0)
+    const strong = near.filter(({ depth }) => depth >= STRONG * most)
+    return strong[Math.floor(random() * strong.length)]?.place
+  }
+
+  /** Frees its texture. */
   dispose(): void {
     this.#target.dispose()
     this.#pass.dispose()

@@ -28,7 +28,7 @@ const TILES = [8, 4] as const
 export const REACH = 8000
 /** Samples of a way through it: fewer miss clouds between. */
 const SAMPLES = 8
-/** The same of a way out of it, which is longer. */
+/** Samples of a way out of it, which is longer. */
 const SAMPLES_OUT = 24
 /** Directions in which light gets out, over which the ways out are averaged. */
 export const DIRECTIONS = 24
@@ -56,7 +56,7 @@ export class StormDensity {
   readonly #axes = [vector3(), vector3(), vector3()] as const
   readonly #base = number()
   readonly #thickness = number(1)
-  /** Where light starts from, in the flash's frame [m]. */
+  /** Start of light, in the flash's frame [m]. */
   readonly #source = vector3()
 
   constructor(readonly field: CloudField) {

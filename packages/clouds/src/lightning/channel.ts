@@ -28,7 +28,7 @@ export const CHANNEL_COLOR = [0.747, 0.99, 1.844] as const
 
 /** A flash as it stands in the planet's mapped space. */
 export interface PlacedChannel extends Channel {
-  /** Where it meets the ground, or would, from the planet's centre [m]. */
+  /** Foot on the ground, real or below a flash in the cloud, from the planet's centre [m]. */
   readonly place: Vector3
   /** East, north and up there. */
   readonly axes: readonly [Vector3, Vector3, Vector3]

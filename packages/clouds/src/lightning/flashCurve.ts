@@ -19,14 +19,14 @@ export interface FlashCurve {
   readonly duration: number
 }
 
-/** Where a flash goes: to the ground, or from charge to charge in the cloud. */
+/** Goal of a flash: to the ground, or from charge to charge in the cloud. */
 export type FlashKind = 'ground' | 'cloud'
 
 /**
  * Time constants of a stroke's light: it rises to its peak in 84 µs, and is 0.4 ms wide seen through its cloud.
  *
- * @see Guo & Krider 1982, "The optical and radiation field signatures produced by lightning return strokes", J. Geophys. Res. 87, 8913
- * @see Christian & Goodman 1987, "Optical observations of lightning from a high-altitude airplane", J. Atmos. Oceanic Technol. 4, 701
+ * @see Guo & Krider 1982, "The optical and radiation field signatures produced by lightning return strokes", J. Geophys. Res. 87, pp. 8913–8922
+ * @see Christian & Goodman 1987, "Optical observations of lightning from a high-altitude airplane", J. Atmos. Oceanic Technol. 4, pp. 701–711
  */
 const RISE = 30e-6
 const FALL = 400e-6

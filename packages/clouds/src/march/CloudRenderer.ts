@@ -133,7 +133,7 @@ export class CloudRenderer {
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
-  /** What the pixels that this frame has marched see, not lit. */
+  /** Clouds of the pixels that this frame has marched, not lit. */
   readonly seen: MarchedTargets
   /** Light and distances of the pixels that this frame has marched. */
   readonly marched = texturesOf(this.#shadedTarget)

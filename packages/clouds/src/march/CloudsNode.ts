@@ -53,9 +53,6 @@ export interface CloudsOptions {
   precipitation?: PrecipitationShafts
 }
 
-/** What changes the colour of the picture with its clouds. */
-export type PictureLayer = Pick<ScreenShadows, 'prepare' | 'update' | 'dim'>
-
 const SETTINGS = ['quality', 'time', 'nightIlluminance', 'ambient', 'accumulates'] as const
 
 /**
@@ -107,7 +104,7 @@ export class CloudsNode extends AtmosphereNode {
   readonly passes: CloudRenderer
   readonly #exposure = uniform(1)
   /** Layers of the picture with the clouds, drawn by this node: shadows in the air of `cloudAirShadow`, and `lightning`. */
-  readonly screens = new Set<PictureLayer>()
+  readonly screens = new Set<Pick<ScreenShadows, 'prepare' | 'update' | 'dim'>>()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
   #quality: CloudQuality = cloudQualities.high

@@ -7,8 +7,8 @@ import { layout, type Float, type Vec3 } from '../../tsl-types'
  * With b² = h² + s², h the distance to the line's axis: [atan((L − a)/b) + atan(a/b)] / (b L), a the foot's place on a line of length L. It
  * is both the light of a line at a place, and that of a place in the air along a ray. Twin: test/twins/lightning.ts
  *
- * @param start - From the place to the line's begin [m].
- * @param end - From the place to its end [m].
+ * @param start - Displacement from the place to the line's begin [m].
+ * @param end - Displacement from the place to its end [m].
  * @param softness - s > 0 [m].
  */
 export const meanInverseSquare = /*#__PURE__*/ Fn(
