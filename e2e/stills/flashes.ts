@@ -1,7 +1,5 @@
-import type { Still } from './scenes'
-
 /** Flashes of lightning by night. */
-export const flashes: Still[] = [
+export const flashes = [
   {
     name: 'lightning-ground',
     about: 'a flash to the ground at night: a forked channel, the cloud above glows from inside',
@@ -34,4 +32,4 @@ export const flashes: Still[] = [
     view: { azimuth: 115, pitch: -4 },
     land: 'planet'
   }
-]
+] as const
