@@ -4,6 +4,7 @@ import { HeadlessDevice } from '../headless/device'
 import { airLine, PATHS, timeAir, timeBake, timeFirstFrame } from './air'
 import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { timeEnvironment } from './environment'
+import { lightningLine, timeLightning } from './lightning'
 import { measureCloudMemory } from './memory'
 import { rainLine, timeRain } from './rain'
 import { measureShaders } from './shaders'
@@ -72,6 +73,11 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     const rain = await timeRain(device, size, frames)
     for (const cost of rain) log(rainLine(cost))
     return { rain }
+  },
+  async lightning() {
+    const costs = await timeLightning(device, size, frames)
+    for (const cost of costs) log(lightningLine(cost))
+    return { lightning: costs }
   },
   async valley() {
     const valley = await timeValley(device, size, frames)

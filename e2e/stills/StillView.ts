@@ -28,16 +28,18 @@ import {
   clouds,
   DropletLightTable,
   cloudShadow,
+  lightning,
   cloudSkyLight,
   precipitationShafts,
   type CloudLayers,
   type CloudQuality,
   type CloudQualityName,
   type CloudsNode,
+  type Lightning,
   type PrecipitationShafts
 } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
-import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
+import { MathUtils, PerspectiveCamera, RenderTarget, Scene, Vector3 } from 'three'
 import { pass, shadow } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { Landscape } from './landscape'
@@ -100,6 +102,24 @@ function fallOf(layers: CloudLayers): PrecipitationShafts | undefined {
     : undefined
 }
 
+/** Time over which a picture gathers a flash's light [s]. */
+const EXPOSURE = 0.5
+
+/** A flash that stays in the picture: time stands still at its end. */
+function flashOf(
+  node: CloudsNode,
+  { kind, azimuth, distance }: NonNullable<Still['lightning']>
+): Lightning {
+  const storm = lightning(node, { limit: null, exposure: EXPOSURE, time: TIME })
+  const angle = MathUtils.degToRad(azimuth)
+  const at = new Vector3(Math.sin(angle), 0, -Math.cos(angle)).multiplyScalar(distance)
+  storm.addEventListener('strike', () => {
+    storm.time = TIME + EXPOSURE
+  })
+  storm.strike({ kind, at })
+  return storm
+}
+
 /** A still's scene, drawn as an app would draw it: a pass, the air, the clouds. */
 export class StillView {
   readonly #renderer: WebGPURenderer
@@ -110,6 +130,7 @@ export class StillView {
   readonly #landscape: Landscape | undefined
   readonly #shafts: LightShafts | undefined
   readonly #clouds: CloudsNode | undefined
+  readonly #lightning: Lightning | undefined
   readonly #exposure: AutoExposureNode
 
   constructor(
@@ -172,6 +193,10 @@ export class StillView {
       shafts?.add(cloudAirShadow(node))
       node.field.bake(renderer)
       node.time = TIME
+      if (still.lightning !== undefined) {
+        this.#lightning = flashOf(node, still.lightning)
+        scene.add(this.#lightning.light)
+      }
       this.#clouds = node
       picture = node
     }
@@ -204,6 +229,7 @@ export class StillView {
   dispose(): void {
     this.#pipeline.dispose()
     this.#exposure.dispose()
+    this.#lightning?.dispose()
     this.#clouds?.dispose()
     this.#landscape?.dispose()
     this.#shafts?.dispose()

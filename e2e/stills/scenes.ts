@@ -2,6 +2,7 @@ import type { CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 import { falling } from './falling'
+import { flashes } from './flashes'
 import { streets, type StreetStill } from './streets'
 
 /** A still: what is in it, where the sun stands, and where the camera looks. */
@@ -15,6 +16,8 @@ export interface Still {
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
   fog?: { density: number; falloff: number; dropletRadius: number }
+  /** A flash whose light the picture gathers: its kind, azimuth [°] and distance over the ground [m]. */
+  lightning?: { kind: 'ground' | 'cloud'; azimuth: number; distance: number }
   /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */
   rain?: number
   /** Light shafts, of hills and clouds. */
@@ -448,6 +451,7 @@ export const stills: readonly AnyStill[] = [
     view: { azimuth: 150, pitch: 18 },
     land: 'hills'
   },
+  ...flashes,
   {
     name: 'mars-noon',
     about: 'butterscotch sky over red hills',

@@ -20,6 +20,13 @@ export {
   precipitationShafts,
   type PrecipitationShaftsOptions
 } from './precipitation/PrecipitationShafts'
+export { Lightning, lightning } from './lightning/Lightning'
+export type {
+  LightningEvent,
+  LightningEventMap,
+  LightningOptions,
+  StrikeOptions
+} from './lightning/LightningOptions'
 export { CloudVelocityNode, cloudVelocity } from './temporal/CloudVelocityNode'
 export { CloudsDebugNode, cloudsDebug, type CloudsDebug } from './march/CloudsDebugNode'
 export { cloudQualities, type CloudQuality, type CloudQualityName } from './march/quality'

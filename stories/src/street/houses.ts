@@ -15,7 +15,7 @@ import { randomSequence } from '../random'
 const LAMP = 900
 const LAMP_HEIGHT = 5.2
 /** Luminance of a lit window, and of a lamp's glass [cd/m²]. */
-const WINDOW = 30
+const WINDOW = 6
 const GLASS = 2500
 
 /** A street between two rows of houses, towards −Z, and the lamps along it. */

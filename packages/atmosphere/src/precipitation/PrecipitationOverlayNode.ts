@@ -10,6 +10,12 @@ import { drawnSize } from '../view/renderers'
 import type { Precipitation } from './Precipitation'
 
 /**
+ * Share of what particles hide that passes on through them, as the forward lobe of flakes has it, at least: lights that are measured at the
+ * camera know nothing of walls and ground that lamps light. 0: near flakes are black before lit snow (*Rain and snow in a street*).
+ */
+const FORWARD = 0.65
+
+/**
  * Lays rain and snow over a picture that has its air and clouds already.
  *
  * ```ts
@@ -65,7 +71,8 @@ export class PrecipitationOverlayNode extends Node<'vec4'> {
     return Fn((): Vec4 => {
       const color = vec4(this.colorNode as Vec4).toConst() as Vec4
       const { rgb, a } = sampleLevel0(this.#texture, uv()).toConst() as Vec4
-      return vec4(color.rgb.mul(a.oneMinus()).add(rgb), color.a)
+      const light = rgb.max(color.rgb.mul(a).mul(FORWARD))
+      return vec4(color.rgb.mul(a.oneMinus()).add(light), color.a)
     })()
   }
 

@@ -133,6 +133,8 @@ export class CloudRenderer {
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
+  /** Clouds of the pixels that this frame has marched, not lit. */
+  readonly seen: MarchedTargets
   /** Light and distances of the pixels that this frame has marched. */
   readonly marched = texturesOf(this.#shadedTarget)
   /** Accumulated light and distances of the latest frame: the nodes stay, their textures change. */
@@ -147,10 +149,8 @@ export class CloudRenderer {
     this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
-    this.#shade = new FragmentPass(
-      'Welkin.CloudsShade',
-      shadePixels(scene, { distances, shares, ray })
-    )
+    this.seen = { distances, shares, ray }
+    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen))
     const { marched: shaded } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
     const cells = texturesOf(this.#cellsTarget)

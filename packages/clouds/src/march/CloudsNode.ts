@@ -103,8 +103,8 @@ export class CloudsNode extends AtmosphereNode {
   /** Render targets and passes of the camera's clouds. */
   readonly passes: CloudRenderer
   readonly #exposure = uniform(1)
-  /** Shadows in the air of the picture with the clouds, drawn by this node: those of `cloudAirShadow`. */
-  readonly screens = new Set<ScreenShadows>()
+  /** Layers of the picture with the clouds, drawn by this node: shadows in the air of `cloudAirShadow`, and `lightning`. */
+  readonly screens = new Set<Pick<ScreenShadows, 'prepare' | 'update' | 'dim'>>()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
   #quality: CloudQuality = cloudQualities.high

@@ -1,0 +1,265 @@
+import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
+import {
+  AddEquation,
+  BufferGeometry,
+  CustomBlending,
+  DoubleSide,
+  Float32BufferAttribute,
+  MaxEquation,
+  Matrix3,
+  Mesh,
+  OneFactor,
+  Scene,
+  type Vector3
+} from 'three'
+import {
+  bool,
+  Fn,
+  Discard,
+  If,
+  attribute,
+  screenUV,
+  texture,
+  varying,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
+import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
+import type { CloudsNode } from '../march/CloudsNode'
+import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
+import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { matrix3, matrix4, number, vector3 } from '../uniforms'
+import { CHANNEL_COLOR, type PlacedChannel } from './channel'
+
+/** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
+const WIDTH = 0.8
+/** Half width of what is drawn of it [pixels]. */
+const HALF_WIDTH = 3 * WIDTH
+/** Greatest luminance that half floats keep. */
+const GREATEST = 6e4
+/** Part of the distance over which clouds hide a channel. */
+const HIDING = 0.02
+/** Share of its light that clouds must let through: less is none, or it shines through opaque ones. */
+const LEAST_PASSING = 0.01
+
+const _toView = new Matrix3()
+
+/** Quads of all pieces: where each begins and ends, and which corner a vertex is. */
+function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
+  const from: number[] = []
+  const to: number[] = []
+  const corner: number[] = []
+  const index: number[] = []
+  for (const [i, piece] of pieces.entries()) {
+    for (const [end, side] of [
+      [0, -1],
+      [0, 1],
+      [1, -1],
+      [1, 1]
+    ]) {
+      from.push(...piece.from, piece.brightness)
+      to.push(...piece.to, piece.isBranch ? 1 : 0)
+      corner.push(end, side)
+    }
+    index.push(...[0, 1, 2, 2, 1, 3].map(k => 4 * i + k))
+  }
+  const geometry = new BufferGeometry()
+  geometry.setAttribute(
+    'position',
+    new Float32BufferAttribute(
+      from.filter((_, i) => i % 4 < 3),
+      3
+    )
+  )
+  geometry.setAttribute('pieceFrom', new Float32BufferAttribute(from, 4))
+  geometry.setAttribute('pieceTo', new Float32BufferAttribute(to, 4))
+  geometry.setAttribute('pieceCorner', new Float32BufferAttribute(corner, 2))
+  geometry.setIndex(index)
+  return geometry
+}
+
+/** A channel of lightning as thin bright lines, hidden by what was drawn and dimmed by clouds and air before it. */
+export class BoltPass {
+  readonly #clouds: CloudsNode
+  readonly #target = tableTarget('Welkin.LightningChannel', 1, 1)
+  readonly #texture: LevelTexture<Vec2>
+  readonly #scene = new Scene()
+  readonly #material: NodeMaterial
+  readonly #mesh: Mesh
+  /** The channel's frame to view space [world units/m], and its place there. */
+  readonly #toView = matrix3()
+  readonly #placeView = vector3()
+  /** The channel's place in its own frame, from the camera [m]. */
+  readonly #place = vector3()
+  readonly #projection = matrix4()
+  /** Luminous intensity of a metre of the stem, and that of branches, times `luminanceScale` [cd/m]. */
+  readonly #stemLight = number()
+  readonly #branchLight = number()
+
+  constructor(clouds: CloudsNode) {
+    this.#clouds = clouds
+    this.#texture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+    this.#material = this.#makeMaterial()
+    this.#mesh = new Mesh(new BufferGeometry(), this.#material)
+    this.#mesh.frustumCulled = false
+    this.#scene.add(this.#mesh)
+  }
+
+  /** Takes a channel's geometry. */
+  set channel(channel: PlacedChannel) {
+    this.#mesh.geometry.dispose()
+    this.#mesh.geometry = quadsOf(channel)
+  }
+
+  #makeMaterial(): NodeMaterial {
+    const { passes, field } = this.#clouds
+    const { viewRays, seen } = passes
+    const { frame } = viewRays
+    const from = attribute('pieceFrom', 'vec4') as unknown as Vec4
+    const to = attribute('pieceTo', 'vec4') as unknown as Vec4
+    const corner = attribute('pieceCorner', 'vec2') as unknown as Vec2
+    const projection = this.#projection as unknown as Mat4
+    const toView = this.#toView as unknown as Mat3
+    const clip = (p: Vec3): Vec4 =>
+      projection.mul(vec4(toView.mul(p).add(this.#placeView), 1)).toConst()
+    const pixels = (p: Vec4): Vec2 => p.xy.div(p.w.max(1e-6)).mul(frame.size).mul(0.5).toConst()
+    /** Place in pixels along and across the piece, its length in pixels, and the distance [m]. */
+    const place = varying(vec4(0)) as unknown as Vec4 & { assign: (v: unknown) => void }
+    const brightness = varying(vec2(0)) as unknown as Vec2 & { assign: (v: unknown) => void }
+    /** Light that air and clouds let through. */
+    const air = varying(vec3(1)) as unknown as Vec3 & { assign: (v: unknown) => void }
+    /** Share of light that clouds let through from a distance, at a place in pixels from the middle. */
+    const passingAt = (pixel: Vec2, distance: Float): Float => {
+      const at = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5).clamp(0, 1).toConst() as Vec2
+      const distances = seen.distances.sample(at).level(0)
+      const before = vec4(distance).sub(distances).div(distance.mul(HIDING)).add(0.5).clamp(0, 1)
+      return seen.shares
+        .sample(at)
+        .level(0)
+        .dot(before)
+        .oneMinus()
+        .sub(LEAST_PASSING)
+        .max(0)
+        .div(1 - LEAST_PASSING)
+    }
+    const material = new NodeMaterial()
+    Object.assign(material, {
+      name: 'Welkin.LightningChannel',
+      blending: CustomBlending,
+      blendEquation: MaxEquation,
+      blendEquationAlpha: AddEquation,
+      blendSrc: OneFactor,
+      blendDst: OneFactor,
+      depthTest: false,
+      depthWrite: false,
+      toneMapped: false,
+      fog: false,
+      lights: false,
+      transparent: true,
+      side: DoubleSide
+    })
+    material.vertexNode = Fn(() => {
+      const [a, b] = [clip(from.xyz), clip(to.xyz)]
+      const [start, stop] = [pixels(a), pixels(b)]
+      const line = stop.sub(start).toConst() as Vec2
+      const length = line.length().toConst() as Float
+      const along = length
+        .greaterThan(1e-3)
+        .select(line.div(length.max(1e-3)), vec2(1, 0))
+        .toConst() as Vec2
+      const beyond = corner.x.mul(2).sub(1).mul(HALF_WIDTH)
+      const at = length.mul(corner.x).add(beyond).toConst() as Float
+      const across = corner.y.mul(HALF_WIDTH).toConst() as Float
+      const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
+      const [near, far] = [from, to].map(p => p.xyz.add(this.#place).length().toConst() as Float)
+      const passing = vec2(passingAt(start, near), passingAt(stop, far)).toConst() as Vec2
+      const isFirst = corner.x.lessThan(0.5)
+      place.assign(vec4(at, across, length, isFirst.select(near, far)))
+      brightness.assign(vec2(from.w, to.w))
+      const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
+      const displacement = toView
+        .mul(isFirst.select(from.xyz, to.xyz))
+        .add(this.#placeView)
+        .toConst()
+      const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
+      air.assign(transmittance.mul(isFirst.select(passing.x, passing.y)))
+      // In front of the camera and not in clouds, or else nowhere.
+      const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
+      return isSeen.select(vec4(pixel.mul(2).div(frame.size), 0.5, 1), vec4(2, 2, 2, 1))
+    })()
+    material.fragmentNode = Fn(() => {
+      const here = vec2(screenUV) as unknown as Vec2
+      const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
+      const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
+      const ray = viewRayAt(viewRays, here)
+      const distance = place.w.toConst() as Float
+      // The channel is above the ground.
+      If(viewRayEnd(viewRays, here, ray, bool(true)).lessThan(distance.mul(0.999)), () => {
+        Discard()
+      })
+      const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
+      const perMetre = brightness.y.greaterThan(0.5).select(this.#branchLight, this.#stemLight)
+      const luminance = square
+        .mul(-0.5 / WIDTH ** 2)
+        .exp()
+        .mul(perMetre)
+        .mul(brightness.x)
+        .div(width)
+      return vec4(
+        air
+          .mul(vec3(...CHANNEL_COLOR))
+          .mul(luminance)
+          .min(GREATEST),
+        1
+      )
+    })()
+    return material
+  }
+
+  /** Light of the channel [luminance × `luminanceScale`]. */
+  sample(at: Vec2): Vec3 {
+    return this.#texture.sample(at).level(0).rgb
+  }
+
+  /**
+   * Draws it.
+   *
+   * @param offset - Its place from the camera, in the mapped space [m].
+   */
+  render(
+    renderer: Renderer,
+    { viewToMapped }: AtmosphereView,
+    offset: Vector3,
+    { axes, brightLength }: PlacedChannel,
+    power: { readonly all: number; readonly branches: number }
+  ): void {
+    const [east, north, up] = axes
+    this.#place.value.set(offset.dot(east), offset.dot(north), offset.dot(up))
+    _toView.copy(viewToMapped).invert()
+    this.#placeView.value.copy(offset).applyMatrix3(_toView)
+    const { x, y, z } = east
+    this.#toView.value
+      .set(x, north.x, up.x, y, north.y, up.y, z, north.z, up.z)
+      .premultiply(_toView)
+    const { frame } = this.#clouds.passes.viewRays
+    frame.projectionOf(this.#clouds.camera, this.#projection.value)
+    const perLength = 1 / (4 * Math.PI * brightLength)
+    this.#stemLight.value = power.all * perLength
+    this.#branchLight.value = power.branches * perLength
+    this.#target.setSize(frame.size.value.x, frame.size.value.y)
+    const state = RendererUtils.resetRendererState(renderer, {} as never)
+    renderer.setRenderTarget(this.#target)
+    renderer.setClearColor(0x000000, 0)
+    renderer.autoClear = true
+    renderer.render(this.#scene, this.#clouds.camera)
+    RendererUtils.restoreRendererState(renderer, state)
+  }
+
+  /** Frees its render target and geometry. */
+  dispose(): void {
+    this.#target.dispose()
+    this.#mesh.geometry.dispose()
+    this.#material.dispose()
+  }
+}
