@@ -21,7 +21,9 @@ export interface ForegroundLayer {
 export interface ScreenShadows extends SkyLayer {
   /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
   dim(color: Vec3): Vec3
-  /** Takes what shadows take from the air of a view ray; null for that of the pixel. */
+  /** Reads what the pixel loses, once for all calls of `medium` that follow in a shader function, in branches too. */
+  read(): void
+  /** Takes what shadows take from the air of the pixel's view ray. */
   medium(ray: LayerRay | null, air: MediumSegment): MediumSegment
   /** Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun. */
   drawIn(frame: NodeFrame, sun: object): void
