@@ -88,7 +88,7 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     const position = Math.max((u * columns - 0.5) / (columns - 1), 0)
     const distance = Math.max(even * Math.expm1(position / logScale), 1e-3 * even)
     const turn = (row - v + 1.5) % 1
-    expectClose(column, u, { absolute: 2e-5 }, 'column')
+    expectClose((column + 0.5) / columns, u, { absolute: 2e-5 }, 'column')
     // Near the line to the light float32 has few directions.
     const blur = 3e-7 * (1 + Math.abs(z) / distance)
     expectClose(turn, 0.5, { absolute: 2e-5 + blur }, 'row')

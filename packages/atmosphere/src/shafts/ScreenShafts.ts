@@ -78,12 +78,12 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = Number(this.#shafts.isForward)
   }
 
-  read(): void {
+  read(position: Vec3, isSky: Bool): void {
     this.#lost = null
     if (this.#isElsewhere) return
     const lost = vec4(0).toVar()
     If(this.#strength.greaterThan(0), () => {
-      lost.assign(this.#lostHere())
+      lost.assign(this.#lostOf(this.#rayThrough(position, isSky)))
     })
     this.#lost = lost
   }
@@ -112,12 +112,12 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light that the pixel loses [1/sr]. */
   #lostHere(): Vec4 {
-    return Fn(({ renderer }): Vec4 => {
-      const at = this.#place
-      const ray = this.#rayTo(renderer, at)
-      const lost = this.grid.read(at, ray.distance, () => this.#litAir(ray))
-      return lost.mul(this.#shafts.view.source.irradiance).mul(this.#strength)
-    })()
+    return Fn(({ renderer }): Vec4 => this.#lostOf(this.#rayTo(renderer, this.#place)))()
+  }
+
+  #lostOf(ray: ShaftRay): Vec4 {
+    const lost = this.grid.read(this.#place, ray.distance, () => this.#litAir(ray))
+    return lost.mul(this.#shafts.view.source.irradiance).mul(this.#strength)
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
@@ -163,6 +163,10 @@ export class ScreenShafts implements ScreenShadows {
     const { position, isSky } = this.#isMesh
       ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
       : this.#rays.at(renderer, at)
+    return this.#rayThrough(position, isSky)
+  }
+
+  #rayThrough(position: Vec3, isSky: Bool): ShaftRay {
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst()
     const length = offset.length().max(1e-3).toConst()

@@ -126,9 +126,10 @@ export class AerialPerspectiveNode extends PostEffectNode {
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
-      this.#screenShafts?.read()
+      const drawnAt = this.#screenShafts ? position(depth).toConst() : null
+      this.#screenShafts?.read(isSky.select(ray, drawnAt!).toConst(), isSky)
       If(ifSeen(isSky.not()), () => {
-        const air = aerialPerspectiveTo(this.view, position(depth), this.layers)
+        const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
