@@ -61,7 +61,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 8 MB for materials.
+ * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1.5 at `'low'` and `'medium'` quality), or 9 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -241,7 +241,9 @@ export class LightShafts implements ShadowedShafts {
 
   /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
-    const isPost = [...this.#screens].some(({ foreground }) => foreground === undefined)
+    const isPost = [...this.#screens].some(
+      ({ foreground, isMesh }) => foreground === undefined && !isMesh
+    )
     return !isPost && this.#isLayer
   }
 

@@ -175,14 +175,14 @@ export class LostLightGrid {
           .add(vec2(float(index).sub(row.mul(2)), row))
           .min(last)
           .toConst()
-        const other = texels(corner.add(distances) as Vec2)
+        const other = texels(corner.add(distances))
         const apart = other.x.sub(own).abs()
         const weight = apart
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(MIN_WEIGHT, 1)
         // Of light that others have more of, or less, the same part.
-        lost.addAssign(texels(corner.add(light) as Vec2).mul(weight.mul(here.div(other.w))))
+        lost.addAssign(texels(corner.add(light)).mul(weight.mul(here.div(other.w))))
         weights.addAssign(weight)
       })
       lost.divAssign(weights)

@@ -33,7 +33,7 @@ export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
   readonly #shafts: CameraShafts
   /** True for a mesh of air, whose rays end at the planet or nowhere. */
-  readonly #isMesh: boolean
+  readonly isMesh: boolean
   readonly #rays: DepthRays
   readonly grid = new LostLightGrid()
   /** 1 if there is a medium, such as fog, in the light of the shafts. */
@@ -48,7 +48,7 @@ export class ScreenShafts implements ScreenShadows {
   constructor(shafts: CameraShafts, depthNode: Node | null, foreground?: ForegroundLayer) {
     this.foreground = foreground
     this.#shafts = shafts
-    this.#isMesh = depthNode === null
+    this.isMesh = depthNode === null
     this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
   }
 
@@ -107,7 +107,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Place of a fragment in the picture: meshes have coordinates of their own. */
   get #place(): Vec2 {
-    return this.#isMesh ? screenUV : uv()
+    return this.isMesh ? screenUV : uv()
   }
 
   /** Light that the pixel loses [1/sr]. */
@@ -122,7 +122,8 @@ export class ScreenShafts implements ScreenShadows {
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
   get #isElsewhere(): boolean {
-    return this.foreground === undefined && this.#shafts.hasForeground
+    const { hasForeground, isForward } = this.#shafts
+    return this.foreground === undefined && hasForeground && !(this.isMesh && isForward)
   }
 
   dim(color: Vec3): Vec3 {
@@ -160,7 +161,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
   #rayTo(renderer: Renderer, at: Vec2): ShaftRay {
-    const { position, isSky } = this.#isMesh
+    const { position, isSky } = this.isMesh
       ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
       : this.#rays.at(renderer, at)
     return this.#rayThrough(position, isSky)

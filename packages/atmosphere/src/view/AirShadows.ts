@@ -24,7 +24,7 @@ export interface ScreenShadows extends SkyLayer {
   /**
    * Reads what the pixel loses, once for all calls of `medium` that follow in a shader function, in branches too.
    *
-   * @param position - What is seen, or a point in front of the sky, in view space [world units].
+   * @param position - Position of what is seen, or of any point in front of the sky, in view space [world units].
    */
   read(position: Vec3, isSky: Bool): void
   /** Takes what shadows take from the air of the pixel's view ray. */

@@ -172,6 +172,8 @@ describe('what is added to light shafts', () => {
     expect(post.isForward).toBe(false)
     node.dispose()
     expect(post.isForward).toBe(true)
+    post.upTo(null)
+    expect(post.isForward, 'with a mesh of air besides').toBe(true)
   })
 
   it('is not added where one of several is refused', () => {

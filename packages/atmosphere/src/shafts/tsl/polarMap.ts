@@ -55,14 +55,7 @@ export function polarRay(
     sinViewLight,
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
     isTowards: cosViewLight.greaterThan(0).toConst(),
-    row: turns
-      .mul(rows)
-      .sub(0.5)
-      .add(jitter.mul(3).fract())
-      .floor()
-      .add(0.5)
-      .div(rows)
-      .toConst() as Float
+    row: turns.mul(rows).sub(0.5).add(jitter.mul(3).fract()).floor().add(0.5).div(rows).toConst()
   }
 }
 
