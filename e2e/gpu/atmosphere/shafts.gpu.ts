@@ -361,6 +361,8 @@ gpuTest('frees its textures', async t => {
 
   // The volume of materials is there while they read it.
   const sizeOf = (): number => renderer.info.memory.texturesSize
+  shafts.quality = 'medium'
+  await draw()
   const least = sizeOf()
   atmosphere.add(shafts)
   const sizeWith = async (options: LightShaftsOptions): Promise<number> => {
