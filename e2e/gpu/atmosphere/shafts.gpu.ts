@@ -1,4 +1,9 @@
-import type { AirOccluder, LightShaftsOptions } from '@welkin/atmosphere'
+import {
+  aerialPerspectiveFog,
+  skyBackground,
+  type AirOccluder,
+  type LightShaftsOptions
+} from '@welkin/atmosphere'
 import { Vector3 } from 'three'
 import { uniform, vec4 } from 'three/tsl'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
@@ -8,7 +13,7 @@ import {
   inScatter,
   type RayNumbers
 } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
-import { drawForward } from '../harness/atmosphere'
+import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { countCompilations, countObjects, nextFrame } from '../harness/graphics'
@@ -202,6 +207,30 @@ gpuTest(
   }
 )
 
+gpuTest('draws cascades before the sky, in the frame in which casters move', async t => {
+  const renderer = await t.createRenderer(size)
+  const { scene, camera, light, shafts, atmosphere, dispose } = stage(renderer, 15)
+  const tower = addBox(scene, [-300, 200, -600], [500, 500, 60])
+  const shadowNode = new CSMShadowNode(light, { cascades: 3, maxFar: 3000, lightMargin: 2000 })
+  Object.assign(light.shadow, { shadowNode })
+  atmosphere.add(shafts)
+  scene.backgroundNode = skyBackground(atmosphere)
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  camera.updateMatrixWorld()
+  const draw = async (x: number): Promise<Picture> => {
+    tower.position.x = x
+    await nextFrame()
+    return drawToFloat(renderer, () => renderer.render(scene, camera))
+  }
+  for (let i = 0; i < 3; i++) await draw(-300)
+  const before = await draw(-300)
+  const moved = await draw(100)
+  const differs = moved.data.filter((value, i) => value !== before.data[i]).length
+  expectTrue(differs > 0.1 * moved.data.length, 'the tower has moved')
+  expectSame(await draw(100), moved, 'a frame later')
+  dispose()
+})
+
 gpuTest(
   'changes strength, quality and being on without a compile, and frees what it made',
   async t => {
@@ -331,21 +360,57 @@ gpuTest('frees its textures', async t => {
   expectSame(await draw(), first, 'used again')
 
   // The volume of materials is there while they read it.
+  const sizeOf = (): number => renderer.info.memory.texturesSize
+  shafts.quality = 'medium'
+  await draw()
+  const least = sizeOf()
   atmosphere.add(shafts)
   const sizeWith = async (options: LightShaftsOptions): Promise<number> => {
     shafts.set(options)
     await nextFrame()
     await drawForward(renderer, scene, camera, atmosphere)
-    return renderer.info.memory.texturesSize
+    return sizeOf()
   }
-  const least = await sizeWith({ quality: 'high' })
-  const most = await sizeWith({ quality: 'medium' })
+  const most = await sizeWith({})
   const off = await sizeWith({ enabled: false })
   const again = await sizeWith({ enabled: true })
-  const high = await sizeWith({ quality: 'high' })
-  t.note(`${least} B of textures, ${most} with a volume, ${off} while it is off, ${high} after it`)
-  expectTrue(most > off + 1e6, 'the volume takes memory')
-  expectTrue(again === most, 'as much as before')
-  expectTrue(high === least, 'all of it is freed')
+  atmosphere.remove(shafts)
+  await draw()
+  const after = sizeOf()
+  t.note(`${least} B of textures, ${most} with a volume, ${off} while it is off, ${after} after it`)
+  expectTrue(most > least + 1e6, 'the volume takes memory')
+  expectTrue(off === most && again === most, 'as much while they are off')
+  expectTrue(after <= least, 'all of it is freed')
+  dispose()
+})
+
+gpuTest('is turned on and off in materials that stand still, and changes quality', async t => {
+  const renderer = await t.createRenderer(size)
+  const { scene, camera, atmosphere, shafts, dispose } = stage(renderer, 15)
+  addBox(scene, [0, 200, -600], [200, 500, 40])
+  atmosphere.add(shafts)
+  scene.backgroundNode = skyBackground(atmosphere)
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  camera.updateMatrixWorld()
+  // Compiled, the first frame has them too.
+  await renderer.compileAsync(scene, camera)
+  const draw = async (options: LightShaftsOptions): Promise<Picture> => {
+    shafts.set(options)
+    await nextFrame()
+    return drawToFloat(renderer, () => renderer.render(scene, camera))
+  }
+  const first = await draw({ quality: 'medium' })
+  expectSame(await draw({}), first, 'a frame later')
+  const lit = await draw({ enabled: false })
+  const differs = first.data.filter((value, i) => value !== lit.data[i]).length
+  expectTrue(differs > 0.1 * lit.data.length, 'the box casts a shadow')
+  expectSame(await draw({ enabled: true }), first, 'on again')
+  const qualities = ['low', 'high', 'reference', 'medium'] as const
+  for (const quality of qualities) {
+    await draw({ quality })
+    expectSame(await draw({ enabled: false }), lit, `${quality} quality, off`)
+    shafts.enabled = true
+  }
+  expectSame(await draw({}), first, 'medium again')
   dispose()
 })

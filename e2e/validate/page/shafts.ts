@@ -171,6 +171,8 @@ async function drawView(
     }
     return sums
   }
+  // The sky is drawn before what takes shadows, by which three makes the map.
+  if (isForward) await renderer.compileAsync(scene, camera)
   const lost: number[][] = []
   for (const direction of view.directions) {
     camera.lookAt(new Vector3(...direction).add(camera.position))

@@ -50,7 +50,8 @@ const _axes = new Matrix4()
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
  * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment marches, or
- * at `'medium'` and `'low'` quality reads a volume of some 160 × 90 rays in 24 slices.
+ * at `'medium'` and `'low'` quality reads a volume of some 160 × 90 rays in 24 slices. Compile a scene before its first frame, which else has none in its sky:
+ * `await renderer.compileAsync(scene, camera)`.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. Air and fogs in
@@ -60,7 +61,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 2 bytes a pixel of the picture, or 8 MB for materials.
+ * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1.5 at `'low'` and `'medium'` quality), or 8 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -185,16 +186,16 @@ export class LightShafts implements ShadowedShafts {
     this.#setStrength = value
   }
 
-  /** Fineness of the march. Nothing is compiled when it changes, but for materials between `'medium'` and `'high'`. */
+  /** Fineness of the march. A change compiles materials that draw the shafts anew; a post effect it does not. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }
 
   set quality(value: LightShaftsQuality) {
     checkChoice('LightShafts', 'quality', value, qualityNames)
-    const wasMarched = this.#isMarched
+    const { rays } = qualities[this.#quality]
     this.#quality = value
-    if (this.#isMarched !== wasMarched && this.#isLayer) this.#compileAnew()
+    if (qualities[value].rays !== rays && this.#isLayer) this.#compileAnew()
   }
 
   /** False for air without shadows, at no cost. Nothing is compiled when it changes. */
@@ -240,7 +241,9 @@ export class LightShafts implements ShadowedShafts {
 
   /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
-    const isPost = [...this.#screens].some(({ foreground }) => foreground === undefined)
+    const isPost = [...this.#screens].some(
+      ({ foreground, isMesh }) => foreground === undefined && !isMesh
+    )
     return !isPost && this.#isLayer
   }
 
@@ -278,10 +281,10 @@ export class LightShafts implements ShadowedShafts {
 
   /** Draws what materials read. */
   #drawVolume(renderer: Renderer, view: AtmosphereView | undefined): void {
-    const isUsed = this.#isLayer && this.#enabled && this.#setStrength > 0 && !this.#isMarched
+    // While they are off, too: what has drawn with the textures in this frame must find them at its end.
+    const isUsed = this.#isLayer && !this.#isMarched
     this.#volume.resize(renderer, isUsed ? qualities[this.#quality] : null)
-    if (!isUsed) return
-    if (!this.#isActive || view === undefined) return
+    if (!isUsed || !this.#isActive || view === undefined) return
     this.view.update(view)
     for (const layer of this.#media) if (isShadowed(layer)) layer.update?.(view)
     const mapped = this.#shadows.all.length > 0 ? Infinity : this.#map.maximumRho.value
@@ -300,14 +303,15 @@ export class LightShafts implements ShadowedShafts {
 
   medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
-    return without(air, this.strengthNow, lit, () => {
+    const taken = lit.source.irradiance.mul(this.strengthNow)
+    return without(air, this.strengthNow, () => {
       if (!this.#isMarched) {
-        return to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky()
+        return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
       }
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
       const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
       const pixel = screenCoordinate.xy.floor()
-      return lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel))
+      return taken.mul(lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel)))
     })
   }
 

@@ -23,7 +23,12 @@ type Shadow = LightShadow & { getMatrix?(index: number): Matrix4 }
 /** A node in a shadow's slot: `CSMShadowNode`, which has a light for each cascade, or one around another. */
 interface ShadowSlot {
   readonly lights?: readonly { shadow: Shadow }[]
+  /** Nodes of those lights. */
+  readonly _shadowNodes?: readonly ShadowSlot[]
   readonly shadowNode?: ShadowSlot | null
+  /** Map that it draws. */
+  readonly shadowMap?: object | null
+  updateBefore(frame: NodeFrame): unknown
 }
 
 /** The shadow's own nodes, from the outermost to the innermost. */
@@ -45,20 +50,24 @@ export function claimShadow(light: ParallelLight): void {
 }
 
 /**
- * Draws a shadow map now, if it would draw it later in the frame, or not at all since nothing in
- * view takes shadows. Cascades are drawn by three alone.
+ * Draws the shadow maps now, if three would draw them later in the frame, or not at all since nothing in
+ * view takes shadows. Those of `SunLight` are drawn by three alone.
  *
- * @returns True if the map is that of the frame.
+ * @returns True if the maps are those of the frame.
  */
 export function drawShadow(light: ParallelLight, frame: NodeFrame, camera: Camera): boolean {
   let root: ParallelLight['parent'] = light
   while (root.parent) root = root.parent
-  const node = slotsOf(light.shadow!).find(slot => slot instanceof ShadowNode)
-  const isReady = (node as { shadowMap?: object | null } | undefined)?.shadowMap
+  const slots = slotsOf(light.shadow!)
+  const cascades = slots.find(slot => slot._shadowNodes)
+  const nodes: readonly ShadowSlot[] =
+    cascades?._shadowNodes ?? slots.filter(slot => (slot as unknown) instanceof ShadowNode)
+  const isReady = nodes.length > 0 && nodes.every(({ shadowMap }) => shadowMap)
   if (!light.castShadow || !isReady || !(root as Partial<Scene>).isScene) return false
   const { renderer, frameId } = frame
   const seen = { renderer, frameId, camera, scene: root } as unknown as NodeFrame
-  ;(node as unknown as ShadowNode).updateBefore(seen)
+  cascades?.updateBefore(seen)
+  for (const node of nodes) node.updateBefore(seen)
   return true
 }
 

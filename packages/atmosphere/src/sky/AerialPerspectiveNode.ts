@@ -2,7 +2,12 @@ import type { Camera, OrthographicCamera } from 'three'
 import { Fn, If, float, isBackgroundDepth, select, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, PassNode } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
-import { checkAirOptions, type AirOptions, type AirShadows } from '../view/AirShadows'
+import {
+  checkAirOptions,
+  type AirOptions,
+  type AirShadows,
+  type ScreenShadows
+} from '../view/AirShadows'
 import type { SkyLayer } from '../view/SkyLayer'
 import { DepthRays } from '../view/DepthRays'
 import { PostEffectNode } from '../view/PostEffectNode'
@@ -46,7 +51,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
   readonly showSun: boolean
   /** Shadows in the air, or null; shared, not owned. */
   readonly shafts: AirShadows | null
-  readonly #screenShafts: SkyLayer | undefined
+  readonly #screenShafts: ScreenShadows | undefined
   readonly #rays: DepthRays
   readonly #backdrop = new Backdrop()
 
@@ -121,8 +126,10 @@ export class AerialPerspectiveNode extends PostEffectNode {
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
+      const drawnAt = this.#screenShafts ? position(depth).toConst() : null
+      this.#screenShafts?.read(isSky.select(ray, drawnAt).toConst(), isSky)
       If(ifSeen(isSky.not()), () => {
-        const air = aerialPerspectiveTo(this.view, position(depth), this.layers)
+        const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {

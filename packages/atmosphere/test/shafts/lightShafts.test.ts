@@ -151,7 +151,7 @@ describe('what is added to light shafts', () => {
     }
     for (let i = 0; i < 3; i++) {
       const screen = shafts.upTo(float(1), foreground) as ScreenShafts
-      screen.target.addEventListener('dispose', () => freed++)
+      screen.grid.target.addEventListener('dispose', () => freed++)
       screen.dispose()
     }
     expect(freed).toBe(3)
@@ -160,7 +160,7 @@ describe('what is added to light shafts', () => {
     expect(shafts.hasForeground).toBe(false)
     expect(drawn).toBe(0)
     const kept = shafts.upTo(float(1), foreground) as ScreenShafts
-    kept.target.addEventListener('dispose', () => freed++)
+    kept.grid.target.addEventListener('dispose', () => freed++)
     shafts.dispose()
     expect(freed).toBe(4)
     expect(shafts.hasForeground).toBe(true)
@@ -172,6 +172,8 @@ describe('what is added to light shafts', () => {
     expect(post.isForward).toBe(false)
     node.dispose()
     expect(post.isForward).toBe(true)
+    post.upTo(null)
+    expect(post.isForward, 'with a mesh of air besides').toBe(true)
   })
 
   it('is not added where one of several is refused', () => {

@@ -17,6 +17,11 @@ export function linearSRGB(uniforms: AtmosphereUniforms, spectrum: Vec4): Vec3 {
   return apply(uniforms.linearSRGB, spectrum).max(0)
 }
 
+/** As {@link linearSRGB}, with components below nought where colours are outside the gamut: of light that is taken away. */
+export function unclampedSRGB(uniforms: AtmosphereUniforms, spectrum: Vec4): Vec3 {
+  return apply(uniforms.linearSRGB, spectrum)
+}
+
 /** Spectral transmittance to the factors by which the linear-sRGB components of sunlight dim. */
 export function transmittanceRGB(uniforms: AtmosphereUniforms, transmittance: Vec4): Vec3 {
   return apply(uniforms.transmittanceRGB, transmittance).clamp(0, 1)

@@ -3,7 +3,6 @@ import {
   Fn,
   If,
   atan,
-  bool,
   float,
   ivec2,
   max,
@@ -41,13 +40,6 @@ export interface DepthStorage {
   readonly isCompared: boolean
 }
 
-/**
- * Part of a texel by which casters are widened before nothing. Between a caster's texel and an empty one the angle
- * is interpolated, and passes that of a view ray nearer to the caster than to the middle: by as much on
- * average.
- */
-const WIDENING = 0.3
-
 /** Comparisons that find a depth: to 2⁻¹⁶ of the map's range. */
 const COMPARISONS = 16
 
@@ -80,10 +72,6 @@ const isEmpty = (stored: Float, { isReversed }: DepthStorage): Bool =>
 const depthIn = (depth: TextureNode, size: Vec2, texel: Vec2): Float =>
   (textureLoad(depth, ivec2(texel.clamp(vec2(0), size.sub(1)))) as unknown as Vec4).r.toConst()
 
-/** Depth of the texel that a place is in: a quarter of the reads of {@link mixedDepth}, for its ends. */
-const nearestDepth = (depth: TextureNode, size: Vec2, at: Vec2): Float =>
-  depthIn(depth, size, at.mul(size).floor())
-
 /**
  * Depth between the four texels next to a place, so that slopes in shadow at a flat angle cast no shadows in
  * steps; of the nearest one where a caster ends, which would shrink.
@@ -100,9 +88,6 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
     .select(among(step(0.5, part)), among(part))
     .toConst()
 }
-
-/** Rays beside a texel's own, to its four sides, that are tried in their finest map where that meets no caster. */
-const PROBES = 4
 
 /**
  * A texel of the sun-polar shadow map: its ray of light through the shadow maps, up to the first that has an
@@ -121,27 +106,13 @@ export function occluderAngle(
     const { offset, distance } = lightRayAt(frame, texel)
     const nearest = float(NOTHING).toVar()
     // The first map is the finest: what a ray of light meets in it counts.
-    const search = (from: Vec3, depthAt: typeof mixedDepth, isFinestOnly: boolean): void => {
-      const isSought = bool(true).toVar() as Bool & { assign(value: Bool | boolean): void }
-      for (const map of maps) {
-        If(isSought, () => {
-          seekOccluder(map, from, storage, depthAt, position => {
-            nearest.assign(position)
-            isSought.assign(isFinestOnly ? false : position.equal(NOTHING))
-          })
-        })
-      }
-    }
-    search(offset, mixedDepth, false)
-    loop('probe', PROBES, probe => {
+    for (const map of maps) {
       If(nearest.equal(NOTHING), () => {
-        const side = (positive: number): Float =>
-          probe.equal(positive).select(1, probe.equal(positive + 1).select(-1, 0))
-        // A row is a quarter as high as a column is wide.
-        const shift = vec2(side(0), side(2).mul(0.25)).mul(WIDENING).div(frame.columns)
-        search(lightRayAt(frame, texel.add(shift).toConst()).offset, nearestDepth, true)
+        seekOccluder(map, offset, storage, position => {
+          nearest.assign(position)
+        })
       })
-    })
+    }
     return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
   })()
 }
@@ -149,14 +120,12 @@ export function occluderAngle(
 /**
  * Looks for the first occluder on a ray of light in a map, if the map has the ray.
  *
- * @param depthAt - Reads the map at a place.
  * @param then - Takes the position along the ray, towards the light [m].
  */
 function seekOccluder(
   { depth, size, matrix, bounds, metersPerDepth }: ShadowMapNodes,
   offset: Vec3,
   storage: DepthStorage,
-  depthAt: typeof mixedDepth,
   then: (position: Float) => void
 ): void {
   const place = (matrix as unknown as { mul(v: Vec4): Vec4 }).mul(vec4(offset, 1)).toConst()
@@ -170,7 +139,7 @@ function seekOccluder(
     const at = vec2(place.x, place.y.oneMinus()).toConst()
     const stored = storage.isCompared
       ? comparedDepth(depth, at, storage)
-      : depthAt(depth, size, at, storage)
+      : mixedDepth(depth, size, at, storage)
     const position = stored.sub(place.z).mul(metersPerDepth)
     then(isEmpty(stored, storage).select(NOTHING, position).toConst())
   })

@@ -17,7 +17,7 @@ export interface PolarFrame {
   /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
   readonly logScale: Float
   readonly logOffset: Float
-  /** Number of columns; there are twice as many rows. */
+  /** Number of columns; there are four times as many rows. */
   readonly columns: Float
 }
 
@@ -29,30 +29,33 @@ export interface PolarRay {
   angle: Float
   /** True if the ray goes towards the light. */
   isTowards: Bool
-  /** φ as a texture coordinate, in turns. */
+  /** Texture coordinate of a row near φ, in turns: its middle. */
   row: Float
 }
 
 /**
  * @param direction - View direction, of unit length.
  * @param cosViewLight - ν, direction against the source.
+ * @param jitter - Place of samples in their steps, in (0, 1), which also says which of two rows is taken. Their angles must
+ *   not be mixed: a shadow before the sky would be displaced by up to a row, the more the farther from the light.
  */
 export function polarRay(
-  { across, along }: PolarFrame,
+  { across, along, columns }: PolarFrame,
   direction: Vec3,
-  cosViewLight: Float
+  cosViewLight: Float,
+  jitter: Float
 ): PolarRay {
   const x = direction.dot(across).toConst()
   const y = direction.dot(along).toConst()
   // Not √(1 − ν²), which cancels near the source.
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
+  const turns = atan(y, x).mul(1 / (2 * Math.PI))
+  const rows = columns.mul(4).toConst() as Float
   return {
     sinViewLight,
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
     isTowards: cosViewLight.greaterThan(0).toConst(),
-    row: atan(y, x)
-      .mul(1 / (2 * Math.PI))
-      .toConst()
+    row: turns.mul(rows).sub(0.5).add(jitter.mul(3).fract()).floor().add(0.5).div(rows).toConst()
   }
 }
 

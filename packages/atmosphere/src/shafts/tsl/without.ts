@@ -2,21 +2,19 @@ import { If } from 'three/tsl'
 import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../../tsl-types'
 import { SKY_DISTANCE, type LayerRay } from '../../view/SkyLayer'
-import type { ViewUniforms } from '../../view/ViewUniforms'
 
 /** Distance that stands for the sky; for the planet where it was not drawn it is {@link SKY_DISTANCE} [m]. */
 export const FAR = 1e10
 
-/** A medium less the light that `lostLight` gives, and no less than none, where shafts are on. */
+/** A medium less light that it loses, and no less than none, where shafts are on. */
 export function without(
   { radiance, depth }: MediumSegment,
   strength: Float,
-  { source }: Pick<ViewUniforms, 'source'>,
   lost: () => Vec4
 ): MediumSegment {
   const left = radiance.toVar()
   If(strength.greaterThan(0), () => {
-    left.subAssign(lost().mul(source.irradiance).mul(strength).min(left))
+    left.subAssign(lost().min(left))
   })
   return { radiance: left, depth }
 }

@@ -1,0 +1,198 @@
+import { RGFormat, type RenderTarget } from 'three'
+import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { Renderer, TextureNode } from 'three/webgpu'
+import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
+import { RADIANCE_SCALE } from '../tables/tableSizes'
+import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import { number, vector2 } from '../uniforms'
+
+/**
+ * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
+ * silhouettes; smaller: the march's pixels show on slopes (*Towers in haze*).
+ */
+const SAME_DEPTH = 0.35
+const OTHER_DEPTH = 0.8
+
+/** Least weight in the bilateral upsampling: that of pixels of another depth. */
+const MIN_WEIGHT = 1e-3
+
+/** Least and greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
+const LEAST = 1e-5
+const MOST = 6e4
+const LIGHT_SCALE = RADIANCE_SCALE / 8
+
+/** Light of a ray, for unit irradiance [1/sr]. */
+export interface LostLight {
+  /** Light that it loses. */
+  readonly lost: Vec4
+  /** Light of its air if nothing cast shadows, in the mean over wavelengths. */
+  readonly lit: Float
+  /** Distance to what is seen [m]. */
+  readonly distance: Float
+}
+
+/**
+ * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
+ * depth: from nine, of which any four that touch have samples in all places of their steps.
+ *
+ * A first pass marches. A second one puts three things side by side, so that a pixel is read twice, from one texture: means of
+ * the four around each corner of the grid, light itself, and distances.
+ */
+export class LostLightGrid {
+  /** Light, and log₂ of the distance with the light that there is. */
+  readonly #marched: RenderTarget
+  readonly target: RenderTarget
+  readonly #light: TextureNode
+  readonly #distances: TextureNode
+  readonly #texels: TextureNode
+  /** Size of the picture, and of the grid [pixels]. */
+  readonly #size = vector2()
+  readonly #gridSize = vector2()
+  /** Reciprocal of the pixels of the picture from one that is marched to the next. */
+  readonly #density = number(1)
+  /** Texel of the target in texture coordinates. */
+  readonly #texelSize = vector2()
+  /** Longest mean free path in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge at sunrise*). */
+  readonly freePath = number(1)
+  #passes: readonly FragmentPass[] = []
+  #compiled = -1
+
+  constructor() {
+    this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1)
+    const [light, distances] = this.#marched.textures
+    distances.format = RGFormat
+    this.#light = texture(light)
+    this.#distances = texture(distances)
+    this.#texels = texture(this.target.texture)
+  }
+
+  /** @param spacing - Pixels from one that is marched to the next. */
+  resize(width: number, height: number, spacing: number): void {
+    this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
+    this.#density.value = 1 / spacing
+    const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
+    this.#marched.setSize(x, y)
+    this.target.setSize(3 * x + 1, y + 1)
+    this.#texelSize.value.set(1 / (3 * x + 1), 1 / (y + 1))
+  }
+
+  /**
+   * Draws it.
+   *
+   * @param version - Grows when the shader of the march changes.
+   * @param march - Light at a place in the picture, given the pixel of the grid. Called within a shader function.
+   */
+  render(renderer: Renderer, version: number, march: (at: Vec2, pixel: Vec2) => LostLight): void {
+    if (this.#passes.length === 0 || this.#compiled !== version) {
+      for (const pass of this.#passes) pass.dispose()
+      const marched = outputs<[Vec4, Vec4]>(2, ([light, distances]) => {
+        const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
+        const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
+        const { lost, lit, distance } = march(at, pixel)
+        const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
+        light.assign(lost.mul(scale).clamp(-MOST, MOST))
+        distances.assign(vec4(log2(distance), lit.mul(scale).clamp(LEAST, MOST), 0, 0))
+      })
+      this.#passes = [marched, Fn(() => this.#arrange())()].map(
+        output => new FragmentPass('Welkin.LightShafts', output)
+      )
+      this.#compiled = version
+    }
+    this.#passes[0].render(renderer, this.#marched)
+    this.#passes[1].render(renderer, this.target)
+  }
+
+  /** A texel of the target. */
+  #arrange(): Vec4 {
+    const result = vec4(0).toVar()
+    const size = this.#gridSize
+    const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
+    const column = texel.x.sub(size.x).sub(1).toConst() as Float
+    const read = (source: TextureNode, x: Float, y: Float): Vec4 =>
+      sampleLevel0(source, vec2(x, y).clamp(vec2(0.5), size.sub(0.5)).div(size))
+    If(column.lessThan(0), () => {
+      // In the corner of four, the filter has their mean.
+      result.assign(read(this.#light, texel.x, texel.y))
+    })
+      .ElseIf(column.lessThan(size.x), () => {
+        result.assign(read(this.#light, column.add(0.5), texel.y.add(0.5)))
+      })
+      .Else(() => {
+        const at = vec2(column.sub(size.x), texel.y).add(0.5).toConst() as Vec2
+        const { x: own, y: lit } = read(this.#distances, at.x, at.y).toConst() as Vec4
+        result.assign(vec4(own, own, own, lit))
+        loop('neighbor', 9, index => {
+          const row = float(index).div(3).floor().toConst()
+          const aside = vec2(float(index).sub(row.mul(3)), row)
+            .sub(1)
+            .add(at)
+            .toConst() as Vec2
+          const other = read(this.#distances, aside.x, aside.y).x.toConst()
+          result.y.assign(result.y.min(other))
+          result.z.assign(result.z.max(other))
+        })
+      })
+    return result
+  }
+
+  /**
+   * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
+   * whose distances differ a little, and is what they share.
+   */
+  #growth(distance: Float): Float {
+    return distance.div(distance.add(this.freePath))
+  }
+
+  /**
+   * Light that a pixel loses, for unit irradiance [1/sr].
+   *
+   * @param at - Its place in the picture.
+   * @param lit - See {@link LostLight}; asked for in a branch.
+   */
+  read(at: Vec2, distance: Float, lit: () => Float): Vec4 {
+    const size = this.#gridSize
+    const place = at.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
+    const texels = (texel: Vec2): Vec4 =>
+      sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
+    const light = vec2(size.x.add(1.5), 0.5).toConst() as Vec2
+    const distances = light.add(vec2(size.x, 0)).toConst() as Vec2
+    const last = size.sub(1).toConst() as Vec2
+    const own = log2(distance).toConst() as Float
+    const growth = this.#growth(distance).div(LIGHT_SCALE).toConst()
+    const nearest = place.add(0.5).floor().min(last)
+    const { y: least, z: greatest } = texels(nearest.add(distances))
+    const lost = vec4(0).toVar()
+    If(own.sub(least).max(greatest.sub(own)).lessThan(SAME_DEPTH), () => {
+      lost.assign(texels(place.add(1).min(size.add(0.5))))
+    }).Else(() => {
+      const first = place.floor().toConst() as Vec2
+      const weights = float(0).toVar()
+      const here = lit().div(growth).clamp(LEAST, MOST).toConst()
+      loop('corner', 4, index => {
+        const row = float(index).div(2).floor().toConst()
+        const corner = first
+          .add(vec2(float(index).sub(row.mul(2)), row))
+          .min(last)
+          .toConst()
+        const other = texels(corner.add(distances))
+        const apart = other.x.sub(own).abs()
+        const weight = apart
+          .sub(OTHER_DEPTH)
+          .div(SAME_DEPTH - OTHER_DEPTH)
+          .clamp(MIN_WEIGHT, 1)
+        // Of light that others have more of, or less, the same part.
+        lost.addAssign(texels(corner.add(light)).mul(weight.mul(here.div(other.w))))
+        weights.addAssign(weight)
+      })
+      lost.divAssign(weights)
+    })
+    return lost.mul(growth)
+  }
+
+  /** Frees its textures, which are made again where it is drawn. */
+  dispose(): void {
+    for (const owned of [this.#marched, this.target, ...this.#passes]) owned.dispose()
+    this.#passes = []
+  }
+}
