@@ -16,7 +16,7 @@ export const falling = [
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
     clouds: { preset: 'shower', coverage: 0.15 },
-    place: { longitude: 140.608, latitude: 35.227 },
+    place: { longitude: 140.6798, latitude: 35.2496 },
     altitude: 60,
     sun: { elevation: 12, azimuth: 206 },
     view: { azimuth: 60, pitch: 10 },

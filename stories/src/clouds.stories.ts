@@ -146,12 +146,12 @@ export const Cockpit: Story = {
 export const Storm: Story = {
   args: {
     ...sky('cumulonimbus'),
-    longitude: -84.918,
-    latitude: 34.769,
+    longitude: 139.853,
+    latitude: 35.845,
     altitude: 600,
-    heading: 348,
-    pitch: 12,
-    hour: 21.5
+    heading: 20,
+    pitch: 14,
+    hour: 6.5
   },
   tags: ['screenshot', 'webgpu-only']
 }

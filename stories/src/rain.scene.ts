@@ -54,7 +54,7 @@ export const VIEWS = {
     azimuth: 206,
     heading: 60,
     pitch: 10,
-    place: { longitude: 140.608, latitude: 35.227 }
+    place: { longitude: 140.6798, latitude: 35.2496 }
   },
   virga: {
     label: 'Virga',
