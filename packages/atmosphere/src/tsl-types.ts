@@ -1,5 +1,5 @@
 // What @types/three 0.187 lacks or gets wrong, in one place.
-import { Loop as threeLoop, uniformArray as threeUniformArray } from 'three/tsl'
+import { Loop as threeLoop, ivec2, uniformArray as threeUniformArray } from 'three/tsl'
 import type { Vector4 } from 'three'
 import type { Node, TextureNode } from 'three/webgpu'
 
@@ -36,3 +36,7 @@ export const vec4Array = (values: Vector4[]): Vec4Array =>
 /** Reads a texture bilinearly, at its only level, wherever the control flow is. */
 export const sampleLevel0 = (source: TextureNode, uv: Vec2): Vec4 =>
   (source as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }).sample(uv).level(0)
+
+/** Reads a texel as it is. */
+export const loadTexel = (source: TextureNode, texel: Vec2): Vec4 =>
+  (source as unknown as { load(texel: Node): Vec4 }).load(ivec2(texel))

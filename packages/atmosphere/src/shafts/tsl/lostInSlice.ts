@@ -44,7 +44,7 @@ export function lostInSlice(
   const lost = vec4(0).toVar()
   const dark = vec2(from, to).toVar()
   If(length.greaterThan(0), () => {
-    const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight, jitter)
+    const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight)
     const mapped = shadowedAir.maximumRho.div(polar.sinViewLight).toConst()
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)

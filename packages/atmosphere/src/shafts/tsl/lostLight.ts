@@ -71,7 +71,7 @@ export function lostLight(
   const { maximumRho, shadows } = shadowedAir
   const { cosView, cosViewLight, distance } = shaftRay
   const limits = rayLimits(viewpoint, cosView)
-  const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight, jitter)
+  const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight)
   const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
   const isMappedOnly = shadows.length === 0
   const seen = limits.start.add(limits.length).min(distance)

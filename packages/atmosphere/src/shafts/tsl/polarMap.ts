@@ -1,6 +1,6 @@
-import { atan, vec2 } from 'three/tsl'
+import { atan, mix, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { sampleLevel0, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+import { loadTexel, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 
 /**
  * Polar coordinates about the camera with the source of light as pole: θ from the source, φ around it, ρ the
@@ -29,33 +29,39 @@ export interface PolarRay {
   angle: Float
   /** True if the ray goes towards the light. */
   isTowards: Bool
-  /** Texture coordinate of a row near φ, in turns: its middle. */
+  /** φ as a texture coordinate, in turns. */
   row: Float
+  /** The two rows whose middles φ is between, and its place between them. */
+  rows: readonly [Float, Float]
+  betweenRows: Float
 }
 
 /**
  * @param direction - View direction, of unit length.
  * @param cosViewLight - ν, direction against the source.
- * @param jitter - Place of samples in their steps, in (0, 1), which also says which of two rows is taken. Their angles must
- *   not be mixed: a shadow before the sky would be displaced by up to a row, the more the farther from the light.
  */
 export function polarRay(
   { across, along, columns }: PolarFrame,
   direction: Vec3,
-  cosViewLight: Float,
-  jitter: Float
+  cosViewLight: Float
 ): PolarRay {
   const x = direction.dot(across).toConst()
   const y = direction.dot(along).toConst()
   // Not √(1 − ν²), which cancels near the source.
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
-  const turns = atan(y, x).mul(1 / (2 * Math.PI))
-  const rows = columns.mul(4).toConst() as Float
+  const row = atan(y, x)
+    .mul(1 / (2 * Math.PI))
+    .toConst() as Float
+  const count = columns.mul(4).toConst() as Float
+  const place = row.add(1).mul(count).sub(0.5).toConst() as Float
+  const first = place.floor().toConst() as Float
   return {
     sinViewLight,
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
     isTowards: cosViewLight.greaterThan(0).toConst(),
-    row: turns.mul(rows).sub(0.5).add(jitter.mul(3).fract()).floor().add(0.5).div(rows).toConst()
+    row,
+    rows: [first.mod(count).toConst() as Float, first.add(1).mod(count).toConst() as Float],
+    betweenRows: place.sub(first).toConst() as Float
   }
 }
 
@@ -71,29 +77,40 @@ export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distanc
 }
 
 /**
- * Texture coordinate of the rays of light at a distance from the camera's.
+ * Place among columns of the rays of light at a distance from the camera's: whole numbers are middles of columns.
  *
  * @param distance - ρ ≥ 0 [m].
  */
 export function columnAt(frame: PolarFrame, distance: Float): Float {
   const { evenDistance, logScale, logOffset, columns } = frame
   const position = distance.div(evenDistance).add(1).log().mul(logScale).add(logOffset).clamp()
-  return position.mul(columns.sub(1)).add(0.5).div(columns)
+  return position.mul(columns.sub(1))
 }
 
 /**
- * True where air on a view ray is dark: an occluder on its ray of light stands at a smaller angle from the light.
+ * Dark part of the air at a place of a view ray, in [0, 1]: where an occluder on a ray of light stands at a smaller angle from
+ * the light, between the four nearest rays. Each is compared: angles must not be mixed, or a shadow before the sky would be
+ * displaced by up to a texel, the more the farther from the light one looks.
  *
  * @param map - θ of the first occluder, and π − θ, of rays of light [rad].
  * @param distance - Distance from the camera [m].
  */
-export function isDark(
+export function darkPart(
   map: TextureNode,
   frame: PolarFrame,
-  { sinViewLight, angle, isTowards, row }: PolarRay,
+  { sinViewLight, angle, isTowards, rows, betweenRows }: PolarRay,
   distance: Float
-): Bool {
-  const at = vec2(columnAt(frame, distance.mul(sinViewLight)), row)
-  const occluder = sampleLevel0(map, at).toConst()
-  return isTowards.select(angle.greaterThan(occluder.x), angle.lessThan(occluder.y))
+): Float {
+  const column = columnAt(frame, distance.mul(sinViewLight)).toConst() as Float
+  const first = column.floor().toConst() as Float
+  const columns = [first, first.add(1).min(frame.columns.sub(1)).toConst() as Float]
+  const dark = columns.map(x => {
+    const [here, next] = rows.map(y => {
+      const { x: occluder, y: behind } = loadTexel(map, vec2(x, y)).toConst()
+      const isDark = isTowards.select(angle.greaterThan(occluder), angle.lessThan(behind))
+      return isDark.select(1, 0) as Float
+    })
+    return mix(here, next, betweenRows)
+  })
+  return mix(dark[0], dark[1], column.sub(first)).toConst() as Float
 }

@@ -4,7 +4,7 @@ import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPoint, AirShadow } from '../AirOccluder'
-import { isDark, type PolarFrame, type PolarRay } from './polarMap'
+import { darkPart, type PolarFrame, type PolarRay } from './polarMap'
 
 /** A view ray through media. */
 export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
@@ -67,14 +67,18 @@ export function shadowsAlong(
   }
   return {
     darkAt(distance, isMapped) {
-      const inMap = isMapped === false ? null : isDark(map, frame, polar, distance)
-      const isIn = typeof isMapped === 'boolean' ? inMap : inMap!.and(isMapped)
-      const dark = (isIn?.select(1, 0) ?? float(0)).toVar() as Float
+      const dark = float(0).toVar() as Float
+      const addMap = (): void => {
+        dark.assign(darkPart(map, frame, polar, distance))
+      }
+      if (isMapped === true) addMap()
+      else if (isMapped !== false) If(isMapped, addMap)
       if (passing.length > 0) {
         If(dark.lessThan(1), () => {
           const place = placeAt(distance)
           const parts = passing.map(transmittance => transmittance(place))
-          dark.assign(parts.reduce((product, part) => product.mul(part)).oneMinus())
+          const lit = parts.reduce((product, part) => product.mul(part), dark.oneMinus())
+          dark.assign(lit.oneMinus())
         })
       }
       return seenFrom?.(distance).mul(dark) ?? dark
