@@ -60,8 +60,8 @@ export function polarRay(
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
     isTowards: cosViewLight.greaterThan(0).toConst(),
     row,
-    rows: [first.mod(count).toConst() as Float, first.add(1).mod(count).toConst() as Float],
-    betweenRows: place.sub(first).toConst() as Float
+    rows: [first.mod(count).toConst(), first.add(1).mod(count).toConst()],
+    betweenRows: place.sub(first).toConst()
   }
 }
 
@@ -108,9 +108,9 @@ export function darkPart(
     const [here, next] = rows.map(y => {
       const { x: occluder, y: behind } = loadTexel(map, vec2(x, y)).toConst()
       const isDark = isTowards.select(angle.greaterThan(occluder), angle.lessThan(behind))
-      return isDark.select(1, 0) as Float
+      return isDark.select(1, 0)
     })
     return mix(here, next, betweenRows)
   })
-  return mix(dark[0], dark[1], column.sub(first)).toConst() as Float
+  return mix(dark[0], dark[1], column.sub(first)).toConst()
 }
