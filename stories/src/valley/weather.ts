@@ -14,7 +14,7 @@ export interface Weather {
 }
 
 export const weathers = {
-  fair: { cumulus: 0.3, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0 },
+  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0 },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0 },
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0 },
   mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.007 },

@@ -59,6 +59,11 @@ export const heightForm = {
    */
   inversion: 0.68,
   inversionStrength: 17,
+  /**
+   * Least level of detail of the weather of single clouds at a layer's top; 0 at its base: narrow columns stay low, and
+   * broad heads rise from them. 0: needles and flames (*Cumulus*).
+   */
+  broadening: 1.5,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
   /**
@@ -108,7 +113,7 @@ export const billowForm = {
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
    * shape], and heights in the layer over which it sets in, in [0, 1]. 0: columns like cookies (*Cumulus*).
    */
-  bend: 0.045,
+  bend: 0.035,
   bendHeight: 0.2
 } as const
 

@@ -26,8 +26,10 @@ export const stormShape = {
   /** Radius of the tower over that of the anvil, and over the thickness at least [–]. Greater: a storm as wide as its anvil. */
   tower: 0.35,
   leastTower: 0.15,
-  /** Factor of the tower's radius at its base and at the top [–]. */
+  /** Factors of the tower's radius at its base and at the top, under a full anvil [–]. */
   widening: [0.9, 1.15],
+  /** The same without an anvil [–]: a heap. As under an anvil: a block with upright sides (*Shower*). */
+  narrowing: [1.15, 0.35],
   /** Height that the tower's dome reaches: it overshoots the anvil. */
   dome: 0.93,
   /** Height of the anvil, and its greatest depth above and below that. Greater below: a funnel. */

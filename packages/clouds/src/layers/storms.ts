@@ -39,7 +39,7 @@ export function stormBody(
   radius: number,
   height: number
 ): number {
-  const { tower, leastTower, widening, dome, anvil, above, below, blend } = stormShape
+  const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
   const { anvilFrom, grown, least } = stormShape
   const thickness = topAltitude - baseAltitude
   const tall = thickness * Math.max(Math.sqrt(Math.min(radius / thickness / grown, 1)), least)
@@ -51,7 +51,8 @@ export function stormBody(
     radius,
     share * MathUtils.smoothstep(radius / thickness, ...anvilFrom)
   )
-  const column = base * MathUtils.lerp(widening[0], widening[1], height)
+  const [atBase, atTop] = [0, 1].map(end => MathUtils.lerp(narrowing[end], widening[end], share))
+  const column = base * MathUtils.lerp(atBase, atTop, height)
   const inTower = column - Math.hypot(distance, Math.max(y - Math.max(dome * tall - column, 0), 0))
   const rise = y - anvil * tall
   const depth = tall * (rise > 0 ? above : below)

@@ -63,36 +63,46 @@ const octaves = (
 }
 
 /**
- * Displacement of billows by curls of half as many cells, in cells of the billows. 0: round balls; greater:
- * torn threads (*Cumulus*).
+ * Displacement of coarse and of finer billows by curls of half as many cells, in cells of the billows. 0: round balls; greater:
+ * torn threads, and flames for heads (*Cumulus*).
  */
-const STIR = 0.3
+const COARSE_STIR = 0.1
+const FINE_STIR = 0.2
 
 /** Two octaves of billows, each displaced by a curl of its own size on top of the one before. */
-const stirredBillows = (cells: number, gain: number): NoiseTerm[] =>
+const stirredBillows = (cells: number, gain: number, amount: number): NoiseTerm[] =>
   octaves('billow', cells, 2, 1, gain).map(term => {
     const count = term.cells[0]
-    return Object.assign(term, { stir: { cells: count >> 1, amount: STIR / count } })
+    return Object.assign(term, { stir: { cells: count >> 1, amount: amount / count } })
   })
 
 /** Shape noise, 128³ texels, its first two channels: coarse and fine billows. Curl fills the rest. */
 export const shapeChannels: readonly NoiseChannel[] = [
-  { terms: stirredBillows(4, 2 ** -1.2), encoding: 'normal', statistics: [0.6866, 0.1863] },
-  { terms: stirredBillows(16, 2 ** -0.4), encoding: 'normal', statistics: [0.8441, 0.2154] }
+  {
+    terms: stirredBillows(4, 2 ** -1.2, COARSE_STIR),
+    encoding: 'normal',
+    statistics: [0.691, 0.1814]
+  },
+  {
+    terms: stirredBillows(16, 2 ** -0.4, FINE_STIR),
+    encoding: 'normal',
+    statistics: [0.8438, 0.2155]
+  }
 ]
 
 /** Last two channels of the shape noise: components x and y of a curl. */
 export const shapeCurl = {
-  cells: 6,
+  /** Cells of the potentials. More: columns are folded into sheets instead of leaning (*Cumulus*). */
+  cells: 3,
   /** Standard deviations of the components, per cell, over the texture. */
-  deviations: [0.7121, 0.698]
+  deviations: [0.6748, 0.8275]
 } as const
 
 /** Detail noise, 64³ texels of one channel. */
 export const detailChannel: NoiseChannel = {
-  terms: stirredBillows(6, 2 ** -0.4),
+  terms: stirredBillows(6, 2 ** -0.4, FINE_STIR),
   encoding: 'normal',
-  statistics: [0.8451, 0.216]
+  statistics: [0.8449, 0.217]
 }
 
 /** Billows and Perlin noise in shares of their deviations, 2 : 1. */

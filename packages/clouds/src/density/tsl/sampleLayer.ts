@@ -3,7 +3,13 @@ import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { crumbDensity, densityOf, edgeAt } from './density'
-import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
+import {
+  bendAtHeight,
+  billowStrength,
+  densityAtHeight,
+  neededStrength,
+  resolutionAtHeight
+} from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
@@ -72,7 +78,7 @@ function bodyAt(
     background,
     subpoint.toConst(),
     shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst(),
-    resolution,
+    resolutionAtHeight(resolution, height),
     'where unresolved'
   )
   const [body, strength, detailStrength] = [0, 1, 2].map(() => float(0).toVar() as Float)

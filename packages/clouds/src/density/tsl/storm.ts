@@ -105,7 +105,7 @@ export function stormRadius(layer: LayerNodes, background: Float, quantile: Floa
  */
 export const stormBody = /*#__PURE__*/ Fn(
   ([distance, radius, height, thickness, anvilShare]: [Float, Float, Float, Float, Float]) => {
-    const { tower, leastTower, widening, dome, anvil, above, below, blend } = stormShape
+    const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
     const { anvilFrom, grown, least } = stormShape
     const aspect = radius.div(thickness).toConst() as Float
     const tall = aspect.div(grown).clamp(0, 1).sqrt().max(least).mul(thickness).toConst() as Float
@@ -113,9 +113,8 @@ export const stormBody = /*#__PURE__*/ Fn(
     const narrow = radius.mul(tower).max(thickness.mul(leastTower).min(radius)).toConst()
     const base = mix(radius, narrow, anvilShare).toConst() as Float
     const wide = mix(base, radius, anvilShare.mul(smoothstep(...anvilFrom, aspect))).toConst()
-    const column = base
-      .mul(height.mul(widening[1] - widening[0]).add(widening[0]))
-      .toConst() as Float
+    const [atBase, atTop] = [0, 1].map(end => mix(float(narrowing[end]), widening[end], anvilShare))
+    const column = base.mul(mix(atBase, atTop, height)).toConst() as Float
     const overDome = y.sub(tall.mul(dome).sub(column).max(0)).max(0).toConst()
     const inTower = column.sub(distance.mul(distance).add(overDome.mul(overDome)).sqrt()).toConst()
     const rise = y.sub(tall.mul(anvil)).toConst() as Float
