@@ -4,6 +4,7 @@ import { checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
 import { texture3D } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import type { CloudLayerParameters } from '../layers/CloudLayer'
 import { CloudLayers } from '../layers/CloudLayers'
 import { CloudNoise } from '../noise/CloudNoise'
 import { NightLight } from '../light/NightLight'
@@ -135,6 +136,11 @@ export class CloudField {
   readonly axialRatio: number
   /** See {@link CloudFieldOptions.extinction}. */
   readonly extinction: CloudFieldOptions['extinction']
+  /**
+   * Tells layers of storms from others when a shader is compiled, which then has no code for what there is not; left out, the
+   * shader tells them apart itself, and need not be compiled anew when a layer becomes one of storms. See `compiledByKinds`.
+   */
+  readonly storms?: (layer: CloudLayerParameters) => boolean
   readonly #ownsNoise: boolean
   /** Rotation of each layer's noise about the planet's centre: the wind's work. */
   readonly rotations: readonly Quaternion[] = Array.from(
@@ -179,7 +185,11 @@ export class CloudField {
     this.noise = noise ?? new CloudNoise()
     const node = (name: NoiseName): LevelTexture<Vec3> =>
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
-    this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
+    this.textures = {
+      shape: node('shape'),
+      detail: node('detail'),
+      weather: node('weather')
+    }
     this.worldMap = worldMap
     this.extinction = extinction
     const { x, z } = atmosphere.ellipsoid.radii

@@ -27,6 +27,8 @@ export const inLattice = (displacement: Vec2): Vec3 =>
 export interface LayerNodes {
   /** Index among the layers, from 0. */
   index: Int
+  /** True for a layer of storms, false for others; undefined where the shader is to find out. */
+  hasStorms: boolean | undefined
   baseAltitude: Float
   /** 1 / (top − base) [1/m]. */
   perThickness: Float
@@ -95,8 +97,20 @@ const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
   return vec3(x, y, z)
 }
 
-/** Reads a layer; `CloudField` writes what this reads. */
-export function layerAt(field: CloudField, index: Int): LayerNodes {
+/** What is known of a layer's kind when a shader is compiled: see `CloudField.storms`. */
+function storminessOf({ storms, layers }: CloudField, index?: number): boolean | undefined {
+  if (storms === undefined) return undefined
+  const kinds = [...layers].map(layer => storms(layer.parameters))
+  if (index !== undefined) return kinds[index]
+  return kinds.every(kind => kind === kinds[0]) ? kinds[0] : undefined
+}
+
+/**
+ * Reads a layer; `CloudField` writes what this reads.
+ *
+ * @param known - Its index, where that is known when the shader is compiled.
+ */
+export function layerAt(field: CloudField, index: Int, known?: number): LayerNodes {
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const once = (slot: number): Vec4 => read(slot).toConst()
@@ -111,6 +125,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     }
   return {
     index,
+    hasStorms: storminessOf(field, known),
     baseAltitude: extent.x,
     perThickness: extent.y,
     thickness: extent.y.reciprocal(),
@@ -194,13 +209,13 @@ export function forLayers(field: CloudField, body: (index: Int) => void, range?:
  */
 export function forLayersUnrolled(
   field: CloudField,
-  body: (index: Int) => void,
+  body: (index: Int, known: number) => void,
   { first, last }: LayerRange
 ): void {
   const { length } = field.layers
   for (let i = 0; i < length; i++) {
     const index = int(i)
-    if (length === 1) body(index)
-    else If(first.lessThanEqual(index).and(last.greaterThan(index)), () => body(index))
+    if (length === 1) body(index, i)
+    else If(first.lessThanEqual(index).and(last.greaterThan(index)), () => body(index, i))
   }
 }
