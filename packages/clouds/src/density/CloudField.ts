@@ -4,7 +4,6 @@ import { checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere, AtmosphereView, ViewNodes } from '@welkin/atmosphere'
 import { texture3D } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import type { CloudLayerParameters } from '../layers/CloudLayer'
 import { CloudLayers } from '../layers/CloudLayers'
 import { CloudNoise } from '../noise/CloudNoise'
 import { NightLight } from '../light/NightLight'
@@ -136,11 +135,8 @@ export class CloudField {
   readonly axialRatio: number
   /** See {@link CloudFieldOptions.extinction}. */
   readonly extinction: CloudFieldOptions['extinction']
-  /**
-   * Tells layers of storms from others when a shader is compiled, which then has no code for what there is not; left out, the
-   * shader tells them apart itself, and need not be compiled anew when a layer becomes one of storms. See `compiledByKinds`.
-   */
-  readonly storms?: (layer: CloudLayerParameters) => boolean
+  /** Kinds of the layers for which a shader is compiled; left out, for any. See `compiledByKinds`. */
+  readonly kinds?: string
   readonly #ownsNoise: boolean
   /** Rotation of each layer's noise about the planet's centre: the wind's work. */
   readonly rotations: readonly Quaternion[] = Array.from(

@@ -26,8 +26,8 @@ const MAXIMUM_DISTANCE = 60_000
 const EVEN = 20_000
 
 /**
- * The same of the map of whole regions, over the distance of the farthest clouds in sight. Greater: fronts on the
- * horizon blur (*World clouds*).
+ * Distance within which texels of the map of whole regions are about as wide, over that of the farthest clouds in sight. Greater:
+ * fronts on the horizon blur (*World clouds*).
  */
 const REGIONAL_EVEN = 0.7
 

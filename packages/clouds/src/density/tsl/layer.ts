@@ -1,6 +1,7 @@
 import { If, int, vec3, vec4 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
+import { hasStorms } from '../kinds'
 import { latticeRotations, layerRotation } from '../lattice'
 import { LAYER_STRIDE, MESOSCALE_PER_REGIONS, noisePeriods } from '../../layers/layerUniforms'
 import {
@@ -97,19 +98,7 @@ const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
   return vec3(x, y, z)
 }
 
-/** What is known of a layer's kind when a shader is compiled: see `CloudField.storms`. */
-function storminessOf({ storms, layers }: CloudField, index?: number): boolean | undefined {
-  if (storms === undefined) return undefined
-  const kinds = [...layers].map(layer => storms(layer.parameters))
-  if (index !== undefined) return kinds[index]
-  return kinds.every(kind => kind === kinds[0]) ? kinds[0] : undefined
-}
-
-/**
- * Reads a layer; `CloudField` writes what this reads.
- *
- * @param known - Its index, where that is known when the shader is compiled.
- */
+/** Reads a layer, by an index that the compiler may know; `CloudField` writes what this reads. */
 export function layerAt(field: CloudField, index: Int, known?: number): LayerNodes {
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
@@ -125,7 +114,7 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     }
   return {
     index,
-    hasStorms: storminessOf(field, known),
+    hasStorms: hasStorms(field, known),
     baseAltitude: extent.x,
     perThickness: extent.y,
     thickness: extent.y.reciprocal(),

@@ -6,7 +6,8 @@ import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, zenithAt, type CloudSample } from './sample'
-import { ifStorm, stormAround, stormRadius, type StormNearby } from './storm'
+import { ifStorm, stormAround, stormRadius } from './storm'
+import type { StormNearby } from './stormNearby'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
 /** The weather of a layer at a place. */
