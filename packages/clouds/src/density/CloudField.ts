@@ -135,6 +135,8 @@ export class CloudField {
   readonly axialRatio: number
   /** See {@link CloudFieldOptions.extinction}. */
   readonly extinction: CloudFieldOptions['extinction']
+  /** Kinds of the layers for which a shader is compiled; left out, for any. See `compiledByKinds`. */
+  readonly kinds?: string
   readonly #ownsNoise: boolean
   /** Rotation of each layer's noise about the planet's centre: the wind's work. */
   readonly rotations: readonly Quaternion[] = Array.from(
@@ -179,7 +181,11 @@ export class CloudField {
     this.noise = noise ?? new CloudNoise()
     const node = (name: NoiseName): LevelTexture<Vec3> =>
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
-    this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
+    this.textures = {
+      shape: node('shape'),
+      detail: node('detail'),
+      weather: node('weather')
+    }
     this.worldMap = worldMap
     this.extinction = extinction
     const { x, z } = atmosphere.ellipsoid.radii

@@ -1,35 +1,66 @@
-import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { Vector3 } from 'three'
+import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
+import type { Texture, Vector3 } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Float, Int, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { vector3 } from '../uniforms'
+import { number, vector3 } from '../uniforms'
 import type { CloudField } from './CloudField'
 import { layerAt, type LayerNodes } from './tsl/layer'
-import { weatherBackground, type PackedBackground } from './tsl/weatherBackground'
+import { zenithAt } from './tsl/sample'
+import {
+  weatherBackground,
+  weatherSystems,
+  type PackedBackground,
+  type WeatherSystems
+} from './tsl/weatherBackground'
 
-/** Texels along an edge of a layer's map. */
-const SIZE = 256
+/** Texels along an edge of a layer's map, and of the map of whole regions. */
+const SIZE = 384
+const REGIONAL_SIZE = 256
 
 /**
  * Greatest distance over the ground from the camera that the map has [m], and that within which its texels are about
- * as wide: 100 m below the camera, 1.1 km at its rim. Wider: clouds shift as one flies towards them (*Cockpit*).
+ * as wide: 80 m below the camera, 1.3 km at its rim. Wider: clouds shift as one flies towards them (*Cockpit*).
  */
-const MAXIMUM_DISTANCE = 30_000
-const EVEN = 12_000
+const MAXIMUM_DISTANCE = 60_000
+const EVEN = 20_000
 
-/** Position of that distance in the map, from its middle: ρ / (ρ + EVEN). */
-const RIM = MAXIMUM_DISTANCE / (MAXIMUM_DISTANCE + EVEN)
+/**
+ * Distance within which texels of the map of whole regions are about as wide, over that of the farthest clouds in sight. Greater:
+ * fronts on the horizon blur (*World clouds*).
+ */
+const REGIONAL_EVEN = 0.7
+
+/** Unit of displacements by cyclones in half floats [m]. */
+const DISPLACEMENT = 1e5
 
 /** Texels at each edge that bilinear look-ups must not leave. */
 const MARGIN = 0.5
 
-/** Texture coordinates of a layer's tile per unit of position, from its middle. */
-const PER_POSITION = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
+/**
+ * Texture coordinates of a tile per unit of position, from its middle.
+ *
+ * @param even - Even distance over the greatest: positions end at 1 / (1 + even).
+ */
+const perPosition = (size: number, even: number): number =>
+  ((size - 2 * MARGIN) / (2 * size)) * (1 + even)
+
+const PER_POSITION = perPosition(SIZE, EVEN / MAXIMUM_DISTANCE)
+const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
+
+/** A place that a texel of a map stands for. */
+interface PlaceInMap {
+  /** Displacement in the plane, and that of the subpoint [m]. */
+  readonly flat: Vec2
+  readonly subpoint: Vec3
+  /** Width of what a pixel sees of the clouds there [m]. */
+  readonly footprint: Float
+}
 
 /**
  * Weather's background of all layers around a camera's subpoint, drawn anew for each frame: rays that look it up
- * there take one texture read in place of three that wait for each other.
+ * there take one texture read in place of three that wait for each other. Farther away they take four, but the long code of
+ * fronts and belts is not in their shader: a second map has the weather of whole regions, for all layers, as far as clouds are in sight.
  *
  * Each layer has a tile, one above the other. Positions are displacements in the plane that touches the sphere at
  * the subpoint, at ρ / (ρ + EVEN) for a distance ρ from it.
@@ -37,8 +68,14 @@ const PER_POSITION = (SIZE - 2 * MARGIN) / (2 * RIM * SIZE)
 export class WeatherMap {
   readonly #field: CloudField
   readonly #target
-  readonly #pass: FragmentPass
+  readonly #regionalTarget
+  readonly #passes: readonly FragmentPass[]
   readonly #map: LevelTexture<Vec2>
+  readonly #regions: LevelTexture<Vec2>
+  /** Fronts and belts, and displacement by cyclones, in `DISPLACEMENT`. */
+  readonly #systems: LevelTexture<Vec2>
+  /** Distance within which texels of the map of regions are about as wide [m]. */
+  readonly #even = number()
   /** Two directions along the ground at the subpoint, in the mapped space. */
   readonly #axes: readonly [ReturnType<typeof vector3>, ReturnType<typeof vector3>] = [
     vector3(),
@@ -49,39 +86,85 @@ export class WeatherMap {
     this.#field = field
     const { length } = field.layers
     this.#target = tableTarget('Welkin.CloudsWeather', SIZE, SIZE * length)
-    this.#map = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
-    this.#pass = new FragmentPass('Welkin.CloudsWeather', this.#draw())
+    this.#regionalTarget = tableTarget('Welkin.CloudsRegions', REGIONAL_SIZE, REGIONAL_SIZE, 2)
+    const node = (value: Texture): LevelTexture<Vec2> =>
+      texture(value) as unknown as LevelTexture<Vec2>
+    this.#map = node(this.#target.texture)
+    const [regions, systems] = this.#regionalTarget.textures.map(node)
+    this.#regions = regions
+    this.#systems = systems
+    this.#passes = [
+      new FragmentPass('Welkin.CloudsWeather', this.#draw()),
+      new FragmentPass('Welkin.CloudsRegions', this.#drawRegions())
+    ]
+  }
+
+  /**
+   * The place of a position in a map.
+   *
+   * @param even - Distance within which texels are about as wide [m].
+   * @param altitude - Altitude of the clouds there [m].
+   */
+  #placeAt(position: Vec2, even: Float, altitude: Float): PlaceInMap {
+    const { view, radius, pixelAngle } = this.#field
+    const [x, y] = this.#axes
+    const far = position.length().min(0.98).toConst() as Float
+    const flat = position.mul(even.div(far.oneMinus())).toConst() as Vec2
+    const square = flat.dot(flat).min(radius.mul(radius)).toConst() as Float
+    // What the sphere falls short of the plane.
+    const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
+    const subpoint = x.mul(flat.x).add(y.mul(flat.y)).sub(view.up.mul(drop)).toConst() as Vec3
+    const rise = altitude.sub(view.height)
+    const footprint = square.add(rise.mul(rise)).sqrt().mul(pixelAngle).toConst() as Float
+    return { flat, subpoint, footprint }
   }
 
   #draw(): Vec4 {
     const field = this.#field
-    const { view, radius } = field
-    const [x, y] = this.#axes
     return Fn(() => {
       const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
       const layer = layerAt(field, at.y.floor().toInt().toConst())
       const position = vec2(at.x, at.y.fract()).sub(0.5).div(PER_POSITION).toConst() as Vec2
-      const far = position.length().min(0.98).toConst() as Float
-      const flat = position.mul(float(EVEN).div(far.oneMinus())).toConst() as Vec2
-      const square = flat.dot(flat).toConst() as Float
-      // What the sphere falls short of the plane.
-      const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
-      const subpoint = x.mul(flat.x).add(y.mul(flat.y)).sub(view.up.mul(drop)).toConst() as Vec3
-      const up = subpoint.div(radius).add(view.up).normalize().toConst() as Vec3
-      const rise = layer.baseAltitude.sub(view.height)
-      const footprint = square.add(rise.mul(rise)).sqrt().mul(field.pixelAngle).toConst() as Float
-      return weatherBackground(field, layer, subpoint, { up }, footprint)
+      const place = this.#placeAt(position, float(EVEN), layer.baseAltitude)
+      const { flat, subpoint, footprint } = place
+      const up = zenithAt(field, subpoint)
+      return weatherBackground(field, layer, subpoint, { up }, footprint, this.#systemsAt(flat))
     })()
+  }
+
+  #drawRegions(): Outputs {
+    const field = this.#field
+    return outputs<[Vec4, Vec4]>(2, ([regions, others]) => {
+      const position = (uv() as unknown as Vec2)
+        .sub(0.5)
+        .div(REGIONAL_PER_POSITION)
+        .toConst() as Vec2
+      const { subpoint, footprint } = this.#placeAt(position, this.#even, float(0))
+      const found = weatherSystems(field, subpoint, footprint)
+      regions.assign(found.regions)
+      others.assign(vec4(found.displacement.div(DISPLACEMENT), found.systems))
+    })
   }
 
   /** Draws the map; `CloudField.update` goes first. */
   render(renderer: Renderer, up: Vector3): void {
     const [x, y] = this.#axes
+    const { layers, view, radius } = this.#field
+    const top = Math.max(...[...layers].map(layer => layer.parameters.topAltitude))
+    // To the horizon, and beyond it to clouds that stand over it.
+    const angle = [view.height.value, top].reduce(
+      (sum, height) => sum + Math.acos(radius.value / (radius.value + Math.max(height, 0))),
+      0
+    )
+    const farthest = radius.value * Math.sin(Math.min(angle, Math.PI / 2))
+    this.#even.value = REGIONAL_EVEN * Math.max(farthest, MAXIMUM_DISTANCE)
     const isPolar = Math.abs(up.z) >= 0.9
     x.value.set(isPolar ? 1 : 0, 0, isPolar ? 0 : 1)
     x.value.cross(up).normalize()
     y.value.copy(up).cross(x.value)
-    this.#pass.render(renderer, this.#target)
+    const [near, regional] = this.#passes
+    regional.render(renderer, this.#regionalTarget)
+    near.render(renderer, this.#target)
   }
 
   /**
@@ -109,14 +192,31 @@ export class WeatherMap {
       const row = inTile.y.add(float(index)).div(layers.length)
       found.assign(this.#map.sample(vec2(inTile.x, row)).level(0))
     }).Else(() => {
-      found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint))
+      const around = this.#systemsAt(flat)
+      found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint, around))
     })
     return found
   }
 
+  /** Weather of whole regions at a displacement in the plane, from the map of it [m]. */
+  #systemsAt(flat: Vec2): WeatherSystems {
+    const at = flat
+      .div(flat.length().add(this.#even))
+      .mul(REGIONAL_PER_POSITION)
+      .add(0.5)
+      .clamp(MARGIN / REGIONAL_SIZE, 1 - MARGIN / REGIONAL_SIZE)
+      .toConst() as Vec2
+    const regions = this.#regions.sample(at).level(0).toConst() as Vec4
+    const others = this.#systems.sample(at).level(0).toConst() as Vec4
+    return {
+      regions,
+      systems: others.w,
+      displacement: others.xyz.mul(DISPLACEMENT).toConst() as Vec3
+    }
+  }
+
   /** Frees the map. */
   dispose(): void {
-    this.#target.dispose()
-    this.#pass.dispose()
+    for (const each of [this.#target, this.#regionalTarget, ...this.#passes]) each.dispose()
   }
 }

@@ -3,6 +3,8 @@ import { FloatType, NearestFilter, UnsignedByteType, Vector2 } from 'three'
 import type { RenderTarget, Texture, Vector3 } from 'three'
 import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import type { CloudField } from '../density/CloudField'
+import { compiledByKinds, kindsOf } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
@@ -129,6 +131,9 @@ export class CloudRenderer {
   /** History and the target drawn from it: swapped in each frame. */
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
   readonly #weatherMap: WeatherMap
+  readonly #field: CloudField
+  /** Kinds of the layers for which the march was compiled. */
+  #kinds = ''
   readonly #march: FragmentPass
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
@@ -145,12 +150,17 @@ export class CloudRenderer {
   constructor(inputs: Omit<CloudScene, 'weatherMap'>) {
     const { field, viewRays } = inputs
     this.#weatherMap = new WeatherMap(field)
-    const scene = { ...inputs, weatherMap: this.#weatherMap }
+    this.#field = compiledByKinds(field)
+    const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
     this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
     this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen))
+    for (const { material } of [this.#march, this.#shade]) {
+      const key = material.customProgramCacheKey.bind(material)
+      material.customProgramCacheKey = () => key() + kindsOf(field)
+    }
     const { marched: shaded } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
     const cells = texturesOf(this.#cellsTarget)
@@ -188,6 +198,7 @@ export class CloudRenderer {
    * @param up - Zenith of the camera, in the mapped space.
    */
   render(renderer: Renderer, up: Vector3): void {
+    this.#compile()
     this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
     this.#shade.render(renderer, this.#shadedTarget)
@@ -198,6 +209,14 @@ export class CloudRenderer {
     const [light, distances] = target.textures
     this.accumulated.light.value = light
     this.accumulated.distances.value = distances
+  }
+
+  /** Has what has code for storms compiled anew where layers of storms come or go. */
+  #compile(): void {
+    const kinds = kindsOf(this.#field)
+    if (kinds === this.#kinds) return
+    this.#kinds = kinds
+    for (const { material } of [this.#march, this.#shade]) material.needsUpdate = true
   }
 
   /** Frees the render targets. */

@@ -1,6 +1,7 @@
 import { If, int, vec3, vec4 } from 'three/tsl'
 import { Matrix4, type Quaternion } from 'three'
 import type { CloudField } from '../CloudField'
+import { hasStorms } from '../kinds'
 import { latticeRotations, layerRotation } from '../lattice'
 import { LAYER_STRIDE, MESOSCALE_PER_REGIONS, noisePeriods } from '../../layers/layerUniforms'
 import {
@@ -27,6 +28,8 @@ export const inLattice = (displacement: Vec2): Vec3 =>
 export interface LayerNodes {
   /** Index among the layers, from 0. */
   index: Int
+  /** True for a layer of storms, false for others; undefined where the shader is to find out. */
+  hasStorms: boolean | undefined
   baseAltitude: Float
   /** 1 / (top − base) [1/m]. */
   perThickness: Float
@@ -95,8 +98,8 @@ const rotate = (rotation: Quaternion, v: Vec3): Vec3 => {
   return vec3(x, y, z)
 }
 
-/** Reads a layer; `CloudField` writes what this reads. */
-export function layerAt(field: CloudField, index: Int): LayerNodes {
+/** Reads a layer, by an index that the compiler may know; `CloudField` writes what this reads. */
+export function layerAt(field: CloudField, index: Int, known?: number): LayerNodes {
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const once = (slot: number): Vec4 => read(slot).toConst()
@@ -111,6 +114,7 @@ export function layerAt(field: CloudField, index: Int): LayerNodes {
     }
   return {
     index,
+    hasStorms: hasStorms(field, known),
     baseAltitude: extent.x,
     perThickness: extent.y,
     thickness: extent.y.reciprocal(),
@@ -194,13 +198,13 @@ export function forLayers(field: CloudField, body: (index: Int) => void, range?:
  */
 export function forLayersUnrolled(
   field: CloudField,
-  body: (index: Int) => void,
+  body: (index: Int, known: number) => void,
   { first, last }: LayerRange
 ): void {
   const { length } = field.layers
   for (let i = 0; i < length; i++) {
     const index = int(i)
-    if (length === 1) body(index)
-    else If(first.lessThanEqual(index).and(last.greaterThan(index)), () => body(index))
+    if (length === 1) body(index, i)
+    else If(first.lessThanEqual(index).and(last.greaterThan(index)), () => body(index, i))
   }
 }

@@ -1,11 +1,12 @@
 import { float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { stormBillows } from '../stormForm'
-import type { Float, Vec2 } from '../../tsl-types'
+import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { neededStrength } from './heightForm'
-import type { LayerNodes } from './layer'
+import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
-import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
+import { stormNearby, type KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
 import { cloudWeather, leanAt } from './weather'
@@ -24,7 +25,7 @@ const LIKELY = 0.012
  * Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. Greater:
  * faster, and small clouds are missed here and there, as grain (*Cumulus*).
  */
-export const CAUTION = 0.45
+export const CAUTION = 0.7
 
 /**
  * Likely distance of a layer's clouds: strength is too wild for a distance that is sure, so a march that goes
@@ -76,45 +77,49 @@ export function likelyDistanceByBackground(
     .sub(footprint.mul(BLUR))
 }
 
-/**
- * Part of a storm's distance that counts: a pair is two steps long, and the distance is that of the middle of the one before. Greater:
- * towers are missed by level rays, as blades (*Storm*).
- */
-const PAIRED = 0.5
+/** Part of the stretch that is surely clear of storms which the next pair of samples may reach over. Greater: towers get ragged (*Storm*). */
+const SURE = 0.6
 
 /**
  * Likely distance of the storms of a layer, whatever billows and turbulence add: there these need not be looked up [m]. 0
  * or less elsewhere.
  *
- * @param sample - The place.
+ * @param middle - The place in the middle between a pair of samples.
+ * @param length - Distance between them; as much lies beyond them [m].
+ * @param nearby - Gets the storm nearest to it.
  */
-export function likelyDistanceOfStorms(
+export function clearOfStorms(
   field: CloudField,
   layer: LayerNodes,
   background: PackedBackground,
-  sample: CloudSample,
-  height: Float
+  middle: CloudSample,
+  length: Float,
+  nearby: KeptStorm
 ): Float {
-  const still = vec2(0) as Vec2
-  const subpoint = subpointOffset(field, sample)
-    .sub(leanAt(layer, sample.up, height))
-    .toConst()
-  const resolution = resolutionAt(layer, footprintOf(field, sample))
+  const height = heightIn(layer, middle.altitude)
+  const subpoint = subpointOffset(field, middle)
+    .sub(leanAt(layer, middle.up, height))
+    .toConst() as Vec3
+  const resolution = resolutionAt(layer, footprintOf(field, middle))
   const around = unpackBackground(background)
-  const weather = cloudWeather(
-    field,
-    layer,
-    around,
-    subpoint,
-    still,
-    resolution,
-    'where unresolved'
-  )
-  const isResolved = resolution.unresolvedFraction.equal(0)
-  return smoothStormStrength(layer, weather, height)
+  const found = stormNearby(layer, subpoint, zenithAt(field, subpoint), around.shift)
+  nearby.place.assign(found.place)
+  nearby.gap.assign(found.gap)
+  const still = vec2(0) as Vec2
+  const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
+  const clear = smoothStormStrength(layer, weather, height)
     .negate()
     .sub(stormBillows.most)
-    .mul(stormBillows.unit * PAIRED)
+    .mul(stormBillows.unit)
     .div(layer.perShapePeriod)
-    .mul(isResolved.select(1, 0))
+    .toConst() as Float
+  // Both samples are in clear air, and what lies before the end of the pair is gone by.
+  const isSure = clear.greaterThan(length).and(resolution.unresolvedFraction.equal(0))
+  return isSure.select(
+    clear
+      .sub(length)
+      .max(1)
+      .mul(SURE / CAUTION),
+    0
+  )
 }

@@ -13,7 +13,8 @@ import {
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
-import { isStorm } from './storm'
+import { ifStorm } from './storm'
+import type { StormNearby } from './stormNearby'
 import { stormStrength } from './stormStrength'
 import { columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
@@ -43,6 +44,8 @@ export interface SampleOptions {
   readonly unresolved?: Unresolved
   /** Direction of the ray on which they are met, in the mapped space; left out, straight up. */
   readonly direction?: Vec3
+  /** In layers of storms, the one nearest to the samples; left out, it is looked for. */
+  readonly storm?: StormNearby
 }
 
 /** A layer at a place, before detail. */
@@ -67,7 +70,8 @@ function bodyAt(
   layer: LayerNodes,
   background: WeatherBackground,
   sample: CloudSample,
-  resolution: Resolution
+  resolution: Resolution,
+  nearby?: StormNearby
 ): Body {
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
   const shape = billows(field, layer, sample.offset, background.shift, resolution.shapeLevel)
@@ -79,29 +83,33 @@ function bodyAt(
     subpoint.toConst(),
     shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst(),
     resolutionAtHeight(resolution, height),
-    'where unresolved'
+    nearby
   )
   const [body, strength, detailStrength] = [0, 1, 2].map(() => float(0).toVar() as Float)
   const edge = edgeAt(layer, height).toVar() as Float
   const crumbs = float(1).toVar() as Float
-  If(isStorm(layer), () => {
-    const storm = stormStrength(layer, weather, shape, height)
-    body.assign(storm.body)
-    strength.assign(storm.strength)
-    detailStrength.assign(storm.detail)
-    edge.assign(storm.edge)
-  }).Else(() => {
-    const amount = billowStrength(layer, height)
-    const column = columnStrength(layer, weather, background.coverage, resolution)
-    const rough = topBillows(column)
-    const needed = neededStrength(layer, height).toConst() as Float
-    body.assign(column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)))
-    const share = fineShare(body)
-    const fine = shape.fine.mul(amount.fine).mul(rough)
-    strength.assign(body.add(fine.mul(share)))
-    detailStrength.assign(amount.detail.mul(share))
-    crumbs.assign(crumbDensity(column, needed))
-  })
+  ifStorm(
+    layer,
+    () => {
+      const storm = stormStrength(layer, weather, shape, height)
+      body.assign(storm.body)
+      strength.assign(storm.strength)
+      detailStrength.assign(storm.detail)
+      edge.assign(storm.edge)
+    },
+    () => {
+      const amount = billowStrength(layer, height)
+      const column = columnStrength(layer, weather, background.coverage, resolution)
+      const rough = topBillows(column)
+      const needed = neededStrength(layer, height).toConst() as Float
+      body.assign(column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)))
+      const share = fineShare(body)
+      const fine = shape.fine.mul(amount.fine).mul(rough)
+      strength.assign(body.add(fine.mul(share)))
+      detailStrength.assign(amount.detail.mul(share))
+      crumbs.assign(crumbDensity(column, needed))
+    }
+  )
   return { sample, height, weather, body, strength, detailStrength, edge, crumbs }
 }
 
@@ -125,7 +133,7 @@ export function sampleLayerAt(
   background: PackedBackground,
   middle: CloudSample,
   samples: readonly CloudSample[],
-  { detail: hasDetail, unresolved = 'mean', direction }: SampleOptions
+  { detail: hasDetail, unresolved = 'mean', direction, storm }: SampleOptions
 ): LayerSample[] {
   if (field.extinction)
     return samples.map(sample => {
@@ -135,10 +143,9 @@ export function sampleLayerAt(
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution
-  const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution))
-  return bodies.map(body => {
+  const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution, storm))
+  const found = bodies.map(body => {
     const { sample, height, strength, detailStrength, edge } = body
-    const { filteredCoverage } = body.weather
     const whole = strength.toVar() as Float
     const density = float(0).toVar() as Float
     const mostDetail = detailStrength
@@ -155,14 +162,24 @@ export function sampleLayerAt(
       const full = densityAtHeight(layer, height).mul(body.crumbs)
       density.assign(densityOf(whole, body.body, edge).mul(full))
     })
-    If(unresolvedFraction.mul(filteredCoverage).greaterThan(0), () => {
-      const cosine = direction?.dot(sample.up).toConst() as Float | undefined
-      const mean = unresolvedDensity(field, layer, filteredCoverage, height, unresolved, cosine)
-      density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
-      whole.assign(whole.max(0))
-    })
-    return { extinction: layer.density.mul(density).toConst(), strength: whole }
+    return { density, strength: whole }
   })
+  If(unresolvedFraction.greaterThan(0), () => {
+    bodies.forEach(({ sample, height, weather: { filteredCoverage } }, i) => {
+      const { density, strength } = found[i]
+      const covered = filteredCoverage()
+      If(covered.greaterThan(0), () => {
+        const cosine = direction?.dot(sample.up).toConst() as Float | undefined
+        const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
+        density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
+        strength.assign(strength.max(0))
+      })
+    })
+  })
+  return found.map(({ density, strength }) => ({
+    extinction: layer.density.mul(density).toConst(),
+    strength
+  }))
 }
 
 /** One layer at a place: see {@link sampleLayerAt}. */

@@ -1,4 +1,4 @@
-import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -7,15 +7,15 @@ import { densityAtHeight } from './heightForm'
 import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
 import {
   CAUTION,
+  clearOfStorms,
   likelyDistance,
   likelyDistanceByBackground,
-  likelyDistanceOfStorms,
   NOWHERE
 } from './likelyDistance'
 import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
-import { isStorm } from './storm'
+import { ifStorm } from './storm'
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -62,8 +62,8 @@ export function samplePair(
   const greatest = float(0).toVar()
   const end = middle.distance.add(length.mul(0.5)).toConst()
   const isAlone = field.layers.length === 1
-  const look = (index: Int): void => {
-    const layer = layerAt(field, index)
+  const look = (index: Int, known: number): void => {
+    const layer = layerAt(field, index, known)
     const height = heightIn(layer, middle.altitude)
     const own = componentAt(float(index))
     const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
@@ -71,15 +71,23 @@ export function samplePair(
     If(isHere.and(clearUntil.lessThan(end)), () => {
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
-      const footprint = footprintOf(field, middle)
-      const likely = likelyDistanceByBackground(layer, background, height, footprint).toVar()
-      If(isStorm(layer), () => {
-        likely.assign(likelyDistanceOfStorms(field, layer, background, middle, height))
-      })
+      const likely = float(0).toVar()
+      const storm = { place: vec3(0).toVar(), gap: vec3(0).toVar() }
+      ifStorm(
+        layer,
+        () => {
+          likely.assign(clearOfStorms(field, layer, background, middle, length, storm))
+        },
+        () => {
+          const footprint = footprintOf(field, middle)
+          likely.assign(likelyDistanceByBackground(layer, background, height, footprint))
+        }
+      )
       If(likely.lessThanEqual(0), () => {
         const [first, second] = sampleLayerAt(field, layer, background, middle, places, {
           detail: true,
-          direction
+          direction,
+          storm
         })
         likely.assign(likelyDistance(layer, first.strength.max(second.strength)))
         sum.addAssign(vec2(first.extinction, second.extinction))

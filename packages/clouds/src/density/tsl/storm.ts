@@ -1,9 +1,9 @@
-import { Fn, float, mix, smoothstep, step, vec3 } from 'three/tsl'
+import { Fn, If, bool, float, mix, smoothstep } from 'three/tsl'
 import { noisePeriods } from '../../layers/layerUniforms'
-import { cellOf, digitsOf, hashCell, wrapped } from '../../noise/tsl/cellHash'
-import { layout, loop, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 import { stormPlaces, stormShape } from '../stormForm'
-import { inLattice, type LayerNodes } from './layer'
+import type { LayerNodes } from './layer'
+import { placeOf, squareFrom, stormGap, type StormNearby } from './stormNearby'
 
 // Storms: layers of the weather of cumulonimbus alone. Noise cut at a threshold has no anatomy; a storm has a place, a
 // tower and an anvil, and its surface is a distance [m], so that billows stand out as far to all sides.
@@ -17,40 +17,17 @@ export interface StormAround {
 }
 
 /** True for layers of storms. */
-export const isStorm = ({ weights }: LayerNodes): Bool =>
-  weights.z.greaterThan(0).and(weights.x.add(weights.y).add(weights.w.abs()).equal(0))
+export const isStorm = ({ weights, hasStorms }: LayerNodes): Bool =>
+  hasStorms === undefined
+    ? weights.z.greaterThan(0).and(weights.x.add(weights.y).add(weights.w.abs()).equal(0))
+    : (bool(hasStorms) as Bool)
 
-/**
- * Distance from the axis of the nearest storm. Twin: test/twins/storm.ts
- *
- * @param p - Place in the lattice, in its periods.
- * @param up - Zenith in the lattice, unit length.
- * @returns [cells]
- */
-export const stormDistance = /*#__PURE__*/ Fn(
-  ([p, up]: [Vec3, Vec3]) => {
-    const { cells, seed, jitter, away } = stormPlaces
-    const count = vec3(cells)
-    const { base, part, origin, index } = cellOf(p, count, float(seed))
-    // The eight nearest cells: towards the nearer neighbour along each axis.
-    const side = step(vec3(0.5), part).mul(2).sub(1).toConst()
-    const stride = wrapped(base.add(side), count).sub(origin).toConst()
-    const nearest = float(9).toVar()
-    loop('stormCell', 8, corner => {
-      const digits = digitsOf(corner, 2).toConst()
-      const place = hashCell(index.add(stride.mul(digits)))
-        .mul(jitter)
-        .add((1 - jitter) / 2)
-      const gap = side.mul(vec3(digits)).add(place).sub(part).toConst()
-      const height = gap.dot(up).toConst()
-      const square = height.mul(height).toConst()
-      const aside = square.mul(square).mul(square).mul(away)
-      nearest.assign(nearest.min(gap.dot(gap).sub(square).add(aside)))
-    })
-    return nearest.max(0).sqrt()
-  },
-  layout('welkinStormDistance', 'float', { p: 'vec3', up: 'vec3' })
-) as unknown as (p: Vec3, up: Vec3) => Float
+/** Code for layers of storms and for others: only one of both where the kind is known. */
+export function ifStorm(layer: LayerNodes, storm: () => void, other: () => void): void {
+  if (layer.hasStorms === undefined) If(isStorm(layer), storm).Else(other)
+  else if (layer.hasStorms) storm()
+  else other()
+}
 
 /** Length of a cell [m]. */
 const cellLength = (layer: LayerNodes): Float =>
@@ -65,12 +42,22 @@ const cellLength = (layer: LayerNodes): Float =>
  * @param subpoint - As of `cloudWeather`.
  * @param up - Zenith there, in the mapped space.
  * @param bent - Displacement of the look-up along two axes of the lattice [m].
+ * @param nearby - The nearest storm, if it is known; left out, it is looked for.
  */
-export function stormAround(layer: LayerNodes, subpoint: Vec3, up: Vec3, bent: Vec2): StormAround {
-  const perPeriod = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
-  const place = layer.fieldLattice(subpoint).add(inLattice(bent).mul(perPeriod)).toConst() as Vec3
-  const cells = stormDistance(place, layer.directionInFields(up).toConst())
-  const { scale, power } = stormPlaces
+export function stormAround(
+  layer: LayerNodes,
+  subpoint: Vec3,
+  up: Vec3,
+  bent: Vec2,
+  nearby?: StormNearby
+): StormAround {
+  const { scale, power, cells: count } = stormPlaces
+  const zenith = layer.directionInFields(up).toConst() as Vec3
+  const place = placeOf(layer, subpoint, bent)
+  const gap = nearby?.gap.sub(place.sub(nearby.place).mul(count)) ?? stormGap(place, zenith)
+  const cells = squareFrom(gap.toConst() as Vec3, zenith)
+    .sqrt()
+    .toConst() as Float
   return {
     distance: cells.mul(cellLength(layer)).toConst(),
     rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()

@@ -1,4 +1,4 @@
-import { If, float, vec2 } from 'three/tsl'
+import { float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
@@ -6,15 +6,16 @@ import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, zenithAt, type CloudSample } from './sample'
-import { isStorm, stormAround, stormRadius } from './storm'
+import { ifStorm, stormAround, stormRadius } from './storm'
+import type { StormNearby } from './stormNearby'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
 /** The weather of a layer at a place. */
 export interface CloudWeather {
   /** Sum of the weather's noise on all scales, of mean 0 and variance 1; blurred clouds are as many as sharp ones. */
   readonly sum: Float
-  /** Share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
-  readonly filteredCoverage: Float
+  /** Makes the share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
+  readonly filteredCoverage: () => Float
   /** In layers of storms, distance from the axis of the nearest one, and its radius [m]; 0 in others. */
   readonly stormDistance: Float
   readonly stormRadius: Float
@@ -51,7 +52,7 @@ export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
  * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
  *   `leanAt`.
  * @param bend - Displacement by turbulence [m].
- * @param where - True where the filtered coverage is wanted: elsewhere it is 0.
+ * @param nearby - In layers of storms, the nearest one, if it is known.
  */
 export function cloudWeather(
   field: CloudField,
@@ -59,32 +60,32 @@ export function cloudWeather(
   background: WeatherBackground,
   subpoint: Vec3,
   bend: Vec2,
-  { weatherLevel: level, unresolvedFraction, lostVariance, gain, cloudsLost }: Resolution,
-  where: 'everywhere' | 'where unresolved'
+  { weatherLevel: level, lostVariance, gain, cloudsLost }: Resolution,
+  nearby?: StormNearby
 ): CloudWeather {
   const bent = bend.add(background.shift).toConst() as Vec2
   const single = float(0).toVar() as Float
   const stormDistance = float(0).toVar() as Float
   const radius = float(0).toVar() as Float
-  If(isStorm(layer), () => {
-    const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent)
-    stormDistance.assign(storm.distance)
-    radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
-    single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
-  }).Else(() => {
-    const clouds = field.textures.weather
-      .sample(layer.weatherLattice(subpoint).add(inLattice(bent).mul(layer.perWeatherPeriod)))
-      .level(level)
-      .sub(0.5)
-    single.assign(clouds.dot(layer.weights))
-  })
+  ifStorm(
+    layer,
+    () => {
+      const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, nearby)
+      stormDistance.assign(storm.distance)
+      radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
+      single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
+    },
+    () => {
+      const clouds = field.textures.weather
+        .sample(layer.weatherLattice(subpoint).add(inLattice(bent).mul(layer.perWeatherPeriod)))
+        .level(level)
+        .sub(0.5)
+      single.assign(clouds.dot(layer.weights))
+    }
+  )
   const blurred = single.add(background.sum).toConst() as Float
-  const filteredCoverage = float(0).toVar()
-  const filter = (): void => {
-    filteredCoverage.assign(coverageOf(layer, blurred, lostVariance, background.coverage))
-  }
-  if (where === 'everywhere') filter()
-  else If(unresolvedFraction.greaterThan(0), filter)
+  const filteredCoverage = (): Float =>
+    coverageOf(layer, blurred, lostVariance, background.coverage).toConst()
   const sum = blurred.mul(gain).toConst() as Float
   return { sum, filteredCoverage, stormDistance, stormRadius: radius }
 }
@@ -107,6 +108,5 @@ export function filteredCoverageAt(
   const background = unpackBackground(packed)
   const still = vec2(0) as Vec2
   const resolution = resolutionAt(layer, footprint)
-  return cloudWeather(field, layer, background, subpoint, still, resolution, 'everywhere')
-    .filteredCoverage
+  return cloudWeather(field, layer, background, subpoint, still, resolution).filteredCoverage()
 }

@@ -37,8 +37,8 @@ export const unpackBackground = (packed: PackedBackground): WeatherBackground =>
   shift: vec2(packed.z, packed.w).toConst()
 })
 
-/** Weather of whole regions, which all layers share: where one is clear, others are. */
-interface WeatherSystems {
+/** Weather of whole regions, which all layers share: where one is clear, others are. It is smooth over 100 km. */
+export interface WeatherSystems {
   /** Noise of the regions, each channel in [−½, ½]. */
   readonly regions: Vec4
   /** Fronts and belts, of variance 1. */
@@ -47,15 +47,18 @@ interface WeatherSystems {
   readonly displacement: Vec3
 }
 
-/** Weather of whole regions at a place: a texture read. */
-function weatherSystems(
+/**
+ * Weather of whole regions at a place: a texture read.
+ *
+ * @param subpoint - `subpointOffset` of the sample.
+ * @param footprint - Width of what the sample stands for [m].
+ */
+export function weatherSystems(
   field: CloudField,
-  layer: LayerNodes,
   subpoint: Vec3,
   footprint: Float
 ): WeatherSystems {
-  const isAlone = field.layers.length === 1
-  const first = isAlone ? layer : layerAt(field, int(0))
+  const first = layerAt(field, int(0))
   // Of the subpoint itself: what cyclones displace it by must fit to the metre.
   const zenith = first.directionInSystems(zenithAt(field, subpoint)).normalize().toConst() as Vec3
   const waves = planetWaves(zenith).toConst() as Vec3
@@ -69,7 +72,11 @@ function weatherSystems(
     .level(weatherLevel(footprint, 1 / noisePeriods.regions))
     .sub(0.5)
     .toConst() as Vec4
-  return { regions, systems: frontsAndBelts(zenith, waves, regions, cyclone), displacement }
+  return {
+    regions,
+    systems: frontsAndBelts(zenith, waves, regions, cyclone),
+    displacement
+  }
 }
 
 /** Clusters and bands in which fields gather: a texture read. */
@@ -91,15 +98,16 @@ const mesoscaleAt = (
  *
  * @param subpoint - `subpointOffset` of the sample: the weather is the same all the way up.
  * @param footprint - Width of what the sample stands for [m].
+ * @param around - `weatherSystems` there.
  */
 export function weatherBackground(
   field: CloudField,
   layer: LayerNodes,
   subpoint: Vec3,
   sample: Pick<CloudSample, 'up'>,
-  footprint: Float
+  footprint: Float,
+  around = weatherSystems(field, subpoint, footprint)
 ): PackedBackground {
-  const around = weatherSystems(field, layer, subpoint, footprint)
   const { regions, systems } = around
   const scale = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
   const fields = field.textures.weather

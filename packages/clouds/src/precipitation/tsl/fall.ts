@@ -132,15 +132,7 @@ export function fallenFrom(
     const resolution = resolutionAt(layer, distance.mul(field.pixelAngle).toConst())
     const subpoint = subpointOffset(field, above).toConst() as Vec3
     const still = vec3(0).xy as Vec2
-    const weather = cloudWeather(
-      field,
-      layer,
-      background,
-      subpoint,
-      still,
-      resolution,
-      'where unresolved'
-    )
+    const weather = cloudWeather(field, layer, background, subpoint, still, resolution)
     const columns = background.coverage.mul(nodes.share).max(1e-4)
     rank.assign(cumulative(weather.sum).oneMinus().div(columns).oneMinus().max(0))
     If(rank.greaterThan(0).and(background.coverage.greaterThan(0)), () => {
