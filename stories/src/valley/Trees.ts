@@ -27,10 +27,16 @@ const _direction = new Vector3()
 
 /** Brightness of leaves and the gaps between them, about 1. */
 export function mottled(): Node<'float'> {
-  const { x, y, z } = positionGeometry.mul(6.7)
-  const across = sin(x.add(sin(z.mul(1.3)).mul(2.1)))
-  const up = sin(y.mul(1.4).add(sin(x.mul(0.8)).mul(1.7)))
-  return smoothstep(-0.6, 0.6, across.mul(up)).mul(0.5).add(0.75)
+  // Waves that bend each other: products of straight ones show as a net.
+  const bend = (by: Node<'vec3'>, scale: number, strength: number): Node<'vec3'> =>
+    positionGeometry.mul(scale).add(sin(by).mul(strength)).toConst()
+  const branches = bend(positionGeometry.zxy.mul(2.3), 3.1, 1.9)
+  const leaves = bend(branches.yzx.mul(1.7), 11, 2.4)
+  const coarse = sin(branches.x).mul(sin(branches.y.add(branches.z)))
+  const fine = sin(leaves.x.add(leaves.y)).mul(sin(leaves.z.sub(leaves.y.mul(0.6))))
+  return smoothstep(-1.1, 1.1, coarse.mul(0.7).add(fine.mul(0.8)))
+    .mul(0.7)
+    .add(0.65)
 }
 
 /** Trees of a kind, drawn with fewer triangles the farther they are from the camera. */
