@@ -42,7 +42,7 @@ export async function startStorybook(): Promise<{ origin: string; stop: () => Pr
   }
 }
 
-/** What a link brings back. */
+/** View, hour and weather that a story shows. */
 interface Shown {
   view: ExplorerState
   hour: number
