@@ -128,8 +128,8 @@ function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
     color = chance.greaterThan(0.4 + 0.15 * i).select(vec3(...crop), color)
   }
   // Furrows along the strips, until they are as fine as pixels.
-  const furrows = sin(across.mul((2 * Math.PI * STRIP) / 2.6)).mul(smoothstep(120, 30, distance))
-  return color.mul(furrows.mul(0.12).add(1))
+  const furrows = sin(across.mul((2 * Math.PI * STRIP) / 2.6)).mul(smoothstep(170, 40, distance))
+  return color.mul(furrows.mul(0.08).add(1))
 }
 
 /** Middle of the road that leads through the village to the lake, at a place along the valley [m]. */
