@@ -43,7 +43,8 @@ export function mottled(): Node<'float'> {
 export class Trees extends Group {
   readonly #trees: readonly Tree[]
   readonly #distances: readonly number[]
-  readonly #levels: readonly InstancedMesh[]
+  /** Levels of detail, the finest first. */
+  readonly levels: readonly InstancedMesh[]
   readonly #sortedAt = new Vector3(Infinity, 0, 0)
   readonly #sortedTowards = new Vector3()
 
@@ -61,7 +62,7 @@ export class Trees extends Group {
     this.#distances = distances
     const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     material.colorNode = vec3(mottled())
-    this.#levels = geometries.map(geometry => {
+    this.levels = geometries.map(geometry => {
       const mesh = new InstancedMesh(geometry, material, trees.length)
       mesh.setColorAt(0, new Color())
       mesh.castShadow = mesh.receiveShadow = true
@@ -70,7 +71,7 @@ export class Trees extends Group {
       mesh.renderOrder = -1
       return mesh
     })
-    this.add(...this.#levels)
+    this.add(...this.levels)
   }
 
   /**
@@ -87,18 +88,18 @@ export class Trees extends Group {
     this.#sortedTowards.copy(_direction)
     const isSteep = Math.abs(_direction.y) > STEEP
     const last = this.#distances.length
-    for (const level of this.#levels) level.count = 0
+    for (const level of this.levels) level.count = 0
     for (const { matrix, color } of this.#trees) {
       _place.setFromMatrixPosition(matrix).sub(position)
       const distance = _place.length()
       const index = this.#distances.filter(from => distance >= from).length
       if (index === last && !isSteep && _place.dot(_direction) < COS_ASIDE * distance) continue
-      const level = this.#levels[index]
+      const level = this.levels[index]
       level.setMatrixAt(level.count, matrix)
       level.setColorAt(level.count, color)
       level.count++
     }
-    for (const level of this.#levels) {
+    for (const level of this.levels) {
       level.visible = level.count > 0
       level.instanceMatrix.needsUpdate = true
       level.instanceColor!.needsUpdate = true
@@ -107,6 +108,6 @@ export class Trees extends Group {
   }
 
   override dispose(): void {
-    disposeMeshes(this.#levels)
+    disposeMeshes(this.levels)
   }
 }

@@ -11,7 +11,7 @@ import {
 } from 'three'
 import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
-import { fieldBorder, forestAt, groundHeight, isField, VILLAGE } from './ground'
+import { fieldBorder, forestAt, groundHeight, isField, isOnRoad, VILLAGE } from './ground'
 import { smoothNoise } from './noise'
 import { Trees, type Tree } from './Trees'
 
@@ -165,7 +165,7 @@ function hedgesNear(count: number): Tree[] {
       const z = VILLAGE.z + along
       const x = fieldBorder(border, z) + 1.5 * random()
       const isRow = smoothNoise(0.37 * border, z / 130) > 0.12
-      if (isRow && isField(x, z)) trees.push(treeAt(x, z, 0.62, random))
+      if (isRow && isField(x, z) && !isOnRoad(x, z, 3)) trees.push(treeAt(x, z, 0.62, random))
     }
   }
   return trees
@@ -184,6 +184,7 @@ function plant(
     const distance = REACH * random() ** 0.8 + 14
     const x = VILLAGE.x + distance * Math.cos(angle)
     const z = VILLAGE.z + distance * Math.sin(angle)
+    if (isOnRoad(x, z, 3)) continue
     if (random() < shareAt(x, z, groundHeight(x, z))) trees.push(treeAt(x, z, 1, random))
   }
   return trees

@@ -136,6 +136,10 @@ function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
 export const roadMiddle = (z: number): number =>
   14 * Math.sin(z / 95) + 38 * Math.sin(z / 310) + VILLAGE.x - 44
 
+/** True on that road, or beside it within some distance [m]. */
+export const isOnRoad = (x: number, z: number, aside = 0): boolean =>
+  z > -300 && Math.abs(x - roadMiddle(z)) < HALF_ROAD + aside
+
 /** 1 on that road. Twin of the middle: {@link roadMiddle}. */
 function roadAt(): Node<'float'> {
   const { x, z } = positionWorld
