@@ -7,9 +7,12 @@ import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
 import type { ExplorerState } from '../../stories/src/moving/Explorer'
+import { startStorybook, testLink } from './link'
 
 const viewport = { width: 160, height: 90 }
 const limitSeconds = 60
+/** Storybook's pages are compiled as they are asked for, and the valley is drawn in software. */
+const linkLimitSeconds = 500
 const stories = fileURLToPath(new URL('../../stories/src/plain.stories.ts', import.meta.url))
 
 const report = new Report()
@@ -134,6 +137,7 @@ async function move(browser: Browser, origin: string): Promise<void> {
 }
 
 const root = fileURLToPath(new URL('page', import.meta.url))
+const storybook = startStorybook()
 const server = await serveStatic([
   { path: '/', folder: await bundlePage(root, { 'plain.stories': stories }, [worldData()]) }
 ])
@@ -141,11 +145,16 @@ const browser = await launchChromium()
 const start = performance.now()
 try {
   await withLimit(move(browser, server.origin), limitSeconds)
+  await withLimit(testLink(browser, (await storybook).origin, report), linkLimitSeconds)
 } catch (error) {
   report.fail('moving', String(error))
 } finally {
   await browser.close()
   await server.close()
+  await storybook.then(
+    ({ stop }) => stop(),
+    () => undefined
+  )
 }
 console.log(`${((performance.now() - start) / 1000).toFixed(1)} s`)
 report.finish()

@@ -8,6 +8,8 @@ declare global {
   interface Window {
     /** The scene of the story on show, for tests: `welkinScene.render()` and then `canvas.toDataURL()`. */
     welkinScene?: SceneHandle<never>
+    /** Channel from the story's page to Storybook's, where there is one. */
+    __STORYBOOK_ADDONS_CHANNEL__?: { emit(event: string, ...values: unknown[]): void }
   }
 }
 
@@ -72,10 +74,10 @@ export function mount<Args extends RendererArgs>(
   }
 }
 
-/** Has the controls of a story show what its scene changed. */
-async function showArgs(storyId: string, updatedArgs: object): Promise<void> {
-  const { addons } = await import('storybook/preview-api')
-  addons.getChannel().emit('updateStoryArgs', { storyId, updatedArgs })
+/** Has the controls of a story, and with them Storybook's address, show what its scene changed. */
+function showArgs(storyId: string, updatedArgs: object): void {
+  // Not by `storybook/preview-api`: tests show stories without Storybook.
+  window.__STORYBOOK_ADDONS_CHANNEL__?.emit('updateStoryArgs', { storyId, updatedArgs })
 }
 
 function start<Args extends RendererArgs>(
@@ -144,7 +146,7 @@ function start<Args extends RendererArgs>(
       return
     }
     handle = created
-    handle.onArgs = changes => void showArgs(id, changes)
+    handle.onArgs = changes => showArgs(id, changes)
     window.welkinScene = created as unknown as SceneHandle<never>
     if (latest !== args) handle.update(latest)
     const { explorer } = handle

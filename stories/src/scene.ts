@@ -10,6 +10,7 @@ import { WebGPURenderer } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
 import type { Air, AirPath } from './air'
 import type { Explorer } from './moving/Explorer'
+import type { Weather } from './valley/weather'
 
 /** A scene that draws itself, apart from the page and the clock: what a story shows and a test drives. */
 export interface SceneHandle<Args> {
@@ -18,6 +19,8 @@ export interface SceneHandle<Args> {
   readonly camera: Camera
   /** Moves the camera; the page shows its keys and keeps the view in the address. */
   readonly explorer?: Explorer
+  /** Solar time [h] and weather as they are shown now, for tests. */
+  readonly conditions?: { hour: number; weather: Weather }
   /** Settles when everything that the current view needs is loaded. */
   readonly ready: Promise<void>
   /** Fraction that is loaded, in [0, 1]. */

@@ -77,7 +77,7 @@ export async function createValley(
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
     arc?.update(valley.cycle.hour, current.latitude, current.season)
-    readout?.update(camera, ground, valley.cycle.hour, spent)
+    readout?.update(camera, ground, valley.cycle, spent)
   }
 
   let ready: Promise<void> = Promise.resolve()
@@ -89,6 +89,9 @@ export async function createValley(
     scene,
     camera,
     explorer,
+    get conditions() {
+      return { hour: valley.cycle.hour, weather: valley.weather }
+    },
     get ready() {
       return ready
     },

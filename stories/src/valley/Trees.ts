@@ -27,17 +27,24 @@ const _direction = new Vector3()
 
 /** Brightness of leaves and the gaps between them, about 1. */
 export function mottled(): Node<'float'> {
-  const { x, y, z } = positionGeometry.mul(6.7)
-  const across = sin(x.add(sin(z.mul(1.3)).mul(2.1)))
-  const up = sin(y.mul(1.4).add(sin(x.mul(0.8)).mul(1.7)))
-  return smoothstep(-0.6, 0.6, across.mul(up)).mul(0.5).add(0.75)
+  // Waves that bend each other: products of straight ones show as a net.
+  const bend = (by: Node<'vec3'>, scale: number, strength: number): Node<'vec3'> =>
+    positionGeometry.mul(scale).add(sin(by).mul(strength)).toConst()
+  const branches = bend(positionGeometry.zxy.mul(2.3), 3.1, 1.9)
+  const leaves = bend(branches.yzx.mul(1.7), 11, 2.4)
+  const coarse = sin(branches.x).mul(sin(branches.y.add(branches.z)))
+  const fine = sin(leaves.x.add(leaves.y)).mul(sin(leaves.z.sub(leaves.y.mul(0.6))))
+  return smoothstep(-1.1, 1.1, coarse.mul(0.7).add(fine.mul(0.8)))
+    .mul(0.7)
+    .add(0.65)
 }
 
 /** Trees of a kind, drawn with fewer triangles the farther they are from the camera. */
 export class Trees extends Group {
   readonly #trees: readonly Tree[]
   readonly #distances: readonly number[]
-  readonly #levels: readonly InstancedMesh[]
+  /** Levels of detail, the finest first. */
+  readonly levels: readonly InstancedMesh[]
   readonly #sortedAt = new Vector3(Infinity, 0, 0)
   readonly #sortedTowards = new Vector3()
 
@@ -55,7 +62,7 @@ export class Trees extends Group {
     this.#distances = distances
     const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     material.colorNode = vec3(mottled())
-    this.#levels = geometries.map(geometry => {
+    this.levels = geometries.map(geometry => {
       const mesh = new InstancedMesh(geometry, material, trees.length)
       mesh.setColorAt(0, new Color())
       mesh.castShadow = mesh.receiveShadow = true
@@ -64,7 +71,7 @@ export class Trees extends Group {
       mesh.renderOrder = -1
       return mesh
     })
-    this.add(...this.#levels)
+    this.add(...this.levels)
   }
 
   /**
@@ -81,18 +88,18 @@ export class Trees extends Group {
     this.#sortedTowards.copy(_direction)
     const isSteep = Math.abs(_direction.y) > STEEP
     const last = this.#distances.length
-    for (const level of this.#levels) level.count = 0
+    for (const level of this.levels) level.count = 0
     for (const { matrix, color } of this.#trees) {
       _place.setFromMatrixPosition(matrix).sub(position)
       const distance = _place.length()
       const index = this.#distances.filter(from => distance >= from).length
       if (index === last && !isSteep && _place.dot(_direction) < COS_ASIDE * distance) continue
-      const level = this.#levels[index]
+      const level = this.levels[index]
       level.setMatrixAt(level.count, matrix)
       level.setColorAt(level.count, color)
       level.count++
     }
-    for (const level of this.#levels) {
+    for (const level of this.levels) {
       level.visible = level.count > 0
       level.instanceMatrix.needsUpdate = true
       level.instanceColor!.needsUpdate = true
@@ -101,6 +108,6 @@ export class Trees extends Group {
   }
 
   override dispose(): void {
-    disposeMeshes(this.#levels)
+    disposeMeshes(this.levels)
   }
 }

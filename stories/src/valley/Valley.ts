@@ -21,13 +21,14 @@ import { ValleyFinish, type ValleyEffects } from './finish'
 import { createForest, createGrove } from './forest'
 import { applyFactors, type ValleyFactors } from '../valleyFactors'
 import { CascadeTurns } from './CascadeTurns'
-import { createGround, groundHeight, LAKE } from './ground'
+import { createGround, groundHeight, LAKE, VILLAGE } from './ground'
 import { createLake } from './lake'
 import { LakeMirror } from './LakeMirror'
+import { StreetLamps } from './StreetLamps'
 import { setLit } from './VertexLitMaterial'
-import { createVillage } from './village'
+import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
-import { valleyLayers, WeatherBlend, type WeatherName } from './weather'
+import { valleyLayers, type Weather, WeatherBlend, type WeatherName } from './weather'
 
 /** Parts of the valley that can be switched on and off while it runs. */
 export interface ValleyFeatures {
@@ -91,6 +92,9 @@ const SUNLIGHT = -3
 /** Longitude of the valley, where the weather has good cumulus [degrees]. */
 const LONGITUDE = 10
 
+/** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
+const MIRRORED_TURN = 0.3
+
 /** Altitude of the lake's water [m]. */
 const ALTITUDE = 600
 
@@ -107,12 +111,13 @@ export class Valley {
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #style = airStyle()
-  readonly #mist = heightFog({ base: ALTITUDE + 6, falloff: 22, density: 0 })
+  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 12, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #ground
   readonly #trees
-  readonly #village = createVillage()
+  readonly #lamps = new StreetLamps(doors())
+  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps)
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node
@@ -129,8 +134,8 @@ export class Valley {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
     const quality = typeof state.quality === 'string' ? state.quality : 'low'
-    this.#ground = createGround(QUADS[quality])
-    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 14))]
+    this.#ground = createGround(QUADS[quality], this.#lamps.reflected())
+    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 12))]
     const { scene, camera } = this
     const sky = [...this.#glows, this.#moon] as const
     const air = valleyAir(scene, camera, this.#layers, state.quality, sky)
@@ -149,7 +154,7 @@ export class Valley {
     this.exposure = exposure
     // Coarse: the lake mirrors the picture itself where it can.
     const overlay = cloudEnvironment(node, { size: 128 })
-    this.#environment = skyEnvironment(atmosphere, { overlay })
+    this.#environment = skyEnvironment(atmosphere, { overlay, angle: MIRRORED_TURN })
     this.#mirror = new LakeMirror(air.picture)
     this.#water = createLake(this.#environment, this.#mirror, air.directLights)
     scene.add(this.#water.mesh)
@@ -169,6 +174,11 @@ export class Valley {
       () => atmosphere.dispose()
     )
     this.set(state, true)
+  }
+
+  /** Weather that is shown now. */
+  get weather(): Weather {
+    return this.#weather.current
   }
 
   /** Height of the ground below a place, or of the lake [m]. */
@@ -244,7 +254,10 @@ export class Valley {
     for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
     setLit(this.#sun, elevation > SUNLIGHT)
     this.#village.light(share, luminanceScale)
+    const { autoClear } = this.#renderer
+    this.#renderer.autoClear = false // every pixel of the canvas is drawn: passes before it clear for themselves
     this.pipeline.render()
+    this.#renderer.autoClear = autoClear
     this.#mirror.update(this.#renderer, this.camera)
   }
 

@@ -11,7 +11,8 @@ import {
 } from 'three'
 import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
-import { forestAt, groundHeight, VILLAGE } from './ground'
+import { fieldBorder, forestAt, groundHeight, isField, isOnRoad, VILLAGE } from './ground'
+import { smoothNoise } from './noise'
 import { Trees, type Tree } from './Trees'
 
 /** Distance from the village within which trees stand one by one [m]. */
@@ -19,6 +20,9 @@ const REACH = 2600
 
 /** Distances from which trees are drawn with fewer triangles, and with the fewest [m]. */
 const DISTANCES = [130, 420] as const
+
+/** Number of the border between fields that is nearest to the village. */
+const VILLAGE_BORDER = 6
 
 /** Colours of needles, leaves and bark, linear sRGB. */
 const NEEDLES = [0.03, 0.048, 0.02] as const
@@ -133,18 +137,39 @@ export const createForest = (count: number): Trees =>
     plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0))
   )
 
-/** Broad-leaved trees about the village, along the shore and among the fields. */
-export const createGrove = (count: number): Trees =>
-  new Trees(
+/** Broad-leaved trees about the village, along the shore, in hedges and copses. */
+export function createGrove(count: number): Trees {
+  const hedges = hedgesNear(0.25 * count)
+  const others = plant(count - hedges.length, 23, (x, z, height) => {
+    const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
+    const shore = height > 1.2 && height < 5 ? 0.35 : 0
+    const village = fromVillage > 30 && fromVillage < 210 ? 0.22 : 0
+    // Few stand alone.
+    const copse = smoothNoise(x / 45, z / 45) > 0.32 ? 0.16 : 0.006
+    return height > 1.2 && height < 45 ? shore + village + copse : 0
+  })
+  return new Trees(
     [limetree(5, 2), limetree(5, 0), limetree(1, 0)],
     DISTANCES,
-    plant(count, 23, (x, z, height) => {
-      const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
-      const shore = height > 1.2 && height < 5 ? 0.35 : 0
-      const village = fromVillage > 30 && fromVillage < 210 ? 0.12 : 0
-      return height > 1.2 && height < 45 ? shore + village + 0.03 : 0
-    })
+    hedges.concat(others)
   )
+}
+
+/** Trees in rows between fields, from the village outwards; rows have gaps. */
+function hedgesNear(count: number): Tree[] {
+  const random = randomSequence(31)
+  const trees: Tree[] = []
+  for (let i = 0; trees.length < count && i < 40; i++) {
+    const border = VILLAGE_BORDER + (i % 2 === 0 ? i / 2 : -(i + 1) / 2)
+    for (let along = -520; along < 700 && trees.length < count; along += 5 + 5 * random()) {
+      const z = VILLAGE.z + along
+      const x = fieldBorder(border, z) + 1.5 * random()
+      const isRow = smoothNoise(0.37 * border, z / 130) > 0.12
+      if (isRow && isField(x, z) && !isOnRoad(x, z, 3)) trees.push(treeAt(x, z, 0.62, random))
+    }
+  }
+  return trees
+}
 
 /** @param shareAt - Chance of a tree at a place of a height, in [0, 1]. */
 function plant(
@@ -159,18 +184,32 @@ function plant(
     const distance = REACH * random() ** 0.8 + 14
     const x = VILLAGE.x + distance * Math.cos(angle)
     const z = VILLAGE.z + distance * Math.sin(angle)
-    const height = groundHeight(x, z)
-    if (random() > shareAt(x, z, height)) continue
-    const size = 0.55 + 0.95 * random() ** 1.5
-    const matrix = new Matrix4().compose(
-      new Vector3(x, height - 0.2, z),
-      new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), 6.3 * random()),
-      new Vector3(size * (0.8 + 0.3 * random()), size * (0.9 + 0.5 * random()), size)
-    )
-    // Some are yellower, some nearly blue.
-    const [brightness, yellow] = [0.75 + 0.55 * random(), random() ** 1.5]
-    const color = new Color(0.85 + 0.75 * yellow, 0.95 + 0.25 * yellow, 1.1 - 0.4 * yellow)
-    trees.push({ matrix, color: color.multiplyScalar(brightness) })
+    if (isOnRoad(x, z, 3)) continue
+    if (random() < shareAt(x, z, groundHeight(x, z))) trees.push(treeAt(x, z, 1, random))
   }
   return trees
+}
+
+/**
+ * A tree of some size, shape and hue.
+ *
+ * @param scale - Size over that of trees that stand by themselves.
+ */
+function treeAt(x: number, z: number, scale: number, random: () => number): Tree {
+  const size = scale * (0.55 + 0.95 * random() ** 1.5)
+  // From broad ones to slender ones.
+  const slender = 1.3 ** (2 * random() - 1)
+  const matrix = new Matrix4().compose(
+    new Vector3(x, groundHeight(x, z) - 0.2, z),
+    new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), 6.3 * random()),
+    new Vector3(
+      (size * (0.85 + 0.3 * random())) / slender,
+      size * slender * (0.9 + 0.35 * random()),
+      size / slender
+    )
+  )
+  // Some are yellower, some nearly blue.
+  const [brightness, yellow] = [0.75 + 0.55 * random(), random() ** 1.5]
+  const color = new Color(0.85 + 0.75 * yellow, 0.95 + 0.25 * yellow, 1.1 - 0.4 * yellow)
+  return { matrix, color: color.multiplyScalar(brightness) }
 }

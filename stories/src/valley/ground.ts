@@ -104,6 +104,9 @@ const CROPS = [
   [0.13, 0.115, 0.068]
 ] as const
 
+/** Width of a strip of fields [m]. */
+const STRIP = 70
+
 /** Height up to which land is farmed [m]. */
 const FARMED = 40
 
@@ -114,7 +117,7 @@ const HALF_ROAD = 2.2
 function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
   const { x, z } = positionWorld
   const across = x
-    .div(70)
+    .div(STRIP)
     .add(sin(z.div(300)).mul(0.3))
     .toConst()
   const strip = floor(across).toConst()
@@ -125,11 +128,19 @@ function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
     color = chance.greaterThan(0.4 + 0.15 * i).select(vec3(...crop), color)
   }
   // Furrows along the strips, until they are as fine as pixels.
-  const furrows = sin(across.mul((2 * Math.PI * 70) / 2.6)).mul(smoothstep(170, 40, distance))
+  const furrows = sin(across.mul((2 * Math.PI * STRIP) / 2.6)).mul(smoothstep(170, 40, distance))
   return color.mul(furrows.mul(0.08).add(1))
 }
 
-/** 1 on the road that leads through the village to the lake. */
+/** Middle of the road that leads through the village to the lake, at a place along the valley [m]. */
+export const roadMiddle = (z: number): number =>
+  14 * Math.sin(z / 95) + 38 * Math.sin(z / 310) + VILLAGE.x - 44
+
+/** True on that road, or beside it within some distance [m]. */
+export const isOnRoad = (x: number, z: number, aside = 0): boolean =>
+  z > -300 && Math.abs(x - roadMiddle(z)) < HALF_ROAD + aside
+
+/** 1 on that road. Twin of the middle: {@link roadMiddle}. */
 function roadAt(): Node<'float'> {
   const { x, z } = positionWorld
   const middle = sin(z.div(95))
@@ -141,7 +152,7 @@ function roadAt(): Node<'float'> {
 }
 
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
-function groundMaterial(): VertexLitMaterial {
+function groundMaterial(lamplight: Node<'vec3'> | null): VertexLitMaterial {
   const material = new VertexLitMaterial()
   const place = positionWorld.xz
   const picture = createNoiseTexture()
@@ -160,7 +171,7 @@ function groundMaterial(): VertexLitMaterial {
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
   const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
   const patches = noise(390).mul(upTo(24_000)).toVar()
-  const grain = noise(1.9).mul(0.8).add(noise(7.3)).toVar()
+  const grain = noise(1.1).add(noise(6.7).mul(0.5)).toVar()
   const fine = grain
     .add(noise(71).mul(upTo(2500)))
     .add(patches)
@@ -189,15 +200,16 @@ function groundMaterial(): VertexLitMaterial {
     rock,
     smoothstep(1050, 1700, height.add(broad.mul(150)))
   )
-  const lit = float(0.95).add(fine.mul(0.3)).add(grain.mul(0.12))
+  const bright = float(0.95).add(fine.mul(0.3)).add(grain.mul(0.12))
   let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)
-  color = mix(color.mul(lit), rock.mul(lit), smoothstep(0.27, 0.42, slope))
+  color = mix(color.mul(bright), rock.mul(bright), smoothstep(0.27, 0.42, slope))
   const snow = smoothstep(1350, 1750, height.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
   material.colorNode = color
+  material.emissiveNode = lamplight
   return material
 }
 
@@ -230,8 +242,9 @@ function tileOf(grid: BufferGeometry, quads: number, column: number, row: number
  * The valley and its mountains, finer about the middle, in tiles.
  *
  * @param quads - Quads along a side, a multiple of 64.
+ * @param lamplight - Light of lamps that it gives back.
  */
-export function createGround(quads: number): Group {
+export function createGround(quads: number, lamplight: Node<'vec3'> | null = null): Group {
   const geometry = new PlaneGeometry(2, 2, quads, quads).rotateX(-Math.PI / 2)
   geometry.deleteAttribute('uv')
   const positions = geometry.attributes.position as BufferAttribute
@@ -246,7 +259,7 @@ export function createGround(quads: number): Group {
   geometry.setAttribute('cover', new BufferAttribute(cover, 2))
   geometry.computeVertexNormals()
   const ground = new Group()
-  const material = groundMaterial()
+  const material = groundMaterial(lamplight)
   const along = Math.max(quads / TILE, 1)
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))
@@ -260,6 +273,13 @@ export function createGround(quads: number): Group {
   }
   return ground
 }
+
+/** Place across the valley of a border between two strips of fields, at a place along it [m]. */
+export const fieldBorder = (number: number, z: number): number =>
+  STRIP * (number - 0.3 * Math.sin(z / 300))
+
+/** True where fields are, and grass between them. */
+export const isField = (x: number, z: number): boolean => fieldAt(x, z) > 0.5
 
 /** 1 where fields may be: on the valley's floor, away from the village. */
 function fieldAt(x: number, z: number): number {

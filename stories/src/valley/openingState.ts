@@ -6,7 +6,7 @@ export const openingState = {
   latitude: 46,
   season: 0.2,
   hour: 9,
-  dayLength: 600,
+  dayLength: 1200,
   paused: false,
   quality: 'medium' as const,
   clouds: true,

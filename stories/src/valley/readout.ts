@@ -1,3 +1,4 @@
+import type { DayCycle } from '@welkin/atmosphere'
 import type { PerspectiveCamera } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { overlayOn } from '../overlay'
@@ -8,7 +9,9 @@ import { sharesOf } from './shares'
 /** Time between two readings [ms]. */
 const PERIOD = 500
 
-/** Position, hour and times of a frame in a corner of the canvas. */
+const DATE = new Intl.DateTimeFormat('en-GB', { day: 'numeric', month: 'long', timeZone: 'UTC' })
+
+/** Position, date, hour and times of a frame in a corner of the canvas. */
 export class Readout {
   readonly #element: HTMLElement
   readonly #renderer: WebGPURenderer
@@ -33,10 +36,11 @@ export class Readout {
   /**
    * Counts a frame that was drawn.
    *
+   * @param ground - Height of the ground below the camera [m].
+   * @param cycle - Clock of the scene.
    * @param milliseconds - Time that it took on the CPU [ms].
-   * @param hour - Solar time [h].
    */
-  update(camera: PerspectiveCamera, ground: number, hour: number, milliseconds: number): void {
+  update(camera: PerspectiveCamera, ground: number, cycle: DayCycle, milliseconds: number): void {
     this.#frames++
     this.#cpu += milliseconds
     if (!this.#isReading) void this.#read()
@@ -44,7 +48,7 @@ export class Readout {
     const elapsed = now - this.#since
     if (elapsed < PERIOD) return
     const { x, y, z } = camera.position
-    const clock = clockOf(hour)
+    const clock = `${DATE.format(cycle.time)}, ${clockOf(cycle.hour)}`
     const cpu = (this.#cpu / this.#frames).toFixed(1)
     this.#element.textContent =
       `${clock} · east ${x.toFixed(0)} m, north ${(-z).toFixed(0)} m · ` +

@@ -26,6 +26,7 @@ import {
 } from 'three/tsl'
 import { randomSequence } from '../random'
 import { groundHeight, VILLAGE } from './ground'
+import type { StreetLamps } from './StreetLamps'
 import { setLit, VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
@@ -34,6 +35,47 @@ const WINDOWS = [0.12, 1.2] as const
 const LAMP = 40
 /** Part of the windows that are lit. */
 const LIT = 0.42
+
+const UP = new Vector3(0, 1, 0)
+
+interface House {
+  /** Place on the map, size and height of the walls [m]. */
+  x: number
+  z: number
+  width: number
+  depth: number
+  height: number
+  /** Turn about the vertical [rad]. */
+  turn: number
+  hsl: [number, number, number]
+  roof: number
+}
+
+/** Houses in a spiral about a church. */
+function housesAbout(middle: Readonly<Record<'x' | 'z', number>>): House[] {
+  const random = randomSequence(5)
+  return Array.from({ length: HOUSES }, (_, i) => {
+    const angle = 2.4 * i
+    const distance = 24 + 20 * Math.sqrt(i) + 12 * random()
+    return {
+      x: middle.x + distance * Math.cos(angle),
+      z: middle.z + 1.2 * distance * Math.sin(angle),
+      width: 8 + 4 * random(),
+      depth: 9 + 5 * random(),
+      height: 5 + 2 * random(),
+      turn: 0.5 * Math.floor(4 * random()) + 0.2 * random(),
+      hsl: [0.09, 0.16 * random(), 0.42 + 0.22 * random()],
+      roof: 0.6 + 0.6 * random()
+    }
+  })
+}
+
+/** Places before the doors of the houses about the church, on the map [m]. */
+export const doors = (): { x: number; z: number }[] =>
+  housesAbout(VILLAGE).map(({ x, z, depth, turn }) => ({
+    x: x + (depth / 2 + 1.2) * Math.sin(turn),
+    z: z + (depth / 2 + 1.2) * Math.cos(turn)
+  }))
 
 /** A gabled roof over the unit square, of unit height. */
 function roof(): BufferGeometry {
@@ -70,12 +112,14 @@ export interface Village {
  *
  * @param heightAt - Height of the ground at a place, default that of the valley [m].
  * @param middle - Place of the church, default by the valley's lake [m].
+ * @param lamps - Lamps about it; by default one by the church.
  */
 export function createVillage(
   heightAt = groundHeight,
-  middle: Readonly<Record<'x' | 'z', number>> = VILLAGE
+  middle: Readonly<Record<'x' | 'z', number>> = VILLAGE,
+  lamps: StreetLamps | null = null
 ): Village {
-  const random = randomSequence(5)
+  const houses = housesAbout(middle)
   const lit = uniform(0)
   const luminance = uniform(0)
   const walls = new VertexLitMaterial()
@@ -107,22 +151,20 @@ export function createVillage(
     .exp2()
   const shown = glow.mul(inRoom).mul(isPane.mul(0.8).add(0.2))
   walls.colorNode = mix(vec3(1), vec3(0.12, 0.13, 0.15), isWindow)
-  walls.emissiveNode = mix(vec3(1, 0.27, 0.02), vec3(1, 0.44, 0.09), hue).mul(
+  const windows = mix(vec3(1, 0.27, 0.02), vec3(1, 0.44, 0.09), hue).mul(
     isWindow.mul(isLit).mul(shown).mul(luminance)
   )
+  // Walls have about half of the light that the ground before them has.
+  walls.emissiveNode = lamps === null ? windows : windows.add(lamps.reflected().mul(0.5))
   const tiles = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
   const matrix = new Matrix4()
   const turn = new Quaternion()
   const color = new Color()
-  for (let i = 0; i < HOUSES; i++) {
-    const angle = 2.4 * i
-    const distance = 24 + 20 * Math.sqrt(i) + 12 * random()
-    const x = middle.x + distance * Math.cos(angle)
-    const z = middle.z + 1.2 * distance * Math.sin(angle)
-    const [width, depth, height] = [8 + 4 * random(), 9 + 5 * random(), 5 + 2 * random()]
-    turn.setFromAxisAngle(new Vector3(0, 1, 0), 0.5 * Math.floor(4 * random()) + 0.2 * random())
+  for (const [i, house] of houses.entries()) {
+    const { x, z, width, depth, height } = house
+    turn.setFromAxisAngle(UP, house.turn)
     const base = Math.min(heightAt(x, z), heightAt(x + 5, z), heightAt(x, z + 5)) - 0.5
     bodies.setMatrixAt(
       i,
@@ -132,8 +174,8 @@ export function createVillage(
       i,
       matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth))
     )
-    bodies.setColorAt(i, color.setHSL(0.09, 0.16 * random(), 0.42 + 0.22 * random()))
-    roofs.setColorAt(i, color.setScalar(0.6 + 0.6 * random()))
+    bodies.setColorAt(i, color.setHSL(...house.hsl))
+    roofs.setColorAt(i, color.setScalar(house.roof))
   }
   const { x, z } = middle
   const base = heightAt(x, z) - 0.5
@@ -149,24 +191,25 @@ export function createVillage(
   church.position.set(x, base, z)
   const lamp = new PointLight('#ffb46b', 0, 220)
   lamp.position.set(x + 12, base + 9, z - 10)
-  const object = new Group().add(bodies, roofs, church, lamp)
-  object.traverse(child => {
-    child.castShadow = child.receiveShadow = child instanceof Mesh
-  })
+  const object = new Group().add(bodies, roofs, church, lamps ?? lamp)
+  for (const each of [bodies, roofs, ...church.children]) {
+    each.castShadow = each.receiveShadow = true
+  }
   bodies.frustumCulled = roofs.frustumCulled = false
   return {
     object,
     light(share, luminanceScale) {
       lit.value = share
       luminance.value = luminanceScale
+      lamps?.light(share, luminanceScale)
       lamp.intensity = share * LAMP * luminanceScale
       setLit(lamp, share > 0)
     },
     dispose() {
-      object.traverse(child => {
-        if (child instanceof Mesh) child.geometry.dispose()
-        if (child instanceof InstancedMesh) child.dispose()
-      })
+      for (const mesh of [bodies, roofs, tower, spire, nave, naveRoof]) mesh.geometry.dispose()
+      bodies.dispose()
+      roofs.dispose()
+      lamps?.dispose()
       for (const material of [walls, tiles, plaster]) material.dispose()
     }
   }

@@ -17,8 +17,8 @@ export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0 },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0 },
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0 },
-  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.007 },
-  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 3.5, mist: 0.0004 }
+  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.02 },
+  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 3.5, mist: 0.0006 }
 } satisfies Record<string, Weather>
 
 export type WeatherName = keyof typeof weathers

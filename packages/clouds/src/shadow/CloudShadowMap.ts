@@ -36,8 +36,8 @@ const HIGHEST = 150_000
 const ANCHOR_COSINE = Math.cos(0.005)
 
 /**
- * Change of the light's direction, or of the place in half widths, that has all cascades drawn at once.
- * Greater: shadows follow a jump late (*Shadows*).
+ * Change of the light's direction [rad], times that of `lightTolerance`, or of the place in half widths, for which a cascade
+ * is drawn at once. Greater: shadows follow a jump late (*Shadows*).
  */
 const LIGHT_JUMP = 0.01
 const PLACE_JUMP = 0.5
@@ -50,12 +50,23 @@ const STRIPS = 4
 
 /**
  * Changes for which a cascade is drawn anew: moves of its middle [texels], moves of layers against each
- * other [texels], and of the light's direction [rad], which move the shadow of a cloud 3 km away by a third of a texel.
- * Greater: shadows jump instead of drifting (*Shadows*, which has "Time lapse"); smaller: they are drawn in every frame.
+ * other [texels], and of the light's direction [rad], which move the shadow of a cloud 3 km away by a third of a texel of the
+ * narrowest cascade. Greater: shadows jump instead of drifting (*Shadows*, which has "Time lapse"); smaller: they are drawn in
+ * every frame.
  */
 const STALE_PLACE = 8
 const STALE_DRIFT = 0.25
 const STALE_LIGHT = 4.8e-3
+
+/**
+ * Most that a wider cascade tolerates of the light's direction, over the narrowest one. Greater: depths along low light,
+ * which change with its direction, are late.
+ */
+const MOST_TOLERANCE = 4
+
+/** Change of the light's direction that a cascade tolerates over the narrowest one: as much as its texels are wider. */
+const lightTolerance = ({ halfWidth }: CascadeState): number =>
+  Math.min(halfWidth / HALF_WIDTHS[0], MOST_TOLERANCE)
 
 /** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
 export const TABLE_COLUMNS = 32
@@ -248,7 +259,7 @@ export class CloudShadowMap {
       state.halfWidth === halfWidth &&
       // Drawn before the noise was ready, it has no clouds.
       state.inputs[0] === this.#inputs[0] &&
-      state.light.distanceTo(this.#light) < LIGHT_JUMP &&
+      state.light.distanceTo(this.#light) < LIGHT_JUMP * lightTolerance(state) &&
       this.#distance(state) < PLACE_JUMP * halfWidth
     )
   }
@@ -258,10 +269,12 @@ export class CloudShadowMap {
     const distance = this.#distance(state)
     return (
       distance > STALE_PLACE * texel ||
-      light.distanceTo(this.#light) > STALE_LIGHT ||
+      light.distanceTo(this.#light) > STALE_LIGHT * lightTolerance(state) ||
       this.#inputs.some((value, i) => value !== inputs[i]) ||
       [...this.field.layers].some(
-        (_, i) => this.#driftOf(state, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
+        ({ parameters }, i) =>
+          parameters.coverage > 0 &&
+          this.#driftOf(state, _offset, i).distanceTo(_drift) > STALE_DRIFT * texel
       )
     )
   }

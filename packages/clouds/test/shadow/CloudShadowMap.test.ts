@@ -156,13 +156,39 @@ test('follows a camera in flight, and the sun', () => {
     const { x, y } = sky.texelOf(cascade, sky.up.multiplyScalar(radius + 1400))
     expect(Math.max(Math.abs(x - 128), Math.abs(y - 128))).toBeLessThan(12)
   }
-  sky.sun.x += 0.001
-  sky.sun.normalize()
+  const turnSun = (by: number): void => {
+    sky.sun.x += by
+    sky.sun.normalize()
+  }
+  turnSun(0.001)
   expect(sky.frames(50, 0)).toBe(0)
-  sky.sun.x += 0.007
-  sky.sun.normalize()
-  expect(sky.frames(50, 0)).toBe(3)
-  sky.sun.x += 0.1
-  sky.sun.normalize()
+  turnSun(0.1)
   expect(sky.frames(1, 0)).toBe(3)
+})
+
+test('follows the sun, a cascade the later the wider its texels are', () => {
+  const sky = new Sky('fairWeather')
+  sky.frames(1)
+  const turnSun = (by: number): void => {
+    const { x, z } = sky.sun
+    sky.sun.x = x * Math.cos(by) - z * Math.sin(by)
+    sky.sun.z = x * Math.sin(by) + z * Math.cos(by)
+  }
+  const level = Math.hypot(sky.sun.x, sky.sun.z)
+  // A third of a texel of 39 m at 3 km, and once more; the third is beyond that of the texels of 156 and 625 m, too.
+  turnSun(0.006 / level)
+  expect(sky.frames(50, 0)).toBe(1)
+  turnSun(0.006 / level)
+  expect(sky.frames(50, 0)).toBe(1)
+  turnSun(0.009 / level)
+  expect(sky.frames(50, 0)).toBe(3)
+})
+
+test('a layer without clouds may drift as it likes', () => {
+  const sky = new Sky('mixed')
+  const [first, ...others] = sky.layers
+  expect(first.parameters.coverage).toBeGreaterThan(0)
+  for (const layer of others) layer.set({ coverage: 0 })
+  sky.frames(1)
+  expect(sky.frames(600)).toBe(0)
 })

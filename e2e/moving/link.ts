@@ -1,0 +1,129 @@
+import { spawn } from 'node:child_process'
+import { once } from 'node:events'
+import { createServer } from 'node:net'
+import { fileURLToPath } from 'node:url'
+import type { Browser, Frame, Page } from 'playwright-core'
+import type { ExplorerState } from '../../stories/src/moving/Explorer'
+import { parseState } from '../../stories/src/moving/ExplorerState'
+import type { SceneHandle } from '../../stories/src/scene'
+import { weathers, type Weather, type WeatherName } from '../../stories/src/valley/weather'
+import type { Report } from '../harness/report'
+
+/** Wide enough for Storybook's list and controls; what is left is small, for it is drawn in software. */
+const viewport = { width: 720, height: 300 }
+const STORY = 'valley-all-day--day'
+const START_SECONDS = 120
+
+/** Storybook, as `npm start` runs it. */
+export async function startStorybook(): Promise<{ origin: string; stop: () => Promise<void> }> {
+  const server = createServer().listen(0)
+  await once(server, 'listening')
+  const { port } = server.address() as { port: number }
+  server.close()
+  await once(server, 'close')
+  const script = fileURLToPath(new URL('../../scripts/start.mjs', import.meta.url))
+  const options = [script, '-p', String(port), '--ci']
+  const child = spawn(process.execPath, options, { stdio: ['ignore', 'ignore', 'inherit'] })
+  const ended = once(child, 'exit')
+  const stop = async (): Promise<void> => {
+    child.kill('SIGTERM')
+    await ended
+  }
+  const origin = `http://localhost:${port}`
+  const end = performance.now() + 1000 * START_SECONDS
+  for (;;) {
+    const answer = await fetch(`${origin}/index.json`).catch(() => null)
+    if (answer?.ok === true) return { origin, stop }
+    if (child.exitCode !== null || performance.now() > end) {
+      await stop()
+      throw new Error('Storybook does not start')
+    }
+    await new Promise(resolve => setTimeout(resolve, 200))
+  }
+}
+
+/** View, hour and weather that a story shows. */
+interface Shown {
+  view: ExplorerState
+  hour: number
+  weather: Weather
+}
+
+const look = (story: Frame): Promise<Shown> =>
+  story.evaluate(() => {
+    const { explorer, conditions } = window.welkinScene!
+    return { view: explorer!.state, ...conditions! }
+  })
+
+/** The story at an address, once it runs. */
+async function open(browser: Browser, url: string, report: Report): Promise<[Page, Frame]> {
+  const page = await browser.newPage({ viewport })
+  page.on('pageerror', error => {
+    // Storybook's own page complains of slow machines.
+    const isStorybook = error.stack?.includes('/sb-manager/') === true
+    if (!isStorybook) report.fail('page error', error.stack ?? error.message)
+  })
+  await page.goto(url)
+  const element = await page.waitForSelector('#storybook-preview-iframe')
+  const story = (await element.contentFrame())!
+  await story.waitForFunction(() => document.body.dataset.ready === 'true', null, {
+    timeout: 180_000
+  })
+  return [page, story]
+}
+
+const KEYS = ['x', 'y', 'z', 'heading', 'pitch', 'walking'] as const
+
+/** Compares what a link brought back. */
+function check(report: Report, shown: Shown, wanted: Shown): void {
+  const worst = Math.max(...KEYS.map(key => Math.abs(shown.view[key] - wanted.view[key])))
+  report.check(worst < 0.011, 'a link brings the view back', `within ${worst.toFixed(3)}`)
+  const late = Math.abs(shown.hour - wanted.hour)
+  report.check(late < 0.051, 'a link brings the hour back', `${shown.hour.toFixed(2)} h`)
+  report.check(
+    JSON.stringify(shown.weather) === JSON.stringify(wanted.weather),
+    'a link brings the weather back',
+    JSON.stringify(shown.weather)
+  )
+}
+
+/** *Valley, all day* in Storybook: a link brings view, hour and weather back, and what is changed comes into the address. */
+export async function testLink(browser: Browser, origin: string, report: Report): Promise<void> {
+  const place = '150,90,-300,200,4,0'
+  const args = (hour: number, weather: WeatherName): string => `hour:${hour};weather:${weather}`
+  const first = `${origin}/?path=/story/${STORY}&args=${args(18.5, 'mist')};paused:!true;quality:low#view=${place}`
+  const [page, story] = await open(browser, first, report)
+  const wanted = { view: parseState(place)!, hour: 18.5, weather: weathers.mist }
+  check(report, await look(story), wanted)
+
+  // By the controls, and by the scene, whose clock runs.
+  await page.selectOption('#control-weather', 'overcast')
+  await page.fill('#control-hour', '6.5')
+  const link = await addressWith(page, args(6.5, 'overcast'))
+  report.check(
+    new URL(link).hash === `#view=${place}`,
+    'the address has weather, hour and view',
+    link
+  )
+  await story.evaluate(() =>
+    (window.welkinScene as SceneHandle<{ hour: number }>).onArgs?.({ hour: 7 })
+  )
+  report.pass('the address follows the clock', await addressWith(page, args(7, 'overcast')))
+  await page.close()
+}
+
+/** Waits until the address has some arguments of the story, once and before its view; fails with the last one. */
+async function addressWith(page: Page, args: string): Promise<string> {
+  const end = performance.now() + 60_000
+  const isThere = (): boolean => {
+    const { searchParams, hash } = new URL(page.url())
+    const [kept, ...others] = searchParams.getAll('args')
+    const isWhole = others.length === 0 && !hash.includes('args=')
+    return isWhole && args.split(';').every(part => kept?.split(';').includes(part))
+  }
+  while (!isThere()) {
+    if (performance.now() > end) throw new Error(`the address stays ${page.url()}`)
+    await page.waitForTimeout(200)
+  }
+  return page.url()
+}

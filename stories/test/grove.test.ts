@@ -1,0 +1,46 @@
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import { beforeAll, describe, expect, it } from 'vitest'
+import { createGrove } from '../src/valley/forest'
+import { fieldBorder, groundHeight, isOnRoad, VILLAGE } from '../src/valley/ground'
+
+const COUNT = 400
+
+describe('trees about the village', () => {
+  let places: Vector3[] = []
+
+  beforeAll(() => {
+    const grove = createGrove(COUNT)
+    const camera = new PerspectiveCamera()
+    camera.position.set(VILLAGE.x, 1000, VILLAGE.z)
+    camera.lookAt(VILLAGE.x, 0, VILLAGE.z)
+    grove.update(camera)
+    const matrix = new Matrix4()
+    places = grove.levels.flatMap(level =>
+      Array.from({ length: level.count }, (_, i) => {
+        level.getMatrixAt(i, matrix)
+        return new Vector3().setFromMatrixPosition(matrix)
+      })
+    )
+    grove.dispose()
+  })
+
+  it('are as many as were asked for, on the ground, none of them on the road', () => {
+    expect(places).toHaveLength(COUNT)
+    for (const { x, y, z } of places) {
+      expect(y - groundHeight(x, z)).toBeCloseTo(-0.2, 3)
+      expect(isOnRoad(x, z)).toBe(false)
+    }
+  })
+
+  it('stand in the village and in rows between fields', () => {
+    const isNear = ({ x, z }: Vector3): boolean => Math.hypot(x - VILLAGE.x, z - VILLAGE.z) < 210
+    const isInRow = ({ x, z }: Vector3): boolean => {
+      const width = fieldBorder(1, z) - fieldBorder(0, z)
+      const across = (x - fieldBorder(0, z)) / width
+      return (across - Math.floor(across)) * width < 1.5
+    }
+    expect(places.filter(isNear).length).toBeGreaterThan(0.2 * COUNT)
+    // By chance, one of 47 is in a row.
+    expect(places.filter(isInRow).length).toBeGreaterThan(0.25 * COUNT)
+  })
+})
