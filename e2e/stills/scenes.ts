@@ -257,6 +257,16 @@ const valleys: ValleyStill[] = [
     valley: { view: 'village', hour: 22.5, season: 0.27 }
   },
   {
+    name: 'valley-shower',
+    about: 'a low sun behind: shafts of rain before mountains with a bow in them, wet ground',
+    valley: { view: 'village', hour: 12.3, season: 0.62, weather: 'shower' }
+  },
+  {
+    name: 'valley-snow',
+    about: 'snow on ground and roofs, flakes around the camera, mountains lost in what falls',
+    valley: { view: 'village', hour: 11, season: 0.75, weather: 'snow' }
+  },
+  {
     name: 'valley-above',
     about: 'over broken clouds at noon',
     valley: { view: 'above', hour: 14, weather: 'broken' }

@@ -1,7 +1,14 @@
 import { codeRegion } from './codeRegion'
 
 const sources = import.meta.glob<string>(
-  ['./quickStart.ts', './air.ts', './*.scene.ts', './valleyAir.ts', './valleyFactors.ts'],
+  [
+    './quickStart.ts',
+    './air.ts',
+    './*.scene.ts',
+    './street/Street.ts',
+    './valleyAir.ts',
+    './valleyFactors.ts'
+  ],
   { query: '?raw', import: 'default', eager: true }
 )
 

@@ -127,3 +127,12 @@ export const Night: Story = {
   args: { hour: 22.5, season: 0.27, dayLength: 1800 },
   tags: ['screenshot', 'webgpu-only']
 }
+
+/** Showers over the valley at noon in autumn, and their bow before the mountains. */
+export const Shower: Story = {
+  args: { hour: 12.3, season: 0.62, weather: 'shower', dayLength: 1800 },
+  tags: ['screenshot', 'webgpu-only']
+}
+
+/** Snowfall in winter: the ground whitens. */
+export const Snow: Story = { args: { hour: 11, season: 0.75, weather: 'snow', dayLength: 1800 } }

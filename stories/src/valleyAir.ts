@@ -26,6 +26,7 @@ import { pass, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
+import type { ValleyPrecipitation } from './valley/falling'
 import { PictureNode } from './valley/PictureNode'
 
 /** Sky, light, clouds and shadows of a scene, exposed. */
@@ -61,7 +62,8 @@ export function valleyAir(
   camera: PerspectiveCamera,
   layers: CloudLayers,
   quality: CloudQualityName | CloudQuality,
-  [galaxy, starlight, glow, luna]: readonly [MilkyWay, Stars, Airglow, Moon]
+  [galaxy, starlight, glow, luna]: readonly [MilkyWay, Stars, Airglow, Moon],
+  falling: ValleyPrecipitation
 ): ValleyAir {
   // #region sky and light
   const atmosphere = new Atmosphere({ parameters: standardEarthParameters() })
@@ -90,12 +92,15 @@ export function valleyAir(
   const depth = scenePass.getTextureNode('depth')
   const shafts = lightShafts(atmosphere, camera, sun)
   const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
-  const node = clouds(air, depth, camera, atmosphere, layers, { quality })
+  const precipitation = falling.shafts // rain and snow under clouds
+  const node = clouds(air, depth, camera, atmosphere, layers, { quality, precipitation })
   Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
   cloudSkyLight(sky, node)
   cloudSkyLight(night, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-  const picture = withDepth(node, scenePass) // drawn once, for exposure and the lake's mirror
+  const lights = [sun, sky, moonlight, moonlitSky, night]
+  const around = falling.over(node, depth, camera, atmosphere, lights) // and around the camera
+  const picture = withDepth(around, scenePass) // drawn once, for exposure and the lake's mirror
   const exposure = autoExposure(picture, atmosphere) // as bright as what the camera sees
   // #endregion
   return {
@@ -110,7 +115,7 @@ export function valleyAir(
     picture,
     exposure,
     dispose() {
-      for (const light of [sun, sky, moonlight, moonlitSky, night]) light.dispose()
+      for (const light of lights) light.dispose()
       picture.dispose()
       cascades.dispose()
     }

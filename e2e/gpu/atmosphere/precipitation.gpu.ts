@@ -62,10 +62,17 @@ gpuTest('rain and snow dim a view as much as their sizes say', async t => {
   ] as const) {
     scene.clear()
     scene.add(falling)
-    const picture = await t.render(renderer, scene, camera, size)
+    // At one time alone the few large drops nearby count too much.
+    const times = [30, 31.7, 33.1, 36.5, 39.8, 42.2]
+    const opacities: number[] = []
+    for (const time of times) {
+      falling.time = time
+      opacities.push(mean(await t.render(renderer, scene, camera, size), 3))
+    }
+    const opacity = opacities.reduce((a, b) => a + b) / times.length
     const expected = 1 - Math.exp(-drawnDepth(kind, rate, widthOf))
-    t.note(`${kind.name}: ${mean(picture, 3).toExponential(3)} of ${expected.toExponential(3)}`)
-    expectClose(mean(picture, 3), expected, { relative: 0.06 }, kind.name)
+    t.note(`${kind.name}: ${opacity.toExponential(3)} of ${expected.toExponential(3)}`)
+    expectClose(opacity, expected, { relative: 0.03 }, kind.name)
     falling.rate = 0
     const none = await t.render(renderer, scene, camera, size)
     expectTrue(mean(none, 3) === 0, `${kind.name} at rate 0`)

@@ -1,13 +1,33 @@
 import { Atmosphere, SunDirectionalLight } from '@welkin/atmosphere'
-import { CloudLightTable, CloudNoise, cloudPreset, cloudShadow, clouds } from '@welkin/clouds'
-import { Mesh, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene } from 'three'
+import {
+  CloudLayers,
+  CloudLightTable,
+  CloudNoise,
+  cloudPreset,
+  cloudShadow,
+  clouds,
+  precipitationShafts
+} from '@welkin/clouds'
+import {
+  MathUtils,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Scene,
+  Vector3
+} from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { CloudField } from '../../../packages/clouds/src/density/CloudField'
 import { CloudShadowMap } from '../../../packages/clouds/src/shadow/CloudShadowMap'
 import { sampleShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
 import { loop, type Vec3 } from '../../../packages/clouds/src/tsl-types'
+import { fallForm } from '../../../packages/clouds/src/precipitation/fallForm'
+import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
+import { extinctionOf, fallenRank, rateOf } from '../../../packages/clouds/test/twins/precipitation'
 import { cloudExtinction } from '../harness/cloud-extinction'
+import { cloudScene, offsets } from '../harness/cloud-scene'
 import { drawToFloat, random } from '../harness/atmosphere'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -168,6 +188,70 @@ gpuTest(
     shadows.dispose()
     field.dispose()
     atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'what falls shades the ground as deep as float64 says',
+  async t => {
+    const falls = { rate: 12, share: 0.7, freezingLevel: 600 }
+    const [base, top] = [1000, 2000]
+    // Clouds so thin that what falls is all.
+    const layers = new CloudLayers([
+      {
+        baseAltitude: base,
+        topAltitude: top,
+        coverage: 0.8,
+        density: 1e-6,
+        shapeAmount: 0,
+        wind: { east: 12, north: -5 },
+        precipitation: falls
+      }
+    ])
+    const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+    const { field, viewpoint, renderer } = scene
+    field.atmosphere.setSunAngles(89.9, 0)
+    const view = scene.update()
+    const medium = precipitationShafts()
+    medium.update(field, view)
+    const shadows = new CloudShadowMap(field, medium)
+    shadows.update(renderer, view)
+    const places = offsets(viewpoint, 60, 4000, 21, () => 5)
+    const found = await evaluateOnGpu(renderer, places, input => {
+      const { toLight, inMap } = sampleShadows(shadows.nodes, input.xyz.toConst())
+      return vec4(toLight.mul(field.depthScale), inMap, 0, 0)
+    })
+    const state = scene.state()
+    const noise = new NoiseTextures()
+    const ceiling = base + fallForm.onset * (top - base)
+    const footprint = (ceiling * 0.03) / field.pixelAngle.value
+    const slices = 60
+    const depths = places.map(([x, y, z]) => {
+      const up = viewpoint
+        .clone()
+        .add(new Vector3(x, y, z))
+        .normalize()
+      let depth = 0
+      for (let k = 0; k < slices; k++) {
+        const altitude = (ceiling * (k + 0.5)) / slices
+        const at = up.clone().multiplyScalar(state.bottomRadius + altitude)
+        const rank = fallenRank(state, noise, 0, at, footprint)
+        const onset = Math.min((ceiling - altitude) / (ceiling - base), 1)
+        const rate = rank > 0 ? onset * rateOf(falls.rate, rank, 0, 0) : 0
+        const snow = MathUtils.smoothstep(altitude, 600 - fallForm.melting, 600)
+        // Half of what is taken is only diffracted, and goes on.
+        depth += (0.5 * extinctionOf(rate, snow, 0) * ceiling) / slices
+      }
+      return depth
+    })
+    const deepest = Math.max(...depths)
+    const worst = Math.max(...depths.map((depth, i) => Math.abs(found[4 * i] - depth)))
+    t.note(`deepest ${deepest.toFixed(2)}, off by at most ${worst.toFixed(3)}`)
+    expectTrue(depths.filter(depth => depth > 0.05).length > 15, 'rain at most places')
+    expectTrue(worst < 0.05 * deepest, `depths are off by ${worst} of ${deepest}`)
+    shadows.dispose()
+    scene.dispose()
   },
   { backends: ['webgpu'] }
 )

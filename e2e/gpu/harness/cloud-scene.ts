@@ -1,4 +1,4 @@
-import { Atmosphere } from '@welkin/atmosphere'
+import { Atmosphere, type AtmosphereView } from '@welkin/atmosphere'
 import { CloudField, cloudWorldMap, type CloudLayers } from '@welkin/clouds'
 import {
   DataTexture,
@@ -27,7 +27,8 @@ export interface CloudScene {
   field: CloudField
   /** The camera from the planet's centre, in the mapped space. */
   viewpoint: Vector3
-  update: (seconds?: number) => void
+  /** Takes the camera's frame. @returns Its view. */
+  update: (seconds?: number) => AtmosphereView
   extinction: (offset: Node<'vec3'>, distance: Node<'float'>, detail: boolean) => Node<'float'>
   state: () => CloudState
   dispose: () => void
@@ -48,11 +49,12 @@ export async function cloudScene(
     worldMap: map && cloudWorldMap(map)
   })
   const viewpoint = new Vector3()
-  const update = (seconds = 0): void => {
+  const update = (seconds = 0): AtmosphereView => {
     const view = atmosphere.update(renderer, camera)
     field.view.update({ renderer, camera } as unknown as NodeFrame)
     field.update(view, seconds)
     viewpoint.copy(view.up).multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
+    return view
   }
   update()
   expectTrue(field.values[0].z === 0, 'clouds before their noise is drawn')

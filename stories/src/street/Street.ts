@@ -10,12 +10,24 @@ import {
   SkyLightProbe,
   snowfall,
   SunDirectionalLight,
+  SurfaceWater,
+  wetSurface,
   type AutoExposureNode,
   type Precipitation
 } from '@welkin/atmosphere'
-import { MathUtils, MeshStandardMaterial, PerspectiveCamera, Scene } from 'three'
-import { pass } from 'three/tsl'
-import { RenderPipeline } from 'three/webgpu'
+import {
+  BackSide,
+  HemisphereLight,
+  MathUtils,
+  Mesh,
+  MeshBasicMaterial,
+  PerspectiveCamera,
+  Scene,
+  SphereGeometry,
+  Vector3
+} from 'three'
+import { pass, uniform } from 'three/tsl'
+import { MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { createHouses, type Houses } from './houses'
 
@@ -33,7 +45,19 @@ export interface StreetWeather {
 }
 
 /** Share of sunlight and of a clear sky's light that an overcast lets through. */
-const OVERCAST = { sun: 0.02, sky: 1.5 }
+const OVERCAST = { sun: 0.02, sky: 0.1 }
+/** Illuminance under an overcast: with the sun at the horizon, and what is added with it in the zenith [lx] (Krochmann & Seidl 1974). */
+const OVERCAST_ILLUMINANCE = [300, 21_000] as const
+/**
+ * Luminance of clouds over a lit town [cd/m²], and its colour: some 10 times that of the clear sky there (Kyba et al. 2011, "Cloud coverage acts as
+ * an amplifier for ecological light pollution", PLoS ONE 6, e17307), which is 2 to 3 mcd/m².
+ */
+const TOWN_GLOW = 0.03
+const TOWN_COLOR = '#ffd9b0'
+/** Radius of the dome that shows it [m]. Greater: it is lost in the haze. */
+const DOME = 190
+/** Water that rain has left on the ground [mm], and snow [mm of water]. */
+const FALLEN = { rain: 1.5, snow: 5 }
 
 /** A street in rain or snow, under a deck of haze. */
 export class Street {
@@ -49,7 +73,15 @@ export class Street {
   readonly #houses: Houses
   readonly #shelter: PrecipitationShelter
   readonly #fog = heightFog({ density: 0.0015, falloff: 900 })
-  #isNight = false
+  readonly #water = new SurfaceWater()
+  /** Light of overcast clouds: of surfaces by `#clouds`, of what falls by the lamp. */
+  readonly #overcast = new HemisphereLight()
+  readonly #clouds = uniform(new Vector3())
+  readonly #dome = new Mesh(
+    new SphereGeometry(DOME, 16, 8),
+    new MeshBasicMaterial({ side: BackSide, fog: false })
+  )
+  #weather: StreetWeather = { rain: 0, snow: 0, wind: 0, elevation: 25, shutter: 1 / 60 }
 
   constructor(renderer: WebGPURenderer, time: number | null) {
     const { atmosphere, camera, scene } = this
@@ -57,9 +89,15 @@ export class Street {
     this.#sun = new SunDirectionalLight(atmosphere, 80)
     const sky = (this.#sky = new SkyLightProbe(atmosphere))
     const night = new NightLightProbe(atmosphere, 0.05)
-    const ground = new MeshStandardMaterial({ color: '#4a4a48', roughness: 0.8 })
-    this.#houses = createHouses(ground)
-    scene.add(this.#sun, this.#sun.target, sky, night, this.#houses.object, camera)
+    // #region wet ground
+    const water = this.#water // update it with the weather, or set what has fallen
+    const ground = new MeshStandardNodeMaterial({ color: '#4a4a48', roughness: 0.8 })
+    Object.assign(ground, wetSurface(water))
+    // #endregion
+    this.#houses = createHouses(ground, water)
+    scene.add(this.#sun, this.#sun.target, sky, night, this.#houses.object, this.#dome, camera)
+    scene.environmentNode = this.#clouds
+    this.#overcast.updateMatrixWorld() // it is in no scene: what falls alone sees it
     camera.position.set(0.6, 1.7, 4)
     camera.lookAt(-0.4, 2.6, -12)
     const scenePass = pass(scene, camera, { samples: 0 })
@@ -67,7 +105,7 @@ export class Street {
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
     const shelter = (this.#shelter = new PrecipitationShelter(scene))
     // #region rain and snow
-    const lights = [this.#sun, sky, night, ...this.#houses.lamps]
+    const lights = [this.#sun, sky, night, this.#overcast, ...this.#houses.lamps]
     const options = { lights, shelter, depth, depthCamera: camera, time }
     const rain = rainfall(atmosphere, { ...options, rate: 12 }) // mm/h
     const snow = snowfall(atmosphere, { ...options, rate: 0 })
@@ -80,15 +118,38 @@ export class Street {
     this.pipeline.outputNode = this.exposure
   }
 
-  set({ rain, snow, wind, elevation, shutter }: StreetWeather): void {
+  set(weather: StreetWeather): void {
+    const { rain, snow, wind, elevation, shutter } = (this.#weather = weather)
     const { atmosphere } = this
     this.rain.set({ rate: rain, shutter, wind: { east: wind, north: 0.3 * wind } })
     this.snow.set({ rate: snow, shutter, wind: { east: wind, north: 0.3 * wind } })
     atmosphere.setSunAngles(elevation, 200)
     this.#sun.intensity = OVERCAST.sun
     this.#sky.intensity = OVERCAST.sky
-    this.#isNight = elevation < -3
     this.#fog.set({ density: 0.0006 + 0.0003 * rain ** 0.64 + 0.001 * snow ** 0.7 })
+    this.#water.water = rain > 0 ? FALLEN.rain : 0
+    this.#water.snow = snow > 0 ? FALLEN.snow : 0
+    this.#water.update(0, { rain, snow })
+  }
+
+  /** Light of the clouds over the street. */
+  #lightClouds(): void {
+    const { luminanceScale } = this.atmosphere
+    const [atHorizon, more] = OVERCAST_ILLUMINANCE
+    const { elevation } = this.#weather
+    const sine = Math.sin(MathUtils.degToRad(elevation))
+    const luminance = this.#isNight ? TOWN_GLOW : (atHorizon + more * Math.max(sine, 0)) / Math.PI
+    const { color, groundColor } = this.#overcast
+    color.set(this.#isNight ? TOWN_COLOR : '#ffffff').multiplyScalar(luminance * luminanceScale)
+    groundColor.copy(color).multiplyScalar(0.2)
+    this.#overcast.intensity = Math.PI
+    this.#clouds.value.setFromColor(color)
+    this.#dome.visible = this.#isNight
+    this.#dome.material.color.copy(color)
+  }
+
+  get #isNight(): boolean {
+    return this.#weather.elevation < -3
   }
 
   /** Turns the camera about its place [°]. */
@@ -97,6 +158,7 @@ export class Street {
   }
 
   render(): void {
+    this.#lightClouds()
     this.#houses.light(this.#isNight ? 1 : 0.15, this.atmosphere.luminanceScale)
     this.pipeline.render()
   }
@@ -108,6 +170,8 @@ export class Street {
     this.snow.dispose()
     this.#shelter.dispose()
     this.#houses.dispose()
+    this.#dome.geometry.dispose()
+    this.#dome.material.dispose()
     this.#sun.dispose()
     this.atmosphere.dispose()
   }

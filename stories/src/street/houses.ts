@@ -9,6 +9,9 @@ import {
   SphereGeometry,
   SpotLight
 } from 'three'
+import { wetSurface, type SurfaceWater } from '@welkin/atmosphere'
+import { float } from 'three/tsl'
+import { MeshStandardNodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 
 /** Luminous intensity of a street lamp [cd], and height of its bulb [m]. */
@@ -27,8 +30,14 @@ export interface Houses {
   dispose(): void
 }
 
-/** @param ground - Material of the street. */
-export function createHouses(ground: MeshStandardMaterial): Houses {
+/**
+ * @param ground - Material of the street.
+ * @param water - Water and snow on the roofs; left out, they stay dry.
+ */
+export function createHouses(
+  ground: MeshStandardMaterial | MeshStandardNodeMaterial,
+  water?: SurfaceWater
+): Houses {
   const random = randomSequence(11)
   const object = new Group()
   const glow: { material: MeshStandardMaterial; luminance: number }[] = []
@@ -40,7 +49,8 @@ export function createHouses(ground: MeshStandardMaterial): Houses {
     return mesh
   }
   add(new Mesh(new PlaneGeometry(400, 400).rotateX(-Math.PI / 2), ground), 0, 0, 0)
-  const roofs = new MeshStandardMaterial({ color: '#33261f', roughness: 0.9 })
+  const roofs = new MeshStandardNodeMaterial({ color: '#33261f', roughness: 0.9 })
+  if (water !== undefined) Object.assign(roofs, wetSurface(water, { exposure: float(0.55) }))
   const panes = new MeshStandardMaterial({ color: '#15181b', roughness: 0.2 })
   const lit = new MeshStandardMaterial({ color: '#15181b', emissive: '#ffb066' })
   glow.push({ material: lit, luminance: WINDOW })

@@ -18,6 +18,7 @@ import { EYE_HEIGHT } from '../moving/Walk'
 import { disposeMeshes } from '../scene'
 import { valleyAir } from '../valleyAir'
 import { ValleyFinish, type ValleyEffects } from './finish'
+import { ValleyPrecipitation } from './falling'
 import { createForest, createGrove } from './forest'
 import { applyFactors, type ValleyFactors } from '../valleyFactors'
 import { CascadeTurns } from './CascadeTurns'
@@ -89,6 +90,9 @@ const NIGHT_LIGHTS = 4
 /** Elevation of the sun below which it lights no mountain of the valley [degrees]. */
 const SUNLIGHT = -3
 
+/** Brighter pictures while snow lies, or it is grey [stops]. */
+const SNOW_COMPENSATION = 0.8
+
 /** Longitude of the valley, where the weather has good cumulus [degrees]. */
 const LONGITUDE = 10
 
@@ -110,6 +114,7 @@ export class Valley {
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
   readonly #layers = new CloudLayers(valleyLayers)
+  readonly #falling = new ValleyPrecipitation()
   readonly #style = airStyle()
   readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 12, density: 0 })
   readonly #moon = moon()
@@ -134,11 +139,11 @@ export class Valley {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
     const quality = typeof state.quality === 'string' ? state.quality : 'low'
-    this.#ground = createGround(QUADS[quality], this.#lamps.reflected())
+    this.#ground = createGround(QUADS[quality], this.#falling.water, this.#lamps.reflected())
     this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 12))]
     const { scene, camera } = this
     const sky = [...this.#glows, this.#moon] as const
-    const air = valleyAir(scene, camera, this.#layers, state.quality, sky)
+    const air = valleyAir(scene, camera, this.#layers, state.quality, sky, this.#falling)
     const { atmosphere, clouds: node, shafts, exposure } = air
     this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#nightLights = air.nightLights
@@ -167,9 +172,16 @@ export class Valley {
     this.cycle.hour = state.hour
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      ...[this.#finish, exposure, overlay, this.#environment, mistLight, node, shafts].map(
-        each => () => each.dispose()
-      ),
+      ...[
+        this.#finish,
+        exposure,
+        overlay,
+        this.#falling,
+        this.#environment,
+        mistLight,
+        node,
+        shafts
+      ].map(each => () => each.dispose()),
       () => air.dispose(),
       () => atmosphere.dispose()
     )
@@ -225,12 +237,13 @@ export class Valley {
     this.#village.object.visible = village
     this.#water.mesh.visible = water
     if (trees !== before.trees || village !== before.village) this.#cascadeTurns.reset()
-    this.#applyWeather()
+    this.#applyWeather(atOnce)
     this.#finish.set(this.#state)
   }
 
-  #applyWeather(): void {
+  #applyWeather(atOnce = false): void {
     const { turbidity, mist } = this.#weather.current
+    this.#falling.set(this.#weather.current, atOnce)
     this.#weather.apply(this.#layers, this.#state.clouds)
     this.#mist.density = this.#state.mist ? mist : 0
     // In steps: the tables are made anew for each.
@@ -242,6 +255,8 @@ export class Valley {
   /** Draws the next frame. */
   render(deltaSeconds: number): void {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
+    this.#falling.update(deltaSeconds, this.#weather.current)
+    this.exposure.compensation = SNOW_COMPENSATION * this.#falling.water.snowCover
     this.camera.updateMatrixWorld()
     const isSorted = this.#trees.map(each => each.update(this.camera)).includes(true)
     if (isSorted) this.#cascadeTurns.reset()
@@ -265,6 +280,7 @@ export class Valley {
   set time(seconds: number) {
     this.#water.setTime(seconds)
     this.#node.time = seconds
+    this.#falling.time = seconds
   }
 
   /** Makes all that the first frame needs. */

@@ -1,4 +1,5 @@
 import { BufferAttribute, BufferGeometry, Group, MathUtils, Mesh, PlaneGeometry } from 'three'
+import type { SurfaceWater } from '@welkin/atmosphere'
 import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
@@ -110,6 +111,9 @@ const STRIP = 70
 /** Height up to which land is farmed [m]. */
 const FARMED = 40
 
+/** Depth by which the snow line comes down while snow lies everywhere [m]. */
+const FALLEN_SNOW = 2300
+
 /** Half width of the road from the village to the lake [m]. */
 const HALF_ROAD = 2.2
 
@@ -152,7 +156,10 @@ function roadAt(): Node<'float'> {
 }
 
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
-function groundMaterial(lamplight: Node<'vec3'> | null): VertexLitMaterial {
+function groundMaterial(
+  { wetnessNode, snowCoverNode }: SurfaceWater,
+  lamplight: Node<'vec3'> | null
+): VertexLitMaterial {
   const material = new VertexLitMaterial()
   const place = positionWorld.xz
   const picture = createNoiseTexture()
@@ -205,7 +212,10 @@ function groundMaterial(lamplight: Node<'vec3'> | null): VertexLitMaterial {
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)
   color = mix(color.mul(bright), rock.mul(bright), smoothstep(0.27, 0.42, slope))
-  const snow = smoothstep(1350, 1750, height.add(broad.mul(170)).add(fine.mul(40)))
+  // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
+  color = color.div(mix(vec3(1), color.oneMinus().mul(1.777).add(color), wetnessNode))
+  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
+  const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
   material.colorNode = color
@@ -242,9 +252,14 @@ function tileOf(grid: BufferGeometry, quads: number, column: number, row: number
  * The valley and its mountains, finer about the middle, in tiles.
  *
  * @param quads - Quads along a side, a multiple of 64.
+ * @param water - Rain and snow on it.
  * @param lamplight - Light of lamps that it gives back.
  */
-export function createGround(quads: number, lamplight: Node<'vec3'> | null = null): Group {
+export function createGround(
+  quads: number,
+  water: SurfaceWater,
+  lamplight: Node<'vec3'> | null = null
+): Group {
   const geometry = new PlaneGeometry(2, 2, quads, quads).rotateX(-Math.PI / 2)
   geometry.deleteAttribute('uv')
   const positions = geometry.attributes.position as BufferAttribute
@@ -259,7 +274,7 @@ export function createGround(quads: number, lamplight: Node<'vec3'> | null = nul
   geometry.setAttribute('cover', new BufferAttribute(cover, 2))
   geometry.computeVertexNormals()
   const ground = new Group()
-  const material = groundMaterial(lamplight)
+  const material = groundMaterial(water, lamplight)
   const along = Math.max(quads / TILE, 1)
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))

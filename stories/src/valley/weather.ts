@@ -11,14 +11,21 @@ export interface Weather {
   readonly turbidity: number
   /** Extinction of the mist over the lake [1/m]. */
   readonly mist: number
+  /** Rates of rain from cumulus, and of snow from the deck, as water [mm/h]. */
+  readonly rain: number
+  readonly snow: number
 }
 
+const dry = { rain: 0, snow: 0 }
+
 export const weathers = {
-  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0 },
-  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0 },
-  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0 },
-  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.02 },
-  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 3.5, mist: 0.0006 }
+  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
+  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
+  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0, ...dry },
+  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.02, ...dry },
+  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 3.5, mist: 0.0006, ...dry },
+  shower: { cumulus: 0.35, deck: 0.45, cirrus: 0.1, turbidity: 2, mist: 0.0002, rain: 6, snow: 0 },
+  snow: { cumulus: 0.1, deck: 0.95, cirrus: 0, turbidity: 2.5, mist: 0.0006, rain: 0, snow: 1.5 }
 } satisfies Record<string, Weather>
 
 export type WeatherName = keyof typeof weathers
@@ -38,6 +45,11 @@ export const valleyLayers = [
   },
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
+
+/** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
+const SHAFTS = [4, 2] as const
+/** Altitude above which snow falls in summer [m]. */
+const FREEZING = 2300
 
 /** Time in which one weather becomes another [s]. */
 const BLEND_SECONDS = 10
@@ -76,9 +88,13 @@ export class WeatherBlend {
 
   /** @param hasClouds - False for a sky without any. */
   apply(layers: CloudLayers, hasClouds: boolean): void {
-    const { cumulus, deck, cirrus } = this.current
+    const { cumulus, deck, cirrus, rain, snow } = this.current
+    const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
+    const freezingLevel = snow > 0 ? 0 : FREEZING
     for (const [i, coverage] of [cumulus, deck, cirrus].entries()) {
-      layers.at(i).set({ coverage: hasClouds ? coverage : 0 })
+      const rate = hasClouds ? rates[i] : 0
+      const falls = rate > 0 ? { rate, share: 0.8, freezingLevel } : null
+      layers.at(i).set({ coverage: hasClouds ? coverage : 0, precipitation: falls })
     }
   }
 }

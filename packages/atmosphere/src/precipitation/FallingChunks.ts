@@ -1,14 +1,14 @@
 import { Frustum, InstancedBufferAttribute, Matrix4, Vector3 } from 'three'
-import type { Camera } from 'three'
-import { drawnParticles, type DrawnClass } from './cpu/drawnParticles'
+import type { Camera, Plane } from 'three'
+import { drawnParticles, keptReach, type DrawnClass } from './cpu/drawnParticles'
 import { diameterAt } from './cpu/sizes'
 import type { FallingLattice } from './FallingLattice'
 import type { ParticleKind } from './ParticleKind'
 
 /** Cells along each edge of a class's box. */
-export const CELLS = 4
+export const CELLS = 8
 /** Particles of a cell that fall together. */
-export const CHUNK = 64
+export const CHUNK = 8
 /** Parts of equal number that a class's sizes have: those of a chunk are of one, and fall equally fast. */
 export const STRATA = 8
 /** Chunks of a layer, which has one in each cell, and its particles. */
@@ -76,36 +76,51 @@ export class FallingChunks {
     _matrix.copy(lattice.toView).setPosition(0, 0, 0).premultiply(projectionMatrix)
     // The planes at the sides are the first four, whatever the depth is.
     const sides = _frustum.setFromProjectionMatrix(_matrix).planes.slice(0, 4)
-    const { attribute } = this
+    const { kind, attribute } = this
+    const values = attribute.array
     let chunks = 0
     this.#classes.forEach(({ side, count }, sizeClass) => {
-      const reach = this.kind.reach[sizeClass]
+      const reach = kind.reach[sizeClass]
       const radius = (Math.sqrt(0.75) * side) / CELLS + margin
       lattice.box(reach, _middle, _drift)
-      const starts = (offset: number): number[][] =>
-        Array.from({ length: CELLS }, (_, cell) => images(fract(cell / CELLS + offset)))
-      const [xs, zs] = [starts(_drift.x), starts(_drift.z)]
-      const isSeen = (x: number, y: number, z: number): boolean => {
-        const px = (x + 0.5 / CELLS - 0.5) * side + _middle.x
-        const py = (y + 0.5 / CELLS - 0.5) * side + _middle.y
-        const pz = (z + 0.5 / CELLS - 0.5) * side + _middle.z
-        if (px * px + py * py + pz * pz > (reach + radius) ** 2) return false
-        return sides.every(
-          ({ normal, constant }) =>
-            normal.x * px + normal.y * py + normal.z * pz + constant > -radius
-        )
-      }
+      const { x: middleX, y: middleY, z: middleZ } = _middle
+      /** Heights of middles of cells over the camera, by where they begin in the box. */
+      const middleOf = (start: number): number => (start + 0.5 / CELLS - 0.5) * side
       const columns = Math.ceil(count / LAYER) * CELLS ** 2
       for (let column = 0; column < columns; column++) {
+        // Of a layer far away, particles whose order in the class begins at a share are left out.
+        const order = (Math.floor(column / CELLS ** 2) * LAYER) / count
+        const farthest = reach * keptReach(kind.fullReach[sizeClass], order) + radius
+        const intervals: number[] = []
+        for (const x of images(fract((column % CELLS) / CELLS + _drift.x)))
+          for (const z of images(fract((Math.floor(column / CELLS) % CELLS) / CELLS + _drift.z)))
+            addInterval(
+              intervals,
+              sides,
+              middleX + middleOf(x),
+              middleZ + middleOf(z),
+              radius,
+              farthest
+            )
+        if (intervals.length === 0) continue
+        const isSeen = (y: number): boolean => {
+          const at = middleY + middleOf(y)
+          for (let i = 0; i < intervals.length; i += 2)
+            if (at > intervals[i] && at < intervals[i + 1]) return true
+          return false
+        }
         const speed = this.#speed(sizeClass, column)
         const fall = fract((speed * lattice.time) / side)
-        const ys = starts(_drift.y - fall)
-        const [x, z] = [xs[column % CELLS], zs[Math.floor(column / CELLS) % CELLS]]
-        ys.forEach((y, cell) => {
-          if (!x.some(a => y.some(b => z.some(c => isSeen(a, b, c))))) return
-          const group = sizeClass * STRATA + stratumOf(column)
-          attribute.setXYZW(chunks++, column * CELLS + cell, group, fall, speed)
-        })
+        const group = sizeClass * STRATA + stratumOf(column)
+        for (let cell = 0; cell < CELLS; cell++) {
+          const y = fract(cell / CELLS + _drift.y - fall)
+          if (!isSeen(y) && !(y > 1 - 1 / CELLS && isSeen(y - 1))) continue
+          const at = 4 * chunks++
+          values[at] = column * CELLS + cell
+          values[at + 1] = group
+          values[at + 2] = fall
+          values[at + 3] = speed
+        }
       }
     })
     // Three draws one instance where there are none to draw.
@@ -119,6 +134,34 @@ export class FallingChunks {
 
 /** Places at which a cell begins: one that reaches over its box's end goes on at the other. */
 const images = (start: number): number[] => (start > 1 - 1 / CELLS ? [start, start - 1] : [start])
+
+/**
+ * Adds the stretch of a vertical line that is in view, two heights over the camera, if there is one.
+ *
+ * @param x - Place of the line from the camera [m].
+ * @param radius - Distance from the view up to which counts as in it [m].
+ * @param farthest - Distance from the camera [m].
+ */
+function addInterval(
+  intervals: number[],
+  sides: readonly Plane[],
+  x: number,
+  z: number,
+  radius: number,
+  farthest: number
+): void {
+  const square = farthest * farthest - x * x - z * z
+  if (square <= 0) return
+  let high = Math.sqrt(square)
+  let low = -high
+  for (const { normal, constant } of sides) {
+    const least = -radius - constant - normal.x * x - normal.z * z
+    if (normal.y > 0) low = Math.max(low, least / normal.y)
+    else if (normal.y < 0) high = Math.min(high, least / normal.y)
+    else if (least > 0) return
+  }
+  if (low < high) intervals.push(low, high)
+}
 
 /** Each stratum has as many columns of a layer as the others, and as many layers of a column. */
 const stratumOf = (column: number): number =>

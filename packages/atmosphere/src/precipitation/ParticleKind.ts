@@ -16,6 +16,11 @@ export interface ParticleKind {
   readonly reach: readonly [number, number, number, number]
   /** Real particles for which each one that is drawn stands, at least: those of small classes are too faint to be told apart. */
   readonly weights: readonly [number, number, number, number]
+  /**
+   * Share of its reach up to which a class has all its particles: farther off fewer and more opaque ones stand for them. Smaller: opacities would
+   * be above 1, and far snow too thin (*Rain and snow in a street*).
+   */
+  readonly fullReach: readonly [number, number, number, number]
   /** Most particles of a class that are drawn, if no one says. */
   readonly most: number
   /** Width that is seen [m]. @param diameter - [mm]. */
@@ -50,7 +55,8 @@ export const rain: ParticleKind = {
   edges: [0.5, 1, 2, 3, 6],
   reach: [2, 4, 8, 16],
   weights: [4, 2, 1, 1],
-  most: 65_536,
+  fullReach: [0.35, 0.35, 0.35, 0.35],
+  most: 32_768,
   width: diameter => diameter.mul(1e-3),
   speed: diameter => Math.max(9.65 - 10.3 * Math.exp(-0.6 * diameter), 0),
   meanSpeed: 6.5,
@@ -74,9 +80,10 @@ export const snow: ParticleKind = {
   sizes: snowflakeSizes,
   drawnRate: 3,
   edges: [0.3, 0.8, 1.6, 2.6, 5],
-  reach: [2.5, 5, 10, 24],
+  reach: [2.5, 5, 10, 18],
   weights: [2, 1, 1, 1],
-  most: 131_072,
+  fullReach: [0.35, 0.35, 0.5, 0.75],
+  most: 65_536,
   width: diameter =>
     float(diameter)
       .pow(FLAKE[1])

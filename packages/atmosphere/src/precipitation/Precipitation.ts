@@ -68,7 +68,7 @@ class PrecipitationNode extends Node<'vec4'> {
  * ```
  *
  * Particles stand still against the planet but for their fall and the wind: a moving camera sees parallax. Each of four classes of size is drawn
- * as far as it can be seen, up to 16 m in rain and 24 m in snow; what falls farther off is haze, such as `heightFog` with
+ * as far as it can be seen, up to 16 m in rain and 18 m in snow; what falls farther off is haze, such as `heightFog` with
  * {@link Raindrops} or a cloud layer's precipitation. A particle's streak is its way against the camera while the shutter
  * is open, as opaque as the particle is on the mean, so that rain dims by π/4 ΣD² per length.
  *
@@ -182,6 +182,7 @@ export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
     checkRange(this.#kind.name, 'rate', value, 0, 300)
     this.#rate = value
     this.#uniforms.setRate(value, this.#chunks.setRate(value))
+    this.material.visible = value > 0
   }
 
   /** Mean wind, `{ east, north }` [m/s]. */

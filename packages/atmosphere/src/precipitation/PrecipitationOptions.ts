@@ -34,7 +34,7 @@ export interface PrecipitationOptions {
   depth?: Node
   /** Camera that drew `depth`. */
   depthCamera?: Camera
-  /** Most particles of each of four classes of size, a positive integer; by default 65,536 in rain, 131,072 in snow. */
+  /** Most particles of each of four classes of size, a positive integer; by default 32,768 in rain, 65,536 in snow. */
   maxParticles?: number
 }
 

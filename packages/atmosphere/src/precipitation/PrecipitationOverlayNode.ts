@@ -1,11 +1,12 @@
 import { Scene, type Camera } from 'three'
-import { Fn, texture, uv, vec4 } from 'three/tsl'
+import { Fn, If, texture, uv, vec4 } from 'three/tsl'
 import { Node, NodeUpdateType, RendererUtils } from 'three/webgpu'
 import type { NodeFrame, TextureNode } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 import { checkCamera } from '../check'
 import { tableTarget } from '../tables/FragmentPass'
-import { sampleLevel0, type Vec4 } from '../tsl-types'
+import { sampleLevel0, type Vec3, type Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
 import { drawnSize } from '../view/renderers'
 import type { Precipitation } from './Precipitation'
 
@@ -23,7 +24,7 @@ const FORWARD = 0.65
  * pipeline.outputNode = precipitationOverlay(air, camera, [rain])
  * ```
  *
- * It is drawn in a pass of its own, of half floats and the picture's size; the depth that it was given hides it. It is taken into a
+ * It is drawn in a pass of its own, of half floats and the picture's size, while anything falls; the depth that it was given hides it. It is taken into a
  * scene of the node's own.
  */
 export class PrecipitationOverlayNode extends Node<'vec4'> {
@@ -36,6 +37,9 @@ export class PrecipitationOverlayNode extends Node<'vec4'> {
   /** The camera that drew it. */
   readonly camera: Camera
   readonly #scene = new Scene()
+  readonly #falling: readonly Precipitation[]
+  /** 1 while anything falls. */
+  readonly #isFalling = number()
   readonly #target = tableTarget('Welkin.Precipitation', 1, 1)
   readonly #texture: TextureNode = texture(this.#target.texture)
 
@@ -51,12 +55,15 @@ export class PrecipitationOverlayNode extends Node<'vec4'> {
     })
     this.colorNode = colorNode
     this.camera = camera
+    this.#falling = falling
     this.#scene.add(...falling)
     this.updateBeforeType = NodeUpdateType.FRAME
   }
 
   override updateBefore({ renderer }: NodeFrame): undefined {
-    if (renderer === null) return
+    const isFalling = this.#falling.some(({ rate, visible }) => visible && rate > 0)
+    this.#isFalling.value = isFalling ? 1 : 0
+    if (renderer === null || !isFalling) return
     const { width, height } = drawnSize(renderer)
     this.#target.setSize(width, height)
     const state = RendererUtils.resetRendererState(renderer, {} as never)
@@ -70,9 +77,13 @@ export class PrecipitationOverlayNode extends Node<'vec4'> {
   override setup(): Node {
     return Fn((): Vec4 => {
       const color = vec4(this.colorNode as Vec4).toConst() as Vec4
-      const { rgb, a } = sampleLevel0(this.#texture, uv()).toConst() as Vec4
-      const light = rgb.max(color.rgb.mul(a).mul(FORWARD))
-      return vec4(color.rgb.mul(a.oneMinus()).add(light), color.a)
+      const result = color.rgb.toVar() as Vec3
+      If(this.#isFalling.greaterThan(0), () => {
+        const { rgb, a } = sampleLevel0(this.#texture, uv()).toConst() as Vec4
+        const light = rgb.max(color.rgb.mul(a).mul(FORWARD))
+        result.assign(color.rgb.mul(a.oneMinus()).add(light))
+      })
+      return vec4(result, color.a)
     })()
   }
 

@@ -22,6 +22,7 @@ export interface ClassNodes {
   readonly edge: Float
   readonly range: Float
   readonly weight: Float
+  readonly fullReach: Float
   /** Middle of its box from the camera [m], and drift over its side. */
   readonly middle: Vec3
   readonly drift: Vec3
@@ -64,7 +65,7 @@ export class PrecipitationUniforms {
     classes.forEach(({ side, proposed, weight }, i) => {
       const [from, to] = [kind.edges[i], kind.edges[i + 1]]
       const range = numberBetween(drawn, from, to) / numberBetween(drawn, from, Infinity)
-      this.#sizes[i].value.set(from, range, weight, 0)
+      this.#sizes[i].value.set(from, range, weight, kind.fullReach[i])
       this.#boxes[i].value.set(side, kind.reach[i], proposed, i)
     })
   }
@@ -101,6 +102,7 @@ export class PrecipitationUniforms {
       edge: sizes.x,
       range: sizes.y,
       weight: sizes.z,
+      fullReach: sizes.w,
       middle: pick(this.#middles).xyz,
       drift: pick(this.#drifts).xyz
     }

@@ -37,6 +37,18 @@ function integrals(texels: Float32Array): number[] {
   })
 }
 
+/**
+ * Angle between the primary bow and its first supernumerary [°]: Airy's rainbow integral has its maxima where Ai′ is 0 (Abramowitz & Stegun
+ * 1964, table 10.13), at (θ₀ − θ) x^⅔ h^−⅓, h = (9/4) √((4 − n²)/(n² − 1)³) (van de Hulst 1957, §13.2).
+ */
+function airySpacing(radius: number, wavelength: number): number {
+  const [first, second] = [1.018793, 3.248198]
+  const square = 1.3336 ** 2
+  const h = 2.25 * Math.sqrt((4 - square) / (square - 1) ** 3)
+  const size = (2 * Math.PI * radius) / wavelength
+  return (second - first) * Math.cbrt(h) * size ** (-2 / 3) * toDegrees
+}
+
 describe('Mie scattering', () => {
   it("is Rayleigh's for small spheres", () => {
     const x = 0.01
@@ -61,6 +73,24 @@ describe('Mie scattering', () => {
 
   it('takes twice its shadow from light if a sphere is large', () => {
     expect(mieSphere(3000, 1.33, mieAngles([])).efficiency).toBeCloseTo(2, 1)
+  })
+
+  it('has supernumerary bows as far inside the first as Airy’s theory', () => {
+    const cosines = Array.from({ length: 900 }, (_, i) => -Math.cos((36 + i / 150) / toDegrees))
+    const sum = cosines.map(() => 0)
+    // Sizes that differ a little: their ripples cancel each other.
+    const size = (2 * Math.PI * 500) / 0.55
+    for (let k = -4; k <= 4; k++) {
+      const angles = mieAngles(cosines)
+      mieSphere(size * (1 + 0.003 * k), 1.3336, angles)
+      angles.intensity.forEach((value, i) => (sum[i] += value))
+    }
+    const smooth = sum.map((_, i) => sum.slice(Math.max(i - 6, 0), i + 7).reduce((a, b) => a + b))
+    const peak = (from: number, to: number): number =>
+      smooth.slice(from, to).reduce((best, v, i, all) => (v > all[best] ? i : best), 0) + from
+    const bow = peak(0, 900)
+    const supernumerary = peak(bow - 150, bow - 70)
+    expect((bow - supernumerary) / 150 / airySpacing(500, 0.55)).toBeCloseTo(1, 1)
   })
 
   // CRC Handbook of Chemistry and Physics: water at 20 °C against air, D line.
@@ -125,6 +155,19 @@ describe('droplets', () => {
         forward += weight * efficiency * asymmetry
       }
       expect(Math.abs(dropletRow(effective).moments[0] - forward / section)).toBeLessThan(0.005)
+    }
+  })
+
+  it('have a supernumerary bow inside the first, by Airy’s theory within a texel and the spread of sizes', () => {
+    for (const radius of [16, 20, 25]) {
+      const { texels } = dropletRow(radius)
+      const green = (i: number): number => texels[4 * i + 2]
+      const bow = 180 - degrees(greatest(130, 155, green))
+      const spacing = airySpacing(radius, 0.55)
+      const inside = greatest(180 - bow + 0.7 * spacing, 180 - bow + 1.3 * spacing, green)
+      // A peak, not a slope.
+      expect(green(inside)).toBeGreaterThan(Math.max(green(inside - 2), green(inside + 2)))
+      expect(Math.abs(bow - (180 - degrees(inside)) - spacing)).toBeLessThan(0.8)
     }
   })
 

@@ -1,6 +1,7 @@
 import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
 import {
   AddEquation,
+  Box2,
   BufferGeometry,
   CustomBlending,
   DoubleSide,
@@ -10,7 +11,9 @@ import {
   Mesh,
   OneFactor,
   Scene,
-  type Vector3
+  Vector2,
+  Vector3,
+  Vector4
 } from 'three'
 import {
   bool,
@@ -28,8 +31,8 @@ import {
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
-import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { matrix3, matrix4, number, vector3 } from '../uniforms'
+import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
 import { CHANNEL_COLOR, type PlacedChannel } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
@@ -43,7 +46,16 @@ const HIDING = 0.02
 /** Share of its light that clouds must let through: less is none, or it shines through opaque ones. */
 const LEAST_PASSING = 0.01
 
+/** Steps in which the size of what is drawn grows [pixels]. */
+const STEP = 64
+
 const _toView = new Matrix3()
+const _point = new Vector3()
+const _clip = new Vector4()
+const _corner = new Vector2()
+const _zero = new Vector2()
+const _box = new Box2()
+const _picture = new Box2()
 
 /** Quads of all pieces: where each begins and ends, and which corner a vertex is. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
@@ -93,6 +105,9 @@ export class BoltPass {
   /** The channel's place in its own frame, from the camera [m]. */
   readonly #place = vector3()
   readonly #projection = matrix4()
+  /** Part of the picture that is drawn: its corner, and its size, over the picture's; y down. */
+  readonly #crop = vector4()
+  #channel: PlacedChannel | null = null
   /** Luminous intensity of a metre of the stem, and that of branches, times `luminanceScale` [cd/m]. */
   readonly #stemLight = number()
   readonly #branchLight = number()
@@ -108,6 +123,8 @@ export class BoltPass {
 
   /** Takes a channel's geometry. */
   set channel(channel: PlacedChannel) {
+    this.#channel = channel
+    this.#target.setSize(1, 1)
     this.#mesh.geometry.dispose()
     this.#mesh.geometry = quadsOf(channel)
   }
@@ -186,10 +203,12 @@ export class BoltPass {
       air.assign(transmittance.mul(isFirst.select(passing.x, passing.y)))
       // In front of the camera and not in clouds, or else nowhere.
       const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
-      return isSeen.select(vec4(pixel.mul(2).div(frame.size), 0.5, 1), vec4(2, 2, 2, 1))
+      const inPicture = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5)
+      const drawn = inPicture.sub(this.#crop.xy).div(this.#crop.zw).sub(0.5)
+      return isSeen.select(vec4(drawn.mul(vec2(2, -2)), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
-      const here = vec2(screenUV) as unknown as Vec2
+      const here = vec2(screenUV).mul(this.#crop.zw).add(this.#crop.xy).toConst() as Vec2
       const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
       const ray = viewRayAt(viewRays, here)
@@ -217,9 +236,14 @@ export class BoltPass {
     return material
   }
 
-  /** Light of the channel [luminance × `luminanceScale`]. */
+  /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec3 {
-    return this.#texture.sample(at).level(0).rgb
+    const drawn = at.sub(this.#crop.xy).div(this.#crop.zw).toConst() as Vec2
+    const light = vec3(0).toVar() as Variable<Vec3>
+    If(drawn.clamp(0, 1).equal(drawn).all(), () => {
+      light.assign(this.#texture.sample(drawn).level(0).rgb)
+    })
+    return light
   }
 
   /**
@@ -247,13 +271,48 @@ export class BoltPass {
     const perLength = 1 / (4 * Math.PI * brightLength)
     this.#stemLight.value = power.all * perLength
     this.#branchLight.value = power.branches * perLength
-    this.#target.setSize(frame.size.value.x, frame.size.value.y)
+    if (!this.#cropTo(frame.size.value)) return
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     renderer.setRenderTarget(this.#target)
     renderer.setClearColor(0x000000, 0)
     renderer.autoClear = true
     renderer.render(this.#scene, this.#clouds.camera)
     RendererUtils.restoreRendererState(renderer, state)
+  }
+
+  /** Crops what is drawn to the channel's surroundings in the picture. @returns False if it is out of the picture. */
+  #cropTo({ x: width, y: height }: Vector2): boolean {
+    const box = _box.makeEmpty()
+    for (const { from, to } of this.#channel?.pieces ?? [])
+      for (const end of [from, to]) {
+        _point
+          .set(...end)
+          .applyMatrix3(this.#toView.value)
+          .add(this.#placeView.value)
+        // What is behind the camera is anywhere in the picture.
+        const isBefore =
+          _clip.set(..._point.toArray(), 1).applyMatrix4(this.#projection.value).w > 0
+        const [u, v] = isBefore ? [_clip.x / _clip.w, -_clip.y / _clip.w] : [0, 0]
+        box.expandByPoint(_corner.set(u + 1, v + 1))
+        if (!isBefore) box.expandByPoint(_corner.set(0, 0)).expandByPoint(_corner.set(2, 2))
+      }
+    const all = _corner.set(width, height).multiplyScalar(0.5)
+    box.min.multiply(all).subScalar(HALF_WIDTH)
+    box.max.multiply(all).addScalar(HALF_WIDTH)
+    box.intersect(_picture.set(_zero, _corner.set(width, height)))
+    this.#crop.value.set(2, 2, 1, 1)
+    if (box.isEmpty()) return false
+    // In steps, and growing alone: a texture of a new size is a new texture.
+    const [across, down] = (['x', 'y'] as const).map(axis => {
+      const wanted = Math.ceil((box.max[axis] - Math.floor(box.min[axis])) / STEP) * STEP
+      const before = axis === 'x' ? this.#target.width : this.#target.height
+      return Math.min(Math.max(wanted, before), axis === 'x' ? width : height)
+    })
+    this.#target.setSize(across, down)
+    const left = Math.min(Math.floor(box.min.x), width - across)
+    const top = Math.min(Math.floor(box.min.y), height - down)
+    this.#crop.value.set(left / width, top / height, across / width, down / height)
+    return true
   }
 
   /** Frees its render target and geometry. */

@@ -68,6 +68,9 @@ export class LightningPasses {
   readonly #target = tableTarget('Welkin.LightningGlow', 1, 1)
   readonly #glow: LevelTexture<Vec2>
   readonly #pass: FragmentPass
+  readonly #smoothTarget = tableTarget('Welkin.LightningSmoothGlow', 1, 1)
+  readonly #smooth: LevelTexture<Vec2>
+  readonly #smoothPass: FragmentPass
   readonly #bolt: BoltPass
   readonly #density: StormDensity
 
@@ -76,6 +79,8 @@ export class LightningPasses {
     this.#glow = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#density = new StormDensity(clouds.field)
     this.#pass = new FragmentPass('Welkin.LightningGlow', this.#light())
+    this.#smooth = texture(this.#smoothTarget.texture) as unknown as LevelTexture<Vec2>
+    this.#smoothPass = new FragmentPass('Welkin.LightningSmoothGlow', this.#smoothed())
     this.#bolt = new BoltPass(clouds)
   }
 
@@ -117,9 +122,13 @@ export class LightningPasses {
           far.assign(isSeen.select(far.max(distances[i]), far))
           near.assign(isSeen.select(near.min(distances[i]), near))
         }
-        const [nearOut, farOut] = [near, far].map(at =>
+        const outAt = (at: Float): Float =>
           this.#density.lightOut(ray.direction.mul(at).toConst()).toConst()
-        )
+        const nearOut = outAt(near)
+        const farOut = nearOut.toVar() as Variable<Float>
+        If(far.sub(near).greaterThan(CLOUD_SOFTNESS), () => {
+          farOut.assign(outAt(far))
+        })
         const radiance = float(0).toVar() as Variable<Float>
         loop('flashPoint', POINTS, point => {
           const own = componentAt(float(point))
@@ -138,6 +147,23 @@ export class LightningPasses {
         hazeEnd.assign(mix(end, mean.min(end), opacity))
       })
       return vec4(light.xyz, this.#hazeLight(ray.direction, hazeEnd))
+    })()
+  }
+
+  /** Glow by a tent: marched pixels are one of each block, and it hides which. */
+  #smoothed(): Vec4 {
+    return Fn(() => {
+      const here = uv() as unknown as Vec2
+      const texel = vec2(0.5).div(this.#clouds.passes.viewRays.frame.marchedSize).toConst() as Vec2
+      const glow = vec4(0).toVar() as Variable<Vec4>
+      for (const [x, y] of [
+        [-1, -1],
+        [1, -1],
+        [-1, 1],
+        [1, 1]
+      ])
+        glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
+      return glow.mul(0.25)
     })()
   }
 
@@ -172,24 +198,15 @@ export class LightningPasses {
     If(this.power.greaterThan(0), () => {
       const { light } = this.#clouds.passes.accumulated
       const opacity = light.sample(here).level(0).a.oneMinus()
-      // Marched pixels are one of each block: a tent about them hides which.
-      const texel = vec2(0.5).div(this.#clouds.passes.viewRays.frame.marchedSize).toConst() as Vec2
-      const glow = vec4(0).toVar() as Variable<Vec4>
-      for (const [x, y] of [
-        [-1, -1],
-        [1, -1],
-        [-1, 1],
-        [1, 1]
-      ])
-        glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
+      const glow = this.#smooth.sample(here).level(0).toConst() as Vec4
       const [r, g, b] = CHANNEL_COLOR
       // Green lies between red and blue as λ⁻⁴ does.
       const green = glow.x
         .max(1e-7)
         .pow(1 - GREEN_SHARE)
         .mul(glow.y.max(1e-7).pow(GREEN_SHARE))
-      const cloud = vec3(glow.x, green, glow.y).mul(opacity.div(glow.z.max(1e-3)))
-      const all = cloud.add(glow.w.div(4)).mul(this.power.div(STORED_POWER))
+      const cloud = vec3(glow.x, green, glow.y).mul(opacity.div(glow.z.max(2.5e-4)))
+      const all = cloud.add(glow.w).mul(this.power.div(STORED_POWER))
       result.addAssign(all.mul(vec3(r, g, b)))
       result.addAssign(this.#bolt.sample(here))
     })
@@ -220,15 +237,15 @@ export class LightningPasses {
     const { passes } = this.#clouds
     const { x, y } = passes.viewRays.frame.marchedSize.value
     this.#target.setSize(x, y)
+    this.#smoothTarget.setSize(x, y)
     this.#pass.render(renderer, this.#target)
+    this.#smoothPass.render(renderer, this.#smoothTarget)
     this.#bolt.render(renderer, view, _offset, channel, power)
   }
 
   /** Frees render targets and passes. */
   dispose(): void {
-    this.#target.dispose()
-    this.#pass.dispose()
-    this.#bolt.dispose()
-    this.#density.dispose()
+    for (const owned of [this.#target, this.#smoothTarget]) owned.dispose()
+    for (const owned of [this.#pass, this.#smoothPass, this.#bolt, this.#density]) owned.dispose()
   }
 }

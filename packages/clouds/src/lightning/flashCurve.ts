@@ -61,6 +61,8 @@ export function emittedUntil(time: number): number {
  * the last one; or of one in the cloud: more and weaker pulses in a glow.
  *
  * @see Rakov & Uman 2003, "Lightning: physics and effects", tables 1.1 and 4.2
+ * @see Zhu et al. 2015, "Some properties of negative cloud-to-ground flashes", J. Atmos. Sol.-Terr. Phys. 136, pp. 16–22: 1085 flashes of 3.3 strokes in
+ *   the mean, 62 ms apart in the geometric mean
  */
 export function flashCurve(kind: FlashKind, random: Random): FlashCurve {
   const isGround = kind === 'ground'

@@ -149,7 +149,7 @@ export class CloudsNode extends AtmosphereNode {
     this.#precipitation = precipitation
     checkPrecipitation('CloudsNode', layers, precipitation)
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
-    this.shadows = new CloudShadowMap(this.field)
+    this.shadows = new CloudShadowMap(this.field, precipitation)
     this.passes = new CloudRenderer({
       field: this.field,
       light: this.light.nodes,
@@ -283,9 +283,9 @@ export class CloudsNode extends AtmosphereNode {
     field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
     field.depthScale.value = light.nodes.depthScale.value
     field.update(view, this.#time ?? frame.time)
+    const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
     this.shadows.update(renderer, view)
     this.passes.setSize(width, height, this.#quality.block)
-    const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value

@@ -3,6 +3,8 @@ import { checkOptions, fail } from '@welkin/geo'
 import { MathUtils, Vector3, Vector4 } from 'three'
 import { If, int, mix, vec4 } from 'three/tsl'
 import type { CloudField } from '../density/CloudField'
+import type { LayerNodes } from '../density/tsl/layer'
+import type { CloudSample } from '../density/tsl/sample'
 import { CloudLayers } from '../layers/CloudLayers'
 import { dry } from '../layers/precipitation'
 import { layerPeriods } from '../layers/layerUniforms'
@@ -16,9 +18,9 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { fallForm } from './fallForm'
-import type { FallNodes } from './tsl/fall'
+import { fallenFrom, fallExtinction, type FallNodes } from './tsl/fall'
 import { lightPrecipitation } from './tsl/lightPrecipitation'
-import { marchPrecipitation } from './tsl/marchPrecipitation'
+import { DIFFRACTED, marchPrecipitation } from './tsl/marchPrecipitation'
 
 /** Options of {@link PrecipitationShafts}. */
 export interface PrecipitationShaftsOptions {
@@ -119,6 +121,23 @@ export class PrecipitationShafts {
     if (state.some((value, i) => value !== this.#state[i])) this.#version++
     this.#state = state
     return this.#version + (this.drops?.version ?? 0)
+  }
+
+  /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
+  get ceiling(): Float {
+    return this.#ceiling
+  }
+
+  /** Extinction of light by what falls from a layer, without what is only diffracted [1/m]. To be called inside of a shader function. */
+  extinctionAt(field: CloudField, layer: LayerNodes, sample: CloudSample): Float {
+    const { rate, snow, hail } = fallenFrom(
+      field,
+      undefined,
+      layer,
+      this.fallOf(layer.index),
+      sample
+    )
+    return fallExtinction(rate, snow, hail).mul(1 - DIFFRACTED)
   }
 
   /** Precipitation of a layer, as shader nodes. */

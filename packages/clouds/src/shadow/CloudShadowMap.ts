@@ -7,6 +7,7 @@ import type { Renderer } from 'three/webgpu'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
 import { CASCADE_SIZE as SIZE, CascadeState } from './CascadeState'
 import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
+import type { ShadingFall } from './tsl/fallDepth'
 import { CASCADE_RATIO, shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
 import { number, vector3, vector4 } from '../uniforms'
@@ -113,7 +114,8 @@ export class CloudShadowMap {
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
 
-  constructor(field: CloudField) {
+  /** @param falling - Rain and snow, which shade too; updated before the maps. */
+  constructor(field: CloudField, falling?: ShadingFall) {
     this.field = field
     this.source = field.atmosphere.sun
     const width = SIZE * (HALF_WIDTHS.length + 1) + TABLE_COLUMNS
@@ -144,7 +146,7 @@ export class CloudShadowMap {
       halfWidth: number(),
       size: SIZE
     }
-    this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray))
+    this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray, falling))
   }
 
   /** True if there are maps: not before the first update, and not far away. */
@@ -184,7 +186,7 @@ export class CloudShadowMap {
     if (!(_below.dot(this.#anchor) > ANCHOR_COSINE * _below.length() * this.#anchor.length())) {
       this.#anchor.copy(_below)
     }
-    const scale = 2 ** Math.max(Math.ceil(Math.log2(view.height / WIDENING_HEIGHT)), 0)
+    const scale = 2 ** Math.ceil(Math.log2(Math.max(view.height / WIDENING_HEIGHT, 1)))
     let oldest = this.#current
     for (const [index, cascade] of this.#cascades.entries()) {
       const halfWidth = HALF_WIDTHS[index] * scale

@@ -49,3 +49,12 @@ export function drawnParticles(kind: ParticleKind, rate: number, most: number): 
     }
   })
 }
+
+/**
+ * Distance over a class's reach up to which it keeps a share of its particles, in (0, 1] [–].
+ *
+ * @param fullReach - `ParticleKind.fullReach` of the class.
+ * @param share - In [0, 1].
+ */
+export const keptReach = (fullReach: number, share: number): number =>
+  Math.min(fullReach / Math.sqrt(share), 1)

@@ -10,6 +10,8 @@ export const NEW_SNOW = 100
 const SETTLED_SNOW = 300
 /** Rate at which snow settles [1/h]. */
 const SETTLING = 0.01
+/** Exponent of density in the depth that covers the ground (Niu & Yang 2007; land models also take 1, as CLM 4.5 does) [–]. */
+const MELTING_FACTOR = 1.6
 /** Roughness length of bare ground [m]. */
 const ROUGHNESS_LENGTH = 0.01
 
@@ -76,7 +78,7 @@ export const settledDensity = (density: number, hours: number): number =>
  */
 export function snowCoverFraction(water: number, density: number): number {
   const depth = water / density // mm of water are kg/m²
-  return Math.tanh(depth / (2.5 * ROUGHNESS_LENGTH * (density / NEW_SNOW)))
+  return Math.tanh(depth / (2.5 * ROUGHNESS_LENGTH * (density / NEW_SNOW) ** MELTING_FACTOR))
 }
 
 /**

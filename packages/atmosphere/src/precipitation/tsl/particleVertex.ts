@@ -22,6 +22,7 @@ import type { ParticleKind } from '../ParticleKind'
 import type { PrecipitationShelter } from '../PrecipitationShelter'
 import type { PrecipitationUniforms } from '../PrecipitationUniforms'
 import { litParticle } from './litParticle'
+import { keptWeight } from './keptWeight'
 import { streakShape } from './particleShape'
 import type { ParticleVaryings } from './particleFragment'
 
@@ -116,6 +117,7 @@ export function particleVertex(
         velocity.addAssign(vec3(swerve.x, 0, swerve.y))
       }
       const distance = offset.length().toConst() as Float
+      const kept = keptWeight(at.fullReach, order.div(there), distance.div(at.reach)).toConst()
       const side = box.abs().mul(2).toConst() as Vec3
       const fade = smoothstep(EDGE_FADE, 1, side.x.max(side.y).max(side.z))
         .oneMinus()
@@ -132,7 +134,7 @@ export function particleVertex(
       const isInView = outside.x
         .max(outside.y)
         .lessThan(0)
-        .and(fade.greaterThan(0))
+        .and(fade.mul(kept).greaterThan(0))
         .and(head.z.max(tail.z).lessThan(0))
       const isDrawn = shelter === null ? isInView : isInView.and(shelter.isOpen(head))
 
@@ -171,7 +173,7 @@ export function particleVertex(
           vec4(seenLength.div(outer).mul(0.5), sharpness, random(7), position.z)
         )
         const light = litParticle(kind, measured, lamps, at.index, offset.div(distance), head)
-        const alpha = opacity.mul(at.weight).mul(uniforms.opacity).min(1).mul(fade)
+        const alpha = opacity.mul(at.weight.mul(kept)).mul(uniforms.opacity).min(1).mul(fade)
         varyings.light.assign(vec4(light, alpha))
       })
     })

@@ -138,12 +138,20 @@ export function marchPrecipitation(
         const seen = transmittance.mul(unhidden).mul(through.oneMinus()).toConst() as Float
         const toLight = lightAt(context, sample)
         const { toLight: depthToLight, inMap } = sampleShadows(shadows, offset)
-        const clouds = depthToLight.mul(inMap).mul(toLight.isMapped).mul(light.depthScale)
+        const mapped = inMap.mul(toLight.isMapped).toConst() as Float
+        const clouds = depthToLight.mul(mapped).mul(light.depthScale).toConst() as Float
         const slant = toLight.cosine.max(0.05).reciprocal()
         const own = ceiling.sub(sample.altitude).mul(slant).min(LIT_WIDTH).mul(extinction)
-        const lit = clouds.add(own).negate().exp().mul(seen).toConst() as Float
+        // The map has what falls, too.
+        const lit = clouds
+          .add(own.mul(mapped.oneMinus()))
+          .negate()
+          .exp()
+          .mul(seen)
+          .toConst() as Float
         const flakes = found.y.div(found.x).toConst() as Float
-        sums.addAssign(vec4(1, at, found.z.div(found.x), clouds.add(1).log()).mul(seen))
+        const ofClouds = clouds.sub(own.mul(mapped)).max(0)
+        sums.addAssign(vec4(1, at, found.z.div(found.x), ofClouds.add(1).log()).mul(seen))
         lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
         const ahead = points.distances.sub(start).clamp(0, length)
         before.mulAssign(ahead.mul(extinction).negate().exp())

@@ -38,7 +38,7 @@ function crossings(
  */
 export function layerSegment(
   field: CloudField,
-  { baseAltitude, thickness }: LayerNodes,
+  { baseAltitude, thickness }: Pick<LayerNodes, 'baseAltitude' | 'thickness'>,
   ray: RadialRay,
   maximumDistance: Float
 ): LayerSegment {

@@ -1,10 +1,11 @@
 import type { Vector3 } from 'three'
-import { Fn, If, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { float, Fn, If, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { CloudField } from '../../density/CloudField'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import type { CloudSample } from '../../density/tsl/sample'
 import { forLayers, layerAt } from '../../density/tsl/layer'
+import { fallMoments, type ShadingFall } from './fallDepth'
 import { layerSegment, type RadialRay } from './layerSegment'
 import { segmentMoments, STEPS } from './segmentMoments'
 
@@ -41,6 +42,9 @@ const SHARPNESS = 0.5
 /** Footprint of samples over a step through a layer [–]. Smaller: rings on tall clouds (*Storm*). */
 const BLUR = 0.35
 
+/** Footprint of samples over the way through what falls [–]. Greater: soft shadows of shafts (*Rain and snow*). */
+const FALL_BLUR = 0.03
+
 /** A ray of light through a texel. */
 interface LightRay extends RadialRay {
   /** Crossing with the cascade's plane, from the camera in the mapped space [m]. */
@@ -76,12 +80,13 @@ function lightRay({ view, radius, pixelAngle }: CloudField, ray: ShadowRayUnifor
  * same spread, by optical depth; layers count by its square: thin clouds far above thick ones do not blur
  * these.
  *
+ * @param falling - Rain and snow below the clouds, which count in the same way.
  * @returns Front towards the light, against the cascade's plane, and half of its length, both in half
  *   widths and times the optical depth: texels are mixed by it; optical depths, of all and of layers that
  *   cast shadows.
  * @see Hillaire 2016, "Physically based sky, atmosphere and cloud rendering in Frostbite" §5.9.4
  */
-export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
+export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: ShadingFall): Vec4 {
   return Fn(() => {
     const texel = lightRay(field, ray)
     const sampleAt = (at: Float, distance: Float): CloudSample => {
@@ -102,6 +107,19 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms): Vec4 {
           .max(length.mul(BLUR).div(field.pixelAngle))
           .toConst() as Float
         const sums = segmentMoments(field, layer, segment, length, at => sampleAt(at, distance))
+        const depth = sums.x.toConst() as Float
+        weighted.addAssign(sums.mul(depth))
+        depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
+      })
+      if (falling === undefined) return
+      const below = { baseAltitude: float(0), thickness: falling.ceiling }
+      const fall = layerSegment(field, below, texel, texel.maximumDistance)
+      const way = fall.front.sub(fall.back).toConst() as Float
+      If(way.greaterThan(0).and(falling.ceiling.greaterThan(0)), () => {
+        const distance = texel.distance
+          .max(way.mul(FALL_BLUR).div(field.pixelAngle))
+          .toConst() as Float
+        const sums = fallMoments(field, falling, layer, fall, at => sampleAt(at, distance))
         const depth = sums.x.toConst() as Float
         weighted.addAssign(sums.mul(depth))
         depths.addAssign(vec2(depth, depth.mul(layer.shadow)))

@@ -1,0 +1,71 @@
+import {
+  precipitationOverlay,
+  rainfall,
+  raindrops,
+  snowfall,
+  SurfaceWater,
+  type Precipitation
+} from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
+import { precipitationShafts } from '@welkin/clouds'
+import type { Light, PerspectiveCamera } from 'three'
+import type { Node, TextureNode } from 'three/webgpu'
+import type { Weather } from './weather'
+
+/** Seconds of drying and wetting in one second on the clock. */
+const HASTE = 60
+/** Water of rain, and of snow, that lies where weather was before the scene began [mm]. */
+const FALLEN = { rain: 0.5, snow: 12 }
+
+/** Rain and snow of the valley: under its clouds, around the camera, and on the ground. */
+export class ValleyPrecipitation {
+  // #region rain and snow
+  readonly drops = raindrops({ rate: 12 }) // rainbows
+  readonly shafts = precipitationShafts({ drops: this.drops }) // to `clouds`
+  readonly water = new SurfaceWater() // to what gets wet
+  // #endregion
+  #falling: readonly Precipitation[] = []
+
+  /** Draws what falls around the camera over a picture with its air and clouds. */
+  over(
+    picture: Node,
+    depth: TextureNode,
+    camera: PerspectiveCamera,
+    atmosphere: Atmosphere,
+    lights: readonly Light[]
+  ): Node {
+    const options = { lights, depth, depthCamera: camera, rate: 0, wind: { east: 3, north: 1 } }
+    this.#falling = [rainfall(atmosphere, options), snowfall(atmosphere, options)]
+    return precipitationOverlay(picture, camera, this.#falling)
+  }
+
+  /** Takes what falls; at once, as if it had fallen for long. */
+  set({ rain, snow }: Weather, atOnce: boolean): void {
+    for (const [i, rate] of [rain, snow].entries()) {
+      // Less than a drizzle is none.
+      const falls = rate < 0.05 ? 0 : rate
+      if (this.#falling[i].rate !== falls) this.#falling[i].rate = falls
+    }
+    if (!atOnce) return
+    this.water.water = rain > 0 ? FALLEN.rain : 0
+    this.water.snow = snow > 0 ? FALLEN.snow : 0
+  }
+
+  /** Wets, whitens and dries the ground. */
+  update(seconds: number, { rain, snow }: Weather): void {
+    const isCold = snow > 0
+    const temperature = isCold ? -1 : 14
+    const irradiance = rain + snow > 0 ? 60 : 400
+    this.water.update(seconds * HASTE, { rain, snow, temperature, wind: 3, irradiance })
+  }
+
+  /** Time of what falls [s]. */
+  set time(seconds: number) {
+    for (const each of this.#falling) each.time = seconds
+  }
+
+  dispose(): void {
+    for (const each of this.#falling) each.dispose()
+    this.drops.dispose()
+  }
+}
