@@ -193,9 +193,9 @@ export class LightShafts implements ShadowedShafts {
 
   set quality(value: LightShaftsQuality) {
     checkChoice('LightShafts', 'quality', value, qualityNames)
-    const { rays } = qualities[this.#quality]
+    const wasMarched = this.#isMarched
     this.#quality = value
-    if (qualities[value].rays !== rays && this.#isLayer) this.#compileAnew()
+    if (this.#isMarched !== wasMarched && this.#isLayer) this.#compileAnew()
   }
 
   /** False for air without shadows, at no cost. Nothing is compiled when it changes. */
