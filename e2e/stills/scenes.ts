@@ -22,6 +22,8 @@ export interface Still {
   rain?: number
   /** Light shafts, of hills and clouds. */
   shafts?: true
+  /** Turbidity of the air; by default that of the standard Earth. */
+  turbidity?: number
   planet?: 'mars'
   /** Place of the camera, default Tokyo [°], and its altitude above the ellipsoid [m]. */
   place?: { longitude: number; latitude: number }

@@ -54,13 +54,16 @@ const statistics = (errors: readonly ShaftError[], scene: string) => {
  * Draws the boxes of a file with and without light shafts.
  *
  * @param parameters - Air of the file: that of `sky.json`.
+ * @param every - Takes every so many cameras of the file.
  */
 export async function validateShafts(
   file: string,
   parameters: AtmosphereParametersInit,
-  options: Omit<ShaftRequest, 'parameters' | 'views'>
+  options: Omit<ShaftRequest, 'parameters' | 'views'>,
+  every = 1
 ): Promise<ShaftFigures & { errors: ShaftError[] }> {
-  const { boxes, cases } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
+  const { boxes, cases: all } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
+  const cases = all.filter((_, i) => i % every === 0)
   const request: ShaftRequest = {
     ...options,
     parameters,
@@ -109,10 +112,11 @@ const percent = (value: number): string => `${(100 * value).toFixed(2)} %`.padSt
 
 /** Prints the scores, and the largest errors. */
 export function printShafts(
+  title: string,
   { byScene, errors, ...all }: ShaftFigures & { errors: ShaftError[] },
   worst: number
 ): void {
-  console.log('Light that shadows take from the air, error over all light scattered once')
+  console.log(`Light that shadows take from the air, error over all light scattered once: ${title}`)
   console.log(
     `  ${'scene'.padEnd(10)}${'n'.padStart(6)}${'median'.padStart(10)}${'p95'.padStart(10)}`
   )

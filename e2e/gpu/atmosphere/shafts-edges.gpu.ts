@@ -4,9 +4,9 @@ import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { addBox, stage, type Stage } from '../harness/shaft-stage'
 
-/** Pixels as small as those of a picture of 1920×1080 and 60°. */
-const size = { width: 256, height: 144 }
-const FIELD = 8
+/** Rows out of the middle of a picture of 1920×1080 and 60°. */
+const size = { width: 1920, height: 24 }
+const FIELD = 4 / 3
 
 const ELEVATION = 25
 

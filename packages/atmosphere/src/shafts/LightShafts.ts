@@ -218,7 +218,7 @@ export class LightShafts implements ShadowedShafts {
     return this.#isActive
   }
 
-  /** Pixels of a picture from one that is marched to the next. */
+  /** Pixels of a large picture from one that is marched to the next. */
   get spacing(): number {
     return qualities[this.#quality].spacing
   }

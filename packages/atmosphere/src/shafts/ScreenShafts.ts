@@ -13,6 +13,7 @@ import type { SkyLayer } from '../view/SkyLayer'
 import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
+import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR } from './tsl/without'
@@ -57,7 +58,7 @@ export class ScreenShafts implements ScreenShadows {
     if (this.#isElsewhere) return
     shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-    this.grid.resize(width, height, shafts.spacing)
+    this.grid.resize(width, height, spacingIn(shafts.spacing, width, height))
     if (!shafts.isActive) return
     // What is drawn here and now reads the view, and media in it.
     shafts.view.update(view)
