@@ -63,7 +63,7 @@ export async function validateShafts(
   every = 1
 ): Promise<ShaftFigures & { errors: ShaftError[] }> {
   const { boxes, cases: all } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
-  const cases = all.filter((_, i) => i % every === 0)
+  const cases = all.filter((_, i) => i % every === every - 1)
   const request: ShaftRequest = {
     ...options,
     parameters,
