@@ -162,7 +162,8 @@ export class StillView {
 
     if (still.fog !== undefined) {
       const { dropletRadius: radius, ...fog } = still.fog
-      atmosphere.add(heightFog({ ...fog, droplets: droplets({ radius }) }))
+      const drops = radius === undefined ? null : droplets({ radius })
+      atmosphere.add(heightFog({ ...fog, droplets: drops }))
     }
     if (still.rain !== undefined) {
       const rain = raindrops({ rate: still.rain })

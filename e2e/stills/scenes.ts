@@ -14,8 +14,8 @@ export interface Still {
   clouds?: { preset: CloudPresetName; coverage?: number; precipitation?: CloudPrecipitation }
   /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
   dropletRadius?: number
-  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
-  fog?: { density: number; falloff: number; dropletRadius: number }
+  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m]; radius of its droplets [µm], default: a smooth phase function. */
+  fog?: { density: number; falloff: number; dropletRadius?: number }
   /** A flash whose light the picture gathers: its kind, azimuth [°] and distance over the ground [m]. */
   lightning?: { kind: 'ground' | 'cloud'; azimuth: number; distance: number }
   /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */

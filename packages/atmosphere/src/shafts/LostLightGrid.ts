@@ -1,4 +1,4 @@
-import { RedFormat, type RenderTarget } from 'three'
+import type { RenderTarget } from 'three'
 import { Fn, If, float, log2, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
@@ -20,10 +20,16 @@ const NO_DEPTH = 1e3
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
 
-/** Least and greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
-const LEAST = 1e-5
+/** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
+const STEEP = 0.5
+
+/** Greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
 const MOST = 6e4
 const LIGHT_SCALE = RADIANCE_SCALE / 8
+
+/** Greatest light that is mixed, in octaves, and least that others are compared with [1/sr]. */
+const MOST_MIXED = Math.log2(MOST) - 4
+const LEAST = 1e-12
 
 /** Light of a ray. */
 export interface LostLight {
@@ -39,15 +45,16 @@ export interface LostLight {
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one puts three things side by side, so that a pixel is read once from one texture: means of
- * the four around each corner of the grid, with their depth if it is one; light itself with depths; and light that there is.
+ * A first pass marches. A second one puts two things side by side, so that a pixel is read once from one texture: means of
+ * the four around each corner of the grid, with their depth if they may be mixed; and the part of the light that each loses, with
+ * its depth, of which pixels take that of others at their depth.
  */
 export class LostLightGrid {
-  /** Lost light with log₂ of the distance, and the light that there is. */
+  /** Lost light with log₂ of the distance; its part of the light that there is, with log₂ of that. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
-  readonly #lit: TextureNode
+  readonly #parts: TextureNode
   readonly #texels: TextureNode
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
@@ -64,10 +71,9 @@ export class LostLightGrid {
   constructor() {
     this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
-    const [lost, lit] = this.#marched.textures
-    lit.format = RedFormat
+    const [lost, parts] = this.#marched.textures
     this.#lost = texture(lost)
-    this.#lit = texture(lit)
+    this.#parts = texture(parts)
     this.#texels = texture(this.target.texture)
   }
 
@@ -77,8 +83,8 @@ export class LostLightGrid {
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
-    this.target.setSize(3 * x + 1, y + 1)
-    this.#texelSize.value.set(1 / (3 * x + 1), 1 / (y + 1))
+    this.target.setSize(2 * x + 1, y + 1)
+    this.#texelSize.value.set(1 / (2 * x + 1), 1 / (y + 1))
   }
 
   /**
@@ -90,13 +96,14 @@ export class LostLightGrid {
   render(renderer: Renderer, version: number, march: (at: Vec2, pixel: Vec2) => LostLight): void {
     if (this.#passes.length === 0 || this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, litOut]) => {
+      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const { lost, lit, distance } = march(at, pixel)
         const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
+        const parts = lost.div(lit.max(LEAST)).clamp(-MOST, MOST)
         lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), log2(distance)))
-        litOut.assign(vec4(lit.mul(scale).clamp(LEAST, MOST), 0, 0, 0))
+        partsOut.assign(vec4(parts, log2(lit.max(LEAST).mul(scale))))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -116,23 +123,26 @@ export class LostLightGrid {
     const read = (source: TextureNode, x: Float, y: Float): Vec4 =>
       sampleLevel0(source, vec2(x, y).clamp(vec2(0.5), size.sub(0.5)).div(size))
     If(column.lessThan(0), () => {
-      const depths = vec2(NO_DEPTH, -NO_DEPTH).toVar()
+      const least = vec2(NO_DEPTH).toVar()
+      const most = vec2(-NO_DEPTH).toVar()
       loop('corner', 4, index => {
         const row = float(index).div(2).floor().toConst()
-        const x = float(index).sub(row.mul(2)).sub(0.5)
-        const other = read(this.#lost, texel.x.add(x), texel.y.add(row).sub(0.5)).toConst()
+        const x = texel.x.add(float(index).sub(row.mul(2)).sub(0.5)).toConst()
+        const y = texel.y.add(row).sub(0.5).toConst()
+        const other = read(this.#lost, x, y).toConst()
+        const both = vec2(other.w, read(this.#parts, x, y).w).toConst()
         result.addAssign(other.mul(0.25))
-        depths.assign(vec2(depths.x.min(other.w), depths.y.max(other.w)))
+        least.assign(least.min(both))
+        most.assign(most.max(both))
       })
-      const isOne = depths.y.sub(depths.x).lessThan(SAME_DEPTH)
-      result.w.assign(isOne.select(result.w, NO_DEPTH))
+      const apart = most.sub(least).toConst()
+      const isEven = apart.x.lessThan(SAME_DEPTH).and(apart.y.lessThan(STEEP))
+      const isMixed = isEven.and(most.y.lessThan(MOST_MIXED))
+      result.w.assign(isMixed.select(result.w, NO_DEPTH))
+    }).Else(() => {
+      result.rgb.assign(read(this.#parts, column.add(0.5), texel.y.add(0.5)).rgb)
+      result.w.assign(read(this.#lost, column.add(0.5), texel.y.add(0.5)).w)
     })
-      .ElseIf(column.lessThan(size.x), () => {
-        result.assign(read(this.#lost, column.add(0.5), texel.y.add(0.5)))
-      })
-      .Else(() => {
-        result.assign(read(this.#lit, column.sub(size.x).add(0.5), texel.y.add(0.5)))
-      })
     return result
   }
 
@@ -156,15 +166,13 @@ export class LostLightGrid {
     const texels = (texel: Vec2): Vec4 =>
       sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
     const own = log2(distance).toConst() as Float
-    const growth = this.#growth(distance).div(LIGHT_SCALE).toConst()
     const mean = texels(place.add(1).min(size.add(0.5)))
-    const lost = mean.rgb.toVar() as Vec3
+    const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
       const first = place.floor().toConst() as Vec2
       const last = size.sub(1).toConst() as Vec2
       const single = vec2(size.x.add(1.5), 0.5).toConst() as Vec2
       const weights = float(0).toVar()
-      const here = lit().div(growth).clamp(LEAST, MOST).toConst()
       lost.assign(vec3(0))
       loop('corner', 4, index => {
         const row = float(index).div(2).floor().toConst()
@@ -181,14 +189,13 @@ export class LostLightGrid {
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(MIN_WEIGHT, 1)
           .toConst()
-        // Of light that others have more of, or less, the same part.
-        const share = here.div(texels(corner.add(vec2(size.x, 0))).x)
-        lost.addAssign(other.rgb.mul(weight.mul(share)))
+        lost.addAssign(other.rgb.mul(weight))
         weights.addAssign(weight)
       })
-      lost.divAssign(weights)
+      // Of light that others have more of, or less, the same part.
+      lost.mulAssign(lit().div(weights))
     })
-    return lost.mul(growth)
+    return lost
   }
 
   /** Frees its textures, which are made again where it is drawn. */
