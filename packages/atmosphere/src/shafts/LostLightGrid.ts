@@ -1,5 +1,18 @@
 import type { RenderTarget } from 'three'
-import { Fn, If, float, log2, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import {
+  Fn,
+  If,
+  float,
+  log2,
+  luminance as luminanceOf,
+  mix,
+  step,
+  texture,
+  uv,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -21,7 +34,7 @@ const NO_DEPTH = 1e3
 const MIN_WEIGHT = 1e-3
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
-const STEEP = 0.5
+const STEEP = 0.12
 
 /** Greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
 const MOST = 6e4
@@ -31,12 +44,26 @@ const LIGHT_SCALE = RADIANCE_SCALE / 8
 const MOST_MIXED = Math.log2(MOST) - 4
 const LEAST = 1e-12
 
+const luminance = (light: Vec3): Float => luminanceOf(light) as unknown as Float
+
+/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
+const PALE = 0.2
+
+/** Parts of the light that are lost, by colours. */
+function partsOf({ lost, lit }: LostLight): Vec3 {
+  const all = luminance(lit).max(LEAST).toConst()
+  const part = luminance(lost).div(all).toConst()
+  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
+  const own = lost.div(mix(vec3(all), lit, isBright))
+  return mix(vec3(part), own, isBright).clamp(-MOST, MOST)
+}
+
 /** Light of a ray. */
 export interface LostLight {
   /** Light that it loses, linear sRGB of about that for unit irradiance. */
   readonly lost: Vec3
-  /** Light of its air if nothing cast shadows, in the mean over wavelengths, for unit irradiance [1/sr]. */
-  readonly lit: Float
+  /** Light of its air if nothing cast shadows, likewise. */
+  readonly lit: Vec3
   /** Distance to what is seen [m]. */
   readonly distance: Float
 }
@@ -99,11 +126,11 @@ export class LostLightGrid {
       const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
-        const { lost, lit, distance } = march(at, pixel)
+        const found = march(at, pixel)
+        const { lost, lit, distance } = found
         const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
-        const parts = lost.div(lit.max(LEAST)).clamp(-MOST, MOST)
         lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), log2(distance)))
-        partsOut.assign(vec4(parts, log2(lit.max(LEAST).mul(scale))))
+        partsOut.assign(vec4(partsOf(found), log2(luminance(lit).max(LEAST).mul(scale))))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -160,7 +187,7 @@ export class LostLightGrid {
    * @param at - Its place in the picture.
    * @param lit - See {@link LostLight}; asked for in a branch.
    */
-  read(at: Vec2, distance: Float, lit: () => Float): Vec3 {
+  read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
     const size = this.#gridSize
     const place = at.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
     const texels = (texel: Vec2): Vec4 =>

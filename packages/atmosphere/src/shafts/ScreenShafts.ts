@@ -1,11 +1,11 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, screenUV, uv, vec3, vec4 } from 'three/tsl'
+import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume } from '../skyVolume/tsl/skyVolume'
-import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
+import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -149,8 +149,7 @@ export class ScreenShafts implements ScreenShadows {
     const { seenFrom, most } = this.#seen(at)
     const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const color = unclampedSRGB(view.air.uniforms, lost.mul(view.source.irradiance))
-    return { lost: color.div(this.#gain), lit: this.#litAir(ray), distance: ray.distance }
+    return { lost: this.#color(lost), lit: this.#litAir(ray), distance: ray.distance }
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
@@ -173,8 +172,14 @@ export class ScreenShafts implements ScreenShadows {
     return { direction, cosView, cosViewLight, distance }
   }
 
-  /** Light of the air on a ray without shadows, in the mean over wavelengths, for unit irradiance [1/sr]. */
-  #litAir(ray: ShaftRay): Float {
+  /** Light for unit irradiance [1/sr] as the grid keeps it. */
+  #color(light: Vec4): Vec3 {
+    const { air, source } = this.#shafts.view
+    return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
+  }
+
+  /** Light of the air on a ray without shadows, as the grid keeps it. */
+  #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
@@ -187,7 +192,7 @@ export class ScreenShafts implements ScreenShadows {
         light.assign(light.mul(transmittance).add(singleScattered))
       }
     })
-    return light.dot(vec4(0.25)).toConst()
+    return this.#color(light)
   }
 
   /** Takes them out of the shafts of their camera. */

@@ -128,17 +128,16 @@ export class AerialPerspectiveNode extends PostEffectNode {
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
       const drawnAt = this.#screenShafts ? position(depth).toConst() : null
       const lost = this.#screenShafts?.lostAt(isSky.select(ray, drawnAt).toConst(), isSky) ?? null
-      const left = (air: Vec3): Vec3 => (lost === null ? air : air.sub(lost.min(air)).toConst())
       If(ifSeen(isSky.not()), () => {
-        const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers)
-        result.assign(light.mul(air.transmittance).add(left(air.inScatter).mul(coverage)))
+        const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers, lost)
+        result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
         // Silhouettes (with multisampling) and transparent things cover a part of the pixel.
         If(ifSeen(coverage.lessThan(1)), () => {
           const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
-          const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers)
-          result.addAssign(left(sky).mul(coverage.oneMinus()))
+          const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers, lost)
+          result.addAssign(sky.mul(coverage.oneMinus()))
         })
       }
       return vec4(result, this.showSky ? float(1) : drawn.a)
