@@ -176,18 +176,23 @@ async function main(): Promise<void> {
     const quality = choice('quality', values.quality, lightShaftsQualities)
     const every = Math.max(count('every', values.every), 1)
     const { parameters } = readSkyReference(air)
-    for (const backend of values.all ? backends : [where.backend]) {
-      for (const isForward of values.all ? [false, true] : [values.forward]) {
-        const options = { backend, quality, isReversed: values.reversed, isForward }
-        const { errors, ...shafts } = await validateShafts(file, parameters, options, every)
-        if (values.check && missedShaftGoals(shafts).length > 0) process.exitCode = 1
-        if (values.json) print(JSON.stringify({ shafts }, null, 2))
-        else
-          printShafts(
-            `${isForward ? 'materials' : 'post effect'}, ${backend}`,
-            { ...shafts, errors },
-            worst
-          )
+    const ways = (values.all ? backends : [where.backend]).flatMap(backend =>
+      (values.all ? [false, true] : [values.forward]).map(isForward => ({
+        backend,
+        quality,
+        isReversed: values.reversed,
+        isForward
+      }))
+    )
+    for (const [i, figures] of (await validateShafts(file, parameters, ways, every)).entries()) {
+      const { errors, ...shafts } = figures
+      const missed = missedShaftGoals(shafts)
+      if (values.check && missed.length > 0) process.exitCode = 1
+      if (values.json) print(JSON.stringify({ shafts }, null, 2))
+      else {
+        const { backend, isForward } = ways[i]
+        const title = `${isForward ? 'materials' : 'post effect'}, ${backend}`
+        printShafts(title, { ...shafts, errors }, worst)
       }
     }
     return

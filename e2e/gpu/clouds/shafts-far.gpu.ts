@@ -61,7 +61,7 @@ gpuTest('has a tower of cloud shade the cloud behind it, and no other', async t 
     // What is drawn is no layer's, so that shadows must be told.
     node.field.layers.at(0).set({ density: 0.004 + i * 1e-6 })
     // Cascades are drawn in strips, and history forgets.
-    for (let frame = 0; frame < 24; frame++) {
+    for (let frame = 0; frame < 13; frame++) {
       await nextFrame()
       pipeline.render()
     }

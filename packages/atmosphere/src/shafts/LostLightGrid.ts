@@ -4,7 +4,7 @@ import {
   If,
   float,
   log2,
-  luminance as luminanceOf,
+  luminance,
   mix,
   step,
   texture,
@@ -16,7 +16,15 @@ import {
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import {
+  loadTexel,
+  loop,
+  sampleLevel0,
+  type Float,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 
 /**
@@ -43,8 +51,6 @@ const LIGHT_SCALE = RADIANCE_SCALE / 8
 /** Greatest light that is mixed, in octaves, and least that others are compared with [1/sr]. */
 const MOST_MIXED = Math.log2(MOST) - 4
 const LEAST = 1e-12
-
-const luminance = (light: Vec3): Float => luminanceOf(light) as unknown as Float
 
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
@@ -190,15 +196,14 @@ export class LostLightGrid {
   read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
     const size = this.#gridSize
     const place = at.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
-    const texels = (texel: Vec2): Vec4 =>
-      sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
     const own = log2(distance).toConst() as Float
-    const mean = texels(place.add(1).min(size.add(0.5)))
+    const middle = place.add(1).min(size.add(0.5)).mul(this.#texelSize)
+    const mean = sampleLevel0(this.#texels, middle).toConst()
     const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
       const first = place.floor().toConst() as Vec2
       const last = size.sub(1).toConst() as Vec2
-      const single = vec2(size.x.add(1.5), 0.5).toConst() as Vec2
+      const single = vec2(size.x.add(1), 0).toConst() as Vec2
       const weights = float(0).toVar()
       lost.assign(vec3(0))
       loop('corner', 4, index => {
@@ -208,7 +213,7 @@ export class LostLightGrid {
           .min(last)
           .add(single)
           .toConst()
-        const other = texels(corner)
+        const other = loadTexel(this.#texels, corner).toConst()
         const weight = other.w
           .sub(own)
           .abs()

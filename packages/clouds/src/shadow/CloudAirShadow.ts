@@ -34,8 +34,6 @@ class CastShadow implements AirShadow {
   readonly #shift = vector3()
   /** 1 while the maps are of the shafts' light. */
   readonly #isMapped = number(1)
-  /** 1 where there are no maps, from far away: each storm has its shadow there. */
-  readonly #isFar = number()
 
   /** @throws If the clouds are of another atmosphere. */
   constructor(clouds: CloudsNode, shafts: ShadowedShafts) {
@@ -63,7 +61,6 @@ class CastShadow implements AirShadow {
   update(view: AtmosphereView, renderer: Renderer): void {
     const { field, shadows } = this.#clouds
     this.#isMapped.value = shadows.source === this.#shafts.source ? 1 : 0
-    this.#isFar.value = shadows.isDrawn ? 0 : 1
     viewpointMapped(view, this.#shift.value).sub(shadows.camera)
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
   }
@@ -76,17 +73,13 @@ class CastShadow implements AirShadow {
       const depth = shadow.toVar()
       If(inMap.mul(this.#isMapped).equal(0), () => {
         const { altitude, cosLight, up } = view.localCoordinates(offset)
-        const fromWeather = (): void => {
+        if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
+        else {
           const shifted = offset.add(this.#shift).toConst() as Vec3
           const seen = shifted.length().toConst() as Float
           const sample = { offset: shifted, altitude, up, distance: seen }
           depth.assign(opticalDepthTowards(field, sample, view.lightDirection))
         }
-        if (field.worldMap === null) {
-          If(this.#isFar.equal(0), () => {
-            depth.assign(meanDepthTowards(field, altitude, cosLight))
-          }).Else(fromWeather)
-        } else fromWeather()
       })
       // What is scattered within the forward peak arrives with the sun.
       return depth.mul(light.nodes.depthScale).negate().exp()
@@ -120,8 +113,8 @@ class CastShadow implements AirShadow {
  * shafts.add(cloudAirShadow(cloudsNode)) // before the first render, or set pipeline.needsUpdate
  * ```
  *
- * They are read from the clouds' shadow maps; beyond them the mean cover of the layers says how much passes; from above
- * 150 km, or if there is a map of the world, the weather does. Shafts of the clouds' camera are drawn by the clouds' node then, before and
+ * They are read from the clouds' shadow maps; beyond them the mean cover of the layers says how much passes, or the
+ * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
  * behind the clouds.
  */
 export class CloudAirShadow implements AirOccluder {
