@@ -22,6 +22,12 @@ const steps = [
     script: 'validate',
     args: ['--check', '--path', 'march']
   },
+  {
+    id: 'shafts',
+    title: 'Reference shafts',
+    script: 'validate',
+    args: ['--check', '--shafts', '--all', '--every', '4']
+  },
   { id: 'visual', title: 'Visual regression', script: 'test:visual' },
   { id: 'moving', title: 'Moving in stories', script: 'test:moving' },
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer' }

@@ -56,9 +56,10 @@ const SHADOW_EXTENT = 6000
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
-function atmosphereOf({ planet, place, sun }: Still): Atmosphere {
+function atmosphereOf({ planet, place, sun, turbidity }: Still): Atmosphere {
   const atmosphere =
     planet === 'mars' ? marsBody() : new Atmosphere({ parameters: standardEarthParameters() })
+  if (turbidity !== undefined) atmosphere.parameters.set({ turbidity })
   atmosphere.place(place ?? { longitude: 139.77, latitude: 35.68 })
   if (sun instanceof Date) atmosphere.date = sun
   else atmosphere.setSunAngles(sun.elevation, sun.azimuth)
@@ -161,7 +162,8 @@ export class StillView {
 
     if (still.fog !== undefined) {
       const { dropletRadius: radius, ...fog } = still.fog
-      atmosphere.add(heightFog({ ...fog, droplets: droplets({ radius }) }))
+      const drops = radius === undefined ? null : droplets({ radius })
+      atmosphere.add(heightFog({ ...fog, droplets: drops }))
     }
     if (still.rain !== undefined) {
       const rain = raindrops({ rate: still.rain })

@@ -14,14 +14,16 @@ export interface Still {
   clouds?: { preset: CloudPresetName; coverage?: number; precipitation?: CloudPrecipitation }
   /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
   dropletRadius?: number
-  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m], radius of its droplets [µm]. */
-  fog?: { density: number; falloff: number; dropletRadius: number }
+  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m]; radius of its droplets [µm], default: a smooth phase function. */
+  fog?: { density: number; falloff: number; dropletRadius?: number }
   /** A flash whose light the picture gathers: its kind, azimuth [°] and distance over the ground [m]. */
   lightning?: { kind: 'ground' | 'cloud'; azimuth: number; distance: number }
   /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */
   rain?: number
   /** Light shafts, of hills and clouds. */
   shafts?: true
+  /** Turbidity of the air; by default that of the standard Earth. */
+  turbidity?: number
   planet?: 'mars'
   /** Place of the camera, default Tokyo [°], and its altitude above the ellipsoid [m]. */
   place?: { longitude: number; latitude: number }
@@ -104,9 +106,11 @@ const shafts: Still[] = [
     name: 'shafts-deck',
     about:
       "a broken deck under a sun of 20°: Jacob's ladder below it, no bands, no halo at edges of clouds",
-    clouds: { preset: 'stratocumulus', coverage: 0.7 },
+    clouds: { preset: 'stratocumulus', coverage: 0.6 },
+    place: { longitude: 140.81, latitude: 35.68 },
+    turbidity: 12,
     sun: { elevation: 20, azimuth: 30 },
-    view: { azimuth: 45, pitch: 10 },
+    view: { azimuth: 34, pitch: 12 },
     altitude: 2,
     land: 'hills',
     shafts: true
@@ -155,10 +159,11 @@ const shafts: Still[] = [
   {
     name: 'shafts-ridge',
     about:
-      'hills before a sun of 4°, clear air: shadows of ridges in the haze as far as the shadow map reaches',
-    sun: { elevation: 4, azimuth: 30 },
-    view: { azimuth: 35, pitch: 3 },
-    altitude: 150,
+      'a ridge before a sun of 5°, over valley fog: its shadow in the fog, with one edge from the shoulder where the sun stands',
+    fog: { density: 0.004, falloff: 70 },
+    sun: { elevation: 5, azimuth: 150 },
+    view: { azimuth: 164, pitch: -3 },
+    altitude: 420,
     land: 'hills',
     shafts: true
   }

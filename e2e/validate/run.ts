@@ -41,7 +41,8 @@ const usage = `npm run validate -- [options]
   --shafts [FILE]            instead: light that boxes take from the air in their shadows, by default
                              e2e/reference/shafts.json; --quality NAME of the shafts, by default high,
                              --reversed for a reversed depth buffer, --forward for materials that draw
-                             the air themselves
+                             the air themselves, --all for post effect and materials on both backends,
+                             --every N for every Nth camera of the file alone
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
                              --latitude [°], --coverage C
@@ -67,6 +68,8 @@ function inRange(name: string, value: string, min: number, max: number): number 
 
 const preset = (option: string, value: string): CloudPresetName =>
   choice(option, value, cloudPresetNames)
+
+const backends: readonly Backend[] = ['webgpu', 'webgl']
 
 const lightShaftsQualities: LightShaftsQuality[] = ['low', 'medium', 'high', 'reference']
 
@@ -104,6 +107,8 @@ async function main(): Promise<void> {
       shafts: { type: 'string' },
       reversed: { type: 'boolean', default: false },
       forward: { type: 'boolean', default: false },
+      all: { type: 'boolean', default: false },
+      every: { type: 'string', default: '1' },
       quality: { type: 'string', default: 'high' },
       'export-clouds': { type: 'string' },
       preset: { type: 'string', default: 'fairWeather' },
@@ -120,7 +125,7 @@ async function main(): Promise<void> {
     return
   }
   const where = {
-    backend: choice<Backend>('backend', values.backend, ['webgpu', 'webgl']),
+    backend: choice<Backend>('backend', values.backend, backends),
     path: choice<Path>('path', values.path, ['volume', 'march'])
   }
   const worst = count('worst', values.worst)
@@ -169,20 +174,27 @@ async function main(): Promise<void> {
     const air = input(values.sky, 'sky.json')
     if (file === undefined || air === undefined) throw new Error('there is nothing to compare')
     const quality = choice('quality', values.quality, lightShaftsQualities)
-    const options = {
-      backend: where.backend,
-      quality,
-      isReversed: values.reversed,
-      isForward: values.forward
-    }
-    const { errors, ...shafts } = await validateShafts(
-      file,
-      readSkyReference(air).parameters,
-      options
+    const every = Math.max(count('every', values.every), 1)
+    const { parameters } = readSkyReference(air)
+    const ways = (values.all ? backends : [where.backend]).flatMap(backend =>
+      (values.all ? [false, true] : [values.forward]).map(isForward => ({
+        backend,
+        quality,
+        isReversed: values.reversed,
+        isForward
+      }))
     )
-    if (values.check && missedShaftGoals(shafts).length > 0) process.exitCode = 1
-    if (values.json) print(JSON.stringify({ shafts }, null, 2))
-    else printShafts({ ...shafts, errors }, worst)
+    for (const [i, figures] of (await validateShafts(file, parameters, ways, every)).entries()) {
+      const { errors, ...shafts } = figures
+      const missed = missedShaftGoals(shafts)
+      if (values.check && missed.length > 0) process.exitCode = 1
+      if (values.json) print(JSON.stringify({ shafts }, null, 2))
+      else {
+        const { backend, isForward } = ways[i]
+        const title = `${isForward ? 'materials' : 'post effect'}, ${backend}`
+        printShafts(title, { ...shafts, errors }, worst)
+      }
+    }
     return
   }
 

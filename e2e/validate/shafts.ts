@@ -51,29 +51,45 @@ const statistics = (errors: readonly ShaftError[], scene: string) => {
 }
 
 /**
- * Draws the boxes of a file with and without light shafts.
+ * Draws the boxes of a file with and without light shafts, in one way after the other.
  *
  * @param parameters - Air of the file: that of `sky.json`.
+ * @param ways - Ways of drawing.
+ * @param every - Takes every so many cameras of the file.
  */
 export async function validateShafts(
   file: string,
   parameters: AtmosphereParametersInit,
-  options: Omit<ShaftRequest, 'parameters' | 'views'>
-): Promise<ShaftFigures & { errors: ShaftError[] }> {
-  const { boxes, cases } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
-  const request: ShaftRequest = {
-    ...options,
-    parameters,
-    views: cases.map(({ scene, camera, sun, rays }) => ({
-      boxes: boxes[scene],
-      camera,
-      sun,
-      directions: rays.map(({ direction }) => direction)
-    }))
-  }
-  const drawn = await withPages('welkinShafts', async open =>
-    (await open()).evaluate(asked => window.welkinShafts(asked), request)
-  )
+  ways: readonly Omit<ShaftRequest, 'parameters' | 'views'>[],
+  every = 1
+): Promise<(ShaftFigures & { errors: ShaftError[] })[]> {
+  const { boxes, cases: all } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
+  const cases = all.filter((_, i) => i % every === every - 1)
+  const views = cases.map(({ scene, camera, sun, rays }) => ({
+    boxes: boxes[scene],
+    camera,
+    sun,
+    directions: rays.map(({ direction }) => direction)
+  }))
+  return withPages('welkinShafts', async open => {
+    const figures = []
+    for (const way of ways) {
+      const page = await open()
+      const request = { ...way, parameters, views }
+      const drawn = await page.evaluate(asked => window.welkinShafts(asked), request)
+      await page.close()
+      figures.push(figuresOf(cases, Object.keys(boxes), drawn))
+    }
+    return figures
+  })
+}
+
+/** Errors of lost light, ray by ray, and their statistics. */
+function figuresOf(
+  cases: ShaftFile['cases'],
+  scenes: readonly string[],
+  drawn: readonly number[][][]
+): ShaftFigures & { errors: ShaftError[] } {
   const errors = cases.flatMap(({ scene, rays, ...place }, i) =>
     rays.flatMap(({ direction, single, lost }, j) => {
       if (!lost.some((value, k) => value > NEGLIGIBLE * single[k])) return []
@@ -86,7 +102,7 @@ export async function validateShafts(
     })
   )
   if (!errors.every(({ error }) => Number.isFinite(error))) throw new Error('the model gave NaN')
-  const byScene = Object.keys(boxes).map(scene =>
+  const byScene = scenes.map(scene =>
     statistics(
       errors.filter(error => error.scene === scene),
       scene
@@ -109,10 +125,11 @@ const percent = (value: number): string => `${(100 * value).toFixed(2)} %`.padSt
 
 /** Prints the scores, and the largest errors. */
 export function printShafts(
+  title: string,
   { byScene, errors, ...all }: ShaftFigures & { errors: ShaftError[] },
   worst: number
 ): void {
-  console.log('Light that shadows take from the air, error over all light scattered once')
+  console.log(`Light that shadows take from the air, error over all light scattered once: ${title}`)
   console.log(
     `  ${'scene'.padEnd(10)}${'n'.padStart(6)}${'median'.padStart(10)}${'p95'.padStart(10)}`
   )

@@ -1,12 +1,13 @@
 import { Matrix4, Vector3 } from 'three'
+import type { WebGPURenderer } from 'three/webgpu'
 import type { LightShaftsQuality } from '@welkin/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { addBox, stage, type Stage } from '../harness/shaft-stage'
 
-/** Pixels as small as those of a picture of 1920×1080 and 60°. */
-const size = { width: 256, height: 144 }
-const FIELD = 8
+/** Rows out of the middle of a picture of 1920×1080 and 60°. */
+const size = { width: 1920, height: 24 }
+const FIELD = 4 / 3
 
 const ELEVATION = 25
 
@@ -76,38 +77,60 @@ const VIEWS = [
   [33.45, 90]
 ] as const
 
+/** Displacement of the edge of a half-plane's shadow in a view [°]. */
+async function displacement(
+  renderer: WebGPURenderer,
+  quality: LightShaftsQuality,
+  elevation: number,
+  [angle, fromSun]: readonly [number, number]
+): Promise<number> {
+  const set = stage(renderer, elevation, { quality })
+  const { camera, atmosphere, shafts } = set
+  camera.fov = FIELD
+  camera.aspect = size.width / size.height
+  camera.updateProjectionMatrix()
+  const { aside, at } = hideHalf(set, atmosphere.sunDirection, angle * radians)
+  // The plane is upright in the picture, and not quite in its middle.
+  camera.up.copy(at(fromSun * radians - 0.5 * Math.PI)).negate()
+  const offset = 0.27 * radians
+  const direction = at(fromSun * radians).addScaledVector(aside, offset)
+  camera.lookAt(direction.add(camera.position))
+  const shadowed = await set.draw()
+  shafts.enabled = false
+  const lit = await set.draw()
+  const profile = Array.from({ length: size.width }, (_, x) => {
+    const rows = [-8, -4, 0, 4, 8].map(y => size.height / 2 + y)
+    return mean(rows.map(y => lit.at(x, y)[1] - shadowed.at(x, y)[1]))
+  })
+  const perPixel = FIELD / size.height
+  const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0)
+  const sign = Math.sign(right.dot(aside))
+  const expected = size.width / 2 - (sign * Math.tan(offset)) / radians / perPixel
+  set.dispose()
+  return (stepOf(profile) - expected) * perPixel
+}
+
 for (const quality of ['medium', 'high'] as const satisfies LightShaftsQuality[]) {
   gpuTest(`has edges of shafts where a half-plane has them, at ${quality} quality`, async t => {
     const renderer = await t.createRenderer(size)
     const displaced: number[] = []
-    for (const [angle, fromSun] of VIEWS) {
-      const set = stage(renderer, ELEVATION, { quality })
-      const { camera, atmosphere, shafts } = set
-      camera.fov = FIELD
-      camera.aspect = size.width / size.height
-      camera.updateProjectionMatrix()
-      const { aside, at } = hideHalf(set, atmosphere.sunDirection, angle * radians)
-      // The plane is upright in the picture, and not quite in its middle.
-      camera.up.copy(at(fromSun * radians - 0.5 * Math.PI)).negate()
-      const offset = 0.27 * radians
-      const direction = at(fromSun * radians).addScaledVector(aside, offset)
-      camera.lookAt(direction.add(camera.position))
-      const shadowed = await set.draw()
-      shafts.enabled = false
-      const lit = await set.draw()
-      const profile = Array.from({ length: size.width }, (_, x) => {
-        const rows = [-8, -4, 0, 4, 8].map(y => size.height / 2 + y)
-        return mean(rows.map(y => lit.at(x, y)[1] - shadowed.at(x, y)[1]))
-      })
-      const perPixel = FIELD / size.height
-      const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0)
-      const sign = Math.sign(right.dot(aside))
-      const expected = size.width / 2 - (sign * Math.tan(offset)) / radians / perPixel
-      displaced.push((stepOf(profile) - expected) * perPixel)
-      set.dispose()
+    for (const view of VIEWS) {
+      displaced.push(await displacement(renderer, quality, ELEVATION, view))
     }
     t.note(displaced.map(degrees => `${degrees.toFixed(3)}°`).join(', '))
     const most = Math.max(...displaced.map(Math.abs))
     expectTrue(most <= GOAL, `edges are displaced by ${most.toFixed(3)}°`)
   })
 }
+
+gpuTest('has rays opposite a sunset run together at the point opposite the sun', async t => {
+  const renderer = await t.createRenderer(size)
+  for (const view of [
+    [14, 166],
+    [-8, 160]
+  ] as const) {
+    const displaced = await displacement(renderer, 'medium', 3, view)
+    t.note(`${view[1]}° from the sun: ${displaced.toFixed(3)}°`)
+    expectTrue(Math.abs(displaced) <= GOAL, `a ray is displaced by ${displaced.toFixed(3)}°`)
+  }
+})

@@ -81,7 +81,12 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     const polar = polarRay(frame, direction, direction.dot(vector(light)))
     const column = columnAt(frame, distance)
     const crossing = polar.sinViewLight.mul(point.length()).div(distance)
-    return vec4(column, polar.row.fract(), polar.angle, crossing)
+    // The place among rows, of which two are read.
+    const row = polar.rows[0]
+      .add(polar.betweenRows)
+      .add(0.5)
+      .div(4 * columns)
+    return vec4(column, row.fract(), polar.angle, crossing)
   })
   texels.forEach(([u, v, z], i) => {
     const [column, row, angle, crossing] = results.subarray(4 * i, 4 * i + 4)

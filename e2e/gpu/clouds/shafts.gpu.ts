@@ -1,17 +1,8 @@
-import { horizontalIrradiance, type AirOccluder } from '@welkin/atmosphere'
-import {
-  cloudAirShadow,
-  cloudPreset,
-  CloudLayers,
-  CloudLightTable,
-  CloudNoise,
-  clouds,
-  type CloudsOptions
-} from '@welkin/clouds'
-import type { CloudsNode } from '@welkin/clouds'
-import { PerspectiveCamera, Vector3 } from 'three'
+import { horizontalIrradiance } from '@welkin/atmosphere'
+import { cloudPreset, CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
+import { Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { RenderPipeline } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { meanDecks } from '../../../packages/clouds/src/environment/tsl/decks'
@@ -21,6 +12,7 @@ import {
 } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
 import { cloudExtinction } from '../harness/cloud-extinction'
+import { castsOnce, measuredLoss, unseenClouds } from '../harness/cloud-shafts'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -83,64 +75,6 @@ function lookAt({ camera }: Stage, view: number): void {
   )
 }
 
-/** Clouds that are drawn for their shadow maps, by a camera of their own, and not seen. */
-async function unseen(
-  renderer: WebGPURenderer,
-  { camera: { position }, atmosphere }: Stage,
-  layers: CloudLayers,
-  noise: CloudNoise,
-  extinction?: CloudsOptions['extinction']
-): Promise<{ node: CloudsNode; draw: () => Promise<void>; dispose: () => void }> {
-  const light = new CloudLightTable()
-  const camera = new PerspectiveCamera(60, 2, 1, 1e6)
-  camera.position.copy(position)
-  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
-    quality: coarse,
-    noise,
-    light,
-    extinction
-  })
-  node.time = 0
-  const pipeline = new RenderPipeline(renderer)
-  pipeline.outputNode = node
-  return {
-    node,
-    async draw() {
-      camera.updateMatrixWorld()
-      await nextFrame()
-      await drawToFloat(renderer, () => pipeline.render())
-    },
-    dispose() {
-      for (const owned of [node, pipeline, light, noise]) owned.dispose()
-    }
-  }
-}
-
-/** Clouds that take light scattered once alone, for which there are closed forms. */
-const castsOnce = (node: CloudsNode): AirOccluder => ({
-  castInto(shafts) {
-    const shadow = cloudAirShadow(node).castInto(shafts)
-    return {
-      get isCast() {
-        return shadow.isCast
-      },
-      update: (view, renderer) => shadow.update?.(view, renderer),
-      transmittance: ray => shadow.transmittance(ray),
-      dispose: () => shadow.dispose?.()
-    }
-  }
-})
-
-/** Parts of the light of the middle of the picture that shafts take, at three wavelengths. */
-async function measuredLoss({ draw, shafts }: Stage): Promise<number[]> {
-  const [x, y] = [size.width / 2, size.height / 2]
-  shafts.enabled = true
-  const shadowed = (await draw()).at(x, y)
-  shafts.enabled = false
-  const lit = (await draw()).at(x, y)
-  return [0, 1, 2].map(k => (lit[k] - shadowed[k]) / shafts.source.irradiance.value.getComponent(k))
-}
-
 const deck = { ...fog, baseAltitude: 1500, topAltitude: 1600 }
 
 /** Decks of a given extinction [1/m] that is a function of the distance north of the eye, and the clear part there. */
@@ -162,7 +96,7 @@ for (const [name, extinction, isClear] of decks) {
       const sun = 40
       const set = stage(renderer, sun, { quality: 'reference' })
       const { shafts } = set
-      const { node, draw, dispose } = await unseen(
+      const { node, draw, dispose } = await unseenClouds(
         renderer,
         set,
         new CloudLayers([deck]),
@@ -215,7 +149,7 @@ gpuTest(
     const { shafts } = set
     const layers = cloudPreset('fairWeather')
     layers.at(0).set({ coverage: 0.5 })
-    const { node, draw, dispose } = await unseen(renderer, set, layers, new CloudNoise())
+    const { node, draw, dispose } = await unseenClouds(renderer, set, layers, new CloudNoise())
     const occluder = castsOnce(node)
     shafts.add(occluder)
     await draw()
@@ -351,7 +285,7 @@ gpuTest(
     const set = stage(renderer, 20, { quality: 'reference' })
     const { shafts, scene, camera, atmosphere } = set
     const layers = new CloudLayers([{ ...deck, coverage: 0 }])
-    const { node, draw, dispose } = await unseen(
+    const { node, draw, dispose } = await unseenClouds(
       renderer,
       set,
       layers,
@@ -396,7 +330,7 @@ gpuTest(
 gpuTest('dims light scattered more than once as it dims that on surfaces', async t => {
   const renderer = await t.createRenderer(size)
   const set = stage(renderer, 40, { quality: 'reference' })
-  const { node, draw, dispose } = await unseen(
+  const { node, draw, dispose } = await unseenClouds(
     renderer,
     set,
     new CloudLayers([{ ...fog, density: 0.02 }]),

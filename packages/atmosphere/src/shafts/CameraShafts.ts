@@ -12,7 +12,7 @@ export interface CameraShafts {
   readonly view: ViewNodes
   readonly shadowedAir: ShadowedAir
   readonly steps: ShaftSteps
-  /** Pixels from one that is marched to the next. */
+  /** Pixels of a large picture from one that is marched to the next. */
   readonly spacing: number
   /** True if there are shadows to be drawn, as of the last `prepare`. */
   readonly isActive: boolean

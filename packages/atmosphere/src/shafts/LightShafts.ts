@@ -49,8 +49,8 @@ const _axes = new Matrix4()
  * ```
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
- * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment marches, or
- * at `'medium'` and `'low'` quality reads a volume of some 160 × 90 rays in 24 slices. Compile a scene before its first frame, which else has none in its sky:
+ * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment
+ * reads a volume of some 144 × 81 rays in 24 slices. Compile a scene before its first frame, which else has none in its sky:
  * `await renderer.compileAsync(scene, camera)`.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
@@ -61,7 +61,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1.5 at `'low'` and `'medium'` quality), or 8 MB for materials.
+ * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality), or 7 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -186,16 +186,16 @@ export class LightShafts implements ShadowedShafts {
     this.#setStrength = value
   }
 
-  /** Fineness of the march. A change compiles materials that draw the shafts anew; a post effect it does not. */
+  /** Fineness of the march. A change compiles nothing, but for materials at `'reference'` quality. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }
 
   set quality(value: LightShaftsQuality) {
     checkChoice('LightShafts', 'quality', value, qualityNames)
-    const { rays } = qualities[this.#quality]
+    const wasMarched = this.#isMarched
     this.#quality = value
-    if (qualities[value].rays !== rays && this.#isLayer) this.#compileAnew()
+    if (this.#isMarched !== wasMarched && this.#isLayer) this.#compileAnew()
   }
 
   /** False for air without shadows, at no cost. Nothing is compiled when it changes. */
@@ -218,7 +218,7 @@ export class LightShafts implements ShadowedShafts {
     return this.#isActive
   }
 
-  /** Pixels of a picture from one that is marched to the next. */
+  /** Pixels of a large picture from one that is marched to the next. */
   get spacing(): number {
     return qualities[this.#quality].spacing
   }

@@ -1,9 +1,30 @@
-import { RGFormat, type RenderTarget } from 'three'
-import { Fn, If, float, log2, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { RenderTarget } from 'three'
+import {
+  Fn,
+  If,
+  float,
+  log2,
+  luminance,
+  mix,
+  step,
+  texture,
+  uv,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
+import {
+  loadTexel,
+  loop,
+  sampleLevel0,
+  type Float,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 
 /**
@@ -13,20 +34,42 @@ import { number, vector2 } from '../uniforms'
 const SAME_DEPTH = 0.35
 const OTHER_DEPTH = 0.8
 
+/** Octaves from a pixel's depth to that of pixels around, which are at one depth; and what says that they are not. */
+const NEAR_MEAN = 0.2
+const NO_DEPTH = 1e3
+
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
 
-/** Least and greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
-const LEAST = 1e-5
+/** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
+const STEEP = 0.12
+
+/** Greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
 const MOST = 6e4
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
-/** Light of a ray, for unit irradiance [1/sr]. */
+/** Greatest light that is mixed, in octaves, and least that others are compared with [1/sr]. */
+const MOST_MIXED = Math.log2(MOST) - 4
+const LEAST = 1e-12
+
+/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
+const PALE = 0.2
+
+/** Parts of the light that are lost, by colours. */
+function partsOf({ lost, lit }: LostLight): Vec3 {
+  const all = luminance(lit).max(LEAST).toConst()
+  const part = luminance(lost).div(all).toConst()
+  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
+  const own = lost.div(mix(vec3(all), lit, isBright))
+  return mix(vec3(part), own, isBright).clamp(-MOST, MOST)
+}
+
+/** Light of a ray. */
 export interface LostLight {
-  /** Light that it loses. */
-  readonly lost: Vec4
-  /** Light of its air if nothing cast shadows, in the mean over wavelengths. */
-  readonly lit: Float
+  /** Light that it loses, linear sRGB of about that for unit irradiance. */
+  readonly lost: Vec3
+  /** Light of its air if nothing cast shadows, likewise. */
+  readonly lit: Vec3
   /** Distance to what is seen [m]. */
   readonly distance: Float
 }
@@ -35,15 +78,16 @@ export interface LostLight {
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one puts three things side by side, so that a pixel is read twice, from one texture: means of
- * the four around each corner of the grid, light itself, and distances.
+ * A first pass marches. A second one puts two things side by side, so that a pixel is read once from one texture: means of
+ * the four around each corner of the grid, with their depth if they may be mixed; and the part of the light that each loses, with
+ * its depth, of which pixels take that of others at their depth.
  */
 export class LostLightGrid {
-  /** Light, and log₂ of the distance with the light that there is. */
+  /** Lost light with log₂ of the distance; its part of the light that there is, with log₂ of that. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
-  readonly #light: TextureNode
-  readonly #distances: TextureNode
+  readonly #lost: TextureNode
+  readonly #parts: TextureNode
   readonly #texels: TextureNode
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
@@ -60,10 +104,9 @@ export class LostLightGrid {
   constructor() {
     this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
-    const [light, distances] = this.#marched.textures
-    distances.format = RGFormat
-    this.#light = texture(light)
-    this.#distances = texture(distances)
+    const [lost, parts] = this.#marched.textures
+    this.#lost = texture(lost)
+    this.#parts = texture(parts)
     this.#texels = texture(this.target.texture)
   }
 
@@ -73,8 +116,8 @@ export class LostLightGrid {
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
-    this.target.setSize(3 * x + 1, y + 1)
-    this.#texelSize.value.set(1 / (3 * x + 1), 1 / (y + 1))
+    this.target.setSize(2 * x + 1, y + 1)
+    this.#texelSize.value.set(1 / (2 * x + 1), 1 / (y + 1))
   }
 
   /**
@@ -86,13 +129,14 @@ export class LostLightGrid {
   render(renderer: Renderer, version: number, march: (at: Vec2, pixel: Vec2) => LostLight): void {
     if (this.#passes.length === 0 || this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      const marched = outputs<[Vec4, Vec4]>(2, ([light, distances]) => {
+      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
-        const { lost, lit, distance } = march(at, pixel)
+        const found = march(at, pixel)
+        const { lost, lit, distance } = found
         const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
-        light.assign(lost.mul(scale).clamp(-MOST, MOST))
-        distances.assign(vec4(log2(distance), lit.mul(scale).clamp(LEAST, MOST), 0, 0))
+        lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), log2(distance)))
+        partsOut.assign(vec4(partsOf(found), log2(luminance(lit).max(LEAST).mul(scale))))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -112,27 +156,26 @@ export class LostLightGrid {
     const read = (source: TextureNode, x: Float, y: Float): Vec4 =>
       sampleLevel0(source, vec2(x, y).clamp(vec2(0.5), size.sub(0.5)).div(size))
     If(column.lessThan(0), () => {
-      // In the corner of four, the filter has their mean.
-      result.assign(read(this.#light, texel.x, texel.y))
+      const least = vec2(NO_DEPTH).toVar()
+      const most = vec2(-NO_DEPTH).toVar()
+      loop('corner', 4, index => {
+        const row = float(index).div(2).floor().toConst()
+        const x = texel.x.add(float(index).sub(row.mul(2)).sub(0.5)).toConst()
+        const y = texel.y.add(row).sub(0.5).toConst()
+        const other = read(this.#lost, x, y).toConst()
+        const both = vec2(other.w, read(this.#parts, x, y).w).toConst()
+        result.addAssign(other.mul(0.25))
+        least.assign(least.min(both))
+        most.assign(most.max(both))
+      })
+      const apart = most.sub(least).toConst()
+      const isEven = apart.x.lessThan(SAME_DEPTH).and(apart.y.lessThan(STEEP))
+      const isMixed = isEven.and(most.y.lessThan(MOST_MIXED))
+      result.w.assign(isMixed.select(result.w, NO_DEPTH))
+    }).Else(() => {
+      result.rgb.assign(read(this.#parts, column.add(0.5), texel.y.add(0.5)).rgb)
+      result.w.assign(read(this.#lost, column.add(0.5), texel.y.add(0.5)).w)
     })
-      .ElseIf(column.lessThan(size.x), () => {
-        result.assign(read(this.#light, column.add(0.5), texel.y.add(0.5)))
-      })
-      .Else(() => {
-        const at = vec2(column.sub(size.x), texel.y).add(0.5).toConst() as Vec2
-        const { x: own, y: lit } = read(this.#distances, at.x, at.y).toConst() as Vec4
-        result.assign(vec4(own, own, own, lit))
-        loop('neighbor', 9, index => {
-          const row = float(index).div(3).floor().toConst()
-          const aside = vec2(float(index).sub(row.mul(3)), row)
-            .sub(1)
-            .add(at)
-            .toConst() as Vec2
-          const other = read(this.#distances, aside.x, aside.y).x.toConst()
-          result.y.assign(result.y.min(other))
-          result.z.assign(result.z.max(other))
-        })
-      })
     return result
   }
 
@@ -145,49 +188,46 @@ export class LostLightGrid {
   }
 
   /**
-   * Light that a pixel loses, for unit irradiance [1/sr].
+   * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
    * @param lit - See {@link LostLight}; asked for in a branch.
    */
-  read(at: Vec2, distance: Float, lit: () => Float): Vec4 {
+  read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
     const size = this.#gridSize
     const place = at.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
-    const texels = (texel: Vec2): Vec4 =>
-      sampleLevel0(this.#texels, texel.mul(this.#texelSize)).toConst()
-    const light = vec2(size.x.add(1.5), 0.5).toConst() as Vec2
-    const distances = light.add(vec2(size.x, 0)).toConst() as Vec2
-    const last = size.sub(1).toConst() as Vec2
     const own = log2(distance).toConst() as Float
-    const growth = this.#growth(distance).div(LIGHT_SCALE).toConst()
-    const nearest = place.add(0.5).floor().min(last)
-    const { y: least, z: greatest } = texels(nearest.add(distances))
-    const lost = vec4(0).toVar()
-    If(own.sub(least).max(greatest.sub(own)).lessThan(SAME_DEPTH), () => {
-      lost.assign(texels(place.add(1).min(size.add(0.5))))
-    }).Else(() => {
+    const middle = place.add(1).min(size.add(0.5)).mul(this.#texelSize)
+    const mean = sampleLevel0(this.#texels, middle).toConst()
+    const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
+    If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
       const first = place.floor().toConst() as Vec2
+      const last = size.sub(1).toConst() as Vec2
+      const single = vec2(size.x.add(1), 0).toConst() as Vec2
       const weights = float(0).toVar()
-      const here = lit().div(growth).clamp(LEAST, MOST).toConst()
+      lost.assign(vec3(0))
       loop('corner', 4, index => {
         const row = float(index).div(2).floor().toConst()
         const corner = first
           .add(vec2(float(index).sub(row.mul(2)), row))
           .min(last)
+          .add(single)
           .toConst()
-        const other = texels(corner.add(distances))
-        const apart = other.x.sub(own).abs()
-        const weight = apart
+        const other = loadTexel(this.#texels, corner).toConst()
+        const weight = other.w
+          .sub(own)
+          .abs()
           .sub(OTHER_DEPTH)
           .div(SAME_DEPTH - OTHER_DEPTH)
           .clamp(MIN_WEIGHT, 1)
-        // Of light that others have more of, or less, the same part.
-        lost.addAssign(texels(corner.add(light)).mul(weight.mul(here.div(other.w))))
+          .toConst()
+        lost.addAssign(other.rgb.mul(weight))
         weights.addAssign(weight)
       })
-      lost.divAssign(weights)
+      // Of light that others have more of, or less, the same part.
+      lost.mulAssign(lit().div(weights))
     })
-    return lost.mul(growth)
+    return lost
   }
 
   /** Frees its textures, which are made again where it is drawn. */

@@ -1,21 +1,22 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, screenUV, uv, vec4 } from 'three/tsl'
+import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
-import { sampleVolume, type MediumSegment } from '../skyVolume/tsl/skyVolume'
+import { sampleVolume } from '../skyVolume/tsl/skyVolume'
 import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import type { SkyLayer } from '../view/SkyLayer'
 import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
+import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
 import type { ShaftRay } from './tsl/shadowsAlong'
-import { distanceOf, FAR, without } from './tsl/without'
+import { distanceOf, FAR } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
 
 /** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
@@ -42,8 +43,8 @@ export class ScreenShafts implements ScreenShadows {
   readonly #strength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
-  /** Light that the pixel loses, as {@link read} found it for the shader that is made [1/sr]. */
-  #lost: Vec4 | null = null
+  /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
+  readonly #gain = number(1)
 
   constructor(shafts: CameraShafts, depthNode: Node | null, foreground?: ForegroundLayer) {
     this.foreground = foreground
@@ -57,7 +58,7 @@ export class ScreenShafts implements ScreenShadows {
     if (this.#isElsewhere) return
     shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-    this.grid.resize(width, height, shafts.spacing)
+    this.grid.resize(width, height, spacingIn(shafts.spacing, width, height))
     if (!shafts.isActive) return
     // What is drawn here and now reads the view, and media in it.
     shafts.view.update(view)
@@ -68,6 +69,9 @@ export class ScreenShafts implements ScreenShadows {
     const fog = media.reduce((sum, { extinction = 0 }) => sum + extinction, 0)
     const isFog = (layer: SkyLayer): boolean => 'shadowed' in layer && layer.extinction !== 0
     this.#hasMedia.value = Number(media.some(isFog))
+    const { source, air: lookUp } = shafts.view
+    const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
+    this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
     this.grid.freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
     this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
   }
@@ -78,20 +82,13 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = Number(this.#shafts.isForward)
   }
 
-  read(position: Vec3, isSky: Bool): void {
-    this.#lost = null
-    if (this.#isElsewhere) return
-    const lost = vec4(0).toVar()
+  lostAt(position: Vec3, isSky: Bool): Vec3 | null {
+    if (this.#isElsewhere) return null
+    const lost = vec3(0).toVar()
     If(this.#strength.greaterThan(0), () => {
       lost.assign(this.#lostOf(this.#rayThrough(position, isSky)))
     })
-    this.#lost = lost
-  }
-
-  medium(_ray: LayerRay | null, air: MediumSegment): MediumSegment {
-    if (this.#isElsewhere) return air
-    const lost = this.#lost
-    return without(air, this.#strength, () => lost ?? this.#lostHere())
+    return lost
   }
 
   drawIn(frame: NodeFrame, sun: object): void {
@@ -110,14 +107,9 @@ export class ScreenShafts implements ScreenShadows {
     return this.isMesh ? screenUV : uv()
   }
 
-  /** Light that the pixel loses [1/sr]. */
-  #lostHere(): Vec4 {
-    return Fn(({ renderer }): Vec4 => this.#lostOf(this.#rayTo(renderer, this.#place)))()
-  }
-
-  #lostOf(ray: ShaftRay): Vec4 {
+  #lostOf(ray: ShaftRay): Vec3 {
     const lost = this.grid.read(this.#place, ray.distance, () => this.#litAir(ray))
-    return lost.mul(this.#shafts.view.source.irradiance).mul(this.#strength)
+    return lost.mul(this.#gain.mul(this.#strength))
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
@@ -128,9 +120,10 @@ export class ScreenShafts implements ScreenShadows {
 
   dim(color: Vec3): Vec3 {
     const left = color.toVar()
+    if (this.#isElsewhere) return left
     If(this.#strength.greaterThan(0), () => {
+      const lost = Fn(({ renderer }): Vec3 => this.#lostOf(this.#rayTo(renderer, this.#place)))()
       // Clouds may also give light.
-      const lost = unclampedSRGB(this.#shafts.view.air.uniforms, this.#lostHere())
       left.subAssign(lost.min(left))
     })
     return left
@@ -156,7 +149,7 @@ export class ScreenShafts implements ScreenShadows {
     const { seenFrom, most } = this.#seen(at)
     const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    return { lost, lit: this.#litAir(ray), distance: ray.distance }
+    return { lost: this.#color(lost), lit: this.#litAir(ray), distance: ray.distance }
   }
 
   /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
@@ -179,8 +172,14 @@ export class ScreenShafts implements ScreenShadows {
     return { direction, cosView, cosViewLight, distance }
   }
 
-  /** Light of the air on a ray without shadows, in the mean over wavelengths, for unit irradiance [1/sr]. */
-  #litAir(ray: ShaftRay): Float {
+  /** Light for unit irradiance [1/sr] as the grid keeps it. */
+  #color(light: Vec4): Vec3 {
+    const { air, source } = this.#shafts.view
+    return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
+  }
+
+  /** Light of the air on a ray without shadows, as the grid keeps it. */
+  #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
@@ -193,7 +192,7 @@ export class ScreenShafts implements ScreenShadows {
         light.assign(light.mul(transmittance).add(singleScattered))
       }
     })
-    return light.dot(vec4(0.25)).toConst()
+    return this.#color(light)
   }
 
   /** Takes them out of the shafts of their camera. */

@@ -1,6 +1,7 @@
 import { RGFormat, UnsignedByteType, Vector2 } from 'three'
 import type { Camera, RenderTarget } from 'three'
 import {
+  Fn,
   If,
   float,
   getViewPosition,
@@ -28,8 +29,11 @@ import { FAR } from './tsl/without'
 /** Slices of a ray, each in a tile. Fewer: light before surfaces in shadow is blurred with that behind. */
 const SLICES = 24
 
-/** Tiles in a row, and rows: one tile is left for the sky. */
+/** Tiles in a row. Slices have one tile more, for the sky; sums have the edges of two slices in each of twelve more. */
 const TILE_COLUMNS = 5
+const SLICE_TILES = SLICES + 1
+const SUM_TILES = SLICE_TILES + SLICES / 2
+const rowsOf = (tiles: number): number => Math.ceil(tiles / TILE_COLUMNS)
 
 /** Distance of the last slice over the first one's length. */
 const REACH = 1000
@@ -42,14 +46,6 @@ const MAP_REACH = 4
 const MOST = 6e4
 
 const _size = new Vector2()
-
-/** A shader of light and edges. */
-const lightAndEdges = (body: () => { light: Vec4; edges: Vec4 }): Outputs =>
-  outputs<[Vec4, Vec4]>(2, ([first, second]) => {
-    const { light, edges } = body()
-    first.assign(light.clamp(-MOST, MOST))
-    second.assign(edges)
-  })
 
 /** Shafts whose light a volume has; `version` grows whenever its shader changes. */
 type ShaftsInVolume = Pick<CameraShafts, 'view' | 'shadowedAir' | 'steps' | 'version'>
@@ -71,10 +67,11 @@ export interface VolumeQuality {
 export class ShaftVolume {
   /** Light that slices lose; where in them dark air begins and ends. */
   readonly #slices: RenderTarget
-  /** Light that rays lose up to the end of each slice, and edges of the dark in it, in the middle of four rays. */
+  /** Light that rays lose up to the end of each slice, and edges of the dark in it, in the middle of four rays: one texture, for materials have few left. */
   readonly #sums: RenderTarget
-  /** Textures of both: light, and edges of the dark. */
-  readonly #textures: readonly (readonly TextureNode[])[]
+  readonly #sliceLight: TextureNode
+  readonly #sliceEdges: TextureNode
+  readonly #sumTexels: TextureNode
   readonly #projectionInverse: Mat4
   /** Number of rays in each direction, with one beyond each edge of the picture. */
   readonly #grid = vector2()
@@ -92,12 +89,13 @@ export class ShaftVolume {
   constructor(camera: Camera) {
     this.#projectionInverse = uniform(camera.projectionMatrixInverse) as unknown as Mat4
     this.#slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
-    this.#sums = tableTarget('Welkin.LightShafts', 1, 1, 2)
-    this.#textures = [this.#slices, this.#sums].map(({ textures }) => {
-      textures[1].format = RGFormat
-      textures[1].type = UnsignedByteType
-      return textures.map(each => texture(each))
-    })
+    this.#sums = tableTarget('Welkin.LightShafts', 1, 1)
+    const [light, edges] = this.#slices.textures
+    edges.format = RGFormat
+    edges.type = UnsignedByteType
+    this.#sliceLight = texture(light)
+    this.#sliceEdges = texture(edges)
+    this.#sumTexels = texture(this.#sums.texture)
   }
 
   /**
@@ -116,8 +114,8 @@ export class ShaftVolume {
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)
     this.#grid.value.copy(this.#size.value).ceil().addScalar(2)
     const { x, y } = this.#grid.value
-    for (const target of [this.#slices, this.#sums])
-      target.setSize(TILE_COLUMNS * x, TILE_COLUMNS * y)
+    this.#slices.setSize(TILE_COLUMNS * x, rowsOf(SLICE_TILES) * y)
+    this.#sums.setSize(TILE_COLUMNS * x, rowsOf(SUM_TILES) * y)
     this.#looks.value = looks
   }
 
@@ -136,7 +134,8 @@ export class ShaftVolume {
     this.#first.value = Math.min(MAP_REACH * mapped, most) / REACH
     if (this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      this.#passes = [this.#march(shafts, shadowedSky), this.#sum()].map(
+      const summed = Fn(() => this.#sum())()
+      this.#passes = [this.#march(shafts, shadowedSky), summed].map(
         output => new FragmentPass('Welkin.LightShafts', output)
       )
       this.#compiled = version
@@ -151,24 +150,31 @@ export class ShaftVolume {
     return grown.mul(this.#first).add(this.#start).toConst()
   }
 
-  /** Slice and place in it of a texel. */
-  #texel(): { slice: Float; place: Vec2 } {
-    const texel = uv().mul(this.#grid.mul(TILE_COLUMNS)).floor().toConst() as unknown as Vec2
-    const tile = texel.div(this.#grid).add(1e-4).floor().toConst() as Vec2
-    const slice = tile.y.mul(TILE_COLUMNS).add(tile.x).toConst() as Float
-    return { slice, place: texel.sub(tile.mul(this.#grid)).toConst() }
+  /** Number of a texel's tile, of so many, and place in it. */
+  #texel(tiles: number): { tile: Float; place: Vec2 } {
+    const size = this.#grid.mul(vec2(TILE_COLUMNS, rowsOf(tiles)))
+    const texel = uv().mul(size).floor().toConst() as unknown as Vec2
+    const first = texel.div(this.#grid).add(1e-4).floor().toConst() as Vec2
+    const tile = first.y.mul(TILE_COLUMNS).add(first.x).toConst() as Float
+    return { tile, place: texel.sub(first.mul(this.#grid)).toConst() }
   }
 
-  /** Reads a texture in the tile of a slice. */
-  #read(source: TextureNode, slice: Float, place: Vec2): Vec4 {
-    const { row, column } = rowAndColumn(slice, TILE_COLUMNS)
+  /** Reads a texture of so many tiles in one of them. */
+  #read(source: TextureNode, tiles: number, tile: Float, place: Vec2): Vec4 {
+    const { row, column } = rowAndColumn(tile, TILE_COLUMNS)
     const at = vec2(column, row).mul(this.#grid).add(place)
-    return sampleLevel0(source, at.div(this.#grid.mul(TILE_COLUMNS))).toConst()
+    const size = this.#grid.mul(vec2(TILE_COLUMNS, rowsOf(tiles)))
+    return sampleLevel0(source, at.div(size)).toConst()
+  }
+
+  /** Reads a sum, or edges in a tile after those of the sums. */
+  #sumAt(tile: Float, place: Vec2): Vec4 {
+    return this.#read(this.#sumTexels, SUM_TILES, tile, place)
   }
 
   #march({ view, shadowedAir, steps }: ShaftsInVolume, shadowedSky: ShadowedAir): Outputs {
-    return lightAndEdges(() => {
-      const { slice, place } = this.#texel()
+    return outputs<[Vec4, Vec4]>(2, ([lightOut, edgesOut]) => {
+      const { tile: slice, place } = this.#texel(SLICE_TILES)
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
       const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
@@ -183,7 +189,8 @@ export class ShaftVolume {
       }).Else(() => {
         light.assign(lostLight(view, shadowedSky, ray, steps, jitter))
       })
-      return { light: light.mul(RADIANCE_SCALE), edges }
+      lightOut.assign(light.mul(RADIANCE_SCALE).clamp(-MOST, MOST))
+      edgesOut.assign(edges)
     })
   }
 
@@ -195,26 +202,34 @@ export class ShaftVolume {
     return { direction, cosView, cosViewLight, distance: float(FAR) }
   }
 
-  #sum(): Outputs {
-    const [light, edges] = this.#textures[0]
-    return lightAndEdges(() => {
-      const { slice, place } = this.#texel()
-      const sum = vec4(0).toVar()
-      // Between four rays, which have samples in all places of their steps.
-      const first = slice
+  /** A texel of the sums: between four rays, which have samples in all places of their steps. */
+  #sum(): Vec4 {
+    const { tile, place } = this.#texel(SUM_TILES)
+    const between = place.add(1).toConst()
+    const sum = vec4(0).toVar()
+    If(tile.lessThan(SLICE_TILES - 0.5), () => {
+      const first = tile
         .greaterThan(SLICES - 0.5)
-        .select(slice, 0)
+        .select(tile, 0)
         .toConst()
-      loop('slice', int(slice.sub(first)).add(1), index => {
-        sum.addAssign(this.#read(light, first.add(float(index)), place.add(1)))
+      loop('slice', int(tile.sub(first)).add(1), index => {
+        const light = this.#read(this.#sliceLight, SLICE_TILES, first.add(float(index)), between)
+        sum.addAssign(light)
       })
-      return { light: sum, edges: this.#read(edges, slice, place.add(1)) }
+      sum.assign(sum.clamp(-MOST, MOST))
+    }).Else(() => {
+      const even = tile.sub(SLICE_TILES).mul(2).toConst()
+      const edges = [even, even.add(1)].map(slice =>
+        this.#read(this.#sliceEdges, SLICE_TILES, slice.min(SLICES), between)
+      )
+      sum.assign(vec4(edges[0].xy, edges[1].xy))
     })
+    return sum
   }
 
   /** Light that the sky loses at a fragment, for unit irradiance of the source [1/sr]. */
   lostToSky(): Vec4 {
-    return this.#read(this.#textures[1][0], float(SLICES), this.#centre).div(RADIANCE_SCALE)
+    return this.#sumAt(float(SLICES), this.#centre).div(RADIANCE_SCALE)
   }
 
   /** Place of a fragment among the rays. */
@@ -228,7 +243,6 @@ export class ShaftVolume {
    * @param distance - Distance to it [m].
    */
   lostTo(distance: Float): Vec4 {
-    const [sums, dark] = this.#textures[1]
     const ahead = distance.sub(this.#start).max(0).div(this.#first).add(1).log()
     const slice = ahead
       .div(this.#growth)
@@ -238,12 +252,14 @@ export class ShaftVolume {
     const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
     const inSlice = distance.sub(from).div(next.sub(from)).toConst()
     const centre = this.#centre
-    const edges = this.#read(dark, slice, centre)
+    const pair = slice.mul(0.5).floor().toConst() as Float
+    const both = this.#sumAt(pair.add(SLICE_TILES), centre)
+    const edges = slice.sub(pair.mul(2)).greaterThan(0.5).select(both.zw, both.xy).toConst()
     const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
-    const after = this.#read(sums, slice, centre)
+    const after = this.#sumAt(slice, centre)
     const before = vec4(0).toVar()
     If(slice.greaterThan(0.5), () => {
-      before.assign(this.#read(sums, slice.sub(1), centre))
+      before.assign(this.#sumAt(slice.sub(1), centre))
     })
     return before.add(after.sub(before).mul(part)).div(RADIANCE_SCALE)
   }

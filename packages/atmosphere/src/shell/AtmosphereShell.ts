@@ -201,7 +201,13 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         tables.volumes.segments
       )
     this.#shadows = this.#shafts?.upTo(null)
-    const { color, depth } = shellFragment(air, this.#view, this.#light(air, this.#volumes))
+    const shadows = this.#shadows
+    const { color, depth } = shellFragment(
+      air,
+      this.#view,
+      this.#light(air, this.#volumes),
+      shadows && (light => shadows.dim(light))
+    )
     const fragmentNode = new ShellNode(this, color)
     Object.assign(this.material, { fragmentNode, depthNode: depth, needsUpdate: true })
   }
@@ -232,7 +238,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
       }
       If(isMarched, () => take(marchedShellLight(air, segment, TABLE_STEPS))).Else(() => {
         const lit = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
-        take(this.#shadows?.medium(null, lit) ?? lit)
+        take(lit)
       })
       return light
     }
@@ -295,7 +301,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (this.#volumes !== null && this.#tables !== null) {
       this.#updateVolume(renderer, camera, this.#volumes, this.#tables.version)
     }
-    if (frame && !this.#isMarched.value) this.#shadows?.drawIn(frame, this.sun)
+    if (frame) this.#shadows?.drawIn(frame, this.#isMarched.value ? this : this.sun)
   }
 
   #updateSun(): void {

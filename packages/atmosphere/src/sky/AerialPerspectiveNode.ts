@@ -127,16 +127,16 @@ export class AerialPerspectiveNode extends PostEffectNode {
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
       const drawnAt = this.#screenShafts ? position(depth).toConst() : null
-      this.#screenShafts?.read(isSky.select(ray, drawnAt).toConst(), isSky)
+      const lost = this.#screenShafts?.lostAt(isSky.select(ray, drawnAt).toConst(), isSky) ?? null
       If(ifSeen(isSky.not()), () => {
-        const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers)
+        const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers, lost)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))
       })
       if (this.showSky) {
         // Silhouettes (with multisampling) and transparent things cover a part of the pixel.
         If(ifSeen(coverage.lessThan(1)), () => {
           const direction = this.view.toMapped(ray).normalize().toConst() as Vec3
-          const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers)
+          const sky = skyColor(this.view, direction, this.showSun ? pixel : null, this.layers, lost)
           result.addAssign(sky.mul(coverage.oneMinus()))
         })
       }

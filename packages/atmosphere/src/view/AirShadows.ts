@@ -1,9 +1,8 @@
 import type { Node, NodeFrame } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
-import type { LayerRay, SkyLayer } from './SkyLayer'
+import type { SkyLayer } from './SkyLayer'
 
 /** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
 export interface ForegroundLayer {
@@ -22,13 +21,11 @@ export interface ScreenShadows extends SkyLayer {
   /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
   dim(color: Vec3): Vec3
   /**
-   * Reads what the pixel loses, once for all calls of `medium` that follow in a shader function, in branches too.
+   * Light that the pixel loses, linear sRGB × `luminanceScale`; null where another node takes it.
    *
    * @param position - Position of what is seen, or of any point in front of the sky, in view space [world units].
    */
-  read(position: Vec3, isSky: Bool): void
-  /** Takes what shadows take from the air of the pixel's view ray. */
-  medium(ray: LayerRay | null, air: MediumSegment): MediumSegment
+  lostAt(position: Vec3, isSky: Bool): Vec3 | null
   /** Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun. */
   drawIn(frame: NodeFrame, sun: object): void
 }

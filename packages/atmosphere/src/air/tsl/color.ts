@@ -12,9 +12,16 @@ function apply(columns: AtmosphereUniforms['linearSRGB'], spectrum: Vec4): Vec3 
 /**
  * Radiance per unit of solar irradiance [1/sr] (or irradiance per unit [1]) to linear-sRGB luminance
  * (illuminance), scaled by `luminanceScale`. Colours outside the gamut keep their other components.
+ *
+ * @param lost - Light that is taken away, as {@link unclampedSRGB} has it.
  */
-export function linearSRGB(uniforms: AtmosphereUniforms, spectrum: Vec4): Vec3 {
-  return apply(uniforms.linearSRGB, spectrum).max(0)
+export function linearSRGB(
+  uniforms: AtmosphereUniforms,
+  spectrum: Vec4,
+  lost: Vec3 | null = null
+): Vec3 {
+  const color = apply(uniforms.linearSRGB, spectrum)
+  return (lost === null ? color : color.sub(lost)).max(0)
 }
 
 /** As {@link linearSRGB}, with components below nought where colours are outside the gamut: of light that is taken away. */

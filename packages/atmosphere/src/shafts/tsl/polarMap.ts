@@ -29,8 +29,6 @@ export interface PolarRay {
   angle: Float
   /** True if the ray goes towards the light. */
   isTowards: Bool
-  /** φ as a texture coordinate, in turns. */
-  row: Float
   /** The two rows whose middles φ is between, and its place between them. */
   rows: readonly [Float, Float]
   betweenRows: Float
@@ -49,17 +47,14 @@ export function polarRay(
   const y = direction.dot(along).toConst()
   // Not √(1 − ν²), which cancels near the source.
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
-  const row = atan(y, x)
-    .mul(1 / (2 * Math.PI))
-    .toConst() as Float
+  const turns = atan(y, x).mul(1 / (2 * Math.PI))
   const count = columns.mul(4).toConst() as Float
-  const place = row.add(1).mul(count).sub(0.5).toConst() as Float
+  const place = turns.add(1).mul(count).sub(0.5).toConst() as Float
   const first = place.floor().toConst() as Float
   return {
     sinViewLight,
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
     isTowards: cosViewLight.greaterThan(0).toConst(),
-    row,
     rows: [first.mod(count).toConst(), first.add(1).mod(count).toConst()],
     betweenRows: place.sub(first).toConst()
   }

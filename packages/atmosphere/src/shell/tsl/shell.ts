@@ -3,7 +3,7 @@ import type { Node, NodeBuilder } from 'three/webgpu'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
 import type { Air } from '../../scattering/tsl/ray'
 import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
-import type { Float, Vec4 } from '../../tsl-types'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { fragmentDepth } from './fragmentDepth'
 import { viewSegment, type ShellView, type ViewSegment } from './viewSegment'
 
@@ -19,13 +19,15 @@ const withBuilder = Fn as unknown as (
  * Colour and depth of a shell's fragments.
  *
  * @param lightOf - Light of the air along a segment, and its optical depth.
+ * @param dim - Takes what shadows take from the light.
  * @returns Premultiplied colour: in-scatter, with the part of the background that the air hides as alpha;
  *   and the depth that a shell is compared with, that of the segment's middle.
  */
 export function shellFragment(
   { uniforms }: Air,
   view: ShellView,
-  lightOf: (segment: ViewSegment) => MediumSegment
+  lightOf: (segment: ViewSegment) => MediumSegment,
+  dim: (light: Vec3) => Vec3 = light => light
 ): { color: Vec4; depth: Float } {
   // three writes the depth first, if it does, in the same function.
   const segments = new WeakMap<NodeBuilder, ViewSegment>()
@@ -40,7 +42,7 @@ export function shellFragment(
     If(segment.length.greaterThan(0), () => {
       const { radiance, depth } = lightOf(segment)
       const transmittance = transmittanceRGB(uniforms, depth.negate().exp())
-      const light = linearSRGB(uniforms, radiance).mul(view.tint)
+      const light = dim(linearSRGB(uniforms, radiance).mul(view.tint))
       output.assign(vec4(light, dot(transmittance, LUMINANCE).oneMinus().clamp()))
     })
     return output

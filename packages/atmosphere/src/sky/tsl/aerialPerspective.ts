@@ -29,11 +29,13 @@ export function withMedia(
  *
  * @param displacementView - Displacement from the camera to the point, in view space [world units].
  * @param layers - Sky layers, and shadows in the air; by default the atmosphere's layers.
+ * @param lost - Light that shadows take from it, linear sRGB × `luminanceScale`; by default none.
  */
 export function aerialPerspectiveTo(
   view: ViewNodes,
   displacementView: Vec3,
-  layers: readonly SkyLayer[] = view.atmosphere.layers
+  layers: readonly SkyLayer[] = view.atmosphere.layers,
+  lost: Vec3 | null = null
 ): AerialPerspective {
   const { air, volume, viewpoint } = view
   const offset = view.toMapped(displacementView).toConst()
@@ -58,6 +60,6 @@ export function aerialPerspectiveTo(
   const medium = withMedia(layers, ray, { depth: segment.depth, radiance })
   return {
     transmittance: transmittanceRGB(air.uniforms, medium.depth.negate().exp()),
-    inScatter: linearSRGB(air.uniforms, medium.radiance)
+    inScatter: linearSRGB(air.uniforms, medium.radiance, lost)
   }
 }

@@ -60,13 +60,15 @@ export function pixelAngle(direction: Vec3): Float {
  * @param direction - In the mapped space, unit length.
  * @param pixel - {@link pixelAngle} of it; null to leave out what is beyond the air: sun, moon, stars.
  * @param layers - Sky layers, and shadows in the air; by default the atmosphere's layers.
+ * @param lost - Light that shadows take from the air, linear sRGB × `luminanceScale`; by default none.
  * @returns Linear sRGB × `luminanceScale`.
  */
 export function skyColor(
   view: ViewNodes,
   direction: Vec3,
   pixel: Float | null,
-  layers: readonly SkyLayer[] = view.atmosphere.layers
+  layers: readonly SkyLayer[] = view.atmosphere.layers,
+  lost: Vec3 | null = null
 ): Vec3 {
   const { air, volume, viewpoint } = view
   const { uniforms } = air
@@ -119,5 +121,5 @@ export function skyColor(
       radiance.addAssign(light.mul(medium.depth.negate().exp()))
     })
   }
-  return linearSRGB(uniforms, radiance).min(BRIGHTEST)
+  return linearSRGB(uniforms, radiance, lost).min(BRIGHTEST)
 }
