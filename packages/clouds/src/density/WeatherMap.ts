@@ -211,7 +211,7 @@ export class WeatherMap {
     return {
       regions,
       systems: others.w,
-      displacement: others.xyz.mul(DISPLACEMENT).toConst() as Vec3
+      displacement: others.xyz.mul(DISPLACEMENT).toConst()
     }
   }
 

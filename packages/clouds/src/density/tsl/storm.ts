@@ -20,7 +20,7 @@ export interface StormAround {
 export const isStorm = ({ weights, hasStorms }: LayerNodes): Bool =>
   hasStorms === undefined
     ? weights.z.greaterThan(0).and(weights.x.add(weights.y).add(weights.w.abs()).equal(0))
-    : (bool(hasStorms) as Bool)
+    : bool(hasStorms)
 
 /** Code for layers of storms and for others: only one of both where the kind is known. */
 export function ifStorm(layer: LayerNodes, storm: () => void, other: () => void): void {
@@ -55,9 +55,7 @@ export function stormAround(
   const zenith = layer.directionInFields(up).toConst() as Vec3
   const place = placeOf(layer, subpoint, bent)
   const gap = nearby?.gap.sub(place.sub(nearby.place).mul(count)) ?? stormGap(place, zenith)
-  const cells = squareFrom(gap.toConst() as Vec3, zenith)
-    .sqrt()
-    .toConst() as Float
+  const cells = squareFrom(gap.toConst(), zenith).sqrt().toConst() as Float
   return {
     distance: cells.mul(cellLength(layer)).toConst(),
     rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()

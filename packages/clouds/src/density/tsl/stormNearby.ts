@@ -50,7 +50,7 @@ export const placeOf = (layer: LayerNodes, subpoint: Vec3, bent: Vec2): Vec3 =>
   layer
     .fieldLattice(subpoint)
     .add(inLattice(bent).mul(layer.perWeatherPeriod.div(noisePeriods.fields)))
-    .toConst() as Vec3
+    .toConst()
 
 /** The storm nearest to a place, kept for places nearby. */
 export interface StormNearby {
