@@ -1,18 +1,5 @@
 import type { RenderTarget } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  log2,
-  luminance,
-  mix,
-  step,
-  texture,
-  uv,
-  vec2,
-  vec3,
-  vec4
-} from 'three/tsl'
+import { Fn, If, float, log2, luminance, mix, step, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'

@@ -82,8 +82,8 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = Number(this.#shafts.isForward)
   }
 
-  lostAt(position: Vec3, isSky: Bool): Vec3 | null {
-    if (this.#isElsewhere) return null
+  lostAt(position: Vec3, isSky: Bool): Vec3 | undefined {
+    if (this.#isElsewhere) return undefined
     const lost = vec3(0).toVar()
     If(this.#strength.greaterThan(0), () => {
       lost.assign(this.#lostOf(this.#rayThrough(position, isSky)))

@@ -127,7 +127,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
       const drawnAt = this.#screenShafts ? position(depth).toConst() : null
-      const lost = this.#screenShafts?.lostAt(isSky.select(ray, drawnAt).toConst(), isSky) ?? null
+      const lost = this.#screenShafts?.lostAt(isSky.select(ray, drawnAt).toConst(), isSky)
       If(ifSeen(isSky.not()), () => {
         const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers, lost)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))

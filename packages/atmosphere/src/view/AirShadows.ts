@@ -21,11 +21,11 @@ export interface ScreenShadows extends SkyLayer {
   /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
   dim(color: Vec3): Vec3
   /**
-   * Light that the pixel loses, linear sRGB × `luminanceScale`; null where another node takes it.
+   * Light that the pixel loses, linear sRGB × `luminanceScale`; undefined where another node takes it.
    *
    * @param position - Position of what is seen, or of any point in front of the sky, in view space [world units].
    */
-  lostAt(position: Vec3, isSky: Bool): Vec3 | null
+  lostAt(position: Vec3, isSky: Bool): Vec3 | undefined
   /** Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun. */
   drawIn(frame: NodeFrame, sun: object): void
 }

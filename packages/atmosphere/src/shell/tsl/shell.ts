@@ -27,7 +27,7 @@ export function shellFragment(
   { uniforms }: Air,
   view: ShellView,
   lightOf: (segment: ViewSegment) => MediumSegment,
-  dim: (light: Vec3) => Vec3 = light => light
+  dim?: (light: Vec3) => Vec3
 ): { color: Vec4; depth: Float } {
   // three writes the depth first, if it does, in the same function.
   const segments = new WeakMap<NodeBuilder, ViewSegment>()
@@ -42,7 +42,8 @@ export function shellFragment(
     If(segment.length.greaterThan(0), () => {
       const { radiance, depth } = lightOf(segment)
       const transmittance = transmittanceRGB(uniforms, depth.negate().exp())
-      const light = dim(linearSRGB(uniforms, radiance).mul(view.tint))
+      const lit = linearSRGB(uniforms, radiance).mul(view.tint)
+      const light = dim?.(lit) ?? lit
       output.assign(vec4(light, dot(transmittance, LUMINANCE).oneMinus().clamp()))
     })
     return output

@@ -35,7 +35,7 @@ export function aerialPerspectiveTo(
   view: ViewNodes,
   displacementView: Vec3,
   layers: readonly SkyLayer[] = view.atmosphere.layers,
-  lost: Vec3 | null = null
+  lost?: Vec3
 ): AerialPerspective {
   const { air, volume, viewpoint } = view
   const offset = view.toMapped(displacementView).toConst()

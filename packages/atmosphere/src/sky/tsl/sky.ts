@@ -68,7 +68,7 @@ export function skyColor(
   direction: Vec3,
   pixel: Float | null,
   layers: readonly SkyLayer[] = view.atmosphere.layers,
-  lost: Vec3 | null = null
+  lost?: Vec3
 ): Vec3 {
   const { air, volume, viewpoint } = view
   const { uniforms } = air
