@@ -11,8 +11,9 @@ import {
   type SceneHandle,
   type TimeArgs
 } from './scene'
-import { GroundCamera, type GroundView } from './terrain/GroundCamera'
+import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
+import type { GroundView } from './terrain/viewAlong'
 
 const PLACE = { longitude: 12, latitude: 36 }
 

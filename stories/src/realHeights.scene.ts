@@ -11,8 +11,9 @@ import {
   type SceneHandle,
   type TimeArgs
 } from './scene'
-import { GroundCamera, type GroundView } from './terrain/GroundCamera'
+import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
+import type { GroundView } from './terrain/viewAlong'
 import { createVillage } from './valley/village'
 
 /** Middle of the made-up village, on level ground between two ridges [°]. */

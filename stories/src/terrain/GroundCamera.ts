@@ -6,18 +6,7 @@ import { moveCamera } from '../globe/places'
 import { aimShadow } from '../globe/sunShadow'
 import { Explorer } from '../moving/Explorer'
 import { frameClock, WARM_UP_FRAMES } from '../scene'
-import { viewAlong } from './viewAlong'
-
-/** A view from above the ground of a planet. */
-export interface GroundView {
-  readonly label: string
-  readonly longitude: number
-  readonly latitude: number
-  /** Height above the ground [m]. */
-  readonly height: number
-  readonly heading: number
-  readonly pitch: number
-}
+import { viewAlong, type GroundView } from './viewAlong'
 
 /** A way that is gone along. */
 interface Tour {

@@ -4,7 +4,8 @@ import type { WebGPURenderer } from 'three/webgpu'
 import type { Air } from '../air'
 import type { RendererArgs, SceneHandle } from '../scene'
 import { storyHandle } from '../storyHandle'
-import type { GroundCamera, GroundView } from './GroundCamera'
+import type { GroundCamera } from './GroundCamera'
+import type { GroundView } from './viewAlong'
 
 /** A scene on a terrain, with views to choose from. */
 interface GroundScene<Args extends RendererArgs, Views extends Record<string, GroundView>> {

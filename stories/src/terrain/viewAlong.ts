@@ -1,5 +1,15 @@
 import { MathUtils } from 'three'
-import type { GroundView } from './GroundCamera'
+
+/** A view from above the ground of a planet. */
+export interface GroundView {
+  readonly label: string
+  readonly longitude: number
+  readonly latitude: number
+  /** Height above the ground [m]. */
+  readonly height: number
+  readonly heading: number
+  readonly pitch: number
+}
 
 /** Height to which a way between two views rises, over its length: so high does one see both ends. */
 const RISE = 0.06

@@ -26,7 +26,7 @@ const ATTRIBUTES = ['pageCube', 'pageCenter', 'pageReference', 'pageSlot'] as co
 function flat(name: (typeof ATTRIBUTES)[number]): Vec4 {
   const handed = varying(attribute<'vec4'>(name, 'vec4'), `v_${name}`)
   handed.setInterpolation(InterpolationSamplingType.FLAT)
-  return handed as unknown as Vec4
+  return handed
 }
 
 /** Squares over pages of an atlas, drawn all at once, each with the tile that its page is of. */
@@ -131,7 +131,7 @@ export class PageQuads {
         box.set(0, 0, target.width, target.height)
       }
       renderer.setRenderTarget(target)
-      renderer.render(mesh as never, this.#camera)
+      renderer.render(mesh, this.#camera)
     }
     RendererUtils.restoreRendererState(renderer, state)
   }
