@@ -88,7 +88,6 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
 const TOUR = ['shore', 'summit', 'orbit'] as const
 const TOUR_SECONDS = 75
 
-
 /** Place of the world's origin [°]. */
 const ORIGIN = { longitude: 0.494, latitude: 46.35 }
 

@@ -44,7 +44,7 @@ type Story = StoryObj<TerrainArgs>
 /** Two metres above the ground, among mountains. */
 export const Meadow: Story = {}
 
-/** From a shore to a summit and out to orbit, in one take. */
+/** One take: a shore, a summit, orbit. */
 export const Take: Story = { name: 'Shore to orbit', args: { view: 'shore', tour: true } }
 
 /** Above the ridges. */

@@ -71,7 +71,7 @@ gpuTest('air at the vertices of the ground is that at its pixels, within 1 %', a
   terrain.dispose()
 })
 
-/** What a function makes of true and of false, one after the other. */
+/** Results of a function of true and of false, one after the other. */
 async function pictures<T>(draw: (atVertices: boolean) => Promise<T>): Promise<[T, T]> {
   const first = await draw(true)
   return [first, await draw(false)]

@@ -166,7 +166,7 @@ export class Terrain extends SeaMesh {
     this.#camera = value
   }
 
-  /** Pages drawn in a frame, ≥ 1: 128 times as many until the first picture is full. */
+  /** Pages drawn in a frame, ≥ 1: 32 times as many until the first picture is full. */
   get pagesPerFrame(): number {
     return this.#tiles.pagesPerFrame
   }

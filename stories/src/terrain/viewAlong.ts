@@ -31,7 +31,8 @@ export function viewAlong(views: readonly GroundView[], part: number): GroundVie
   const turn = ((((to.heading - from.heading) % 360) + 540) % 360) - 180
   const across = (to.longitude - from.longitude) * Math.cos(MathUtils.degToRad(to.latitude))
   const length = DEGREE * Math.hypot(across, to.latitude - from.latitude)
-  const rise = 1 + (RISE * length * Math.sin(Math.PI * share) ** 2) / Math.max(from.height, to.height)
+  const rise =
+    1 + (RISE * length * Math.sin(Math.PI * share) ** 2) / Math.max(from.height, to.height)
   return {
     label: to.label,
     longitude: mix(from.longitude, to.longitude),

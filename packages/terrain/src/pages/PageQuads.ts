@@ -73,9 +73,7 @@ export class PageQuads {
    */
   addPass(name: string, output: Vec4, target: RenderTarget): void {
     const { x, y } = attribute<'vec4'>('pageSlot', 'vec4')
-    const at = vec2(x, y)
-      .add(positionGeometry.xy)
-      .div(vec2(this.#columns, this.#rows))
+    const at = vec2(x, y).add(positionGeometry.xy).div(vec2(this.#columns, this.#rows))
     const material = Object.assign(new NodeMaterial(), {
       name: `Welkin.Terrain.${name}`,
       blending: NoBlending,

@@ -11,7 +11,7 @@ import type { PageSource } from './PageSource'
 export const CAPACITY = 3000
 
 /** Factor on the pages in a frame until the first picture is full. */
-const FIRST_PAGES = 128
+const FIRST_PAGES = 32
 
 /** Frames in which a page takes the place of its parent's. */
 const FADE_FRAMES = 10

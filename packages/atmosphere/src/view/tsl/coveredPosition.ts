@@ -6,10 +6,7 @@ import type { Vec3 } from '../../tsl-types'
 /** A value of vertices as pixels see it: at a place inside of what they show. */
 export function covered<T extends Node>(value: T): T {
   const handed = varying(value)
-  handed.setInterpolation(
-    InterpolationSamplingType.PERSPECTIVE,
-    InterpolationSamplingMode.CENTROID
-  )
+  handed.setInterpolation(InterpolationSamplingType.PERSPECTIVE, InterpolationSamplingMode.CENTROID)
   return handed as unknown as T
 }
 

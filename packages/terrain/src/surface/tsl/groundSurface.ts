@@ -120,13 +120,19 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
   const grassland = mix(blades, color(SOIL), smoothstep(0.1, 0.32, blade.negate()).mul(0.85))
   // Shrubs stand in it, more of them towards the woods.
-  const shrubs = smoothstep(0.22, 0.42, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst('shrubs')
+  const shrubs = smoothstep(0.22, 0.42, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
+    'shrubs'
+  )
   const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.9))
   const woods = smoothstep(-0.2, 0, patch.sub(dryness).add(tuft.mul(0.12)).add(crown.mul(0.3)))
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
     .mul(smoothstep(15, 60, overSea))
     .toConst('woods')
-  const leaves = mix(color(FOREST), color(BROADLEAF), smoothstep(-0.5, 0.5, brush.mul(1.5).add(climate)))
+  const leaves = mix(
+    color(FOREST),
+    color(BROADLEAF),
+    smoothstep(-0.5, 0.5, brush.mul(1.5).add(climate))
+  )
   const floor = leaves.mul(light.mul(1.3).add(crown.mul(1.2)).add(1).max(0.3))
   const green = mix(meadow, floor, woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
   const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
@@ -172,8 +178,13 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
       .mul(grain.lost)
       .mul(2 * GRAIN_VARIANCE)
   )
-  const leafy = woods.max(shrubs).mul(bare.max(bareness).max(dryness).max(snow).oneMinus()).mul(inland)
-  const raised = mix(mix(bump.mul(0.55).max(0.13), float(0.7), leafy), float(0.06), snow).toConst('raised')
+  const leafy = woods
+    .max(shrubs)
+    .mul(bare.max(bareness).max(dryness).max(snow).oneMinus())
+    .mul(inland)
+  const raised = mix(mix(bump.mul(0.55).max(0.13), float(0.7), leafy), float(0.06), snow).toConst(
+    'raised'
+  )
   const hollow = stone
     .add(boulder.mul(0.5))
     .min(0)
