@@ -12,7 +12,7 @@ export interface GroundView {
 }
 
 /** Height to which a way between two views rises, over its length: so high does one see both ends. */
-const RISE = 0.06
+const RISE = 0.12
 
 /** Length of a degree of latitude [m]. */
 const DEGREE = 111_000
@@ -31,13 +31,12 @@ export function viewAlong(views: readonly GroundView[], part: number): GroundVie
   const turn = ((((to.heading - from.heading) % 360) + 540) % 360) - 180
   const across = (to.longitude - from.longitude) * Math.cos(MathUtils.degToRad(to.latitude))
   const length = DEGREE * Math.hypot(across, to.latitude - from.latitude)
-  const rise =
-    1 + (RISE * length * Math.sin(Math.PI * share) ** 2) / Math.max(from.height, to.height)
+  const rise = RISE * length * Math.sin(Math.PI * share)
   return {
     label: to.label,
     longitude: mix(from.longitude, to.longitude),
     latitude: mix(from.latitude, to.latitude),
-    height: Math.exp(mix(Math.log(from.height), Math.log(to.height))) * rise,
+    height: Math.exp(mix(Math.log(from.height), Math.log(to.height))) + rise,
     heading: from.heading + turn * share,
     pitch: mix(from.pitch, to.pitch)
   }
