@@ -11,8 +11,9 @@ import {
   type SceneHandle,
   type TimeArgs
 } from './scene'
-import { storyHandle } from './storyHandle'
-import { GroundCamera, type GroundView } from './terrain/GroundCamera'
+import { GroundCamera } from './terrain/GroundCamera'
+import { groundHandle } from './terrain/groundHandle'
+import type { GroundView } from './terrain/viewAlong'
 
 const PLACE = { longitude: 12, latitude: 36 }
 
@@ -102,42 +103,27 @@ export async function createImagery(
   const overlay = args.frame ? undefined : overlayOn(canvas)
   if (overlay !== undefined) overlay.textContent = imagery.attribution
 
-  const apply = (): void => applyTime(renderer, air, current)
-  apply()
-  ground.goTo(VIEWS[current.view])
-
-  const draw = (): void => {
-    ground.update(air.sun)
-    air.render()
-  }
-
-  /** Draws until the pictures of a still are there. */
-  const warmUp = async (): Promise<void> => {
-    for (let i = 0; args.frame && i < STILL_FRAMES; i++) {
-      camera.updateMatrixWorld()
-      terrain.update(renderer, camera, Infinity)
-      await new Promise(requestAnimationFrame)
-    }
-    await ground.warmUp(renderer, draw)
-  }
-
-  return storyHandle<ImageryArgs>({
+  return groundHandle<Omit<ImageryArgs, 'view'>, typeof VIEWS>({
     renderer,
     scene,
     camera,
-    explorer: ground.explorer,
     current,
-    apply(before) {
-      apply()
-      if (current.view !== before.view) ground.goTo(VIEWS[current.view])
+    air,
+    terrain,
+    ground,
+    views: VIEWS,
+    apply: () => applyTime(renderer, air, current),
+    // Draws until the pictures of a still are there.
+    async load() {
+      for (let i = 0; args.frame && i < STILL_FRAMES; i++) {
+        camera.updateMatrixWorld()
+        terrain.update(renderer, camera, Infinity)
+        await new Promise(requestAnimationFrame)
+      }
     },
-    draw,
-    warmUp,
     dispose() {
       overlay?.remove()
-      terrain.dispose()
       imagery.dispose()
-      air.dispose()
     }
   })
 }

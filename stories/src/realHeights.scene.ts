@@ -11,8 +11,9 @@ import {
   type SceneHandle,
   type TimeArgs
 } from './scene'
-import { storyHandle } from './storyHandle'
-import { GroundCamera, type GroundView } from './terrain/GroundCamera'
+import { GroundCamera } from './terrain/GroundCamera'
+import { groundHandle } from './terrain/groundHandle'
+import type { GroundView } from './terrain/viewAlong'
 import { createVillage } from './valley/village'
 
 /** Middle of the made-up village, on level ground between two ridges [°]. */
@@ -164,32 +165,20 @@ export async function createRealHeights(
     const evening = Math.min(Math.max((0.1 - atmosphere.sunDirection.y) / 0.15, 0), 1)
     village?.light(evening, atmosphere.luminanceScale)
   }
-  apply()
-  ground.goTo(VIEWS[current.view])
-
-  const draw = (): void => {
-    ground.update(air.sun)
-    air.render()
-  }
-
-  return storyHandle<RealHeightsArgs>({
+  return groundHandle<Omit<RealHeightsArgs, 'view'>, typeof VIEWS>({
     renderer,
     scene,
     camera,
-    explorer: ground.explorer,
     current,
-    apply(before) {
-      apply()
-      if (current.view !== before.view) ground.goTo(VIEWS[current.view])
-    },
-    draw,
-    warmUp: async () => ground.warmUp(renderer, draw),
+    air,
+    terrain,
+    ground,
+    views: VIEWS,
+    apply,
     dispose() {
       overlay?.remove()
       village?.dispose()
-      terrain.dispose()
       if (heights instanceof TerrariumTiles) heights.dispose()
-      air.dispose()
     }
   })
 }

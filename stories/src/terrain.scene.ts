@@ -10,8 +10,9 @@ import {
   type SceneHandle,
   type TimeArgs
 } from './scene'
-import { storyHandle } from './storyHandle'
-import { GroundCamera, type GroundView } from './terrain/GroundCamera'
+import { GroundCamera } from './terrain/GroundCamera'
+import { groundHandle } from './terrain/groundHandle'
+import type { GroundView } from './terrain/viewAlong'
 
 export const VIEWS = {
   meadow: {
@@ -76,7 +77,16 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
   view: keyof typeof VIEWS
   color: keyof typeof COLORS
   wireframe: boolean
+  /** True to go from the shore to the summit and out to orbit, without a cut. */
+  tour: boolean
+  /** Wind over the sea [m/s]. */
+  windSpeed: number
+  shadows: boolean
 }
+
+/** Way of the tour, and the time that it takes [s]. */
+const TOUR = ['shore', 'summit', 'orbit'] as const
+const TOUR_SECONDS = 75
 
 /** Place of the world's origin [°]. */
 const ORIGIN = { longitude: 0.494, latitude: 46.35 }
@@ -112,34 +122,23 @@ export async function createTerrain(
   const apply = (): void => {
     applyTime(renderer, air, current)
     terrain.material.wireframe = current.wireframe
+    terrain.windSpeed = current.windSpeed
+    terrain.castShadow = terrain.receiveShadow = current.shadows
+    ground.tour(current.tour ? TOUR.map(name => VIEWS[name]) : null, TOUR_SECONDS)
     if (current.color === color) return
     color = current.color
     terrain.material.colorNode = color === 'ground' ? groundColor : terrainView(color)
     terrain.material.needsUpdate = true
   }
-  apply()
-  ground.goTo(VIEWS[current.view])
-
-  const draw = (): void => {
-    ground.update(air.sun)
-    air.render()
-  }
-
-  return storyHandle<TerrainArgs>({
+  return groundHandle<Omit<TerrainArgs, 'view'>, typeof VIEWS>({
     renderer,
     scene,
     camera,
-    explorer: ground.explorer,
     current,
-    apply(before) {
-      apply()
-      if (current.view !== before.view) ground.goTo(VIEWS[current.view])
-    },
-    draw,
-    warmUp: async () => ground.warmUp(renderer, draw),
-    dispose() {
-      terrain.dispose()
-      air.dispose()
-    }
+    air,
+    terrain,
+    ground,
+    views: VIEWS,
+    apply
   })
 }

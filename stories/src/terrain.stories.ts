@@ -15,6 +15,9 @@ const meta: Meta<TerrainArgs> = {
     },
     color: { name: 'Colours', ...choiceOf(COLORS) },
     wireframe: { name: 'Wireframe', control: 'boolean' },
+    tour: { name: 'Shore, summit, orbit', control: 'boolean' },
+    windSpeed: { name: 'Wind [m/s]', control: { type: 'range', min: 0, max: 30, step: 0.5 } },
+    shadows: { name: 'Shadows', control: 'boolean' },
     ...timeArgTypes,
     ...rendererArgTypes
   },
@@ -22,6 +25,9 @@ const meta: Meta<TerrainArgs> = {
     view: 'meadow',
     color: 'ground',
     wireframe: false,
+    tour: false,
+    windSpeed: 7,
+    shadows: true,
     day: Date.UTC(2026, 5, 21),
     hour: 15.5,
     exposure: 0,
@@ -37,6 +43,9 @@ type Story = StoryObj<TerrainArgs>
 
 /** Two metres above the ground, among mountains. */
 export const Meadow: Story = {}
+
+/** One take: a shore, a summit, orbit. */
+export const Take: Story = { name: 'Shore to orbit', args: { view: 'shore', tour: true } }
 
 /** Above the ridges. */
 export const Range: Story = { args: { view: 'range' }, tags: ['screenshot', 'webgpu-only'] }

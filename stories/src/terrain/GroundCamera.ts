@@ -6,16 +6,14 @@ import { moveCamera } from '../globe/places'
 import { aimShadow } from '../globe/sunShadow'
 import { Explorer } from '../moving/Explorer'
 import { frameClock, WARM_UP_FRAMES } from '../scene'
+import { viewAlong, type GroundView } from './viewAlong'
 
-/** A view from above the ground of a planet. */
-export interface GroundView {
-  readonly label: string
-  readonly longitude: number
-  readonly latitude: number
-  /** Height above the ground [m]. */
-  readonly height: number
-  readonly heading: number
-  readonly pitch: number
+/** A way that is gone along. */
+interface Tour {
+  readonly views: readonly GroundView[]
+  /** Time of one way, and time since its start [s]. */
+  readonly seconds: number
+  time: number
 }
 
 /** Camera above a terrain: it flies and walks, near enough to the ground, with the sun's shadows about it. */
@@ -28,6 +26,7 @@ export class GroundCamera {
   readonly #ecefToWorld = new Matrix4()
   readonly #position = new Vector3()
   readonly #up = new Vector3()
+  #tour: Tour | null = null
 
   constructor(
     camera: PerspectiveCamera,
@@ -49,9 +48,7 @@ export class GroundCamera {
 
   /** Flies to a view, or jumps there where nobody watches. */
   goTo(view: GroundView): void {
-    const height = this.#terrain.heightAt(view.longitude, view.latitude) + view.height
-    const aim = moveCamera(new PerspectiveCamera(), { ...view, height })
-    aim.applyMatrix4(this.#ecefToWorld)
+    const aim = this.#place(view, new PerspectiveCamera())
     const camera = this.#camera
     if (this.explorer === undefined || camera.position.lengthSq() === 0) {
       camera.position.copy(aim.position)
@@ -64,9 +61,37 @@ export class GroundCamera {
     void this.explorer.flyTo({ position: aim.position, direction }, 2 + Math.log10(1 + distance))
   }
 
+  /**
+   * Goes along a way through views, there and back, until told otherwise; a still stands in its middle.
+   *
+   * @param views - Views on it; null to end it.
+   * @param seconds - Time of one way.
+   */
+  tour(views: readonly GroundView[] | null, seconds: number): void {
+    if ((views === null) === (this.#tour === null)) return
+    this.#tour = views === null ? null : { views, seconds, time: 0 }
+  }
+
+  /** Moves on along the tour. */
+  #follow(tour: Tour, elapsed: number): void {
+    tour.time += elapsed
+    const legs = this.explorer === undefined ? 0.5 : tour.time / tour.seconds
+    this.#place(viewAlong(tour.views, 1 - Math.abs((legs % 2) - 1)), this.#camera)
+  }
+
+  /** Puts a camera where a view is. */
+  #place(view: GroundView, camera: PerspectiveCamera): PerspectiveCamera {
+    const height = this.#terrain.heightAt(view.longitude, view.latitude) + view.height
+    moveCamera(camera, { ...view, height })
+    camera.applyMatrix4(this.#ecefToWorld)
+    return camera
+  }
+
   /** Moves on by a frame, and fits the near plane and a sun's shadows to the height above the ground. */
   update(sun: SunDirectionalLight): void {
-    this.explorer?.update(this.#elapsed())
+    const elapsed = this.#elapsed()
+    if (this.#tour === null) this.explorer?.update(elapsed)
+    else this.#follow(this.#tour, elapsed)
     const camera = this.#camera
     camera.updateMatrixWorld()
     const { position } = camera

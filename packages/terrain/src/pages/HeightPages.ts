@@ -98,6 +98,7 @@ export class HeightPages {
     for (const root of roots) {
       if (root.slot < 0 || this.#flat.has(root)) this.#drawRoot(root, selection)
     }
+    this.#baker.flush(renderer)
     this.#images?.update(selection, ({ slot }, colors) => {
       this.#baker.bakeImage(renderer, slot, colors)
     })
@@ -165,6 +166,7 @@ export class HeightPages {
       if (colors !== undefined) this.#baker.bakeImage(this.#renderer!, slot, colors)
       count++
     }
+    if (count > 0) this.#baker.flush(this.#renderer!)
     this.#abandon(selection)
     return count
   }

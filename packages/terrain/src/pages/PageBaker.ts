@@ -9,6 +9,7 @@ import { cubeToFigure, isFlat, type Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
 import { ellipsoidInShader, planeInShader } from '../tiles/tsl/figure'
 import type { PageAtlas } from './PageAtlas'
+import { PageQuads } from './PageQuads'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
   heightsOf,
@@ -20,25 +21,15 @@ import {
 } from './tsl/pageOutput'
 
 const reference = new Vector3()
+const center = new Vector3()
 
 /** Largest step between heights of a page with so many steps along an edge [m]. */
 export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: number): number =>
   (2 * extent * maximumRadius) / steps
 
-/** Draws pages, in two passes each. */
+/** Draws pages, many at once, in two passes. */
 export class PageBaker {
-  readonly #tile = {
-    cube: uniform(new Vector3()),
-    face: uniform(0),
-    extent: uniform(0),
-    reference: uniform(new Vector3()),
-    center: uniform(new Vector3()),
-    shortest: uniform(0),
-    radii: uniform(new Vector3()),
-    seed: uniform(0)
-  }
-  readonly #heights: FragmentPass
-  readonly #surface: FragmentPass
+  readonly #quads: PageQuads
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
   /** Colours of one page, and the pass that draws them; null without pictures. */
@@ -51,29 +42,31 @@ export class PageBaker {
     /** Cells along a tile's edge. */
     readonly resolution: number
   ) {
-    this.#tile.radii.value.copy(figure.radii)
-    this.#tile.seed.value = source.seed ?? 0
-    const { heightSide, surfaceSide, density } = atlas
-    const shape = isFlat(figure) ? planeInShader : ellipsoidInShader
-    const tile = { ...this.#tile, figure: shape } as unknown as PageUniforms
-    const pass = (name: string, output: ReturnType<typeof heightsOf>): FragmentPass =>
-      new FragmentPass(`Welkin.Terrain.${name}`, output)
+    const { heights, surface, heightSide, surfaceSide, density } = atlas
+    const quads = (this.#quads = new PageQuads(atlas))
+    const tile = {
+      ...quads.tile,
+      radii: uniform(figure.radii),
+      seed: uniform(source.seed ?? 0),
+      figure: isFlat(figure) ? planeInShader : ellipsoidInShader
+    } as unknown as PageUniforms
     const side = surfaceSide + 2
     if (atlas.images !== null) {
       const texture = new DataTexture(new Uint8ClampedArray(4 * side ** 2), side, side)
       texture.name = 'Welkin.Terrain.image'
-      this.#image = { texture, pass: pass('images', imageOf(texture, surfaceSide)) }
+      const pass = new FragmentPass('Welkin.Terrain.images', imageOf(texture, surfaceSide))
+      this.#image = { texture, pass }
     }
     if (isPageSource(source)) {
       const texture = new DataTexture(new Float32Array(side ** 2), side, side, RedFormat, FloatType)
       texture.name = 'Welkin.Terrain.loaded'
       texture.minFilter = texture.magFilter = NearestFilter
       this.#loaded = texture
-      this.#heights = pass('heights', loadedHeightsOf(texture, tile, heightSide, density))
-      this.#surface = pass('surface', loadedSurfaceOf(texture, tile, surfaceSide, density))
+      quads.addPass('heights', loadedHeightsOf(texture, tile, heightSide, density), heights)
+      quads.addPass('surface', loadedSurfaceOf(texture, tile, surfaceSide, density), surface)
     } else {
-      this.#heights = pass('heights', heightsOf(source, tile, heightSide))
-      this.#surface = pass('surface', surfaceOf(source, tile, surfaceSide, density))
+      quads.addPass('heights', heightsOf(source, tile, heightSide), heights)
+      quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
     }
   }
 
@@ -100,31 +93,25 @@ export class PageBaker {
   }
 
   /**
-   * Draws a page; the renderer is left as it was.
+   * Draws a page by the next {@link flush}, or at once if its heights were loaded; the renderer is left as it was.
    *
    * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
-    const { atlas } = this
+    reference.copy(tile.center).divideScalar(REFERENCE_STEP).round()
+    center.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
+    const shortest = 2 * spacingOf(tile, this.figure, this.resolution)
+    this.#quads.add(tile, slot, reference, center, shortest)
     if (this.#loaded !== null && heights !== null) {
       ;(this.#loaded.image.data as Float32Array).set(heights)
       this.#loaded.needsUpdate = true
-    }
-    const uniforms = this.#tile
-    uniforms.cube.value.copy(tile.cube)
-    uniforms.face.value = tile.face
-    uniforms.extent.value = tile.extent
-    reference.copy(tile.center).divideScalar(REFERENCE_STEP).round()
-    uniforms.reference.value.copy(reference)
-    uniforms.center.value.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
-    uniforms.shortest.value = 2 * spacingOf(tile, this.figure, this.resolution)
-    for (const [pass, target] of [
-      [this.#heights, atlas.heights],
-      [this.#surface, atlas.surface]
-    ] as const) {
-      atlas.aim(target, slot)
-      pass.render(renderer, target)
-    }
+      this.flush(renderer)
+    } else if (this.#quads.isFull) this.flush(renderer)
+  }
+
+  /** Draws the pages that wait. */
+  flush(renderer: Renderer): void {
+    this.#quads.draw(renderer)
   }
 
   /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
@@ -139,8 +126,7 @@ export class PageBaker {
   dispose(): void {
     this.#image?.pass.dispose()
     this.#image?.texture.dispose()
-    this.#heights.dispose()
-    this.#surface.dispose()
+    this.#quads.dispose()
     this.#loaded?.dispose()
   }
 }

@@ -14,6 +14,9 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
     return 'GroundMaterial'
   }
 
+  /** See `FineMaterial` of `@welkin/atmosphere`: cells are small beside their distance. */
+  readonly airAtVertices: boolean = true
+
   /** Share of a pixel that is water; null for none. */
   water: Float | null = null
 

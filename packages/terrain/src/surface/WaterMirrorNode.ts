@@ -1,11 +1,12 @@
 import {
   AtmosphereNode,
+  coveredPosition,
   horizontalIrradiance,
   linearSRGB,
   skyColor,
   type Atmosphere
 } from '@welkin/atmosphere'
-import { Fn, If, mix, positionView, reflect, smoothstep, vec3 } from 'three/tsl'
+import { Fn, If, mix, reflect, smoothstep, vec3 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
 import { waterFresnel } from './tsl/seaSurface'
@@ -67,7 +68,7 @@ export class WaterMirrorNode extends AtmosphereNode {
   #mirrored(normalView: Vec3, variance: Float): Vec3 {
     const { view } = this
     const { uniforms, diffuse } = view.air
-    const offset = view.toMapped(positionView).toConst() as Vec3
+    const offset = view.toMapped(coveredPosition()).toConst() as Vec3
     const distance = offset.length().toConst()
     const incoming = offset.div(distance).toConst() as Vec3
     const { altitude, cosLight, up } = view.localCoordinates(offset)

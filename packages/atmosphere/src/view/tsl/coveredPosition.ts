@@ -1,6 +1,17 @@
 import { InterpolationSamplingMode, InterpolationSamplingType } from 'three'
 import { Fn, positionView, varying } from 'three/tsl'
+import type { Node } from 'three/webgpu'
 import type { Vec3 } from '../../tsl-types'
+
+/** A value of vertices as pixels see it: at a place inside of what they show. */
+export function covered<T extends Node>(value: T): T {
+  const handed = varying(value)
+  handed.setInterpolation(InterpolationSamplingType.PERSPECTIVE, InterpolationSamplingMode.CENTROID)
+  return handed as unknown as T
+}
+
+/** The varying that all who ask share: each of its own would be interpolated once more. */
+let shared: Vec3 | null = null
 
 /**
  * Position of a fragment in view space [world units], inside of what it shows.
@@ -11,10 +22,5 @@ import type { Vec3 } from '../../tsl-types'
 export const coveredPosition = /*#__PURE__*/ Fn(({ material }): Vec3 => {
   // Without a vertex position there is only what the depth says.
   if ((material as { vertexNode?: object | null }).vertexNode) return positionView
-  const covered = varying(positionView)
-  covered.setInterpolation(
-    InterpolationSamplingType.PERSPECTIVE,
-    InterpolationSamplingMode.CENTROID
-  )
-  return covered
+  return (shared ??= covered(positionView as Vec3))
 })

@@ -9,7 +9,7 @@ import { faceAxes } from '../../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../../tiles/tsl/figure'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
-/** Tile that a page is drawn for, as uniforms. */
+/** Tile that a page is drawn for, as nodes that are the same for all pixels of the page. */
 export interface PageUniforms {
   /** Point of the cube above the centre, and its face. */
   readonly cube: Vec3

@@ -1,4 +1,4 @@
-import { Fn, If, dFdx, dFdy, float, mat4, vec3, vec4 } from 'three/tsl'
+import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
@@ -8,8 +8,12 @@ import { frameNear, pieceOf, tilingVertices, type TilingVertex } from './stochas
 const COARSE = { side: 17, gone: 2 }
 const FINE = { side: 2.1, gone: 0.3 }
 
-/** Cells of the lattice in 256 m that pieces of both are moved by. */
+/** Crowns and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
+const CANOPY = { side: 150, from: 0.22, to: 0.7, fades: 6, gone: 14 }
+
+/** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
+const CANOPY_CELLS = 3
 
 /** Part of `gone` at which a picture begins to go. */
 const FADE = 0.5
@@ -38,6 +42,10 @@ export interface Grain {
   /** Height of stones of metres, and light of tufts, about 0. */
   readonly boulder: Float
   readonly tuft: Float
+  /** Gradient of crowns and outcrops of 2 m to 15 m seen from afar, their height, and light of what is less high, about 0. */
+  readonly canopySlope: Vec3
+  readonly crown: Float
+  readonly brush: Float
   /** Longer side of the pixel on the ground [m]. */
   readonly footprint: Float
   /** Share of the slopes that are smaller than a pixel. */
@@ -47,7 +55,7 @@ export interface Grain {
 type Variable = Vec4 & { addAssign(value: Vec4): void }
 type Slope = Vec3 & { assign(value: Vec3): void }
 
-/** Stones and grass from 3 m to 1 cm; 0 where they are smaller than pixels. */
+/** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
 export function grainAt(place: GrainPlace): Grain {
   const { grain, offset, first, second, normal } = place
   // Derivatives are taken out of branches.
@@ -58,16 +66,32 @@ export function grainAt(place: GrainPlace): Grain {
     float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
   const near = share(FINE)
   const far = share(COARSE)
+  const canopy = smoothstep(CANOPY.from, CANOPY.to, footprint)
+    .mul(smoothstep(CANOPY.fades, CANOPY.gone, footprint).oneMinus())
+    .toConst() as Float
   // Several vectors in one value: what the branches of both need is found once, and none of it far away.
   const layers = Fn(() => {
     const fine = vec4(0).toVar('fineGrain') as unknown as Variable
     const coarse = vec4(0).toVar('coarseGrain') as unknown as Variable
     const fineSlope = vec3(0).toVar('fineSlope') as unknown as Slope
     const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
+    const crowns = vec4(0).toVar('crowns') as unknown as Variable
+    const crownSlope = vec3(0).toVar('crownSlope') as unknown as Slope
+    const frame = { ...frameNear(normal, place.up, first, second), across, along }
+    const inSpace = ({ x, y }: Vec4): Vec3 =>
+      frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
+    If(canopy.greaterThan(0), () => {
+      const { nearest, next, shares } = tilingVertices(place.reference, offset, CANOPY_CELLS)
+      const add = ({ away, random }: TilingVertex, share: Float): void => {
+        crowns.addAssign(pieceOf(grain, frame, CANOPY.side, away, random.xy).mul(share.mul(canopy)))
+      }
+      add(nearest(), shares.x)
+      If(shares.y.greaterThan(0), () => {
+        add(next(), shares.y)
+      })
+      crownSlope.assign(inSpace(crowns))
+    })
     If(far.greaterThan(0), () => {
-      const frame = { ...frameNear(normal, place.up, first, second), across, along }
-      const inSpace = ({ x, y }: Vec4): Vec3 =>
-        frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
       const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
       const add = ({ away, random }: TilingVertex, share: Float): void => {
         const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
@@ -87,17 +111,20 @@ export function grainAt(place: GrainPlace): Grain {
     return mat4(
       vec4(fineSlope, fine.z),
       vec4(coarseSlope, coarse.z),
-      vec4(fine.w, coarse.w, 0, 0),
-      vec4(0)
+      vec4(fine.w, coarse.w, crowns.z, crowns.w),
+      vec4(crownSlope, 0)
     )
   })().toConst('grainLayers') as unknown as { element(i: number): Vec4 }
-  const [fine, coarse, light] = [0, 1, 2].map(i => layers.element(i))
+  const [fine, coarse, light, crowns] = [0, 1, 2, 3].map(i => layers.element(i))
   return {
     gradient: (fineGain, coarseGain) => fine.xyz.mul(fineGain).add(coarse.xyz.mul(coarseGain)),
     stone: fine.w,
     blade: light.x,
     boulder: coarse.w,
     tuft: light.y,
+    canopySlope: crowns.xyz,
+    crown: light.z,
+    brush: light.w,
     footprint,
     lost: footprint.div(FINE.gone / 4).min(1)
   }

@@ -14,16 +14,19 @@ const DRY_SNOW = 500
 const SUNNY_SNOW = 350
 
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
-const ROCK = [0.2, 0.178, 0.157]
+const ROCK = [0.19, 0.176, 0.158]
 const DARK_ROCK = [0.105, 0.098, 0.092]
-const SCREE = [0.25, 0.232, 0.208]
+const SCREE = [0.238, 0.228, 0.21]
 const SAND = [0.4, 0.32, 0.215]
 const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
-const GRASS = [0.073, 0.108, 0.031]
+const GRASS = [0.064, 0.086, 0.03]
 const SOIL = [0.052, 0.04, 0.027]
 const STRAW = [0.2, 0.172, 0.078]
-const FOREST = [0.02, 0.034, 0.013]
+const HEATH = [0.062, 0.05, 0.031]
+const FOREST = [0.017, 0.028, 0.012]
+const BROADLEAF = [0.033, 0.045, 0.015]
+const SHRUB = [0.026, 0.034, 0.015]
 const SNOW = [0.83, 0.86, 0.9]
 
 const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
@@ -68,7 +71,7 @@ export interface GroundPlace extends GrainPlace {
 export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurface {
   const { height, patch, climate, up, pole, cosSlope } = place
   const grain = grainAt(place)
-  const { stone, blade, boulder, tuft } = grain
+  const { stone, blade, boulder, tuft, crown, brush } = grain
   const northing = up.dot(pole).toConst() as Float
   const sinLatitude = northing.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea')
@@ -85,7 +88,7 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   // A pixel that shows much ground shows its heights, too.
   const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
   const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
-  const relief = stone.mul(0.6).add(boulder.mul(0.5)).toConst('relief')
+  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
   const steepness = cosSlope
     .oneMinus()
     .add(patch.mul(0.05))
@@ -105,17 +108,32 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
   const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst('light')
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
-  const spots = boulder.mul(0.8).add(tuft.mul(0.5)).toConst('spots')
-  const straw = smoothstep(-0.45, 0.7, patch.mul(0.9).add(spots))
+  const spots = boulder.mul(0.8).add(tuft.mul(0.5)).add(brush.mul(0.9)).toConst('spots')
+  const straw = smoothstep(-0.45, 0.7, patch.mul(0.9).add(spots).add(sunny.mul(0.5)))
     .mul(0.6)
-    .add(smoothstep(-900, 200, overTrees).mul(0.35))
+    .add(smoothstep(-900, 200, overTrees).mul(0.25))
     .max(smoothstep(0.36, 0.6, blade).mul(0.9))
-  const blades = mix(color(GRASS), color(STRAW), straw).mul(light.add(1).max(0.2))
-  const meadow = mix(blades, color(SOIL), smoothstep(0.1, 0.32, blade.negate()).mul(0.85))
-  const woods = smoothstep(-0.12, 0.1, patch.sub(dryness).add(tuft.mul(0.12)))
+  // Heather and dwarf shrubs lie in patches, more of them towards the tree line.
+  const high = smoothstep(-900, 100, overTrees).toConst('high')
+  const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.3)).sub(0.15))
+  const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.8))
+  const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
+  const grassland = mix(blades, color(SOIL), smoothstep(0.1, 0.32, blade.negate()).mul(0.85))
+  // Shrubs stand in it, more of them towards the woods.
+  const shrubs = smoothstep(0.22, 0.42, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
+    'shrubs'
+  )
+  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.9))
+  const woods = smoothstep(-0.2, 0, patch.sub(dryness).add(tuft.mul(0.12)).add(crown.mul(0.3)))
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
     .mul(smoothstep(15, 60, overSea))
-  const floor = color(FOREST).mul(light.mul(1.3).add(1).max(0.3))
+    .toConst('woods')
+  const leaves = mix(
+    color(FOREST),
+    color(BROADLEAF),
+    smoothstep(-0.5, 0.5, brush.mul(1.5).add(climate))
+  )
+  const floor = leaves.mul(light.mul(1.3).add(crown.mul(1.2)).add(1).max(0.3))
   const green = mix(meadow, floor, woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
   const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
@@ -160,7 +178,19 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
       .mul(grain.lost)
       .mul(2 * GRAIN_VARIANCE)
   )
-  const hollow = stone.add(boulder.mul(0.5)).min(0).mul(bump).add(blade.min(0).mul(0.5))
+  const leafy = woods
+    .max(shrubs)
+    .mul(bare.max(bareness).max(dryness).max(snow).oneMinus())
+    .mul(inland)
+  const raised = mix(mix(bump.mul(0.55).max(0.13), float(0.7), leafy), float(0.06), snow).toConst(
+    'raised'
+  )
+  const hollow = stone
+    .add(boulder.mul(0.5))
+    .min(0)
+    .mul(bump)
+    .add(blade.min(0).mul(0.5))
+    .add(crown.min(0).mul(raised))
   return {
     tangle,
     detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),
@@ -168,7 +198,9 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     spread,
     color: dry,
     roughness: alpha.sqrt().sqrt().min(1),
-    grain: grain.gradient(bump, bump.mul(bareness.max(bare).mul(0.6))),
+    grain: grain
+      .gradient(bump, bump.mul(bareness.max(bare).mul(0.6)))
+      .add(grain.canopySlope.mul(raised)),
     occlusion: hollow.mul(0.9).add(1).max(0.3)
   }
 }

@@ -1,0 +1,142 @@
+import {
+  DynamicDrawUsage,
+  BufferAttribute,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  InterpolationSamplingType,
+  Mesh,
+  NoBlending,
+  OrthographicCamera
+} from 'three'
+import type { RenderTarget, Vector3 } from 'three'
+import { attribute, positionGeometry, varying, vec2, vec4 } from 'three/tsl'
+import { NodeMaterial, RendererUtils } from 'three/webgpu'
+import type { Renderer } from 'three/webgpu'
+import type { Tile } from '../tiles/Tile'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { PageAtlas } from './PageAtlas'
+
+/** Most pages of one drawing. */
+const MOST = 64
+
+/** Attributes of an instance, four numbers each. */
+const ATTRIBUTES = ['pageCube', 'pageCenter', 'pageReference', 'pageSlot'] as const
+
+/** An instance's numbers as they are: a mean of three equal ones might be another. */
+function flat(name: (typeof ATTRIBUTES)[number]): Vec4 {
+  const handed = varying(attribute<'vec4'>(name, 'vec4'), `v_${name}`)
+  handed.setInterpolation(InterpolationSamplingType.FLAT)
+  return handed
+}
+
+/** Squares over pages of an atlas, drawn all at once, each with the tile that its page is of. */
+export class PageQuads {
+  readonly #geometry = new InstancedBufferGeometry()
+  readonly #attributes: readonly InstancedBufferAttribute[]
+  readonly #camera = new OrthographicCamera()
+  readonly #meshes: { mesh: Mesh; target: RenderTarget }[] = []
+  readonly #columns: number
+  readonly #rows: number
+  #count = 0
+
+  /** Tile of a pixel's page, see `PageUniforms`. */
+  readonly tile = {
+    cube: flat('pageCube').xyz as Vec3,
+    face: flat('pageCube').w as Float,
+    center: flat('pageCenter').xyz as Vec3,
+    extent: flat('pageCenter').w as Float,
+    reference: flat('pageReference').xyz as Vec3,
+    shortest: flat('pageReference').w as Float
+  }
+
+  constructor({ columns, capacity }: PageAtlas) {
+    this.#columns = columns
+    this.#rows = capacity / columns
+    const geometry = this.#geometry
+    geometry.name = 'Welkin.Terrain.pages'
+    const corners = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0])
+    geometry.setAttribute('position', new BufferAttribute(corners, 3))
+    const uv = new Float32Array([0, 0, 1, 0, 0, 1, 1, 1])
+    geometry.setAttribute('uv', new BufferAttribute(uv, 2))
+    geometry.setIndex([0, 2, 1, 1, 2, 3])
+    this.#attributes = ATTRIBUTES.map(name => {
+      const values = new InstancedBufferAttribute(new Float32Array(4 * MOST), 4)
+      geometry.setAttribute(name, values.setUsage(DynamicDrawUsage))
+      return values
+    })
+  }
+
+  /**
+   * Adds a shader to draw pages with.
+   *
+   * @param output - Value of a texel.
+   */
+  addPass(name: string, output: Vec4, target: RenderTarget): void {
+    const { x, y } = attribute<'vec4'>('pageSlot', 'vec4')
+    const at = vec2(x, y).add(positionGeometry.xy).div(vec2(this.#columns, this.#rows))
+    const material = Object.assign(new NodeMaterial(), {
+      name: `Welkin.Terrain.${name}`,
+      blending: NoBlending,
+      depthTest: false,
+      depthWrite: false,
+      toneMapped: false,
+      fog: false,
+      // Rows count from the top.
+      vertexNode: vec4(at.x.mul(2).sub(1), at.y.mul(-2).add(1), 0, 1),
+      fragmentNode: output
+    })
+    const mesh = new Mesh(this.#geometry, material)
+    mesh.name = material.name
+    mesh.frustumCulled = false
+    this.#meshes.push({ mesh, target })
+  }
+
+  /** True if no other page has room in this drawing. */
+  get isFull(): boolean {
+    return this.#count === MOST
+  }
+
+  /**
+   * Adds a page to the next drawing.
+   *
+   * @param reference - Point near the tile's centre in whole multiples of 256 m [256 m].
+   * @param center - Reference to centre [m].
+   * @param shortest - Shortest wavelength that vertices show [m].
+   */
+  add(tile: Tile, slot: number, reference: Vector3, center: Vector3, shortest: number): void {
+    const n = 4 * this.#count++
+    const [cubes, centers, references, slots] = this.#attributes.map(({ array }) => array)
+    tile.cube.toArray(cubes, n)
+    cubes[n + 3] = tile.face
+    center.toArray(centers, n)
+    centers[n + 3] = tile.extent
+    reference.toArray(references, n)
+    references[n + 3] = shortest
+    slots[n] = slot % this.#columns
+    slots[n + 1] = Math.floor(slot / this.#columns)
+  }
+
+  /** Draws the pages that were added; the renderer is left as it was. */
+  draw(renderer: Renderer): void {
+    if (this.#count === 0) return
+    this.#geometry.instanceCount = this.#count
+    for (const values of this.#attributes) values.needsUpdate = true
+    this.#count = 0
+    const state = RendererUtils.resetRendererState(renderer, {} as never)
+    renderer.autoClear = false
+    for (const { mesh, target } of this.#meshes) {
+      for (const box of [target.viewport, target.scissor]) {
+        box.set(0, 0, target.width, target.height)
+      }
+      renderer.setRenderTarget(target)
+      renderer.render(mesh, this.#camera)
+    }
+    RendererUtils.restoreRendererState(renderer, state)
+  }
+
+  dispose(): void {
+    this.#count = 0
+    this.#geometry.dispose()
+    for (const { mesh } of this.#meshes) (mesh.material as NodeMaterial).dispose()
+  }
+}
