@@ -59,11 +59,6 @@ export const heightForm = {
    */
   inversion: 0.68,
   inversionStrength: 17,
-  /**
-   * Least level of detail of the weather of single clouds at a layer's top; 0 at its base: narrow columns stay low, and
-   * broad heads rise from them. 0: needles and flames (*Cumulus*).
-   */
-  broadening: 1,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
   /**
@@ -90,7 +85,7 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.85,
-  fine: 1.65,
+  fine: 1.5,
   detail: 0.36,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
