@@ -4,15 +4,18 @@ import { drawCloudFields } from '../cloud-field'
 import { quantile } from '../score'
 import { formFigures, type FormFigures } from './figures'
 
-/** Places whose clouds are judged: apart, and at several latitudes. */
+/** Places whose clouds are judged: apart, at several latitudes, and in pairs where there are neither few nor many. */
 const PLACES = [
   [139.77, 35.68],
-  [20, 45],
   [-60, 14],
-  [100, -30],
+  [-60.2, 14.2],
   [-120, 5],
-  [10, 60],
-  [-30, -15]
+  [-30, -15],
+  [-30.2, -15.2],
+  [-90, 40],
+  [-90.2, 40.2],
+  [30, 10],
+  [30.2, 10.2]
 ] as const
 
 /** Width of a window and of a cell [m]. */

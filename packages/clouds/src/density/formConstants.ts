@@ -59,11 +59,6 @@ export const heightForm = {
    */
   inversion: 0.68,
   inversionStrength: 17,
-  /**
-   * Least level of detail of the weather of single clouds at a layer's top; 0 at its base: narrow columns stay low, and
-   * broad heads rise from them. 0: needles and flames (*Cumulus*).
-   */
-  broadening: 1.5,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
   /**
@@ -89,9 +84,9 @@ export const heightForm = {
 /** Constants of billows and detail: tsl/billows.ts. */
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
-  coarse: 0.95,
-  fine: 1.2,
-  detail: 0.3,
+  coarse: 0.85,
+  fine: 1.5,
+  detail: 0.36,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
@@ -99,7 +94,7 @@ export const billowForm = {
    * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have
    * them, crumbs do not. Lower: crumbs float about clouds (*Cumulus*).
    */
-  fineFrom: 0.3,
+  fineFrom: 0.1,
   fineOver: 0.5,
   /**
    * Strength of columns over which all their billows grow weaker, and the factor they end at [–]: only the top
@@ -113,7 +108,7 @@ export const billowForm = {
    * Displacement of the weather's look-up by turbulence, for a curl of unit deviation [periods of the
    * shape], and heights in the layer over which it sets in, in [0, 1]. 0: columns like cookies (*Cumulus*).
    */
-  bend: 0.035,
+  bend: 0.045,
   bendHeight: 0.2
 } as const
 

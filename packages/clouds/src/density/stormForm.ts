@@ -28,7 +28,7 @@ export const stormShape = {
   leastTower: 0.15,
   /** Factors of the tower's radius at its base and at the top, under a full anvil [–]. */
   widening: [0.9, 1.15],
-  /** The same without an anvil [–]: a heap. As under an anvil: a block with upright sides (*Shower*). */
+  /** Factors of a tower without an anvil [–]: a heap. As under an anvil: a block with upright sides (*Shower*). */
   narrowing: [1.15, 0.35],
   /** Height that the tower's dome reaches: it overshoots the anvil. */
   dome: 0.93,

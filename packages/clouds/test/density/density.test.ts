@@ -142,7 +142,7 @@ describe('windRotation', () => {
 })
 
 describe('shear', () => {
-  /** Columns without billows. */
+  /** Columns without billows, whose strength at a height is a copy of that at the base. */
   const plain = { coverage: 0.6, shapeAmount: 0, turbulence: 0, wind: { east: 3, north: -4 } }
   const strengthAt = (shear: number, toEast: number, toNorth: number, height: number): number => {
     const state = { ...stateOf({ ...plain, shear }), zenith: up }
@@ -162,13 +162,13 @@ describe('shear', () => {
         const apartAt = (share: number): number =>
           places.reduce((sum, [x, y]) => {
             const there = [x + 0.6 * share * lean, y - 0.8 * share * lean] as const
-            return sum + Math.abs(strengthAt(shear, ...there, height) - strengthAt(0, x, y, height))
+            return sum + Math.abs(strengthAt(shear, ...there, height) - strengthAt(shear, x, y, 0))
           }, 0)
         const shares = [-1, -0.5, 0, 0.5, 1, 1.5, 2]
         const apart = shares.map(apartAt)
         expect(shares[apart.indexOf(Math.min(...apart))]).toBe(1)
         for (const [x, y] of places) {
-          expect(strengthAt(shear, x, y, 0)).toBeCloseTo(strengthAt(0, x, y, 0), 6)
+          expect(strengthAt(0, x, y, height)).toBeCloseTo(strengthAt(shear, x, y, 0), 6)
         }
       }
     }

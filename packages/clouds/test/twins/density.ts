@@ -1,6 +1,6 @@
 import { Vector3, type Quaternion } from 'three'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
-import { billowForm, heightForm, strengthForm } from '../../src/density/formConstants'
+import { billowForm, strengthForm } from '../../src/density/formConstants'
 import { latticeRotations, layerRotation } from '../../src/density/lattice'
 import {
   MESOSCALE_PER_REGIONS,
@@ -220,7 +220,7 @@ export function weatherAt(
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const clouds = sample(
     shifted(placeIn(subpointInLayer, latticeRotations.weather, period), bend, 1 / period),
-    Math.max(level, height * heightForm.broadening)
+    level
   )
 
   const background =

@@ -2,7 +2,6 @@ import { If, smoothstep } from 'three/tsl'
 import { billowForm, heightForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
-import type { Resolution } from './resolution'
 
 // All that depends on the layer and the height alone. Float64 on the CPU: layers/meanColumn.ts.
 
@@ -74,9 +73,3 @@ export function billowStrength(
 
 /** Share of turbulence at a height, in [0, 1]: none at the base, or else it would not be flat. */
 export const bendAtHeight = (height: Float): Float => height.div(billowForm.bendHeight).min(1)
-
-/** Resolution of the weather at a height: coarser above, so that columns widen into heads. */
-export const resolutionAtHeight = (resolution: Resolution, height: Float): Resolution => ({
-  ...resolution,
-  weatherLevel: resolution.weatherLevel.max(height.mul(heightForm.broadening)).toConst()
-})

@@ -3,13 +3,7 @@ import type { CloudField } from '../CloudField'
 import type { Float, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { crumbDensity, densityOf, edgeAt } from './density'
-import {
-  bendAtHeight,
-  billowStrength,
-  densityAtHeight,
-  neededStrength,
-  resolutionAtHeight
-} from './heightForm'
+import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
@@ -82,7 +76,7 @@ function bodyAt(
     background,
     subpoint.toConst(),
     shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst(),
-    resolutionAtHeight(resolution, height),
+    resolution,
     nearby
   )
   const [body, strength, detailStrength] = [0, 1, 2].map(() => float(0).toVar() as Float)
