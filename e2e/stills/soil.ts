@@ -51,6 +51,8 @@ const [COS, SIN] = [Math.cos(0.5), Math.sin(0.5)]
 /** Half width of hedges [m]. */
 const HALF_HEDGE = 1.6
 
+/** Place of the origin in its field, in fields: no camera stands on a hedge. */
+const ORIGIN = [0.4, 0.3] as const
 /** Shift of a column of fields along it, in fields. */
 const SHIFT = 0.618
 /** Swaths per metre in which a field was mown or sown. */
@@ -59,8 +61,8 @@ const SWATHS = 1 / 3.1
 /** Distance of a place from the nearest edge of its field [m]. */
 export function hedgeDistance(x: number, z: number): number {
   const [u, v] = [COS * x + SIN * z, COS * z - SIN * x]
-  const across = (u + 26 * Math.sin(v / 410)) / FIELD[0]
-  const along = (v + 34 * Math.sin(u / 530)) / FIELD[1] + SHIFT * Math.floor(across)
+  const across = (u + 26 * Math.sin(v / 410)) / FIELD[0] + ORIGIN[0]
+  const along = (v + 34 * Math.sin(u / 530)) / FIELD[1] + ORIGIN[1] + SHIFT * Math.floor(across)
   const [right, far] = [across - Math.floor(across), along - Math.floor(along)]
   return Math.min(Math.min(right, 1 - right) * FIELD[0], Math.min(far, 1 - far) * FIELD[1])
 }
@@ -72,11 +74,13 @@ function fields(place: Node<'vec2'>, grass: Node<'vec3'>): Node<'vec3'> {
   const across = u
     .add(sin(v.div(410)).mul(26))
     .div(FIELD[0])
+    .add(ORIGIN[0])
     .toConst()
   const column = floor(across).toConst()
   const even = v
     .add(sin(u.div(530)).mul(34))
     .div(FIELD[1])
+    .add(ORIGIN[1])
     .toConst()
   const along = even.add(column.mul(SHIFT)).toConst()
   const row = floor(along).toConst()
