@@ -66,7 +66,7 @@ export async function createStorm(
   storm.addEventListener('thunder', ({ distance, duration }) => {
     console.debug(`thunder from ${distance / 1000} km, for ${duration} s`) // play your sound
   })
-  storm.enabled = current.flashes // ask people first: flashes may harm them
+  storm.enabled = false // until people have been asked: flashes may harm them
   // #endregion
   if (args.frame) {
     node.quality = STILL_QUALITY

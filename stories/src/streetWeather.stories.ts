@@ -49,7 +49,7 @@ export default meta
 type Story = StoryObj<StreetArgs>
 
 /** Snow at night, in the light of four lamps. */
-export const Snowfall: Story = { tags: ['screenshot', 'webgpu-only'] }
+export const Snowfall: Story = { tags: ['screenshot'] }
 
 /** A shower by day: streaks against the walls, puddles with rings. */
 export const Rain: Story = {

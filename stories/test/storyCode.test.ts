@@ -5,7 +5,9 @@ import { codeRegion } from '../src/codeRegion'
 
 const folder = fileURLToPath(new URL('../src/', import.meta.url))
 const read = (file: string): string => readFileSync(folder + file, 'utf8')
-const files = readdirSync(folder)
+const files = readdirSync(folder, { recursive: true, encoding: 'utf8' }).map(file =>
+  file.replaceAll('\\', '/')
+)
 
 /** The regions that a story file shows, as `FILE: NAME`. */
 function shownBy(file: string): string[] {
@@ -20,7 +22,7 @@ const linesOf = (region: string): string[] => {
     .filter(line => line.trim() !== '')
 }
 
-const storyFiles = files.filter(file => file.endsWith('.stories.ts'))
+const storyFiles = files.filter(file => /^[^/]+\.stories\.ts$/.test(file))
 
 describe.each(storyFiles)('%s', file => {
   const regions = shownBy(file)

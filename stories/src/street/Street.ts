@@ -73,7 +73,7 @@ export class Street {
   readonly #houses: Houses
   readonly #shelter: PrecipitationShelter
   readonly #fog = heightFog({ density: 0.0015, falloff: 900 })
-  readonly #water = new SurfaceWater()
+  readonly #water: SurfaceWater
   /** Light of overcast clouds: of surfaces by `#clouds`, of what falls by the lamp. */
   readonly #overcast = new HemisphereLight()
   readonly #clouds = uniform(new Vector3())
@@ -86,18 +86,20 @@ export class Street {
   constructor(renderer: WebGPURenderer, time: number | null) {
     const { atmosphere, camera, scene } = this
     atmosphere.add(this.#fog)
-    this.#sun = new SunDirectionalLight(atmosphere, 80)
+    const sun = (this.#sun = new SunDirectionalLight(atmosphere, 80))
     const sky = (this.#sky = new SkyLightProbe(atmosphere))
     const night = new NightLightProbe(atmosphere, 0.05)
     // #region wet ground
-    const water = this.#water // update it with the weather, or set what has fallen
+    const water = new SurfaceWater() // update it with the weather, or set what has fallen
     const ground = new MeshStandardNodeMaterial({ color: '#4a4a48', roughness: 0.8 })
     Object.assign(ground, wetSurface(water))
     // #endregion
-    this.#houses = createHouses(ground, water)
-    scene.add(this.#sun, this.#sun.target, sky, night, this.#houses.object, this.#dome, camera)
+    this.#water = water
+    const houses = (this.#houses = createHouses(ground, water))
+    const overcast = this.#overcast
+    scene.add(sun, sun.target, sky, night, houses.object, this.#dome, camera)
     scene.environmentNode = this.#clouds
-    this.#overcast.updateMatrixWorld() // it is in no scene: what falls alone sees it
+    overcast.updateMatrixWorld() // it is in no scene: what falls alone sees it
     camera.position.set(0.6, 1.7, 4)
     camera.lookAt(-0.4, 2.6, -12)
     const scenePass = pass(scene, camera, { samples: 0 })
@@ -105,7 +107,7 @@ export class Street {
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
     const shelter = (this.#shelter = new PrecipitationShelter(scene))
     // #region rain and snow
-    const lights = [this.#sun, sky, night, this.#overcast, ...this.#houses.lamps]
+    const lights = [sun, sky, night, overcast, ...houses.lamps]
     const options = { lights, shelter, depth, depthCamera: camera, time }
     const rain = rainfall(atmosphere, { ...options, rate: 12 }) // mm/h
     const snow = snowfall(atmosphere, { ...options, rate: 0 })

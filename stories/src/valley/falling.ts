@@ -19,11 +19,9 @@ const FALLEN = { rain: 0.5, snow: 12 }
 
 /** Rain and snow of the valley: under its clouds, around the camera, and on the ground. */
 export class ValleyPrecipitation {
-  // #region rain and snow
   readonly drops = raindrops({ rate: 12 }) // rainbows
   readonly shafts = precipitationShafts({ drops: this.drops }) // to `clouds`
   readonly water = new SurfaceWater() // to what gets wet
-  // #endregion
   #falling: readonly Precipitation[] = []
 
   /** Draws what falls around the camera over a picture with its air and clouds. */
