@@ -1,5 +1,6 @@
 import {
   aerialPerspectiveFog,
+  airAtVertices,
   Atmosphere,
   SkyLightProbe,
   SunDirectionalLight
@@ -43,8 +44,8 @@ gpuTest('air at the vertices of the ground is that at its pixels, within 1 %', a
     camera.updateProjectionMatrix()
     camera.updateMatrixWorld()
     terrain.update(renderer, camera, Infinity)
-    const [atVertices, atPixels] = await pictures(async airAtVertices => {
-      Object.assign(terrain.material, { airAtVertices })
+    const [atVertices, atPixels] = await pictures(async isAtVertices => {
+      Object.assign(terrain.material, { airAtVertices: isAtVertices ? airAtVertices : undefined })
       terrain.material.needsUpdate = true
       return t.render(renderer, scene, camera, SIZE)
     })

@@ -201,12 +201,11 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         tables.volumes.segments
       )
     this.#shadows = this.#shafts?.upTo(null)
-    const shadows = this.#shadows
     const { color, depth } = shellFragment(
       air,
       this.#view,
       this.#light(air, this.#volumes),
-      shadows && (light => shadows.dim(light))
+      this.#shadows
     )
     const fragmentNode = new ShellNode(this, color)
     Object.assign(this.material, { fragmentNode, depthNode: depth, needsUpdate: true })

@@ -1,19 +1,16 @@
 import { fail } from '@welkin/geo'
-import { Fn, If, mat3, output, positionView, vec3, vec4 } from 'three/tsl'
+import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import { AtmosphereNode } from '../view/AtmosphereNode'
-import { aerialPerspectiveTo, type AerialPerspective } from './tsl/aerialPerspective'
-import type { Mat3, Vec3 } from '../tsl-types'
-import { covered, coveredPosition } from '../view/tsl/coveredPosition'
-
-/** Distance up to which a material with `airAtVertices` takes the air of its vertices [m]. */
-const FAR = 3e4
+import { coveredPosition } from '../view/tsl/coveredPosition'
+import { aerialPerspectiveTo } from './tsl/aerialPerspective'
+import type { airAtVertices } from './tsl/airAtVertices'
 
 /** Material whose triangles are small beside their distance everywhere, such as a terrain's. */
 export interface FineMaterial {
-  /** True to find the clear air's effect at vertices within 30 km, in place of at every pixel. */
-  readonly airAtVertices?: boolean
+  /** `airAtVertices`, to find the clear air's effect at vertices within 30 km, in place of at every pixel. */
+  readonly airAtVertices?: typeof airAtVertices
 }
 
 /**
@@ -36,31 +33,13 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   override setup(_builder: NodeBuilder): Node {
     return Fn(({ material }: NodeBuilder) => {
+      const { airAtVertices } = material as FineMaterial
       const { transmittance, inScatter } =
-        (material as FineMaterial).airAtVertices === true && this.layers.length === 0
-          ? this.#ofVertices()
+        airAtVertices && this.layers.length === 0
+          ? airAtVertices(this.view)
           : aerialPerspectiveTo(this.view, coveredPosition())
       return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
     })()
-  }
-
-  /** Clear air up to a fragment: of the vertices about it if it is near. */
-  #ofVertices(): AerialPerspective {
-    const { view } = this
-    const near = Fn(() => {
-      const { transmittance, inScatter } = aerialPerspectiveTo(view, positionView)
-      return mat3(transmittance, inScatter, vec3(0))
-    })() as unknown as Mat3 & { element(column: number): Vec3 }
-    const [transmittance, inScatter] = [0, 1].map(
-      n => covered(near.element(n)).toVar() as unknown as Vec3 & { assign(value: Vec3): void }
-    )
-    const position = coveredPosition()
-    If(view.toMapped(position).length().greaterThan(FAR), () => {
-      const far = aerialPerspectiveTo(view, position)
-      transmittance.assign(far.transmittance)
-      inScatter.assign(far.inScatter)
-    })
-    return { transmittance, inScatter }
   }
 }
 

@@ -1,3 +1,4 @@
+import { airAtVertices } from '@welkin/atmosphere'
 import { mix, specularColor, specularColorBlended, vec3 } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
@@ -15,7 +16,7 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
   }
 
   /** See `FineMaterial` of `@welkin/atmosphere`: cells are small beside their distance. */
-  readonly airAtVertices: boolean = true
+  readonly airAtVertices = airAtVertices
 
   /** Share of a pixel that is water; null for none. */
   water: Float | null = null

@@ -15,9 +15,12 @@ function apply(columns: AtmosphereUniforms['linearSRGB'], spectrum: Vec4): Vec3 
  *
  * @param lost - Light that is taken away, as {@link unclampedSRGB} has it.
  */
-export function linearSRGB(uniforms: AtmosphereUniforms, spectrum: Vec4, lost?: Vec3): Vec3 {
-  const color = unclampedSRGB(uniforms, spectrum)
-  return (lost ? color.sub(lost) : color).max(0)
+export function linearSRGB(
+  uniforms: AtmosphereUniforms,
+  spectrum: Vec4,
+  lost: Vec3 | number = 0
+): Vec3 {
+  return unclampedSRGB(uniforms, spectrum).sub(lost).max(0)
 }
 
 /** As {@link linearSRGB}, with components below nought where colours are outside the gamut: of light that is taken away. */

@@ -3,7 +3,8 @@ import type { Node, NodeBuilder } from 'three/webgpu'
 import { linearSRGB, transmittanceRGB } from '../../air/tsl/color'
 import type { Air } from '../../scattering/tsl/ray'
 import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
-import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Vec4 } from '../../tsl-types'
+import type { ScreenShadows } from '../../view/AirShadows'
 import { fragmentDepth } from './fragmentDepth'
 import { viewSegment, type ShellView, type ViewSegment } from './viewSegment'
 
@@ -19,7 +20,7 @@ const withBuilder = Fn as unknown as (
  * Colour and depth of a shell's fragments.
  *
  * @param lightOf - Light of the air along a segment, and its optical depth.
- * @param dim - Takes what shadows take from the light.
+ * @param shadows - Shadows in the air, which dim it.
  * @returns Premultiplied colour: in-scatter, with the part of the background that the air hides as alpha;
  *   and the depth that a shell is compared with, that of the segment's middle.
  */
@@ -27,7 +28,7 @@ export function shellFragment(
   { uniforms }: Air,
   view: ShellView,
   lightOf: (segment: ViewSegment) => MediumSegment,
-  dim?: (light: Vec3) => Vec3
+  shadows?: Pick<ScreenShadows, 'dim'>
 ): { color: Vec4; depth: Float } {
   // three writes the depth first, if it does, in the same function.
   const segments = new WeakMap<NodeBuilder, ViewSegment>()
@@ -43,7 +44,7 @@ export function shellFragment(
       const { radiance, depth } = lightOf(segment)
       const transmittance = transmittanceRGB(uniforms, depth.negate().exp())
       const lit = linearSRGB(uniforms, radiance).mul(view.tint)
-      const light = dim?.(lit) ?? lit
+      const light = shadows?.dim(lit) ?? lit
       output.assign(vec4(light, dot(transmittance, LUMINANCE).oneMinus().clamp()))
     })
     return output

@@ -1,13 +1,10 @@
-import { InterpolationSamplingMode, InterpolationSamplingType } from 'three'
 import { Fn, positionView, varying } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import type { Vec3 } from '../../tsl-types'
 
 /** A value of vertices as pixels see it: at a place inside of what they show. */
 export function covered<T extends Node>(value: T): T {
-  const handed = varying(value)
-  handed.setInterpolation(InterpolationSamplingType.PERSPECTIVE, InterpolationSamplingMode.CENTROID)
-  return handed as unknown as T
+  return varying(value).setInterpolation('perspective', 'centroid') as unknown as T
 }
 
 /** The varying that all who ask share: each of its own would be interpolated once more. */
