@@ -35,9 +35,7 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
     return Fn(({ material }: NodeBuilder) => {
       const { airAtVertices } = material as FineMaterial
       const { transmittance, inScatter } =
-        airAtVertices && this.layers.length === 0
-          ? airAtVertices(this.view)
-          : aerialPerspectiveTo(this.view, coveredPosition())
+        airAtVertices?.(this.view) ?? aerialPerspectiveTo(this.view, coveredPosition())
       return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
     })()
   }

@@ -10,10 +10,13 @@ const FAR = 3e4
 /**
  * Clear air up to a fragment: of the vertices about it if it is near, as a material has it that gives this as its
  * `airAtVertices` to `aerialPerspectiveFog`. Within 0.6 % where triangles are small beside their distance.
+ *
+ * @returns Null where there are sky layers, such as fog, which change too fast.
  */
-export function airAtVertices(view: ViewNodes): AerialPerspective {
+export function airAtVertices(view: ViewNodes): AerialPerspective | null {
+  if (view.atmosphere.layers.length > 0) return null
   const near = Fn(() => {
-    const { transmittance, inScatter } = aerialPerspectiveTo(view, positionView as Vec3)
+    const { transmittance, inScatter } = aerialPerspectiveTo(view, positionView)
     return mat3(transmittance, inScatter, vec3(0))
   })() as unknown as Mat3 & { element(column: number): Vec3 }
   const [transmittance, inScatter] = [0, 1].map(
