@@ -210,16 +210,16 @@ it('features of the clouds sample as many textures as their README says', async 
     expect(['–', `${shaded - lit - 1}`]).toEqual(stated('clouds', `${feature} |`))
   }
   const march = await inPass(world => world.clouds(picture()), 'Welkin.CloudsMarch')
-  expect(march).toBe(8)
+  expect(march).toBe(7)
   const shade = await inPass(world => world.clouds(picture()), 'Welkin.CloudsShade')
-  expect(shade).toBe(12)
+  expect(shade).toBe(11)
   const rainy = await inPass(({ air, depth, camera, atmosphere }) => {
     const light = new DropletLightTable({ crystals: iceCrystals() })
     const precipitation = precipitationShafts({ drops: raindrops() })
     const options = { light, precipitation, worldMap: cloudWorldMap(picture()) }
     return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
   }, 'Welkin.CloudsShade')
-  expect(rainy).toBe(15)
+  expect(rainy).toBe(14)
   const dimmed = await inLit(world => {
     cloudSkyLight(world.sky, world.clouds())
   })

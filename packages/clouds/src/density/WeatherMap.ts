@@ -1,4 +1,4 @@
-import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { Texture, Vector3 } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -71,9 +71,8 @@ export class WeatherMap {
   readonly #regionalTarget
   readonly #passes: readonly FragmentPass[]
   readonly #map: LevelTexture<Vec2>
+  /** Two tiles side by side: of whole regions; of fronts and belts, and displacement by cyclones, in `DISPLACEMENT`. */
   readonly #regions: LevelTexture<Vec2>
-  /** Fronts and belts, and displacement by cyclones, in `DISPLACEMENT`. */
-  readonly #systems: LevelTexture<Vec2>
   /** Distance within which texels of the map of regions are about as wide [m]. */
   readonly #even = number()
   /** Two directions along the ground at the subpoint, in the mapped space. */
@@ -86,13 +85,11 @@ export class WeatherMap {
     this.#field = field
     const { length } = field.layers
     this.#target = tableTarget('Welkin.CloudsWeather', SIZE, SIZE * length)
-    this.#regionalTarget = tableTarget('Welkin.CloudsRegions', REGIONAL_SIZE, REGIONAL_SIZE, 2)
+    this.#regionalTarget = tableTarget('Welkin.CloudsRegions', 2 * REGIONAL_SIZE, REGIONAL_SIZE)
     const node = (value: Texture): LevelTexture<Vec2> =>
       texture(value) as unknown as LevelTexture<Vec2>
     this.#map = node(this.#target.texture)
-    const [regions, systems] = this.#regionalTarget.textures.map(node)
-    this.#regions = regions
-    this.#systems = systems
+    this.#regions = node(this.#regionalTarget.texture)
     this.#passes = [
       new FragmentPass('Welkin.CloudsWeather', this.#draw()),
       new FragmentPass('Welkin.CloudsRegions', this.#drawRegions())
@@ -132,18 +129,19 @@ export class WeatherMap {
     })()
   }
 
-  #drawRegions(): Outputs {
+  #drawRegions(): Vec4 {
     const field = this.#field
-    return outputs<[Vec4, Vec4]>(2, ([regions, others]) => {
-      const position = (uv() as unknown as Vec2)
+    return Fn(() => {
+      const at = (uv() as unknown as Vec2).mul(vec2(2, 1)).toConst() as Vec2
+      const position = vec2(at.x.fract(), at.y)
         .sub(0.5)
         .div(REGIONAL_PER_POSITION)
         .toConst() as Vec2
       const { subpoint, footprint } = this.#placeAt(position, this.#even, float(0))
       const found = weatherSystems(field, subpoint, footprint)
-      regions.assign(found.regions)
-      others.assign(vec4(found.displacement.div(DISPLACEMENT), found.systems))
-    })
+      const others = vec4(found.displacement.div(DISPLACEMENT), found.systems)
+      return at.x.lessThan(1).select(found.regions, others)
+    })()
   }
 
   /** Draws the map; `CloudField.update` goes first. */
@@ -206,8 +204,13 @@ export class WeatherMap {
       .add(0.5)
       .clamp(MARGIN / REGIONAL_SIZE, 1 - MARGIN / REGIONAL_SIZE)
       .toConst() as Vec2
-    const regions = this.#regions.sample(at).level(0).toConst() as Vec4
-    const others = this.#systems.sample(at).level(0).toConst() as Vec4
+    const [regions, others] = [0, 0.5].map(
+      tile =>
+        this.#regions
+          .sample(at.mul(vec2(0.5, 1)).add(vec2(tile, 0)))
+          .level(0)
+          .toConst() as Vec4
+    )
     return {
       regions,
       systems: others.w,
