@@ -294,13 +294,14 @@ gpuTest(
 )
 
 gpuTest(
-  'a material with six maps takes haze, environment, shadows of sun, moon and clouds, and probes; with five light shafts',
+  'a material with six maps takes environment, shadows of sun, moon and clouds, and probes, under the post chain or in its own haze; with five its own light shafts',
   async t => {
     const renderer = await t.createRenderer(size)
     const shaders = watchFragmentShaders(renderer)
     const world = new World(renderer, false)
     world.setLights(35, 20)
     world.look(20)
+    expectLight(await world.draw(1), 'six maps, with air, shafts and clouds as post effects')
     world.scene.backgroundNode = skyBackground(world.atmosphere)
     world.scene.fogNode = aerialPerspectiveFog(world.atmosphere)
     const draw = () => drawForward(renderer, world.scene, world.camera, world.atmosphere)
@@ -315,5 +316,5 @@ gpuTest(
     checkTextures(t, shaders)
     world.dispose()
   },
-  { timeoutSeconds: 180 }
+  { timeoutSeconds: 300 }
 )
