@@ -318,7 +318,7 @@ for (const [i, scene] of days.entries()) {
   )
 }
 
-// Days are exposed on both backends; nights differ in the light alone.
+// A day is exposed on both backends; nights differ in the light alone.
 for (const scene of nights) {
   gpuTest(
     `${scene.name}: dark, not black, at most 3 % clipped`,
