@@ -120,7 +120,7 @@ export async function createHalos(
     current,
     apply,
     draw,
-    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw, () => undefined),
+    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw),
     dispose() {
       node.dispose()
       light.dispose()

@@ -149,7 +149,7 @@ export async function createRain(
     current,
     apply,
     draw,
-    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw, () => undefined),
+    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw),
     dispose() {
       node.dispose()
       drops.dispose()

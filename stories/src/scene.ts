@@ -105,17 +105,17 @@ export function changeOf(): (value: object) => boolean {
  * Draws the frames of a still, each exposed as the one before asks for.
  *
  * @param draw - Draws one.
- * @param exposure - Exposure that all of them settle.
+ * @param exposure - Exposure that all of them settle; left out, there is none.
  */
 export async function drawSettled(
   frames: number,
   draw: () => void,
-  exposure: () => Pick<AutoExposureNode, 'settle'> | undefined
+  exposure?: () => Pick<AutoExposureNode, 'settle'> | undefined
 ): Promise<void> {
   for (let i = 0; i < frames; i++) {
     await new Promise(resolve => requestAnimationFrame(resolve))
     draw()
-    await exposure()?.settle()
+    await exposure?.()?.settle()
   }
 }
 

@@ -97,7 +97,7 @@ export async function createStorm(
     current,
     apply,
     draw,
-    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw, () => undefined),
+    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw),
     dispose() {
       storm.dispose()
       node.dispose()

@@ -1,6 +1,7 @@
 import { Explorer } from './moving/Explorer'
-import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
+import { createRenderer, drawSettled, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { storyHandle } from './storyHandle'
 import { Street, type StreetWeather } from './street/Street'
 
 export interface StreetArgs extends RendererArgs, StreetWeather {}
@@ -25,33 +26,15 @@ export async function createStreet(
     explorer?.update(elapsed())
     street.render()
   }
-  let ready: Promise<void> = Promise.resolve()
-  const warmUp = (): void => {
-    if (current.frame) ready = drawSettled(STILL.frames, draw, () => street.exposure)
-  }
-  return {
+  return storyHandle({
     renderer,
     scene,
     camera,
     explorer,
-    get ready() {
-      return ready
-    },
-    progress: 1,
-    render: draw,
-    resize(width, height, pixelRatio) {
-      fitToCanvas(renderer, camera, width, height, pixelRatio)
-      warmUp()
-    },
-    update(changes) {
-      Object.assign(current, changes)
-      street.set(current)
-      warmUp()
-    },
-    dispose() {
-      explorer?.dispose()
-      street.dispose()
-      void renderer.dispose()
-    }
-  }
+    current,
+    apply: () => street.set(current),
+    draw,
+    warmUp: () => drawSettled(current.frame ? STILL.frames : 0, draw, () => street.exposure),
+    dispose: () => street.dispose()
+  })
 }

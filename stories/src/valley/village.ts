@@ -107,6 +107,18 @@ export interface Village {
   dispose(): void
 }
 
+/** A lamp by the church, which three lights everything with. */
+function churchLamp(x: number, y: number, z: number): PointLight & Pick<Village, 'light'> {
+  const lamp = new PointLight('#ffb46b', 0, 220)
+  lamp.position.set(x + 12, y + 9, z - 10)
+  return Object.assign(lamp, {
+    light(share: number, luminanceScale: number) {
+      lamp.intensity = share * LAMP * luminanceScale
+      setLit(lamp, share > 0)
+    }
+  })
+}
+
 /**
  * Houses about a church.
  *
@@ -189,9 +201,8 @@ export function createVillage(
   const naveRoof = new Mesh(roof().scale(11, 6, 22).translate(0, 9, 14), tiles)
   const church = new Group().add(tower, spire, nave, naveRoof)
   church.position.set(x, base, z)
-  const lamp = new PointLight('#ffb46b', 0, 220)
-  lamp.position.set(x + 12, base + 9, z - 10)
-  const object = new Group().add(bodies, roofs, church, lamps ?? lamp)
+  const lights = lamps ?? churchLamp(x, base, z)
+  const object = new Group().add(bodies, roofs, church, lights)
   for (const each of [bodies, roofs, ...church.children]) {
     each.castShadow = each.receiveShadow = true
   }
@@ -201,15 +212,13 @@ export function createVillage(
     light(share, luminanceScale) {
       lit.value = share
       luminance.value = luminanceScale
-      lamps?.light(share, luminanceScale)
-      lamp.intensity = share * LAMP * luminanceScale
-      setLit(lamp, share > 0)
+      lights.light(share, luminanceScale)
     },
     dispose() {
       for (const mesh of [bodies, roofs, tower, spire, nave, naveRoof]) mesh.geometry.dispose()
       bodies.dispose()
       roofs.dispose()
-      lamps?.dispose()
+      lights.dispose()
       for (const material of [walls, tiles, plaster]) material.dispose()
     }
   }

@@ -181,11 +181,7 @@ export class CloudField {
     this.noise = noise ?? new CloudNoise()
     const node = (name: NoiseName): LevelTexture<Vec3> =>
       texture3D(this.noise[name].target.texture) as unknown as LevelTexture<Vec3>
-    this.textures = {
-      shape: node('shape'),
-      detail: node('detail'),
-      weather: node('weather')
-    }
+    this.textures = { shape: node('shape'), detail: node('detail'), weather: node('weather') }
     this.worldMap = worldMap
     this.extinction = extinction
     const { x, z } = atmosphere.ellipsoid.radii

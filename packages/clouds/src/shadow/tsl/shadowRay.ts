@@ -4,7 +4,7 @@ import type { UniformNode } from 'three/webgpu'
 import type { CloudField } from '../../density/CloudField'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import type { CloudSample } from '../../density/tsl/sample'
-import { forLayers, layerAt } from '../../density/tsl/layer'
+import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { fallMoments, type ShadingFall } from './fallDepth'
 import { layerSegment, type RadialRay } from './layerSegment'
 import { segmentMoments, STEPS } from './segmentMoments'
@@ -97,32 +97,36 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
     const weighted = vec3(0).toVar() as Vec3
     /** Optical depths, of all and of layers that cast shadows. */
     const depths = vec2(0).toVar() as Vec2
+    const add = (sums: Vec3, layer: LayerNodes): void => {
+      const depth = sums.x.toConst() as Float
+      weighted.addAssign(sums.mul(depth))
+      depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
+    }
+    /** Distance that samples stand for whose footprint is a part of a length. */
+    const blurred = (length: Float, blur: number): Float =>
+      texel.distance.max(length.mul(blur).div(field.pixelAngle)).toConst()
     forLayers(field, index => {
       const layer = layerAt(field, index)
       const segment = layerSegment(field, layer, texel, texel.maximumDistance)
       const length = segment.front.sub(segment.back).max(0).div(STEPS).toConst() as Float
       If(length.greaterThan(0).and(layer.coverage.greaterThan(0)), () => {
         // What is shorter than steps would show as rings.
-        const distance = texel.distance
-          .max(length.mul(BLUR).div(field.pixelAngle))
-          .toConst() as Float
-        const sums = segmentMoments(field, layer, segment, length, at => sampleAt(at, distance))
-        const depth = sums.x.toConst() as Float
-        weighted.addAssign(sums.mul(depth))
-        depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
+        const distance = blurred(length, BLUR)
+        add(
+          segmentMoments(field, layer, segment, length, at => sampleAt(at, distance)),
+          layer
+        )
       })
       if (falling === undefined) return
       const below = { baseAltitude: float(0), thickness: falling.ceiling }
       const fall = layerSegment(field, below, texel, texel.maximumDistance)
       const way = fall.front.sub(fall.back).toConst() as Float
       If(way.greaterThan(0).and(falling.ceiling.greaterThan(0)), () => {
-        const distance = texel.distance
-          .max(way.mul(FALL_BLUR).div(field.pixelAngle))
-          .toConst() as Float
-        const sums = fallMoments(field, falling, layer, fall, at => sampleAt(at, distance))
-        const depth = sums.x.toConst() as Float
-        weighted.addAssign(sums.mul(depth))
-        depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
+        const distance = blurred(way, FALL_BLUR)
+        add(
+          fallMoments(field, falling, layer, fall, at => sampleAt(at, distance)),
+          layer
+        )
       })
     })
     return evenStretch(weighted, depths, ray.halfWidth)
