@@ -153,7 +153,8 @@ class World {
     this.#addThings(isMapped ? [] : this.pictures.slice(3))
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false
-    const starry = starsOverlay(this.#clouds, depth, camera, atmosphere)
+    const { transmittance } = this.#clouds
+    const starry = starsOverlay(this.#clouds, depth, camera, atmosphere, { transmittance })
     this.#pipeline.outputNode = this.exposure = autoExposure(starry, atmosphere)
   }
 

@@ -2,6 +2,7 @@ import {
   Airglow,
   Atmosphere,
   brightStars,
+  heightFog,
   milkyWay,
   NightLightProbe,
   skyBackground,
@@ -206,6 +207,38 @@ gpuTest('draws the same stars after post-processing, behind what was drawn', asy
   expectTrue(most > 0, 'there are no stars')
   expectTrue(worst < 1e-4 * most, `off by ${worst} of ${most}`)
   expectTrue(Math.max(...onTop.at(20, 27).slice(0, 3)) === 0, 'there are stars before the card')
+})
+
+gpuTest('dims stars by fog before them, drawn last or in the sky', async t => {
+  const [width, height] = [96, 54]
+  const renderer = await t.createRenderer({ width, height })
+  const draw = async (overlay: boolean, density: number): Promise<number> => {
+    const atmosphere = new Atmosphere().setSunAngles(-60, 270)
+    atmosphere.luminanceScale = 1
+    atmosphere.add(stars({ overlay }), heightFog({ density, falloff: 300 }))
+    const camera = new PerspectiveCamera(40, width / height, 1, 1e6)
+    camera.position.y = 2
+    camera.rotation.x = 0.6
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
+    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    const color = scenePass.getTextureNode()
+    const depth = scenePass.getTextureNode('depth')
+    pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, atmosphere) : color
+    const picture = await drawToFloat(renderer, () => pipeline.render())
+    scenePass.dispose()
+    pipeline.dispose()
+    atmosphere.dispose()
+    return illuminance(picture, 40)
+  }
+  for (const density of [1e-3, 0.1]) {
+    const [inSky, onTop] = [await draw(false, density), await draw(true, density)]
+    t.note(`${density}/m: ${inSky.toExponential(2)} lx, drawn last ${onTop.toExponential(2)} lx`)
+    if (density < 0.1) expectTrue(inSky > 1e-6, `${inSky} lx of stars in thin fog`)
+    expectTrue(Math.abs(onTop - inSky) < 1e-3 * inSky + 1e-12, `${onTop}, not ${inSky} lx`)
+  }
 })
 
 gpuTest('has airglow as bright as its layer is long', async t => {

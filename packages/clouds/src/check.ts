@@ -1,5 +1,7 @@
 import { checkRange } from '@welkin/atmosphere'
 import { checkChoice, fail } from '@welkin/geo'
+import type { DepthTexture } from 'three'
+import type { Node, TextureNode } from 'three/webgpu'
 
 /** @throws If a value is not a number from the least to the greatest of its range. */
 export function checkRanges<K extends string>(
@@ -37,4 +39,11 @@ export function checkPrecipitation(
   if (medium === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
     fail(where, 'precipitation must be given: layers have some')
   }
+}
+
+/** @throws If it is not the depth of a texture, or one depth for all pixels. */
+export function checkDepth(where: string, node: Node): void {
+  const value = (node as TextureNode | null)?.value as DepthTexture | number | undefined
+  if (typeof value === 'number' || value?.isDepthTexture === true) return
+  fail(where, "depthNode must be a depth texture's node", node)
 }

@@ -1,3 +1,4 @@
+import { checkOptions, fail } from '@welkin/geo'
 import type { Camera, OrthographicCamera } from 'three'
 import { Fn, If, float, getViewPosition, isBackgroundDepth, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
@@ -6,6 +7,7 @@ import { PostEffectNode } from '../view/PostEffectNode'
 import type { SkyLayer, SkyRay } from '../view/SkyLayer'
 import type { Stars } from './Stars'
 import { linearSRGB } from '../air/tsl/color'
+import { withMedia } from '../sky/tsl/aerialPerspective'
 import { pixelAngle } from '../sky/tsl/sky'
 import { skyTransmittance } from '../skyVolume/tsl/meanExtinction'
 import { viewRay } from '../skyVolume/tsl/viewRay'
@@ -14,6 +16,16 @@ import type { Float, Vec3, Vec4 } from '../tsl-types'
 
 const isOverlay = (layer: SkyLayer): layer is Stars =>
   (layer as Partial<Stars>).isStars === true && (layer as Stars).overlay
+
+/** Options of {@link starsOverlay}. */
+export interface StarsOverlayOptions {
+  /**
+   * Part of the light from afar that passes what was drawn over the sky without depth, in [0, 1]: a float
+   * per pixel of the screen, such as the clouds' `cloudsNode.transmittance`.
+   * Left out, nothing is in the way.
+   */
+  transmittance?: Node
+}
 
 /**
  * Draws the stars after post-processing, so that depth of field, bloom and temporal anti-aliasing leave
@@ -25,6 +37,8 @@ const isOverlay = (layer: SkyLayer): layer is Stars =>
  * pipeline.outputNode = starsOverlay(finished, scenePass.getTextureNode('depth'), camera, atmosphere)
  * ```
  *
+ * Air and fog dim them; clouds that were drawn before do, too, where `transmittance` is theirs.
+ *
  * Layers made with `overlay: true`, which the sky leaves out, are drawn where the depth is that of the
  * background. Layers added after them, such as a moon, hide them. Put it into the pipeline's output: stars
  * are then as crisp as its pixels, whatever the scene's own resolution. The colour must be linear; tone
@@ -34,6 +48,26 @@ const isOverlay = (layer: SkyLayer): layer is Stars =>
 export class StarsOverlayNode extends PostEffectNode {
   static get type(): string {
     return 'StarsOverlayNode'
+  }
+
+  /** Part of the light from afar that passes what was drawn over the sky: see {@link StarsOverlayOptions}. */
+  readonly transmittanceNode: Node | null
+
+  /** @throws If an argument is missing or of the wrong kind. */
+  constructor(
+    color: Node,
+    depth: Node,
+    camera: Camera,
+    atmosphere: Atmosphere,
+    options: StarsOverlayOptions = {}
+  ) {
+    super(color, depth, camera, atmosphere)
+    checkOptions('StarsOverlayNode', options, 'transmittance')
+    const { transmittance = null } = options
+    if (transmittance !== null && !transmittance.isNode) {
+      fail('StarsOverlayNode', 'transmittance must be a node', transmittance)
+    }
+    this.transmittanceNode = transmittance
   }
 
   override setup(_builder: NodeBuilder): Node {
@@ -59,8 +93,14 @@ export class StarsOverlayNode extends PostEffectNode {
         const angles = { direction, cosViewLight, meetsAir, ...volumeRay }
         const ray = { view: this.view, ...angles, pixel, airlight }
         If(hitsGround.not(), () => {
-          const through = skyTransmittance(volume, viewpoint, volumeRay)
-          added.assign(linearSRGB(uniforms, this.#light(ray).mul(through)))
+          const { layers } = this.atmosphere
+          const media = withMedia(layers, ray, { depth: vec4(0), radiance: vec4(0) })
+          const through = skyTransmittance(volume, viewpoint, volumeRay).mul(
+            media.depth.negate().exp()
+          )
+          const light = linearSRGB(uniforms, this.#light(ray).mul(through))
+          const seen = this.transmittanceNode as Float | null
+          added.assign(seen === null ? light : light.mul(seen))
         })
       })
       return vec4(color.rgb.add(added), color.a)
@@ -87,5 +127,6 @@ export const starsOverlay = (
   color: Node,
   depth: Node,
   camera: Camera,
-  atmosphere: Atmosphere
-): StarsOverlayNode => new StarsOverlayNode(color, depth, camera, atmosphere)
+  atmosphere: Atmosphere,
+  options: StarsOverlayOptions = {}
+): StarsOverlayNode => new StarsOverlayNode(color, depth, camera, atmosphere, options)

@@ -61,6 +61,10 @@ throwsEach('moon and stars', [
     () => starsOverlay(vec4(1), wrong(camera), camera, atmosphere)
   ],
   [
+    'StarsOverlayNode: transmittance must be a node, got 0.5',
+    () => starsOverlay(vec4(1), vec4(1), camera, atmosphere, { transmittance: wrong(0.5) })
+  ],
+  [
     'Moon.seenFrom: position must be a Vector3, got a PerspectiveCamera',
     () => luna.seenFrom(wrong(camera))
   ]

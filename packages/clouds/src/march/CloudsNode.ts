@@ -1,10 +1,10 @@
 import { AtmosphereNode, whereSeen } from '@welkin/atmosphere'
 import type { Atmosphere, ScreenShadows, ShadowedShafts } from '@welkin/atmosphere'
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
-import type { Camera, DepthTexture, PerspectiveCamera } from 'three'
+import type { Camera, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer, TextureNode } from 'three/webgpu'
-import { checkPrecipitation } from '../check'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import { checkDepth, checkPrecipitation } from '../check'
 import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
@@ -132,9 +132,7 @@ export class CloudsNode extends AtmosphereNode {
     )
     const { worldMap, noise, extinction, light, precipitation, ...settings } = options
     if (!colorNode?.isNode) fail('CloudsNode', 'colorNode must be a node', colorNode)
-    if (!isDepth(depthNode)) {
-      fail('CloudsNode', "depthNode must be a depth texture's node", depthNode)
-    }
+    checkDepth('CloudsNode', depthNode)
     if (light !== undefined && !(light instanceof CloudLightTable)) {
       fail('CloudsNode', 'light must be a CloudLightTable', light)
     }
@@ -264,6 +262,11 @@ export class CloudsNode extends AtmosphereNode {
     this.field.ambient.value = factor
   }
 
+  /** Part of the light from behind that passes the clouds, in [0, 1]: a float per pixel of the screen, as last drawn. */
+  get transmittance(): Node<'float'> {
+    return this.passes.accumulated.light.sample(uv()).level(0).a
+  }
+
   override updateBefore(frame: NodeFrame): undefined {
     super.updateBefore(frame)
     const { camera, field, light } = this
@@ -325,12 +328,6 @@ export class CloudsNode extends AtmosphereNode {
     if (this.#ownsLight) this.light.dispose()
     super.dispose()
   }
-}
-
-/** True for the depth of a texture, or one depth for all pixels. */
-function isDepth(node: Node): boolean {
-  const value = (node as TextureNode | null)?.value as DepthTexture | number | undefined
-  return typeof value === 'number' || value?.isDepthTexture === true
 }
 
 function isPerspective(camera: Camera): camera is PerspectiveCamera {
