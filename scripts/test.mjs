@@ -6,31 +6,37 @@ import { join } from 'node:path'
 import { parseArgs } from 'node:util'
 import { ensureInstalled, npmCommand, rootFolder } from './install.mjs'
 
+/**
+ * Steps in their order. Those with a `lane`, next to each other, are a group: its lanes run side by side, since each
+ * keeps about one core busy, and the output of a step comes when it ends.
+ */
 const steps = [
-  { id: 'types', title: 'Types' },
-  { id: 'lint', title: 'Lint and format' },
-  { id: 'unit', title: 'Unit tests', script: 'test:unit', reporter: 'vitest' },
-  { id: 'build', title: 'Library builds' },
-  { id: 'packages', title: 'Published packages', script: 'test:packages' },
-  { id: 'size', title: 'Bundle size' },
+  { id: 'types', title: 'Types', lane: 'build' },
+  { id: 'lint', title: 'Lint and format', lane: 'build' },
+  { id: 'build', title: 'Library builds', lane: 'build' },
+  { id: 'packages', title: 'Published packages', script: 'test:packages', lane: 'build' },
+  { id: 'size', title: 'Bundle size', lane: 'build' },
+  { id: 'unit', title: 'Unit tests', script: 'test:unit', reporter: 'vitest', lane: 'unit' },
   { id: 'gpu', title: 'GPU tests', script: 'test:gpu' },
   { id: 'smoke', title: 'GPU smoke test', script: 'test:gpu', args: ['smoke'], onDemand: true },
-  { id: 'validate', title: 'Reference data', args: ['--check'] },
+  { id: 'visual', title: 'Visual regression', script: 'test:visual' },
+  { id: 'moving', title: 'Moving in stories', script: 'test:moving' },
+  { id: 'consumer', title: 'Consumer install', script: 'test:consumer', lane: 'consumer' },
+  { id: 'validate', title: 'Reference data', args: ['--check'], lane: 'reference' },
   {
     id: 'march',
     title: 'Reference march',
     script: 'validate',
-    args: ['--check', '--path', 'march']
+    args: ['--check', '--path', 'march'],
+    lane: 'reference'
   },
   {
     id: 'shafts',
     title: 'Reference shafts',
     script: 'validate',
-    args: ['--check', '--shafts', '--all', '--every', '4']
-  },
-  { id: 'visual', title: 'Visual regression', script: 'test:visual' },
-  { id: 'moving', title: 'Moving in stories', script: 'test:moving' },
-  { id: 'consumer', title: 'Consumer install', script: 'test:consumer' }
+    args: ['--check', '--shafts', '--all', '--every', '4'],
+    lane: 'reference'
+  }
 ]
 const stepMinutes = 40
 
@@ -43,7 +49,7 @@ for (const id of chosen ?? []) {
 ensureInstalled()
 
 const countsFolder = mkdtempSync(join(tmpdir(), 'welkin-test-'))
-let running
+const running = new Set()
 
 function stop(child) {
   // The whole group: a step's browser and servers are its grandchildren.
@@ -53,12 +59,13 @@ function stop(child) {
 
 for (const signal of ['SIGINT', 'SIGTERM']) {
   process.on(signal, () => {
-    if (running !== undefined) stop(running)
+    for (const child of running) stop(child)
     process.exit(130)
   })
 }
 
-function runStep({ id, script = id, args = [], reporter }) {
+/** Runs a step. @returns What came of it, and its output if that was not shown. */
+function runStep({ id, script = id, args = [], reporter }, isShown) {
   const countsFile = join(countsFolder, `${id}.json`)
   const { command, prefix, shell } = npmCommand()
   const reporting =
@@ -71,21 +78,25 @@ function runStep({ id, script = id, args = [], reporter }) {
       [...prefix, 'run', '--silent', script, '--', ...args, ...reporting],
       {
         cwd: rootFolder,
-        stdio: ['ignore', 'inherit', 'inherit'],
+        stdio: ['ignore', isShown ? 'inherit' : 'pipe', isShown ? 'inherit' : 'pipe'],
         shell,
         detached: process.platform !== 'win32',
         env: { ...process.env, WELKIN_COUNTS: countsFile }
       }
     )
-    running = child
+    running.add(child)
+    let output = ''
+    for (const stream of [child.stdout, child.stderr]) {
+      stream?.setEncoding('utf8').on('data', text => (output += text))
+    }
     const timer = setTimeout(() => {
       console.error(`${id} ran longer than ${stepMinutes} minutes`)
       stop(child)
     }, stepMinutes * 60_000)
-    child.on('exit', code => {
+    child.on('close', code => {
       clearTimeout(timer)
-      running = undefined
-      resolve({ ok: code === 0, ...readCounts(countsFile, code === 0) })
+      running.delete(child)
+      resolve({ ok: code === 0, output, ...readCounts(countsFile, code === 0) })
     })
   })
 }
@@ -109,15 +120,35 @@ const begin = performance.now()
 const summary = []
 const totals = { passed: 0, failed: 0 }
 
-for (const step of steps) {
-  if (chosen === undefined ? step.onDemand : !chosen.includes(step.id)) continue
-  console.log(`\n━━ ${step.title} ━━`)
-  const start = performance.now()
-  const { ok, passed, failed } = await runStep(step)
-  totals.passed += passed
-  totals.failed += failed
-  const mark = ok && failed === 0 ? '✓' : '✗'
-  summary.push(`${mark} ${step.title.padEnd(20)} ${passed} ok, ${failed} not, ${seconds(start)}`)
+/** Runs steps one after the other. */
+async function runSteps(own, isShown) {
+  for (const step of own) {
+    const title = `\n━━ ${step.title} ━━`
+    if (isShown) console.log(title)
+    const start = performance.now()
+    const { ok, passed, failed, output } = await runStep(step, isShown)
+    if (!isShown) console.log(`${title}\n${output.trimEnd()}`)
+    totals.passed += passed
+    totals.failed += failed
+    const mark = ok && failed === 0 ? '✓' : '✗'
+    summary.push(`${mark} ${step.title.padEnd(20)} ${passed} ok, ${failed} not, ${seconds(start)}`)
+  }
+}
+
+/** Groups of lanes: of a step alone, or of neighbours that have lanes. */
+function groupsOf(wanted) {
+  const groups = []
+  for (const [i, step] of wanted.entries()) {
+    if (step.lane === undefined || wanted[i - 1]?.lane === undefined) groups.push(new Map())
+    const lanes = groups.at(-1)
+    lanes.set(step.lane, [...(lanes.get(step.lane) ?? []), step])
+  }
+  return groups
+}
+
+const wanted = steps.filter(({ id, onDemand }) => chosen?.includes(id) ?? !onDemand)
+for (const lanes of groupsOf(wanted)) {
+  await Promise.all([...lanes.values()].map(own => runSteps(own, lanes.size === 1)))
 }
 
 rmSync(countsFolder, { recursive: true, force: true })
