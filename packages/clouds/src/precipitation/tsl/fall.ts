@@ -1,4 +1,4 @@
-import { Fn, If, float, mix, smoothstep, vec2, vec3 } from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -6,11 +6,11 @@ import { resolutionAt } from '../../density/tsl/resolution'
 import { subpointOffset, type CloudSample } from '../../density/tsl/sample'
 import { backgroundAt } from '../../density/tsl/sampler'
 import { cloudWeather } from '../../density/tsl/weather'
-import { unpackBackground } from '../../density/tsl/weatherBackground'
+import { unpackBackground, type PackedBackground } from '../../density/tsl/weatherBackground'
 import type { WeatherMap } from '../../density/WeatherMap'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
-import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
+import { layout, type Float, type Variable, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 import { extinctionForm, fallForm } from '../fallForm'
 
 /** Precipitation of a layer, as shaders see it: lengths [m], rates [mm/h of water]. */
@@ -103,6 +103,32 @@ export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
   smoothstep(freezingLevel.sub(fallForm.melting), freezingLevel, altitude).toConst()
 
 /**
+ * The column of a layer above a place: its rank among those from which it falls, in (0, 1], 0 or less where nothing does (x), and `shift` of
+ * `WeatherBackground` (z, w). Twin of the rank: test/twins/precipitation.ts
+ *
+ * @param packed - Background of the weather there.
+ * @param subpoint - `subpointOffset` of the place.
+ * @param footprint - Width of what is asked for [m].
+ */
+export function fallColumn(
+  field: CloudField,
+  layer: LayerNodes,
+  { share }: FallNodes,
+  packed: PackedBackground,
+  subpoint: Vec3,
+  footprint: Float
+): Vec4 {
+  const background = unpackBackground(packed)
+  const { coverage, shift } = background
+  const still = vec3(0).xy as Vec2
+  const resolution = resolutionAt(layer, footprint)
+  const weather = cloudWeather(field, layer, background, subpoint, still, resolution)
+  const columns = coverage.mul(share).max(1e-4)
+  const rank = cumulative(weather.sum).oneMinus().div(columns).oneMinus().max(-1)
+  return vec4(coverage.greaterThan(0).select(rank, -1), 0, shift).toConst()
+}
+
+/**
  * Precipitation of a layer at a place. To be called inside of a shader function.
  *
  * It left its cloud downwind, where the wind that grows with height has carried that in the meantime: the column's rank is looked up
@@ -127,20 +153,18 @@ export function fallenFrom(
     const drift = aside.cross(up).toConst() as Vec3
     const offset = sample.offset.add(drift).toConst() as Vec3
     const above: CloudSample = { offset, altitude, up, distance }
-    const packed = backgroundAt(field, layer, above, { map, index: layer.index })
-    const background = unpackBackground(packed)
-    const resolution = resolutionAt(layer, distance.mul(field.pixelAngle).toConst())
     const subpoint = subpointOffset(field, above).toConst() as Vec3
-    const still = vec3(0).xy as Vec2
-    const weather = cloudWeather(field, layer, background, subpoint, still, resolution)
-    const columns = background.coverage.mul(nodes.share).max(1e-4)
-    rank.assign(cumulative(weather.sum).oneMinus().div(columns).oneMinus().max(0))
-    If(rank.greaterThan(0).and(background.coverage.greaterThan(0)), () => {
+    const footprint = distance.mul(field.pixelAngle).toConst() as Float
+    const column =
+      map?.fallAt(layer.index, subpoint) ??
+      fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
+    rank.assign(column.x.max(0))
+    If(rank.greaterThan(0), () => {
       const atBase = offset.add(up.mul(baseAltitude.sub(altitude))).toConst() as Vec3
       const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
-      const footprint = resolution.footprint.max(blur).mul(layer.perShapePeriod)
-      const level = levelOf(footprint, 1 / NOISE_SIZE.shape)
-      const { coarse, fine } = billows(field, layer, atBase, background.shift, level)
+      const width = footprint.max(blur).mul(layer.perShapePeriod)
+      const level = levelOf(width, 1 / NOISE_SIZE.shape)
+      const { coarse, fine } = billows(field, layer, atBase, column.zw as Vec2, level)
       const streak = coarse
         .mul(fallForm.coarseStreaks)
         .add(fine.mul(fallForm.fineStreaks))
