@@ -21,7 +21,7 @@ const SUM = 0.04
 const SHIFT = 12
 
 /** Greatest mean error of the rank of columns from which it falls, and the least mean that the test means anything with [–]. */
-const RANK = 0.02
+const RANK = 0.005
 const LEAST_RANK = 0.05
 
 /** Heights of the camera, and the farthest places that are looked up [m]. */
