@@ -149,7 +149,10 @@ export class CloudRenderer {
 
   constructor(inputs: Omit<CloudScene, 'weatherMap'>) {
     const { field, viewRays, precipitation } = inputs
-    this.#weatherMap = new WeatherMap(field, precipitation && (index => precipitation.fallOf(index)))
+    this.#weatherMap = new WeatherMap(
+      field,
+      precipitation && (index => precipitation.fallOf(index))
+    )
     this.#field = compiledByKinds(field)
     const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
     this.viewRays = viewRays

@@ -1,7 +1,7 @@
 import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
-import type { Bool, Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
 import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
@@ -16,7 +16,6 @@ import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
 import { ifStorm } from './storm'
-import type { KeptStorm } from './stormNearby'
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -28,33 +27,8 @@ export interface SamplePair {
   readonly greatest: Float
 }
 
-/** What a ray keeps between pairs of samples. */
-export interface KeptBetweenPairs {
-  /** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
-  readonly clear: Variable<Vec4>
-  /** True among clouds: they are not ruled out before they are looked up. */
-  readonly isFine: Bool
-  /** The nearest storm, of the layer of an index, and the distance at which it was looked for [m]. */
-  readonly storm: KeptStorm & { readonly at: Variable<Float>; readonly layer: Variable<Float> }
-}
-
-/** What a ray has kept at its start. To be called inside of a shader function. */
-export const keptBetweenPairs = (isFine: Bool): KeptBetweenPairs => ({
-  clear: vec4(0).toVar() as Variable<Vec4>,
-  isFine,
-  storm: {
-    place: vec3(0).toVar() as Variable<Vec3>,
-    gap: vec3(0).toVar() as Variable<Vec3>,
-    at: float(-NOWHERE).toVar(),
-    layer: float(-1).toVar()
-  }
-})
-
-/**
- * Distance over which the nearest storm stays the nearest [periods of the shape]. Greater: faster, and steps between storms that
- * stand close together (*Storm*).
- */
-const SAME_STORM = 0.02
+/** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
+export type ClearLayers = Variable<Vec4>
 
 /** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */
 const sampleNearby = (sample: CloudSample, direction: Vec3, along: Float): CloudSample => ({
@@ -67,7 +41,7 @@ const sampleNearby = (sample: CloudSample, direction: Vec3, along: Float): Cloud
  * Samples clouds at two places near each other on a ray, with detail.
  *
  * @param map - Weather around the camera; left out, it is looked up at the place itself.
- * @param kept - Kept between pairs of a ray.
+ * @param clear - Clear layers, kept between samples of a ray.
  * @param middle - The place between both, within the altitudes of the same layers.
  * @param length - Distance between them [m].
  * @param direction - Direction of the ray, in the mapped space.
@@ -76,7 +50,7 @@ const sampleNearby = (sample: CloudSample, direction: Vec3, along: Float): Cloud
 export function samplePair(
   field: CloudField,
   map: WeatherMap | undefined,
-  { clear, isFine, storm }: KeptBetweenPairs,
+  clear: ClearLayers,
   middle: CloudSample,
   length: Float,
   direction: Vec3,
@@ -98,24 +72,15 @@ export function samplePair(
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
       const likely = float(0).toVar()
+      const storm = { place: vec3(0).toVar(), gap: vec3(0).toVar() }
       ifStorm(
         layer,
         () => {
-          const { at } = storm
-          const reach = layer.perShapePeriod.reciprocal().mul(SAME_STORM)
-          const isKept = at.sub(middle.distance).abs().lessThan(reach)
-          const isSame = storm.layer.equal(float(index))
-          If(isFine.and(isKept).and(isSame).not(), () => {
-            likely.assign(clearOfStorms(field, layer, background, middle, length, storm))
-            at.assign(middle.distance)
-            storm.layer.assign(float(index))
-          })
+          likely.assign(clearOfStorms(field, layer, background, middle, length, storm))
         },
         () => {
-          If(isFine.not(), () => {
-            const footprint = footprintOf(field, middle)
-            likely.assign(likelyDistanceByBackground(layer, background, height, footprint))
-          })
+          const footprint = footprintOf(field, middle)
+          likely.assign(likelyDistanceByBackground(layer, background, height, footprint))
         }
       )
       If(likely.lessThanEqual(0), () => {

@@ -1,6 +1,6 @@
-import { Break, If, float, int } from 'three/tsl'
+import { Break, If, float, int, vec4 } from 'three/tsl'
 import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
-import { keptBetweenPairs, samplePair } from '../../density/tsl/samplePair'
+import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
@@ -52,7 +52,7 @@ export function marchClouds(
   const seen = seenState()
   const state = stepState(jitter)
   const segment = segmentState()
-  const kept = keptBetweenPairs(state.isFine)
+  const clear = vec4(0).toVar() as ClearLayers
   const steps = float(0).toVar()
   const position = float(0).toVar()
   /** Distance of the first layer; 0 before. */
@@ -85,7 +85,7 @@ export function marchClouds(
       const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
       const middle = sampleAt(position.add(length))
       const { range } = segment
-      const clouds = samplePair(field, weatherMap, kept, middle, length, direction, range)
+      const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
       const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
       const accept = (): void => {
         addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)

@@ -19,7 +19,7 @@ import {
 import { fallenFrom, fallExtinction, type FallNodes } from './fall'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
-const STEPS = 0.6
+const STEPS = 0.4
 
 /** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
 const SHORTEST = 200
