@@ -10,7 +10,7 @@ import {
 } from '../../../packages/clouds/src/density/tsl/sample'
 import { weatherBackground } from '../../../packages/clouds/src/density/tsl/weatherBackground'
 import { WeatherMap } from '../../../packages/clouds/src/density/WeatherMap'
-import { fallColumn } from '../../../packages/clouds/src/precipitation/tsl/fall'
+import { fallColumn } from '../../../packages/clouds/src/precipitation/tsl/fallColumn'
 import { cloudScene, mean, offsets } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'

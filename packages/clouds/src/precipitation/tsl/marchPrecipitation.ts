@@ -16,7 +16,8 @@ import {
   type Vec3,
   type Vec4
 } from '../../tsl-types'
-import { fallenFrom, fallExtinction, type FallNodes } from './fall'
+import { fallenFrom, fallExtinction } from './fall'
+import type { FallNodes } from './fallColumn'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
 const STEPS = 0.4
