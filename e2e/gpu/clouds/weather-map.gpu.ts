@@ -1,4 +1,5 @@
-import { cloudPreset } from '@welkin/clouds'
+import type { AtmosphereView } from '@welkin/atmosphere'
+import { cloudPreset, precipitationShafts } from '@welkin/clouds'
 import { int, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
@@ -9,6 +10,7 @@ import {
 } from '../../../packages/clouds/src/density/tsl/sample'
 import { weatherBackground } from '../../../packages/clouds/src/density/tsl/weatherBackground'
 import { WeatherMap } from '../../../packages/clouds/src/density/WeatherMap'
+import { fallColumn } from '../../../packages/clouds/src/precipitation/tsl/fallColumn'
 import { cloudScene, mean, offsets } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -17,6 +19,10 @@ import { gpuTest } from '../harness/gpu-test'
 /** Greatest mean error of the weather's sum [–], and of the shift of noise [m]. */
 const SUM = 0.04
 const SHIFT = 12
+
+/** Greatest mean error of the rank of columns from which it falls, and the least mean that the test means anything with [–]. */
+const RANK = 0.005
+const LEAST_RANK = 0.05
 
 /** Heights of the camera, and the farthest places that are looked up [m]. */
 const views = [
@@ -65,5 +71,47 @@ gpuTest(
     }
   },
   // Minutes on WebGL, where it was the same to four digits.
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'the map has the columns from which rain falls',
+  async t => {
+    const place = { longitude: 20, latitude: 45, height: 2 }
+    const layers = cloudPreset('shower')
+    layers.at(0).set({ coverage: 0.6 })
+    const scene = await cloudScene(t, layers, place)
+    const { field, viewpoint, renderer } = scene
+    const medium = precipitationShafts()
+    medium.update(field, { up: viewpoint.clone().normalize() } as AtmosphereView)
+    const map = new WeatherMap(field, index => medium.fallOf(index))
+    map.render(renderer, viewpoint.clone().normalize())
+    const inputs = offsets(viewpoint, 512, 30_000, 7, () => 500)
+    const found = await evaluateOnGpu(renderer, inputs, input => {
+      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+      const sample: CloudSample = {
+        offset,
+        ...field.view.localCoordinates(offset),
+        distance: input.w
+      }
+      const index = int(0)
+      const layer = layerAt(field, index)
+      const subpoint = subpointOffset(field, sample).toConst()
+      const footprint = footprintOf(field, sample)
+      const background = weatherBackground(field, layer, subpoint, sample, footprint)
+      const nodes = medium.fallOf(index)
+      const truth = fallColumn(field, layer, nodes, background, subpoint, footprint).x.max(0)
+      const mapped = map.fallAt(index, subpoint)!.x.max(0)
+      return vec4(mapped.sub(truth).abs(), truth, 0, 0)
+    })
+    const [error, rank] = [0, 1].map(component =>
+      mean(inputs.map((_, i) => found[4 * i + component]))
+    )
+    t.note(`rank ${rank.toFixed(3)} in the mean, off by ${error.toFixed(4)}`)
+    expectTrue(rank > LEAST_RANK, `too little rain: a mean rank of ${rank}`)
+    expectTrue(error < RANK, `ranks are off by ${error}`)
+    map.dispose()
+    scene.dispose()
+  },
   { backends: ['webgpu'] }
 )

@@ -2,8 +2,9 @@ import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { Texture, Vector3 } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import type { Float, Int, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Float, Int, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
+import { fallColumn, type FallNodes } from '../precipitation/tsl/fallColumn'
 import type { CloudField } from './CloudField'
 import { layerAt, type LayerNodes } from './tsl/layer'
 import { zenithAt } from './tsl/sample'
@@ -26,6 +27,12 @@ const MAXIMUM_DISTANCE = 60_000
 const EVEN = 20_000
 
 /**
+ * Greatest distance over the ground from the camera at which the map has what falls [m]: texels are 90 m wide below the
+ * camera, 9 km there. Nearer: far shafts vanish (*Rain and snow*).
+ */
+const FALL_DISTANCE = 180_000
+
+/**
  * Distance within which texels of the map of whole regions are about as wide, over that of the farthest clouds in sight. Greater:
  * fronts on the horizon blur (*World clouds*).
  */
@@ -46,6 +53,7 @@ const perPosition = (size: number, even: number): number =>
   ((size - 2 * MARGIN) / (2 * size)) * (1 + even)
 
 const PER_POSITION = perPosition(SIZE, EVEN / MAXIMUM_DISTANCE)
+const FALL_PER_POSITION = perPosition(SIZE, EVEN / FALL_DISTANCE)
 const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
 
 /** A place that a texel of a map stands for. */
@@ -62,11 +70,15 @@ interface PlaceInMap {
  * there take one texture read in place of three that wait for each other. Farther away they take four, but the long code of
  * fronts and belts is not in their shader: a second map has the weather of whole regions, for all layers, as far as clouds are in sight.
  *
- * Each layer has a tile, one above the other. Positions are displacements in the plane that touches the sphere at
+ * Where there is precipitation, it is mapped as well, by the columns from which it falls: that is smooth, and the search for storms is long.
+ *
+ * Each layer has a tile, one above the other, and another one aside of it for what falls. Positions are displacements in the plane that touches the sphere at
  * the subpoint, at ρ / (ρ + EVEN) for a distance ρ from it.
  */
 export class WeatherMap {
   readonly #field: CloudField
+  /** Precipitation of a layer by its index, where there is any. */
+  readonly #fallOf: ((index: Int) => FallNodes) | undefined
   readonly #target
   readonly #regionalTarget
   readonly #passes: readonly FragmentPass[]
@@ -81,10 +93,12 @@ export class WeatherMap {
     vector3()
   ]
 
-  constructor(field: CloudField) {
+  /** @param fallOf - Precipitation of a layer by its index; left out, there is none. */
+  constructor(field: CloudField, fallOf?: (index: Int) => FallNodes) {
     this.#field = field
+    this.#fallOf = fallOf
     const { length } = field.layers
-    this.#target = tableTarget('Welkin.CloudsWeather', SIZE, SIZE * length)
+    this.#target = tableTarget('Welkin.CloudsWeather', SIZE * this.#columns, SIZE * length)
     this.#regionalTarget = tableTarget('Welkin.CloudsRegions', 2 * REGIONAL_SIZE, REGIONAL_SIZE)
     const node = (value: Texture): LevelTexture<Vec2> =>
       texture(value) as unknown as LevelTexture<Vec2>
@@ -116,16 +130,42 @@ export class WeatherMap {
     return { flat, subpoint, footprint }
   }
 
+  /** Tiles of a layer. */
+  get #columns(): number {
+    return this.#fallOf === undefined ? 1 : 2
+  }
+
   #draw(): Vec4 {
     const field = this.#field
+    const fallOf = this.#fallOf
     return Fn(() => {
-      const at = (uv() as unknown as Vec2).mul(vec2(1, field.layers.length)).toConst() as Vec2
-      const layer = layerAt(field, at.y.floor().toInt().toConst())
-      const position = vec2(at.x, at.y.fract()).sub(0.5).div(PER_POSITION).toConst() as Vec2
+      const tiles = vec2(this.#columns, field.layers.length)
+      const at = (uv() as unknown as Vec2).mul(tiles).toConst() as Vec2
+      const index = at.y.floor().toInt().toConst() as Int
+      const layer = layerAt(field, index)
+      const isFall = at.x.greaterThan(1).toConst()
+      const perPosition = isFall.select(FALL_PER_POSITION, PER_POSITION)
+      const position = at.fract().sub(0.5).div(perPosition).toConst() as Vec2
       const place = this.#placeAt(position, float(EVEN), layer.baseAltitude)
       const { flat, subpoint, footprint } = place
       const up = zenithAt(field, subpoint)
-      return weatherBackground(field, layer, subpoint, { up }, footprint, this.#systemsAt(flat))
+      const found = weatherBackground(
+        field,
+        layer,
+        subpoint,
+        { up },
+        footprint,
+        this.#systemsAt(flat)
+      ).toVar() as Variable<Vec4>
+      if (fallOf !== undefined) {
+        If(isFall, () => {
+          const far = flat.length().add(EVEN).toConst() as Float
+          const texel = far.mul(far).mul(1 / (EVEN * SIZE * FALL_PER_POSITION))
+          const width = footprint.max(texel).toConst() as Float
+          found.assign(fallColumn(field, layer, fallOf(index), found, subpoint, width))
+        })
+      }
+      return found
     })()
   }
 
@@ -187,13 +227,29 @@ export class WeatherMap {
     const found = vec4(0).toVar() as Vec4
     If(distance.lessThan(MAXIMUM_DISTANCE), () => {
       const inTile = flat.div(distance.add(EVEN)).mul(PER_POSITION).add(0.5)
-      const row = inTile.y.add(float(index)).div(layers.length)
-      found.assign(this.#map.sample(vec2(inTile.x, row)).level(0))
+      const at = inTile.add(vec2(0, float(index))).div(vec2(this.#columns, layers.length))
+      found.assign(this.#map.sample(at).level(0))
     }).Else(() => {
       const around = this.#systemsAt(flat)
       found.assign(weatherBackground(this.#field, layer, subpoint, { up }, footprint, around))
     })
     return found
+  }
+
+  /**
+   * The column from which precipitation of a layer falls: `fallColumn`. To be called inside of a shader function.
+   *
+   * @returns Undefined if the map has none.
+   */
+  fallAt(index: Int, subpoint: Vec3): Vec4 | undefined {
+    if (this.#fallOf === undefined) return undefined
+    const [x, y] = this.#axes
+    const flat = vec2(subpoint.dot(x), subpoint.dot(y)).toConst() as Vec2
+    const distance = flat.length().toConst() as Float
+    const inTile = flat.div(distance.add(EVEN)).mul(FALL_PER_POSITION).add(0.5)
+    const at = inTile.add(vec2(1, float(index))).div(vec2(2, this.#field.layers.length))
+    const isIn = distance.lessThan(FALL_DISTANCE).select(1, 0)
+    return this.#map.sample(at).level(0).mul(isIn).toConst()
   }
 
   /** Weather of whole regions at a displacement in the plane, from the map of it [m]. */

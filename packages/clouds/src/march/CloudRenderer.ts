@@ -148,8 +148,11 @@ export class CloudRenderer {
   #current = 0
 
   constructor(inputs: Omit<CloudScene, 'weatherMap'>) {
-    const { field, viewRays } = inputs
-    this.#weatherMap = new WeatherMap(field)
+    const { field, viewRays, precipitation } = inputs
+    this.#weatherMap = new WeatherMap(
+      field,
+      precipitation && (index => precipitation.fallOf(index))
+    )
     this.#field = compiledByKinds(field)
     const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
     this.viewRays = viewRays

@@ -1,32 +1,14 @@
-import { Fn, If, float, mix, smoothstep, vec2, vec3 } from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
-import { resolutionAt } from '../../density/tsl/resolution'
 import { subpointOffset, type CloudSample } from '../../density/tsl/sample'
 import { backgroundAt } from '../../density/tsl/sampler'
-import { cloudWeather } from '../../density/tsl/weather'
-import { unpackBackground } from '../../density/tsl/weatherBackground'
 import type { WeatherMap } from '../../density/WeatherMap'
-import { cumulative } from '../../noise/tsl/noiseChannels'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
 import { extinctionForm, fallForm } from '../fallForm'
-
-/** Precipitation of a layer, as shaders see it: lengths [m], rates [mm/h of water]. */
-export interface FallNodes {
-  readonly rate: Float
-  readonly share: Float
-  /** 1/depth of virga [1/m]; 0 where nothing evaporates. */
-  readonly perVirga: Float
-  readonly freezingLevel: Float
-  readonly hail: Float
-  /** Altitude above which nothing falls yet. */
-  readonly ceiling: Float
-  /** Wind's axis times half its growth with height [1/s], and times the layer's shear [–]: downwind is `cross(·, zenith)`. */
-  readonly windAxis: Vec3
-  readonly shearAxis: Vec3
-}
+import { fallColumn, type FallNodes } from './fallColumn'
 
 /** Precipitation at a place. */
 export interface Fallen {
@@ -127,20 +109,18 @@ export function fallenFrom(
     const drift = aside.cross(up).toConst() as Vec3
     const offset = sample.offset.add(drift).toConst() as Vec3
     const above: CloudSample = { offset, altitude, up, distance }
-    const packed = backgroundAt(field, layer, above, { map, index: layer.index })
-    const background = unpackBackground(packed)
-    const resolution = resolutionAt(layer, distance.mul(field.pixelAngle).toConst())
     const subpoint = subpointOffset(field, above).toConst() as Vec3
-    const still = vec3(0).xy as Vec2
-    const weather = cloudWeather(field, layer, background, subpoint, still, resolution)
-    const columns = background.coverage.mul(nodes.share).max(1e-4)
-    rank.assign(cumulative(weather.sum).oneMinus().div(columns).oneMinus().max(0))
-    If(rank.greaterThan(0).and(background.coverage.greaterThan(0)), () => {
+    const footprint = distance.mul(field.pixelAngle).toConst() as Float
+    const column =
+      map?.fallAt(layer.index, subpoint) ??
+      fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
+    rank.assign(column.x.max(0))
+    If(rank.greaterThan(0), () => {
       const atBase = offset.add(up.mul(baseAltitude.sub(altitude))).toConst() as Vec3
       const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
-      const footprint = resolution.footprint.max(blur).mul(layer.perShapePeriod)
-      const level = levelOf(footprint, 1 / NOISE_SIZE.shape)
-      const { coarse, fine } = billows(field, layer, atBase, background.shift, level)
+      const width = footprint.max(blur).mul(layer.perShapePeriod)
+      const level = levelOf(width, 1 / NOISE_SIZE.shape)
+      const { coarse, fine } = billows(field, layer, atBase, column.zw as Vec2, level)
       const streak = coarse
         .mul(fallForm.coarseStreaks)
         .add(fine.mul(fallForm.fineStreaks))

@@ -16,10 +16,11 @@ import {
   type Vec3,
   type Vec4
 } from '../../tsl-types'
-import { fallenFrom, fallExtinction, type FallNodes } from './fall'
+import { fallenFrom, fallExtinction } from './fall'
+import type { FallNodes } from './fallColumn'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
-const STEPS = 0.6
+const STEPS = 0.4
 
 /** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
 const SHORTEST = 200
