@@ -194,6 +194,21 @@ const valleys: ValleyStill[] = [
     valley: { view: 'village', hour: 22.5, season: 0.27 }
   },
   {
+    name: 'valley-moonlight',
+    about: 'a full moon high over winter: shadows of mountains, trees and clouds',
+    valley: { view: 'slope', hour: 22, season: 0.764, weather: 'broken' }
+  },
+  {
+    name: 'valley-moonlit-village',
+    about: 'the same before the village: shadows of houses and trees beside the lamps',
+    valley: { view: 'village', hour: 23.5, season: 0.764 }
+  },
+  {
+    name: 'valley-finish',
+    about: 'ambient occlusion among trees and houses',
+    valley: { view: 'village', hour: 16, occlusion: true, antialiasing: 'smaa' }
+  },
+  {
     name: 'valley-shower',
     about: 'a low sun behind: shafts of rain before mountains with a bow in them, wet ground',
     valley: { view: 'village', hour: 12.3, season: 0.62, weather: 'shower' }

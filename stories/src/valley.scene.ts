@@ -77,7 +77,7 @@ export async function createValley(
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
     arc?.update(valley.cycle.hour, current.latitude, current.season)
-    readout?.update(camera, ground, valley.cycle, spent)
+    readout?.update(camera, ground, valley.cycle, current, spent)
   }
 
   let ready: Promise<void> = Promise.resolve()

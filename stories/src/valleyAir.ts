@@ -20,9 +20,9 @@ import type {
 } from '@welkin/atmosphere'
 import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
-import type { Light, PerspectiveCamera, Scene } from 'three'
+import type { PerspectiveCamera, Scene } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { pass, vec4 } from 'three/tsl'
+import { pass, shadow, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
@@ -39,9 +39,9 @@ export interface ValleyAir {
   readonly shafts: LightShafts
   readonly cascades: CSMShadowNode
   /** Sunlight and moonlight. */
-  readonly directLights: readonly Light[]
-  /** Lights of moon and night sky. */
-  readonly nightLights: readonly Light[]
+  readonly directLights: readonly [SunDirectionalLight, MoonDirectionalLight]
+  /** Light of the sky in moonlight, and of stars and airglow. */
+  readonly nightSky: readonly [SkyLightProbe, NightLightProbe]
   /** The finished picture, with the distance along the camera's axis in alpha. */
   readonly picture: TextureNode
   /** The finished picture, exposed. */
@@ -74,8 +74,8 @@ export function valleyAir(
   const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
   const night = new NightLightProbe(atmosphere)
   scene.add(sun, sun.target, sky, moonlight, moonlight.target, moonlitSky, night)
+  sun.castShadow = moonlight.castShadow = true
   // #endregion
-  sun.castShadow = true
   sun.shadow.mapSize.setScalar(2048)
   sun.shadow.camera.far = 40_000 // as deep as cascades are wide, and the mountains before them
 
@@ -95,8 +95,9 @@ export function valleyAir(
   const precipitation = falling.shafts // rain and snow under clouds
   const node = clouds(air, depth, camera, atmosphere, layers, { quality, precipitation })
   Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
-  cloudSkyLight(sky, node)
-  cloudSkyLight(night, node)
+  const ofMoon = cloudShadow(node, shadow(moonlight), luna.source)
+  Object.assign(moonlight.shadow, { shadowNode: ofMoon })
+  for (const each of [sky, moonlitSky, night]) cloudSkyLight(each, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
   const lights = [sun, sky, moonlight, moonlitSky, night]
   const around = falling.over(node, depth, camera, atmosphere, lights) // and around the camera
@@ -111,7 +112,7 @@ export function valleyAir(
     shafts,
     cascades,
     directLights: [sun, moonlight],
-    nightLights: [moonlight, moonlitSky, night],
+    nightSky: [moonlitSky, night],
     picture,
     exposure,
     dispose() {

@@ -25,6 +25,7 @@ import { CascadeTurns } from './CascadeTurns'
 import { createGround, groundHeight, LAKE, VILLAGE } from './ground'
 import { createLake } from './lake'
 import { LakeMirror } from './LakeMirror'
+import { MoonShadow } from './MoonShadow'
 import { StreetLamps } from './StreetLamps'
 import { setLit } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
@@ -128,7 +129,9 @@ export class Valley {
   readonly #node
   readonly #shafts
   readonly #cascadeTurns: CascadeTurns
-  readonly #nightLights
+  readonly #moonShadow: MoonShadow
+  readonly #moonlights
+  readonly #nightSky
   readonly #sun
   readonly #environment
   readonly #finish: ValleyFinish
@@ -146,8 +149,11 @@ export class Valley {
     const air = valleyAir(scene, camera, this.#layers, state.quality, sky, this.#falling)
     const { atmosphere, clouds: node, shafts, exposure } = air
     this.#cascadeTurns = new CascadeTurns(air.cascades)
-    this.#nightLights = air.nightLights
-    this.#sun = air.directLights[0]
+    this.#nightSky = air.nightSky[1]
+    const [sun, moonlight] = air.directLights
+    this.#sun = sun
+    this.#moonShadow = new MoonShadow(moonlight)
+    this.#moonlights = [moonlight, air.nightSky[0]] as const
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: LONGITUDE, latitude: state.latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
@@ -236,9 +242,15 @@ export class Valley {
     for (const each of this.#trees) each.visible = trees
     this.#village.object.visible = village
     this.#water.mesh.visible = water
-    if (trees !== before.trees || village !== before.village) this.#cascadeTurns.reset()
+    if (trees !== before.trees || village !== before.village) this.#redrawShadows()
     this.#applyWeather(atOnce)
     this.#finish.set(this.#state)
+  }
+
+  /** Has shadow maps drawn anew: other things cast shadows now. */
+  #redrawShadows(): void {
+    this.#cascadeTurns.reset()
+    this.#moonShadow.reset()
   }
 
   #applyWeather(atOnce = false): void {
@@ -259,14 +271,17 @@ export class Valley {
     this.exposure.compensation = SNOW_COMPENSATION * this.#falling.water.snowCover
     this.camera.updateMatrixWorld()
     const isSorted = this.#trees.map(each => each.update(this.camera)).includes(true)
-    if (isSorted) this.#cascadeTurns.reset()
+    if (isSorted) this.#redrawShadows()
     this.cycle.update(deltaSeconds)
     const { sunDirection, luminanceScale } = this.atmosphere
     this.#cascadeTurns.update(this.camera, sunDirection)
     const [from, to] = LAMPS
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
-    for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
+    const isNight = elevation < NIGHT_LIGHTS
+    const isMoonlit = this.#moonShadow.update(this.camera, isNight)
+    for (const light of this.#moonlights) setLit(light, isMoonlit)
+    setLit(this.#nightSky, isNight)
     setLit(this.#sun, elevation > SUNLIGHT)
     this.#village.light(share, luminanceScale)
     const { autoClear } = this.#renderer

@@ -1,5 +1,6 @@
 import { skyVelocity } from '@welkin/atmosphere'
 import { cloudVelocity } from '@welkin/clouds'
+import { DoubleSide } from 'three'
 import type { PerspectiveCamera, Scene } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
@@ -17,8 +18,10 @@ import {
   pass,
   rtt,
   screenUV,
+  vec4,
   velocity
 } from 'three/tsl'
+import { NodeMaterial } from 'three/webgpu'
 import type { Node, PassNode, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
 import { lensOn } from './lens'
@@ -78,7 +81,8 @@ export class ValleyFinish {
     this.dispose()
     const shown = this.#keep(new ToneTable()).shown(this.#picture(effects))
     const smooth = { fxaa, smaa }[antialiasing as string]
-    this.#pipeline.outputNode = smooth === undefined ? shown : this.#keep(smooth(shown))
+    this.#pipeline.outputNode =
+      smooth === undefined ? shown : this.#keep(smooth(this.#texture(shown, 'Shown')))
     this.#pipeline.needsUpdate = true
   }
 
@@ -90,17 +94,19 @@ export class ValleyFinish {
     scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
     let picture: Node = exposure
     if (motion !== null && effects.antialiasing === 'traa') {
-      const smooth = traa(this.#texture(picture), depth, motion, this.#camera)
+      const smooth = traa(this.#texture(picture, 'TRAA'), depth, motion, this.#camera)
       picture = this.#keep(smooth)
     }
     if (effects.depthOfField) {
-      const sharp = this.#texture(picture)
+      const sharp = this.#texture(picture, 'DoF')
       const { focus, range, blur } = lensOn(this.#air.picture)
       const lens = [focus, range, blur] as unknown as number[]
       picture = this.#keep(dof(sharp, scenePass.getViewZNode(), lens[0], lens[1], lens[2]))
     }
     if (motion !== null && effects.motionBlur) {
-      picture = motionBlur(this.#texture(picture), motion, int(12))
+      picture = motionBlur(this.#texture(picture, 'MotionBlur'), motion, int(12))
+      // Bloom reads it, too.
+      if (effects.bloom) picture = this.#texture(picture, 'MotionBlur')
     }
     if (effects.bloom) {
       const halo = this.#keep(bloom(picture as never, GLOW, 0.7, 0))
@@ -114,12 +120,17 @@ export class ValleyFinish {
     const { scenePass, depth, clouds } = this.#air
     scenePass.setMRT(mrt({ output, velocity }))
     const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
-    return this.#texture(this.#keep(cloudVelocity(sky, clouds)))
+    return this.#texture(this.#keep(cloudVelocity(sky, clouds)), 'Motion')
   }
 
   #occlusion(): PassNode['contextNode'] {
     const before = this.#keep(pass(this.#scene, this.#camera, { samples: 0 }))
-    before.setMRT(mrt({ output: normalView }))
+    before.renderTarget.texture.name = 'Occluders'
+    // Without the light that things have at their vertices.
+    const material = this.#keep(new NodeMaterial())
+    material.side = DoubleSide
+    material.fragmentNode = vec4(normalView, 1)
+    before.overrideMaterial = material
     const occlusion = this.#keep(
       ao(before.getTextureNode('depth'), before.getTextureNode(), this.#camera)
     )
@@ -127,9 +138,15 @@ export class ValleyFinish {
     return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
   }
 
-  /** A picture that effects read at many places. */
-  #texture(picture: Node): ReturnType<typeof rtt> {
-    return this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
+  /**
+   * A picture that effects read at many places.
+   *
+   * @param name - Name of its pass.
+   */
+  #texture(picture: Node, name: string): ReturnType<typeof rtt> {
+    const texture = this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
+    texture.name = name
+    return texture
   }
 
   #keep<T extends object>(used: T): T {
