@@ -17,7 +17,6 @@ const PARTS: readonly (keyof ValleyState)[] = [
   'clouds',
   'shafts',
   'mist',
-  'nightSky',
   'trees',
   'village',
   'water',
@@ -27,7 +26,8 @@ const PARTS: readonly (keyof ValleyState)[] = [
 /** Everything that is on before bloom, depth of field and TRAA. */
 const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
 
-const WINTER = { season: 0.764, hour: 22 } as const
+/** The full moon stands high. */
+const WINTER = { date: Date.UTC(2026, 11, 24), hour: 22 } as const
 
 /** Weathers and hours with all that is on, and what one of them costs as the story opens. */
 const ROWS: readonly (readonly [name: string, changes: Partial<ValleyState>])[] = [

@@ -16,7 +16,8 @@ import type {
   LightShafts,
   MilkyWay,
   Moon,
-  Stars
+  Stars,
+  SunFlare
 } from '@welkin/atmosphere'
 import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
@@ -37,13 +38,14 @@ export interface ValleyAir {
   readonly depth: TextureNode
   readonly clouds: CloudsNode
   readonly shafts: LightShafts
+  readonly flare: SunFlare
   readonly cascades: CSMShadowNode
   /** Sunlight and moonlight. */
   readonly directLights: readonly [SunDirectionalLight, MoonDirectionalLight]
   /** Light of the sky in moonlight, and of stars and airglow. */
   readonly nightSky: readonly [SkyLightProbe, NightLightProbe]
   /** The finished picture, with the distance along the camera's axis in alpha. */
-  readonly picture: TextureNode
+  readonly picture: PictureNode
   /** The finished picture, exposed. */
   readonly exposure: AutoExposureNode
   /** Frees the lights and their shadows. */
@@ -67,7 +69,8 @@ export function valleyAir(
 ): ValleyAir {
   // #region sky and light
   const atmosphere = new Atmosphere({ parameters: standardEarthParameters() })
-  atmosphere.add(galaxy, starlight, luna, glow, sunFlare()) // far before near
+  const flare = sunFlare()
+  atmosphere.add(galaxy, starlight, luna, glow, flare) // far before near
   const sun = new SunDirectionalLight(atmosphere, 6000) // 6 km from its target: over the mountains
   const sky = new SkyLightProbe(atmosphere)
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 6000)
@@ -110,6 +113,7 @@ export function valleyAir(
     depth,
     clouds: node,
     shafts,
+    flare,
     cascades,
     directLights: [sun, moonlight],
     nightSky: [moonlitSky, night],

@@ -8,6 +8,7 @@ import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
+import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
 import {
   builtinAOContext,
@@ -32,7 +33,8 @@ export const ANTIALIASING = {
   none: { label: 'None' },
   fxaa: { label: 'FXAA' },
   smaa: { label: 'SMAA' },
-  traa: { label: 'TRAA (over frames)' }
+  traa: { label: 'TRAA (over frames)' },
+  taau: { label: 'TAAU (over frames, from a quarter of the pixels)' }
 } as const
 
 /** Post effects of the valley. */
@@ -48,6 +50,9 @@ export interface ValleyEffects {
 /** Strength of the glow around what is bright. */
 const GLOW = 0.02
 
+/** Pixels along a side that TAAU adds up, over those of the canvas. */
+const UPSCALED = 0.5
+
 /** Reach of ambient occlusion [m]. */
 const OCCLUSION_REACH = 3
 
@@ -61,6 +66,8 @@ export class ValleyFinish {
   readonly #air: ValleyAir
   /** Effects that are on, and what is to be freed with them. */
   #key = ''
+  /** Pixels along a side over those of the canvas, of what is drawn next. */
+  #scale = 1
   #used: Disposable[] = []
 
   constructor(pipeline: RenderPipeline, scene: Scene, camera: PerspectiveCamera, air: ValleyAir) {
@@ -89,13 +96,21 @@ export class ValleyFinish {
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
-    const isMoved = effects.antialiasing === 'traa' || effects.motionBlur
+    const isUpscaled = effects.antialiasing === 'taau'
+    this.#scale = isUpscaled ? UPSCALED : 1
+    scenePass.setResolutionScale(this.#scale)
+    this.#air.picture.scale = this.#scale
+    const isMoved = isUpscaled || effects.antialiasing === 'traa' || effects.motionBlur
     const motion = isMoved ? this.#motion() : null
     scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
     let picture: Node = exposure
     if (motion !== null && effects.antialiasing === 'traa') {
       const smooth = traa(this.#texture(picture, 'TRAA'), depth, motion, this.#camera)
       picture = this.#keep(smooth)
+    }
+    if (motion !== null && isUpscaled) {
+      picture = this.#keep(taau(this.#texture(picture, 'TAAU'), depth, motion, this.#camera))
+      this.#scale = 1
     }
     if (effects.depthOfField) {
       const sharp = this.#texture(picture, 'DoF')
@@ -144,7 +159,9 @@ export class ValleyFinish {
    * @param name - Name of its pass.
    */
   #texture(picture: Node, name: string): ReturnType<typeof rtt> {
-    const texture = this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
+    const texture = this.#keep(
+      rtt(picture as never, null, null, { depthBuffer: false, resolutionScale: this.#scale })
+    )
     texture.name = name
     return texture
   }
