@@ -186,12 +186,12 @@ const valleys: ValleyStill[] = [
   {
     name: 'valley-evening',
     about: 'low sun among broken clouds',
-    valley: { view: 'shore', hour: 18.8, weather: 'broken' }
+    valley: { view: 'shore', hour: 19.2, weather: 'broken' }
   },
   {
     name: 'valley-night',
     about: 'windows of the village, moonlit mountains, stars: dark, not black',
-    valley: { view: 'village', hour: 22.5, date: Date.UTC(2026, 5, 27) }
+    valley: { view: 'village', hour: 22.5, date: Date.UTC(2026, 8, 26) }
   },
   {
     name: 'valley-moonlight',

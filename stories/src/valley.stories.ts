@@ -133,12 +133,12 @@ export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope',
 
 /** The sun sets among broken clouds. */
 export const Evening: Story = {
-  args: { hour: 18.8, weather: 'broken', view: 'shore', dayLength: 1800 }
+  args: { hour: 19.2, weather: 'broken', view: 'shore', dayLength: 1800 }
 }
 
 /** The village's windows are lit; the moon and the stars are. */
 export const Night: Story = {
-  args: { hour: 22.5, date: Date.UTC(2026, 5, 27), dayLength: 1800 },
+  args: { hour: 22.5, date: Date.UTC(2026, 8, 26), dayLength: 1800 },
   tags: ['screenshot', 'webgpu-only']
 }
 

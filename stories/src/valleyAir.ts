@@ -23,7 +23,7 @@ import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clou
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { PerspectiveCamera, Scene } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { pass, shadow, vec4 } from 'three/tsl'
+import { BasicShadowFilter, pass, shadow, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
@@ -99,7 +99,7 @@ export function valleyAir(
   const node = clouds(air, depth, camera, atmosphere, layers, { quality, precipitation })
   Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
   const ofMoon = cloudShadow(node, shadow(moonlight), luna.source)
-  Object.assign(moonlight.shadow, { shadowNode: ofMoon })
+  Object.assign(moonlight.shadow, { shadowNode: ofMoon, filterNode: BasicShadowFilter })
   for (const each of [sky, moonlitSky, night]) cloudSkyLight(each, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
   const lights = [sun, sky, moonlight, moonlitSky, night]

@@ -71,6 +71,10 @@ const SUNLIGHT = -3
 /** Brighter pictures while snow lies, or it is grey [stops]. */
 const SNOW_COMPENSATION = 0.8
 
+/** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
+const NIGHT_COMPENSATION = 1.3
+const NIGHT = -10
+
 /** Longitude of the valley, where the weather has good cumulus [degrees]. */
 const LONGITUDE = 10
 
@@ -258,7 +262,6 @@ export class Valley {
   render(deltaSeconds: number): void {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
     this.#falling.update(deltaSeconds, this.#falls())
-    this.exposure.compensation = SNOW_COMPENSATION * this.#falling.water.snowCover
     this.camera.updateMatrixWorld()
     if (this.#land.update(this.camera)) this.#redrawShadows()
     const exposed = this.atmosphere.luminanceScale
@@ -273,6 +276,9 @@ export class Valley {
     const [from, to] = LAMPS
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
+    const night = MathUtils.smoothstep(-elevation, 0, -NIGHT)
+    this.exposure.compensation =
+      SNOW_COMPENSATION * this.#falling.water.snowCover + NIGHT_COMPENSATION * night
     const isNight = elevation < NIGHT_LIGHTS
     const isMoonlit = this.#moonShadow.update(this.camera, isNight)
     for (const light of this.#moonlights) setLit(light, isMoonlit)

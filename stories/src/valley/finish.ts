@@ -12,13 +12,17 @@ import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
 import {
   builtinAOContext,
+  float,
+  Fn,
   int,
   mrt,
   normalView,
   output,
   pass,
   rtt,
+  screenSize,
   screenUV,
+  vec2,
   vec4,
   velocity
 } from 'three/tsl'
@@ -26,6 +30,8 @@ import { NodeMaterial } from 'three/webgpu'
 import type { Node, PassNode, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
 import { lensOn } from './lens'
+import { PictureNode } from './PictureNode'
+import { stillVelocity } from './stillVelocity'
 import { ToneTable } from './ToneTable'
 
 /** Ways to smooth edges. */
@@ -53,8 +59,16 @@ const GLOW = 0.02
 /** Pixels along a side that TAAU adds up, over those of the canvas. */
 const UPSCALED = 0.5
 
-/** Reach of ambient occlusion [m]. */
+/** Reach of ambient occlusion [m], and its samples. */
 const OCCLUSION_REACH = 3
+const OCCLUSION_SAMPLES = 6
+
+/** Pixels along a side of ambient occlusion and of motion blur's velocities, over those of the picture. */
+const COARSE = 0.5
+
+/** Samples of motion blur where nothing moves, and where much does: one for two pixels in between. */
+const FEWEST_SAMPLES = 3
+const MOST_SAMPLES = 12
 
 type Disposable = { dispose(): void }
 
@@ -100,8 +114,8 @@ export class ValleyFinish {
     this.#scale = isUpscaled ? UPSCALED : 1
     scenePass.setResolutionScale(this.#scale)
     this.#air.picture.scale = this.#scale
-    const isMoved = isUpscaled || effects.antialiasing === 'traa' || effects.motionBlur
-    const motion = isMoved ? this.#motion() : null
+    const isTemporal = isUpscaled || effects.antialiasing === 'traa'
+    const motion = isTemporal ? this.#motion() : null
     scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
     let picture: Node = exposure
     if (motion !== null && effects.antialiasing === 'traa') {
@@ -118,10 +132,10 @@ export class ValleyFinish {
       const lens = [focus, range, blur] as unknown as number[]
       picture = this.#keep(dof(sharp, scenePass.getViewZNode(), lens[0], lens[1], lens[2]))
     }
-    if (motion !== null && effects.motionBlur) {
-      picture = motionBlur(this.#texture(picture, 'MotionBlur'), motion, int(12))
+    if (effects.motionBlur) {
+      picture = this.#blurred(picture, motion ?? this.#motionOfCamera())
       // Bloom reads it, too.
-      if (effects.bloom) picture = this.#texture(picture, 'MotionBlur')
+      if (effects.bloom) picture = this.#drawn(picture, 'MotionBlur')
     }
     if (effects.bloom) {
       const halo = this.#keep(bloom(picture as never, GLOW, 0.7, 0))
@@ -138,9 +152,33 @@ export class ValleyFinish {
     return this.#texture(this.#keep(cloudVelocity(sky, clouds)), 'Motion')
   }
 
+  /** Coarse motion for motion blur: of clouds and of what stands still, which costs the scene's pass nothing. */
+  #motionOfCamera(): PictureNode {
+    const velocity = stillVelocity(this.#air.depth, this.#camera)
+    const motion = this.#keep(cloudVelocity(velocity, this.#air.clouds))
+    const drawn = this.#drawn(motion, 'Motion')
+    drawn.scale = COARSE
+    return drawn
+  }
+
+  /** A picture as a shutter that is open all of a frame takes it; where little moves, few samples do. */
+  #blurred(picture: Node, motion: Node): Node {
+    const sharp = this.#drawn(picture, 'MotionBlur')
+    return Fn(() => {
+      const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
+      const pixels = way.mul(screenSize).length()
+      const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
+      const samples = float(count)
+      // Three divides the sum of one more.
+      const light = motionBlur(sharp as never, way as never, count as never) as Node<'vec4'>
+      return light.mul(samples.div(samples.add(1)))
+    })()
+  }
+
   #occlusion(): PassNode['contextNode'] {
     const before = this.#keep(pass(this.#scene, this.#camera, { samples: 0 }))
     before.renderTarget.texture.name = 'Occluders'
+    before.setResolutionScale(COARSE * this.#scale)
     // Without the light that things have at their vertices.
     const material = this.#keep(new NodeMaterial())
     material.side = DoubleSide
@@ -150,6 +188,8 @@ export class ValleyFinish {
       ao(before.getTextureNode('depth'), before.getTextureNode(), this.#camera)
     )
     occlusion.radius.value = OCCLUSION_REACH
+    occlusion.samples.value = OCCLUSION_SAMPLES
+    occlusion.resolutionScale = COARSE * this.#scale
     return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
   }
 
@@ -164,6 +204,11 @@ export class ValleyFinish {
     )
     texture.name = name
     return texture
+  }
+
+  /** A picture that effects read, not cleared before it is drawn, which saves time. */
+  #drawn(picture: Node, name: string): PictureNode {
+    return this.#keep(new PictureNode(name, vec4(picture as Node<'vec4'>)))
   }
 
   #keep<T extends object>(used: T): T {
