@@ -88,7 +88,7 @@ const meta: Meta<ValleyArgs> = {
       name: 'Smooth edges',
       ...choiceOf(ANTIALIASING),
       description:
-        'No reflections of the screen (SSR): three has them on metal, of which there is none',
+        'Reflections of the screen (SSR) are not here: three has them on metal, of which there is none',
       ...POST_EFFECTS
     },
     occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),

@@ -8,7 +8,6 @@ import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
-import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
 import {
   builtinAOContext,
@@ -39,8 +38,7 @@ export const ANTIALIASING = {
   none: { label: 'None' },
   fxaa: { label: 'FXAA' },
   smaa: { label: 'SMAA' },
-  traa: { label: 'TRAA (over frames)' },
-  taau: { label: 'TAAU (over frames, from a quarter of the pixels)' }
+  traa: { label: 'TRAA (over frames)' }
 } as const
 
 /** Post effects of the valley. */
@@ -55,9 +53,6 @@ export interface ValleyEffects {
 
 /** Strength of the glow around what is bright. */
 const GLOW = 0.02
-
-/** Pixels along a side that TAAU adds up, over those of the canvas. */
-const UPSCALED = 0.5
 
 /** Reach of ambient occlusion [m], and its samples. */
 const OCCLUSION_REACH = 3
@@ -80,8 +75,6 @@ export class ValleyFinish {
   readonly #air: ValleyAir
   /** Effects that are on, and what is to be freed with them. */
   #key = ''
-  /** Pixels along a side over those of the canvas, of what is drawn next. */
-  #scale = 1
   #used: Disposable[] = []
 
   constructor(pipeline: RenderPipeline, scene: Scene, camera: PerspectiveCamera, air: ValleyAir) {
@@ -110,21 +103,12 @@ export class ValleyFinish {
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
-    const isUpscaled = effects.antialiasing === 'taau'
-    this.#scale = isUpscaled ? UPSCALED : 1
-    scenePass.setResolutionScale(this.#scale)
-    this.#air.picture.scale = this.#scale
-    const isTemporal = isUpscaled || effects.antialiasing === 'traa'
-    const motion = isTemporal ? this.#motion() : null
+    const motion = effects.antialiasing === 'traa' ? this.#motion() : null
     scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
     let picture: Node = exposure
-    if (motion !== null && effects.antialiasing === 'traa') {
+    if (motion !== null) {
       const smooth = traa(this.#texture(picture, 'TRAA'), depth, motion, this.#camera)
       picture = this.#keep(smooth)
-    }
-    if (motion !== null && isUpscaled) {
-      picture = this.#keep(taau(this.#texture(picture, 'TAAU'), depth, motion, this.#camera))
-      this.#scale = 1
     }
     if (effects.depthOfField) {
       const sharp = this.#texture(picture, 'DoF')
@@ -170,7 +154,7 @@ export class ValleyFinish {
       const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
       const samples = float(count)
       // Three divides the sum of one more.
-      const light = motionBlur(sharp as never, way as never, count as never) as Node<'vec4'>
+      const light = motionBlur(sharp, way, count)
       return light.mul(samples.div(samples.add(1)))
     })()
   }
@@ -178,7 +162,7 @@ export class ValleyFinish {
   #occlusion(): PassNode['contextNode'] {
     const before = this.#keep(pass(this.#scene, this.#camera, { samples: 0 }))
     before.renderTarget.texture.name = 'Occluders'
-    before.setResolutionScale(COARSE * this.#scale)
+    before.setResolutionScale(COARSE)
     // Without the light that things have at their vertices.
     const material = this.#keep(new NodeMaterial())
     material.side = DoubleSide
@@ -189,7 +173,7 @@ export class ValleyFinish {
     )
     occlusion.radius.value = OCCLUSION_REACH
     occlusion.samples.value = OCCLUSION_SAMPLES
-    occlusion.resolutionScale = COARSE * this.#scale
+    occlusion.resolutionScale = COARSE
     return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
   }
 
@@ -199,9 +183,7 @@ export class ValleyFinish {
    * @param name - Name of its pass.
    */
   #texture(picture: Node, name: string): ReturnType<typeof rtt> {
-    const texture = this.#keep(
-      rtt(picture as never, null, null, { depthBuffer: false, resolutionScale: this.#scale })
-    )
+    const texture = this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
     texture.name = name
     return texture
   }

@@ -23,7 +23,6 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Occluders', 'ambient occlusion'],
   ['AO', 'ambient occlusion'],
   ['TRAA', 'TRAA'],
-  ['TAAU', 'TAAU'],
   ['DoF', 'depth of field'],
   ['DepthOfField', 'depth of field'],
   ['MotionBlur', 'motion blur'],

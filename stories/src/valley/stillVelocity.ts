@@ -26,7 +26,7 @@ export function stillVelocity(depth: TextureNode, camera: PerspectiveCamera): No
   return Fn(() => {
     const at = uv()
     const { r } = depth as unknown as { r: Node<'float'> }
-    const place = getViewPosition(at as never, r as never, unprojection as never) as Node<'vec3'>
+    const place = getViewPosition(at, r, unprojection)
     const before = (toPrevious as unknown as Node<'mat4'>).mul(vec4(place, 1)).toConst()
     const now = at.mul(2).sub(1)
     const ndc = before.xy.div(before.w.max(1e-6))
