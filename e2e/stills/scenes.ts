@@ -186,22 +186,37 @@ const valleys: ValleyStill[] = [
   {
     name: 'valley-evening',
     about: 'low sun among broken clouds',
-    valley: { view: 'shore', hour: 18.8, weather: 'broken' }
+    valley: { view: 'shore', hour: 19.2, weather: 'broken' }
   },
   {
     name: 'valley-night',
     about: 'windows of the village, moonlit mountains, stars: dark, not black',
-    valley: { view: 'village', hour: 22.5, season: 0.27 }
+    valley: { view: 'village', hour: 22.5, date: Date.UTC(2026, 8, 26) }
+  },
+  {
+    name: 'valley-moonlight',
+    about: 'a full moon high over winter: shadows of mountains, trees and clouds',
+    valley: { view: 'slope', hour: 22, date: Date.UTC(2026, 11, 24), weather: 'broken' }
+  },
+  {
+    name: 'valley-moonlit-village',
+    about: 'the same before the village: shadows of houses and trees beside the lamps',
+    valley: { view: 'village', hour: 23.5, date: Date.UTC(2026, 11, 24) }
+  },
+  {
+    name: 'valley-finish',
+    about: 'ambient occlusion about trees and houses',
+    valley: { view: 'village', hour: 16, occlusion: true, motionBlur: true }
   },
   {
     name: 'valley-shower',
     about: 'a low sun behind: shafts of rain before mountains with a bow in them, wet ground',
-    valley: { view: 'village', hour: 12.3, season: 0.62, weather: 'shower' }
+    valley: { view: 'village', hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower' }
   },
   {
     name: 'valley-snow',
     about: 'snow on ground and roofs, flakes around the camera, mountains lost in what falls',
-    valley: { view: 'village', hour: 11, season: 0.75, weather: 'snow' }
+    valley: { view: 'village', hour: 11, date: Date.UTC(2026, 11, 19), weather: 'snow' }
   },
   {
     name: 'valley-above',

@@ -8,8 +8,10 @@ import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
 import type { ValleyName } from './valley/views'
 
-export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality'> {
+export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality' | 'date'> {
   view: ValleyName
+  /** A moment of the day, UTC [ms since 1970]; from an address, a date. */
+  date: number | Date
   quality: CloudQualityName
 }
 
@@ -24,6 +26,7 @@ const SHOW_HOUR = 3
 
 const stateOf = (args: ValleyArgs): ValleyState => ({
   ...args,
+  date: Number(args.date),
   paused: args.paused || args.frame,
   quality: args.frame ? STILL.quality : args.quality
 })
@@ -76,8 +79,8 @@ export async function createValley(
     showHour(delta)
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
-    arc?.update(valley.cycle.hour, current.latitude, current.season)
-    readout?.update(camera, ground, valley.cycle, spent)
+    arc?.update(valley.cycle.hour, current.latitude, valley.cycle.season)
+    readout?.update(camera, ground, valley.cycle, current, spent)
   }
 
   let ready: Promise<void> = Promise.resolve()

@@ -38,7 +38,7 @@ const factor = (name: string, description: string): object => ({
 
 const meta: Meta<ValleyArgs> = {
   title: 'Valley, all day',
-  render: mount(createValley, code, ({ quality }) => quality),
+  render: mount(createValley, code),
   argTypes: {
     view: {
       name: 'Place',
@@ -61,22 +61,36 @@ const meta: Meta<ValleyArgs> = {
       description: 'On the clock'
     },
     paused: { name: 'Paused', control: 'boolean' },
-    season: {
-      name: 'Season [part of a year]',
-      control: { type: 'range', min: 0, max: 0.99, step: 0.01 },
-      description:
-        '0 the equinox of March 2026, 0.25 the solstice of June; the moon is as of the date'
+    date: {
+      name: 'Date [UTC]',
+      control: 'date',
+      description: 'Sun, moon and stars are as of this day; its time is the hour above'
     },
     latitude: { name: 'Latitude [°]', control: { type: 'range', min: -66, max: 66, step: 1 } },
     quality: { name: 'Quality', control: 'select', options: Object.keys(cloudQualities) },
     clouds: part('Clouds'),
+    cloudShadows: part("Clouds' shadows"),
+    shadows: part('Shadows of things'),
     shafts: part('Light shafts'),
+    haze: part('Haze'),
     mist: part('Mist'),
-    nightSky: part('Moon, stars and airglow'),
+    precipitation: part('Rain and snow'),
+    moon: part('Moon'),
+    stars: part('Stars and Milky Way'),
+    airglow: part('Airglow'),
+    flare: part("Sun's halo"),
     trees: part('Trees'),
-    village: part('Village'),
+    village: part('Village and lamps'),
     water: part('Lake'),
-    antialiasing: { name: 'Smooth edges', ...choiceOf(ANTIALIASING), ...POST_EFFECTS },
+    environment: part('Sky in the lake'),
+    autoExposure: part('Automatic exposure'),
+    antialiasing: {
+      name: 'Smooth edges',
+      ...choiceOf(ANTIALIASING),
+      description:
+        'Reflections of the screen (SSR) are not here: three has them on metal, of which there is none',
+      ...POST_EFFECTS
+    },
     occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),
     bloom: effect('Bloom', 'A halo about what is bright'),
     depthOfField: effect(
@@ -84,11 +98,11 @@ const meta: Meta<ValleyArgs> = {
       'Sharp in the middle; the nearer that is, the more is blurred'
     ),
     motionBlur: effect('Motion blur', 'While the camera turns or flies'),
-    haze: factor('Haze', 'Optical depth of the air between camera and scene'),
+    hazeStrength: factor('Haze', 'Optical depth of the air between camera and scene'),
     twilightSaturation: factor('Colour of twilight', 'Saturation; 0 is grey'),
     shaftStrength: factor('Light shafts', 'Light that shadowed air loses'),
     starlight: factor('Stars', 'Light of stars and Milky Way'),
-    airglow: factor('Airglow', 'Light of the upper air itself, by night'),
+    airglowStrength: factor('Airglow', 'Light of the upper air itself, by night'),
     earthshine: factor('Earthshine', "On the moon's dark side"),
     ambient: factor('Ambient of clouds', 'Light of sky and ground on clouds'),
     purkinjeShift: {
@@ -119,20 +133,22 @@ export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope',
 
 /** The sun sets among broken clouds. */
 export const Evening: Story = {
-  args: { hour: 18.8, weather: 'broken', view: 'shore', dayLength: 1800 }
+  args: { hour: 19.2, weather: 'broken', view: 'shore', dayLength: 1800 }
 }
 
 /** The village's windows are lit; the moon and the stars are. */
 export const Night: Story = {
-  args: { hour: 22.5, season: 0.27, dayLength: 1800 },
+  args: { hour: 22.5, date: Date.UTC(2026, 8, 26), dayLength: 1800 },
   tags: ['screenshot', 'webgpu-only']
 }
 
 /** Showers over the valley at noon in autumn, and their bow before the mountains. */
 export const Shower: Story = {
-  args: { hour: 12.3, season: 0.62, weather: 'shower', dayLength: 1800 },
+  args: { hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower', dayLength: 1800 },
   tags: ['screenshot', 'webgpu-only']
 }
 
 /** Snowfall in winter: the ground whitens. */
-export const Snow: Story = { args: { hour: 11, season: 0.75, weather: 'snow', dayLength: 1800 } }
+export const Snow: Story = {
+  args: { hour: 11, date: Date.UTC(2026, 11, 19), weather: 'snow', dayLength: 1800 }
+}

@@ -16,13 +16,14 @@ import type {
   LightShafts,
   MilkyWay,
   Moon,
-  Stars
+  Stars,
+  SunFlare
 } from '@welkin/atmosphere'
 import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
-import type { Light, PerspectiveCamera, Scene } from 'three'
+import type { PerspectiveCamera, Scene } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { pass, vec4 } from 'three/tsl'
+import { BasicShadowFilter, pass, shadow, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
@@ -37,13 +38,14 @@ export interface ValleyAir {
   readonly depth: TextureNode
   readonly clouds: CloudsNode
   readonly shafts: LightShafts
+  readonly flare: SunFlare
   readonly cascades: CSMShadowNode
   /** Sunlight and moonlight. */
-  readonly directLights: readonly Light[]
-  /** Lights of moon and night sky. */
-  readonly nightLights: readonly Light[]
+  readonly directLights: readonly [SunDirectionalLight, MoonDirectionalLight]
+  /** Light of the sky in moonlight, and of stars and airglow. */
+  readonly nightSky: readonly [SkyLightProbe, NightLightProbe]
   /** The finished picture, with the distance along the camera's axis in alpha. */
-  readonly picture: TextureNode
+  readonly picture: PictureNode
   /** The finished picture, exposed. */
   readonly exposure: AutoExposureNode
   /** Frees the lights and their shadows. */
@@ -67,15 +69,16 @@ export function valleyAir(
 ): ValleyAir {
   // #region sky and light
   const atmosphere = new Atmosphere({ parameters: standardEarthParameters() })
-  atmosphere.add(galaxy, starlight, luna, glow, sunFlare()) // far before near
+  const flare = sunFlare()
+  atmosphere.add(galaxy, starlight, luna, glow, flare) // far before near
   const sun = new SunDirectionalLight(atmosphere, 6000) // 6 km from its target: over the mountains
   const sky = new SkyLightProbe(atmosphere)
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 6000)
   const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
   const night = new NightLightProbe(atmosphere)
   scene.add(sun, sun.target, sky, moonlight, moonlight.target, moonlitSky, night)
+  sun.castShadow = moonlight.castShadow = true
   // #endregion
-  sun.castShadow = true
   sun.shadow.mapSize.setScalar(2048)
   sun.shadow.camera.far = 40_000 // as deep as cascades are wide, and the mountains before them
 
@@ -95,8 +98,9 @@ export function valleyAir(
   const precipitation = falling.shafts // rain and snow under clouds
   const node = clouds(air, depth, camera, atmosphere, layers, { quality, precipitation })
   Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
-  cloudSkyLight(sky, node)
-  cloudSkyLight(night, node)
+  const ofMoon = cloudShadow(node, shadow(moonlight), luna.source)
+  Object.assign(moonlight.shadow, { shadowNode: ofMoon, filterNode: BasicShadowFilter })
+  for (const each of [sky, moonlitSky, night]) cloudSkyLight(each, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
   const lights = [sun, sky, moonlight, moonlitSky, night]
   const around = falling.over(node, depth, camera, atmosphere, lights) // and around the camera
@@ -109,9 +113,10 @@ export function valleyAir(
     depth,
     clouds: node,
     shafts,
+    flare,
     cascades,
     directLights: [sun, moonlight],
-    nightLights: [moonlight, moonlitSky, night],
+    nightSky: [moonlitSky, night],
     picture,
     exposure,
     dispose() {

@@ -15,6 +15,8 @@ export class PictureNode extends TextureNode {
     return 'PictureNode'
   }
 
+  /** Pixels along a side over those of the canvas, in ]0, 1]. */
+  scale = 1
   readonly #target
   readonly #pass: FragmentPass
 
@@ -34,7 +36,7 @@ export class PictureNode extends TextureNode {
   override updateBefore({ renderer }: NodeFrame): undefined {
     if (renderer === null) return
     const { x, y } = renderer.getDrawingBufferSize(_size)
-    this.#target.setSize(x, y)
+    this.#target.setSize(Math.floor(x * this.scale), Math.floor(y * this.scale))
     this.#pass.render(renderer, this.#target)
   }
 

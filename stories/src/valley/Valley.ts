@@ -11,66 +11,44 @@ import {
 import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
 import { cloudEnvironment, cloudFogLight, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
-import { MathUtils, type Mesh, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { EYE_HEIGHT } from '../moving/Walk'
-import { disposeMeshes } from '../scene'
 import { valleyAir } from '../valleyAir'
 import { ValleyFinish, type ValleyEffects } from './finish'
 import { ValleyPrecipitation } from './falling'
-import { createForest, createGrove } from './forest'
-import { applyFactors, type ValleyFactors } from '../valleyFactors'
+import {
+  applyFactors,
+  type FactorTargets,
+  type ValleyFactors,
+  type ValleyFeatures
+} from '../valleyFactors'
 import { CascadeTurns } from './CascadeTurns'
-import { createGround, groundHeight, LAKE, VILLAGE } from './ground'
+import { groundHeight, LAKE, VILLAGE } from './ground'
 import { createLake } from './lake'
 import { LakeMirror } from './LakeMirror'
+import { Land } from './Land'
+import { MoonShadow } from './MoonShadow'
 import { StreetLamps } from './StreetLamps'
 import { setLit } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
 import { valleyLayers, type Weather, WeatherBlend, type WeatherName } from './weather'
 
-/** Parts of the valley that can be switched on and off while it runs. */
-export interface ValleyFeatures {
-  clouds: boolean
-  shafts: boolean
-  mist: boolean
-  nightSky: boolean
-  trees: boolean
-  village: boolean
-  water: boolean
-}
-
 /** State of the valley. */
 export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactors {
   weather: WeatherName
   /** [degrees] */
   latitude: number
-  /** Part of the year since the equinox of March. */
-  season: number
+  /** A moment of the day, UTC [ms since 1970]. */
+  date: number
   /** Solar time at which it begins [h]. */
   hour: number
   /** Length of a day on the clock [s]. */
   dayLength: number
   paused: boolean
   quality: CloudQualityName | CloudQuality
-}
-
-/** Quads of the ground along a side, by quality. */
-const QUADS: Readonly<Record<CloudQualityName, number>> = {
-  low: 256,
-  medium: 320,
-  high: 640,
-  ultra: 800
-}
-
-/** Trees that stand one by one, by quality. */
-const TREES: Readonly<Record<CloudQualityName, number>> = {
-  low: 3000,
-  medium: 10_000,
-  high: 18_000,
-  ultra: 30_000
 }
 
 /** Elevations of the sun between which lamps are lit [degrees]. */
@@ -92,6 +70,10 @@ const SUNLIGHT = -3
 
 /** Brighter pictures while snow lies, or it is grey [stops]. */
 const SNOW_COMPENSATION = 0.8
+
+/** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
+const NIGHT_COMPENSATION = 1.3
+const NIGHT = -10
 
 /** Longitude of the valley, where the weather has good cumulus [degrees]. */
 const LONGITUDE = 10
@@ -119,16 +101,19 @@ export class Valley {
   readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 12, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
-  readonly #ground
-  readonly #trees
   readonly #lamps = new StreetLamps(doors())
+  readonly #land = new Land(this.#falling, this.#lamps)
   readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps)
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node
   readonly #shafts
+  readonly #targets: FactorTargets
+  readonly #cascades
   readonly #cascadeTurns: CascadeTurns
-  readonly #nightLights
+  readonly #moonShadow: MoonShadow
+  readonly #moonlights
+  readonly #nightSky
   readonly #sun
   readonly #environment
   readonly #finish: ValleyFinish
@@ -138,21 +123,23 @@ export class Valley {
   constructor(renderer: WebGPURenderer, state: ValleyState) {
     this.#state = { ...state }
     this.#weather = new WeatherBlend(state.weather)
-    const quality = typeof state.quality === 'string' ? state.quality : 'low'
-    this.#ground = createGround(QUADS[quality], this.#falling.water, this.#lamps.reflected())
-    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 12))]
     const { scene, camera } = this
     const sky = [...this.#glows, this.#moon] as const
     const air = valleyAir(scene, camera, this.#layers, state.quality, sky, this.#falling)
-    const { atmosphere, clouds: node, shafts, exposure } = air
+    const { atmosphere, clouds: node, shafts, exposure, flare } = air
+    this.#cascades = air.cascades
+    this.#targets = { shafts, node, sky: this.#glows, luna: this.#moon, flare, exposure }
     this.#cascadeTurns = new CascadeTurns(air.cascades)
-    this.#nightLights = air.nightLights
-    this.#sun = air.directLights[0]
+    this.#nightSky = air.nightSky[1]
+    const [sun, moonlight] = air.directLights
+    this.#sun = sun
+    this.#moonShadow = new MoonShadow(moonlight)
+    this.#moonlights = [moonlight, air.nightSky[0]] as const
     this.atmosphere = atmosphere
     atmosphere.place({ longitude: LONGITUDE, latitude: state.latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
     const mistLight = cloudFogLight(this.#mist, node) // where there are no shafts
-    scene.add(this.#ground, ...this.#trees, this.#village.object)
+    scene.add(this.#land, this.#village.object)
 
     this.#node = node
     this.#shafts = shafts
@@ -167,9 +154,7 @@ export class Valley {
     this.pipeline = new RenderPipeline(renderer)
     this.#finish = new ValleyFinish(this.pipeline, scene, camera, air)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
-    this.cycle.time = Date.UTC(2026, 5, 21, 12)
-    this.cycle.season = state.season
-    this.cycle.hour = state.hour
+    this.#setDay(state.hour)
     this.#dispose.push(
       () => this.pipeline.dispose(),
       ...[
@@ -217,34 +202,49 @@ export class Valley {
   set(changes: Partial<ValleyState>, atOnce = false): void {
     const before = { ...this.#state }
     Object.assign(this.#state, changes)
-    const { weather, latitude, season, hour, dayLength, paused, quality } = this.#state
-    const { nightSky, trees, village, water } = this.#state
+    const { weather, latitude, date, hour, dayLength, paused, quality } = this.#state
+    const { trees, village, water, environment } = this.#state
     this.#weather.set(weather, atOnce)
     this.cycle.rate = 86_400 / dayLength
     this.cycle.paused = paused
     this.cycle.latitude = latitude
     // The clock goes on from where these were set.
-    if (season !== before.season) this.cycle.season = season
+    if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
+    const fineness = typeof quality === 'string' ? quality : 'low'
     this.#node.quality = quality
-    this.#shafts.quality = SHAFTS[typeof quality === 'string' ? quality : 'low']
-    const sky = this.#glows
-    const { exposure } = this
-    const targets = { shafts: this.#shafts, node: this.#node, sky, luna: this.#moon, exposure }
-    const on = { shafts: Number(this.#state.shafts), nightSky: Number(nightSky) }
-    applyFactors(this.#state, this.#style, targets, on)
-    for (const each of this.#trees) each.visible = trees
+    this.#shafts.quality = SHAFTS[fineness]
+    this.#land.setQuality(fineness)
+    this.#land.showTrees(trees)
+    applyFactors(this.#state, this.#style, this.#targets)
+    // The lake alone has an environment.
+    this.scene.environmentIntensity = Number(environment)
     this.#village.object.visible = village
     this.#water.mesh.visible = water
-    if (trees !== before.trees || village !== before.village) this.#cascadeTurns.reset()
+    const keys = ['trees', 'village', 'quality'] as const
+    if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)
     this.#finish.set(this.#state)
   }
 
+  /** Goes to an hour of the day of the date [h]. */
+  #setDay(hour: number): void {
+    const day = 86_400_000
+    this.cycle.time = (Math.floor(this.#state.date / day) + 0.5) * day
+    this.cycle.hour = hour
+  }
+
+  /** Has shadow maps drawn anew: other things cast shadows now. */
+  #redrawShadows(): void {
+    this.#cascadeTurns.reset()
+    this.#moonShadow.reset()
+  }
+
   #applyWeather(atOnce = false): void {
     const { turbidity, mist } = this.#weather.current
-    this.#falling.set(this.#weather.current, atOnce)
-    this.#weather.apply(this.#layers, this.#state.clouds)
+    const { clouds, cloudShadows, precipitation } = this.#state
+    this.#falling.set(this.#falls(), atOnce)
+    this.#weather.apply(this.#layers, clouds, cloudShadows, precipitation)
     this.#mist.density = this.#state.mist ? mist : 0
     // In steps: the tables are made anew for each.
     const stepped = Math.round(turbidity * 4) / 4
@@ -252,21 +252,37 @@ export class Valley {
     this.#turbidity = stepped
   }
 
+  /** Weather, dry where rain and snow are switched off. */
+  #falls(): Weather {
+    const { current } = this.#weather
+    return this.#state.precipitation ? current : { ...current, rain: 0, snow: 0 }
+  }
+
   /** Draws the next frame. */
   render(deltaSeconds: number): void {
     if (this.#weather.update(deltaSeconds)) this.#applyWeather()
-    this.#falling.update(deltaSeconds, this.#weather.current)
-    this.exposure.compensation = SNOW_COMPENSATION * this.#falling.water.snowCover
+    this.#falling.update(deltaSeconds, this.#falls())
     this.camera.updateMatrixWorld()
-    const isSorted = this.#trees.map(each => each.update(this.camera)).includes(true)
-    if (isSorted) this.#cascadeTurns.reset()
+    if (this.#land.update(this.camera)) this.#redrawShadows()
+    const exposed = this.atmosphere.luminanceScale
     this.cycle.update(deltaSeconds)
+    if (!this.#state.autoExposure) this.atmosphere.luminanceScale = exposed // stays as it is
     const { sunDirection, luminanceScale } = this.atmosphere
     this.#cascadeTurns.update(this.camera, sunDirection)
+    // Cascades have no lights before the first frame.
+    for (const { shadow } of [...this.#cascades.lights, this.#moonlights[0]]) {
+      if (shadow !== undefined) shadow.intensity = Number(this.#state.shadows)
+    }
     const [from, to] = LAMPS
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
-    for (const light of this.#nightLights) setLit(light, elevation < NIGHT_LIGHTS)
+    const night = MathUtils.smoothstep(-elevation, 0, -NIGHT)
+    this.exposure.compensation =
+      SNOW_COMPENSATION * this.#falling.water.snowCover + NIGHT_COMPENSATION * night
+    const isNight = elevation < NIGHT_LIGHTS
+    const isMoonlit = this.#moonShadow.update(this.camera, isNight)
+    for (const light of this.#moonlights) setLit(light, isMoonlit)
+    setLit(this.#nightSky, isNight)
     setLit(this.#sun, elevation > SUNLIGHT)
     this.#village.light(share, luminanceScale)
     const { autoClear } = this.#renderer
@@ -291,8 +307,7 @@ export class Valley {
 
   dispose(): void {
     for (const dispose of this.#dispose) dispose()
-    disposeMeshes(this.#ground.children as Mesh[])
-    for (const each of this.#trees) each.dispose()
+    this.#land.dispose()
     this.#village.dispose()
     this.#water.dispose()
     this.#mirror.dispose()

@@ -1,5 +1,6 @@
 import { skyVelocity } from '@welkin/atmosphere'
 import { cloudVelocity } from '@welkin/clouds'
+import { DoubleSide } from 'three'
 import type { PerspectiveCamera, Scene } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
@@ -10,18 +11,26 @@ import { smaa } from 'three/addons/tsl/display/SMAANode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
 import {
   builtinAOContext,
+  float,
+  Fn,
   int,
   mrt,
   normalView,
   output,
   pass,
   rtt,
+  screenSize,
   screenUV,
+  vec2,
+  vec4,
   velocity
 } from 'three/tsl'
+import { NodeMaterial } from 'three/webgpu'
 import type { Node, PassNode, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
 import { lensOn } from './lens'
+import { PictureNode } from './PictureNode'
+import { stillVelocity } from './stillVelocity'
 import { ToneTable } from './ToneTable'
 
 /** Ways to smooth edges. */
@@ -45,8 +54,16 @@ export interface ValleyEffects {
 /** Strength of the glow around what is bright. */
 const GLOW = 0.02
 
-/** Reach of ambient occlusion [m]. */
+/** Reach of ambient occlusion [m], and its samples. */
 const OCCLUSION_REACH = 3
+const OCCLUSION_SAMPLES = 6
+
+/** Pixels along a side of ambient occlusion and of motion blur's velocities, over those of the picture. */
+const COARSE = 0.5
+
+/** Samples of motion blur where nothing moves, and where much does: one for two pixels in between. */
+const FEWEST_SAMPLES = 3
+const MOST_SAMPLES = 12
 
 type Disposable = { dispose(): void }
 
@@ -78,29 +95,31 @@ export class ValleyFinish {
     this.dispose()
     const shown = this.#keep(new ToneTable()).shown(this.#picture(effects))
     const smooth = { fxaa, smaa }[antialiasing as string]
-    this.#pipeline.outputNode = smooth === undefined ? shown : this.#keep(smooth(shown))
+    this.#pipeline.outputNode =
+      smooth === undefined ? shown : this.#keep(smooth(this.#texture(shown, 'Shown')))
     this.#pipeline.needsUpdate = true
   }
 
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
-    const isMoved = effects.antialiasing === 'traa' || effects.motionBlur
-    const motion = isMoved ? this.#motion() : null
+    const motion = effects.antialiasing === 'traa' ? this.#motion() : null
     scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
     let picture: Node = exposure
-    if (motion !== null && effects.antialiasing === 'traa') {
-      const smooth = traa(this.#texture(picture), depth, motion, this.#camera)
+    if (motion !== null) {
+      const smooth = traa(this.#texture(picture, 'TRAA'), depth, motion, this.#camera)
       picture = this.#keep(smooth)
     }
     if (effects.depthOfField) {
-      const sharp = this.#texture(picture)
+      const sharp = this.#texture(picture, 'DoF')
       const { focus, range, blur } = lensOn(this.#air.picture)
       const lens = [focus, range, blur] as unknown as number[]
       picture = this.#keep(dof(sharp, scenePass.getViewZNode(), lens[0], lens[1], lens[2]))
     }
-    if (motion !== null && effects.motionBlur) {
-      picture = motionBlur(this.#texture(picture), motion, int(12))
+    if (effects.motionBlur) {
+      picture = this.#blurred(picture, motion ?? this.#motionOfCamera())
+      // Bloom reads it, too.
+      if (effects.bloom) picture = this.#drawn(picture, 'MotionBlur')
     }
     if (effects.bloom) {
       const halo = this.#keep(bloom(picture as never, GLOW, 0.7, 0))
@@ -114,22 +133,64 @@ export class ValleyFinish {
     const { scenePass, depth, clouds } = this.#air
     scenePass.setMRT(mrt({ output, velocity }))
     const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
-    return this.#texture(this.#keep(cloudVelocity(sky, clouds)))
+    return this.#texture(this.#keep(cloudVelocity(sky, clouds)), 'Motion')
+  }
+
+  /** Coarse motion for motion blur: of clouds and of what stands still, which costs the scene's pass nothing. */
+  #motionOfCamera(): PictureNode {
+    const velocity = stillVelocity(this.#air.depth, this.#camera)
+    const motion = this.#keep(cloudVelocity(velocity, this.#air.clouds))
+    const drawn = this.#drawn(motion, 'Motion')
+    drawn.scale = COARSE
+    return drawn
+  }
+
+  /** A picture as a shutter that is open all of a frame takes it; where little moves, few samples do. */
+  #blurred(picture: Node, motion: Node): Node {
+    const sharp = this.#drawn(picture, 'MotionBlur')
+    return Fn(() => {
+      const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
+      const pixels = way.mul(screenSize).length()
+      const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
+      const samples = float(count)
+      // Three divides the sum of one more.
+      const light = motionBlur(sharp, way, count)
+      return light.mul(samples.div(samples.add(1)))
+    })()
   }
 
   #occlusion(): PassNode['contextNode'] {
     const before = this.#keep(pass(this.#scene, this.#camera, { samples: 0 }))
-    before.setMRT(mrt({ output: normalView }))
+    before.renderTarget.texture.name = 'Occluders'
+    before.setResolutionScale(COARSE)
+    // Without the light that things have at their vertices.
+    const material = this.#keep(new NodeMaterial())
+    material.side = DoubleSide
+    material.fragmentNode = vec4(normalView, 1)
+    before.overrideMaterial = material
     const occlusion = this.#keep(
       ao(before.getTextureNode('depth'), before.getTextureNode(), this.#camera)
     )
     occlusion.radius.value = OCCLUSION_REACH
+    occlusion.samples.value = OCCLUSION_SAMPLES
+    occlusion.resolutionScale = COARSE
     return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
   }
 
-  /** A picture that effects read at many places. */
-  #texture(picture: Node): ReturnType<typeof rtt> {
-    return this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
+  /**
+   * A picture that effects read at many places.
+   *
+   * @param name - Name of its pass.
+   */
+  #texture(picture: Node, name: string): ReturnType<typeof rtt> {
+    const texture = this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
+    texture.name = name
+    return texture
+  }
+
+  /** A picture that effects read, not cleared before it is drawn, which saves time. */
+  #drawn(picture: Node, name: string): PictureNode {
+    return this.#keep(new PictureNode(name, vec4(picture as Node<'vec4'>)))
   }
 
   #keep<T extends object>(used: T): T {

@@ -4,7 +4,7 @@ import type { WebGPURenderer } from 'three/webgpu'
 import { overlayOn } from '../overlay'
 import { clockOf } from './clock'
 import { PassTimes, type PassTime } from './PassTimes'
-import { sharesOf } from './shares'
+import { sharesOf, type LastPass } from './shares'
 
 /** Time between two readings [ms]. */
 const PERIOD = 500
@@ -38,9 +38,16 @@ export class Readout {
    *
    * @param ground - Height of the ground below the camera [m].
    * @param cycle - Clock of the scene.
+   * @param effects - Post effects that are on.
    * @param milliseconds - Time that it took on the CPU [ms].
    */
-  update(camera: PerspectiveCamera, ground: number, cycle: DayCycle, milliseconds: number): void {
+  update(
+    camera: PerspectiveCamera,
+    ground: number,
+    cycle: DayCycle,
+    effects: LastPass,
+    milliseconds: number
+  ): void {
     this.#frames++
     this.#cpu += milliseconds
     if (!this.#isReading) void this.#read()
@@ -53,18 +60,18 @@ export class Readout {
     this.#element.textContent =
       `${clock} · east ${x.toFixed(0)} m, north ${(-z).toFixed(0)} m · ` +
       `${(y - ground).toFixed(1)} m above ground\n` +
-      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu()}`
+      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu(effects)}`
     this.#frames = this.#cpu = this.#timedFrames = 0
     this.#passes = []
     this.#since = now
   }
 
   /** Shares of the features, the mean of some frames; nothing where the backend keeps no times. */
-  #gpu(): string {
+  #gpu(effects: LastPass): string {
     const frames = this.#timedFrames
     if (frames === 0) return ''
     const total = this.#passes.reduce((sum, [, milliseconds]) => sum + milliseconds, 0) / frames
-    const shares = sharesOf(this.#passes)
+    const shares = sharesOf(this.#passes, effects)
       .map(([name, milliseconds]) => `${name} ${(milliseconds / frames).toFixed(2)}`)
       .join('\n')
     return ` · GPU ${total.toFixed(1)} ms\n${shares}`

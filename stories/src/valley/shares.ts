@@ -1,4 +1,8 @@
+import type { ValleyEffects } from './finish'
 import type { PassTime } from './PassTimes'
+
+/** Passes that draw to the canvas. */
+const LAST: ReadonlySet<string> = new Set(['canvas', 'Render Pipeline'])
 
 /** Features that passes draw, by how the passes' names begin; the first that fits counts. */
 const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
@@ -8,25 +12,49 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['PMREM', 'mirrored sky'],
   ['LakeMirror', 'mirrored sky'],
   ['Welkin.CloudShadows', "clouds' shadows"],
-  ['Welkin.Cloud', 'clouds'],
+  ['Welkin.FogLight', 'light of the mist'],
+  ['Welkin.CloudFogLight', 'light of the mist'],
+  ['Welkin.Cloud', 'clouds, rain and snow under them'],
   ['Welkin.LightShafts', 'light shafts'],
   ['Welkin.Exposure', 'exposure'],
+  ['Welkin.Precipitation', 'light of rain and snow'],
   ['Welkin.', "air's tables"],
   ['Bloom', 'bloom'],
+  ['Occluders', 'ambient occlusion'],
+  ['AO', 'ambient occlusion'],
+  ['TRAA', 'TRAA'],
+  ['DoF', 'depth of field'],
+  ['DepthOfField', 'depth of field'],
+  ['MotionBlur', 'motion blur'],
+  ['Motion', 'velocity of sky and clouds'],
+  ['SMAA', 'SMAA'],
+  ['Shown', 'tone mapping'],
   // A pass of three's, of what stands in the scene.
   ['output', 'land, trees, village and lake, lit'],
-  // The picture, which exposure meters.
-  ['Picture', 'sky and haze']
+  // The picture, which exposure meters: all that is drawn over the scene, pixel by pixel.
+  ['Picture', 'sky, stars, haze, mist, rain and snow']
 ]
 
-const featureOf = (pass: string): string =>
-  FEATURES.find(([prefix]) => pass.startsWith(prefix))?.[1] ?? 'tone mapping'
+/** Post effects that the last pass draws. */
+export type LastPass = Pick<ValleyEffects, 'antialiasing' | 'bloom' | 'motionBlur'>
 
-/** GPU time of each feature, the longest first [ms]. */
-export function sharesOf(passes: readonly PassTime[]): PassTime[] {
+/** Name of what the last pass draws, to the canvas. */
+export function lastFeature({ antialiasing, bloom, motionBlur }: LastPass): string {
+  if (antialiasing === 'fxaa') return 'FXAA'
+  if (antialiasing === 'smaa') return 'SMAA'
+  return motionBlur && !bloom ? 'motion blur and tone mapping' : 'tone mapping'
+}
+
+/**
+ * GPU time of each feature, the longest first [ms]. What one pass draws has one share, named for all of it.
+ *
+ * @param last - Post effects that the last pass draws.
+ */
+export function sharesOf(passes: readonly PassTime[], last: LastPass): PassTime[] {
   const sums = new Map<string, number>()
   for (const [name, milliseconds] of passes) {
-    const feature = featureOf(name)
+    const known = FEATURES.find(([prefix]) => name.startsWith(prefix))?.[1]
+    const feature = known ?? (LAST.has(name) ? lastFeature(last) : name)
     sums.set(feature, (sums.get(feature) ?? 0) + milliseconds)
   }
   return [...sums].sort(([, a], [, b]) => b - a)

@@ -86,15 +86,19 @@ export class WeatherBlend {
     return true
   }
 
-  /** @param hasClouds - False for a sky without any. */
-  apply(layers: CloudLayers, hasClouds: boolean): void {
+  /**
+   * @param hasClouds - False for a sky without any.
+   * @param shadow - False for clouds without shadows.
+   * @param falls - False for clouds without rain and snow.
+   */
+  apply(layers: CloudLayers, hasClouds: boolean, shadow: boolean, falls: boolean): void {
     const { cumulus, deck, cirrus, rain, snow } = this.current
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
     const freezingLevel = snow > 0 ? 0 : FREEZING
     for (const [i, coverage] of [cumulus, deck, cirrus].entries()) {
-      const rate = hasClouds ? rates[i] : 0
-      const falls = rate > 0 ? { rate, share: 0.8, freezingLevel } : null
-      layers.at(i).set({ coverage: hasClouds ? coverage : 0, precipitation: falls })
+      const rate = hasClouds && falls ? rates[i] : 0
+      const precipitation = rate > 0 ? { rate, share: 0.8, freezingLevel } : null
+      layers.at(i).set({ coverage: hasClouds ? coverage : 0, shadow, precipitation })
     }
   }
 }

@@ -1,0 +1,73 @@
+import type { CloudQualityName } from '@welkin/clouds'
+import { Group, type Mesh, type PerspectiveCamera } from 'three'
+import { disposeMeshes } from '../scene'
+import type { ValleyPrecipitation } from './falling'
+import { createForest, createGrove } from './forest'
+import { createGround } from './ground'
+import type { StreetLamps } from './StreetLamps'
+import type { Trees } from './Trees'
+
+/** Quads of the ground along a side, by quality. */
+const QUADS: Readonly<Record<CloudQualityName, number>> = {
+  low: 256,
+  medium: 320,
+  high: 640,
+  ultra: 800
+}
+
+/** Trees that stand one by one, by quality. */
+const TREES: Readonly<Record<CloudQualityName, number>> = {
+  low: 3000,
+  medium: 10_000,
+  high: 18_000,
+  ultra: 30_000
+}
+
+/** Ground and trees, as fine as the quality; it may change while they are shown. */
+export class Land extends Group {
+  readonly #falling: ValleyPrecipitation
+  readonly #lamps: StreetLamps
+  #quality?: CloudQualityName
+  #hasTrees = true
+  #ground = new Group()
+  #trees: readonly Trees[] = []
+
+  constructor(falling: ValleyPrecipitation, lamps: StreetLamps) {
+    super()
+    this.name = 'Land'
+    this.#falling = falling
+    this.#lamps = lamps
+  }
+
+  /** Has ground and trees of a quality; makes them anew if it is another. */
+  setQuality(quality: CloudQualityName): void {
+    if (quality === this.#quality) return
+    this.#quality = quality
+    this.dispose()
+    this.clear()
+    this.#ground = createGround(QUADS[quality], this.#falling.water, this.#lamps.reflected())
+    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 12))]
+    this.add(this.#ground, ...this.#trees)
+    this.showTrees(this.#hasTrees)
+  }
+
+  showTrees(areShown: boolean): void {
+    this.#hasTrees = areShown
+    for (const each of this.#trees) each.visible = areShown
+  }
+
+  /**
+   * Sorts the trees for a camera.
+   *
+   * @returns True if other trees are drawn now.
+   */
+  update(camera: PerspectiveCamera): boolean {
+    return this.#trees.map(each => each.update(camera)).includes(true)
+  }
+
+  /** Frees what is drawn. */
+  override dispose(): void {
+    disposeMeshes(this.#ground.children as Mesh[])
+    for (const each of this.#trees) each.dispose()
+  }
+}

@@ -1,0 +1,50 @@
+import { expect, it } from 'vitest'
+import { lastFeature, sharesOf } from '../src/valley/shares'
+
+const none = { antialiasing: 'none', bloom: false, motionBlur: false } as const
+
+it('adds up the passes of a feature, the longest first', () => {
+  const passes = [
+    ['Welkin.CloudsMarch', 1],
+    ['Welkin.CloudsShade', 0.5],
+    ['output', 2],
+    ['canvas', 0.1],
+    ['Render Pipeline', 0.1]
+  ] as const
+  expect(sharesOf(passes, none)).toEqual([
+    ['land, trees, village and lake, lit', 2],
+    ['clouds, rain and snow under them', 1.5],
+    ['tone mapping', 0.2]
+  ])
+})
+
+it('gives each post effect a share of its own, and leaves a pass that it does not know its name', () => {
+  // Names as three r187 and `ValleyFinish` give them.
+  const features = {
+    AO: 'ambient occlusion',
+    Occluders: 'ambient occlusion',
+    'TRAA [ RTT ]': 'TRAA',
+    TRAA: 'TRAA',
+    'DoF [ RTT ]': 'depth of field',
+    'DoF [ CoC Blur ]': 'depth of field',
+    'SMAANode.weights': 'SMAA',
+    'MotionBlur [ RTT ]': 'motion blur',
+    'Motion [ RTT ]': 'velocity of sky and clouds',
+    'Bloom [ High Pass ]': 'bloom',
+    'Shown [ RTT ]': 'tone mapping',
+    'Welkin.CloudFogLight': 'light of the mist',
+    Else: 'Else'
+  }
+  for (const [pass, feature] of Object.entries(features)) {
+    expect([pass, ...sharesOf([[pass, 1]], none)[0]]).toEqual([pass, feature, 1])
+  }
+})
+
+it('names the last pass for what it draws', () => {
+  expect(lastFeature(none)).toBe('tone mapping')
+  expect(lastFeature({ ...none, antialiasing: 'smaa' })).toBe('SMAA')
+  expect(lastFeature({ ...none, antialiasing: 'fxaa', motionBlur: true })).toBe('FXAA')
+  expect(lastFeature({ ...none, motionBlur: true })).toBe('motion blur and tone mapping')
+  // Bloom reads the blurred picture, which then has a pass of its own.
+  expect(lastFeature({ ...none, motionBlur: true, bloom: true })).toBe('tone mapping')
+})
