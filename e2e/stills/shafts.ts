@@ -12,6 +12,18 @@ export const shafts = [
   ...Object.entries(shaftViews).map(stillOf),
   ...([
     {
+      name: 'shafts-orbit',
+      about:
+        'from 300 km, the sun 4° up at the left: dark streaks behind storms, in the haze over the sea',
+      clouds: { preset: 'cumulonimbus' },
+      place: { longitude: 139.571, latitude: 35.995 },
+      sun: { elevation: 4, azimuth: 290 },
+      view: { azimuth: 0, pitch: -50 },
+      altitude: 300_000,
+      land: 'planet',
+      shafts: true
+    },
+    {
       name: 'shafts-cumulus',
       about: 'the sun low behind cumulus: rays that fan out from gaps, dark behind towers',
       clouds: { preset: 'congestus' },

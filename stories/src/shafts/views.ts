@@ -50,12 +50,13 @@ export const shaftViews = {
   },
   towers: {
     label: 'Towers in haze',
-    about: 'towers before a sun of 14°, in haze: a dark shaft behind each, none of them dashed',
-    turbidity: 10,
-    fog: { density: 0.0006, falloff: 220 },
-    light: { elevation: 14, azimuth: 236 },
-    view: { azimuth: 248, pitch: 4 },
-    altitude: 60,
+    about:
+      'the sun of 11° down a street, in haze: bright where it comes between the towers, dark behind each',
+    fog: { density: 0.002, falloff: 120 },
+    turbidity: 6,
+    light: { elevation: 11, azimuth: 250 },
+    view: { azimuth: 248, pitch: 2 },
+    altitude: 30,
     land: 'city'
   },
   storm: {
