@@ -42,17 +42,22 @@ import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene, Vector3 } from 'three'
 import { pass, shadow } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
-import { Landscape } from './landscape'
+import { createNoiseTexture } from '../../stories/src/globe/detailNoise'
+import { createCity, type City } from '../../stories/src/globe/city'
+import { Landscape } from '../../stories/src/hills/Landscape'
 import type { Still } from './scenes'
-import { meadow, redDust, snow } from './soil'
+import { meadow, redDust, snow } from '../../stories/src/hills/soil'
 import { readPicture } from './readPicture'
 
 /** Vertical field of view [°]. */
 const FIELD_OF_VIEW = 55
 /** Distance of the sun from its target: its shadows begin there [m]. */
 const LIGHT_DISTANCE = 20_000
-/** Half width of the hills' shadow map [m]. */
+/** Half widths of the shadow maps of hills, and of a city [m]. */
 const SHADOW_EXTENT = 6000
+const CITY_SHADOW_EXTENT = 1500
+
+const extentOf = ({ land }: Still): number => (land === 'city' ? CITY_SHADOW_EXTENT : SHADOW_EXTENT)
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
@@ -72,17 +77,28 @@ function marsBody(): Atmosphere {
   return new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
 }
 
-function sunOf(atmosphere: Atmosphere): SunDirectionalLight {
-  const sun = new SunDirectionalLight(atmosphere, LIGHT_DISTANCE)
-  sun.castShadow = true
-  sun.shadow.mapSize.setScalar(4096)
-  const { camera } = sun.shadow
-  camera.left = camera.bottom = -SHADOW_EXTENT
-  camera.right = camera.top = SHADOW_EXTENT
+/** A light with shadows of the land. */
+function shadowOf<L extends SunDirectionalLight | MoonDirectionalLight>(
+  light: L,
+  extent: number
+): L {
+  light.castShadow = true
+  light.shadow.mapSize.setScalar(4096)
+  const { camera } = light.shadow
+  camera.left = camera.bottom = -extent
+  camera.right = camera.top = extent
   camera.far = 3 * LIGHT_DISTANCE
-  sun.shadow.normalBias = 20
-  return sun
+  light.shadow.normalBias = extent / 300
+  return light
 }
+
+/** Direction in the Y-up frame on the ground, north along −z. */
+const directionOf = ({ elevation, azimuth }: { elevation: number; azimuth: number }): Vector3 =>
+  new Vector3().setFromSphericalCoords(
+    1,
+    MathUtils.degToRad(90 - elevation),
+    MathUtils.degToRad(180 - azimuth)
+  )
 
 function cameraOf({ altitude, view, land }: Still, aspect: number): PerspectiveCamera {
   const isFar = land === 'planet'
@@ -129,6 +145,7 @@ export class StillView {
   readonly #atmosphere: Atmosphere
   readonly #sun: SunDirectionalLight
   readonly #landscape: Landscape | undefined
+  readonly #city: City | undefined
   readonly #shafts: LightShafts | undefined
   readonly #clouds: CloudsNode | undefined
   readonly #lightning: Lightning | undefined
@@ -145,14 +162,25 @@ export class StillView {
     const atmosphere = (this.#atmosphere = atmosphereOf(still))
     const camera = cameraOf(still, width / height)
     const scene = new Scene()
-    const sun = (this.#sun = sunOf(atmosphere))
+    const sun = (this.#sun = shadowOf(
+      new SunDirectionalLight(atmosphere, LIGHT_DISTANCE),
+      extentOf(still)
+    ))
     const sky = new SkyLightProbe(atmosphere)
     scene.add(sun, sun.target, sky)
+    const isNight = still.sun instanceof Date || still.moon !== undefined
+    const moonlight = isNight ? this.#addNight(scene, still.moon) : undefined
+    const key = still.moon === undefined ? sun : moonlight!
     // Continents and seas are the Earth's alone.
     if (still.planet === undefined) atmosphere.add(planetGround())
-    if (still.sun instanceof Date) this.#addNight(scene)
-    else atmosphere.add(sunFlare())
-    if (still.land !== 'planet') {
+    if (!isNight) atmosphere.add(sunFlare())
+    if (still.land === 'city') {
+      this.#city = createCity(createNoiseTexture())
+      const { object } = this.#city
+      object.position.setScalar(0)
+      object.quaternion.identity()
+      scene.add(object)
+    } else if (still.land !== 'planet') {
       const isMars = still.planet === 'mars'
       const soil = isMars ? redDust : still.land === 'snow' ? snow : meadow
       const radius = atmosphere.parameters.bottomRadius
@@ -171,7 +199,7 @@ export class StillView {
     }
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
-    const shafts = still.shafts && lightShafts(atmosphere, camera, sun)
+    const shafts = still.shafts && lightShafts(atmosphere, camera, key)
     this.#shafts = shafts
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     let picture: Node = air
@@ -190,7 +218,8 @@ export class StillView {
         light,
         precipitation: fallOf(layers)
       })
-      Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+      const source = still.moon && moonlight?.source
+      Object.assign(key.shadow, { shadowNode: cloudShadow(node, shadow(key), source) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))
       node.field.bake(renderer)
@@ -234,18 +263,22 @@ export class StillView {
     this.#lightning?.dispose()
     this.#clouds?.dispose()
     this.#landscape?.dispose()
+    this.#city?.dispose()
     this.#shafts?.dispose()
     this.#sun.dispose()
     this.#atmosphere.dispose()
     this.#target.dispose()
   }
 
-  #addNight(scene: Scene): void {
+  /** Moon and stars of the atmosphere's date, or a full moon that stands elsewhere. */
+  #addNight(scene: Scene, at: Still['moon']): MoonDirectionalLight {
     const atmosphere = this.#atmosphere
-    const luna = moon()
+    const luna = at === undefined ? moon() : moon({ direction: directionOf(at), phase: 0.5 })
     atmosphere.add(milkyWay(), stars(), luna, airglow())
     const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
+    if (at !== undefined) shadowOf(moonlight, SHADOW_EXTENT)
     const moonSky = new SkyLightProbe(atmosphere, luna.source)
     scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
+    return moonlight
   }
 }

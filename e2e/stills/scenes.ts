@@ -21,8 +21,10 @@ export interface Still {
   lightning?: { kind: 'ground' | 'cloud'; azimuth: number; distance: number }
   /** Rain all about, in a layer that thins to 1/e over 250 m [mm/h]. */
   rain?: number
-  /** Light shafts, of hills and clouds. */
+  /** Light shafts, of land and clouds, in the light of the sun or of the moon where there is one. */
   shafts?: true
+  /** Elevation and azimuth of a full moon, clockwise from north, whatever the date [°]. */
+  moon?: { elevation: number; azimuth: number }
   /** Turbidity of the air; by default that of the standard Earth. */
   turbidity?: number
   planet?: 'mars'
@@ -33,8 +35,8 @@ export interface Still {
   sun: { elevation: number; azimuth: number } | Date
   /** Azimuth, clockwise from north, and pitch of the camera [°]. */
   view: { azimuth: number; pitch: number }
-  /** Hills and trees about the camera, the same under snow, or the bare planet. */
-  land: 'hills' | 'snow' | 'planet'
+  /** Hills and trees about the camera, the same under snow, towers and streets, or the bare planet. */
+  land: 'hills' | 'snow' | 'city' | 'planet'
 }
 
 /** A still of the story *Valley, all day*: a view, and what differs from how the story opens. */

@@ -1,86 +1,36 @@
 import {
   aerialPerspective,
-  exposureFor,
+  autoExposure,
   heightFog,
   lightShafts,
   moon,
-  MoonDirectionalLight
+  MoonDirectionalLight,
+  NightLightProbe,
+  planetGround,
+  SkyLightProbe,
+  sunFlare
 } from '@welkin/atmosphere'
-import {
-  cloudAirShadow,
-  CloudCover,
-  cloudPreset,
-  clouds,
-  cloudShadow,
-  cloudSkyLight
-} from '@welkin/clouds'
-import type { CloudPresetName, CloudsNode } from '@welkin/clouds'
+import type { Atmosphere, SunDirectionalLight } from '@welkin/atmosphere'
+import { cloudAirShadow, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudsNode } from '@welkin/clouds'
+import { MathUtils, PerspectiveCamera, Scene } from 'three'
+import type { Object3D } from 'three'
 import { shadow } from 'three/tsl'
+import type { Node } from 'three/webgpu'
+import { Air } from './air'
 import { STILL_QUALITY } from './clouds/still'
 import { createCity } from './globe/city'
-import { createLand } from './globe/land'
-import { CITY } from './globe/places'
-import type { Place } from './globe/places'
-import { exposureOf } from './scene'
+import { createNoiseTexture } from './globe/detailNoise'
+import { Landscape } from './hills/Landscape'
+import { meadow } from './hills/soil'
+import { Explorer } from './moving/Explorer'
+import { createRenderer, drawSettled, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
-
-/** A view of shafts: the camera, and objects that cast them. */
-export interface ShaftView extends Place {
-  readonly clouds?: { readonly preset: CloudPresetName; readonly coverage?: number }
-  /** Height above which ground fog thins out, by e in 40 m [m]. */
-  readonly fogBase?: number
-  readonly hasCity?: boolean
-  /** True for the moon's light, by night. */
-  readonly isNight?: boolean
-}
-
-const valley = { longitude: -84.178, latitude: 36.622, height: 345 }
-
-export const VIEWS = {
-  ridge: {
-    label: 'Ridge at sunrise',
-    longitude: -84.163,
-    latitude: 36.492,
-    height: 700,
-    heading: 60,
-    pitch: -3,
-    fogBase: 330
-  },
-  deck: {
-    label: 'Broken deck',
-    ...valley,
-    heading: 45,
-    pitch: 12,
-    clouds: { preset: 'stratocumulus', coverage: 0.7 }
-  },
-  city: { label: 'Towers', ...CITY, height: 130, heading: 248, pitch: -2, hasCity: true },
-  storm: {
-    label: "Storm's shadow",
-    ...valley,
-    height: 10_000,
-    heading: 152,
-    pitch: -6,
-    clouds: { preset: 'cumulonimbus' }
-  },
-  opposite: {
-    label: 'Opposite the sunset',
-    ...valley,
-    heading: 70,
-    pitch: 10,
-    clouds: { preset: 'congestus', coverage: 0.4 }
-  },
-  moon: {
-    label: 'Moonlight',
-    ...valley,
-    heading: 45,
-    pitch: 14,
-    isNight: true,
-    clouds: { preset: 'stratocumulus', coverage: 0.6 }
-  }
-} satisfies Record<string, ShaftView>
+import { shaftViews, type ShaftView } from './shafts/views'
+import { storyHandle } from './storyHandle'
 
 export interface LightShaftsArgs extends RendererArgs {
-  view: keyof typeof VIEWS
+  view: keyof typeof shaftViews
   /** Part of the light that shadowed air loses; 1 is physical, 0 has no shafts. */
   strength: number
   /** Aerosol of the air: 1 is clear, 6 thick haze. */
@@ -89,100 +39,149 @@ export interface LightShaftsArgs extends RendererArgs {
   elevation: number
   /** Its azimuth, clockwise from north [degrees]. */
   azimuth: number
-  /** [stops], 0 as `exposureFor` says. */
+  /** [stops], 0 as the picture asks for. */
   exposure: number
 }
-
-/** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: STILL_QUALITY, frames: 3 }
 
 /** Time of the clouds' drift: there are gaps in the views then [s]. */
 const TIME = 300
 
+/** Frames after which a still has settled. */
+const FRAMES = 5
+
+/** Distance of a light from its target, where its shadows begin, and half widths of shadow maps [m]. */
+const LIGHT_DISTANCE = 20_000
+const SHADOW_EXTENT = 6000
+const CITY_SHADOW_EXTENT = 1500
+
+function castShadows(light: SunDirectionalLight | MoonDirectionalLight, extent: number): void {
+  light.castShadow = true
+  light.distance = LIGHT_DISTANCE
+  light.shadow.mapSize.setScalar(4096)
+  light.shadow.normalBias = extent / 300
+  const { camera } = light.shadow
+  camera.left = camera.bottom = -extent
+  camera.right = camera.top = extent
+  camera.far = 3 * LIGHT_DISTANCE
+}
+
+/** Hills or a city about the camera, if a view has any, in a Y-up frame on the ground. */
+function landOf(
+  { land }: ShaftView,
+  { parameters }: Atmosphere
+): { object: Object3D; dispose: () => void } | undefined {
+  if (land === 'planet') return undefined
+  if (land === 'hills') {
+    const object = new Landscape(parameters.bottomRadius, meadow, true)
+    return { object, dispose: () => object.dispose() }
+  }
+  const city = createCity(createNoiseTexture())
+  city.object.position.setScalar(0)
+  city.object.quaternion.identity()
+  return city
+}
+
+function cameraOf({ altitude, view, land }: ShaftView): PerspectiveCamera {
+  const camera = new PerspectiveCamera(55, 1, 1, land === 'planet' ? 2e7 : 4e5)
+  camera.position.y = altitude
+  const [pitch, turn] = [view.pitch, -view.azimuth].map(MathUtils.degToRad)
+  camera.rotation.set(pitch, turn, 0, 'YXZ')
+  camera.updateMatrixWorld()
+  return camera
+}
+
 /** Shadows in the air: of ridges, towers and clouds, in sunlight and moonlight. */
-export const createLightShafts = (
+export async function createLightShafts(
   canvas: HTMLCanvasElement,
   args: LightShaftsArgs
-): Promise<SceneHandle<LightShaftsArgs>> =>
-  createLand<LightShaftsArgs>(
-    canvas,
-    { ...args, path: 'post' },
-    55,
-    ({ scene, camera, renderer, air, noise }) => {
-      const { atmosphere, sun, sky, post } = air
-      if (post === undefined) throw new Error('createLightShafts: there must be a post effect')
-      const { pipeline, picture: color, depth } = post
-      const view: ShaftView = VIEWS[args.view]
-      atmosphere.place(view) // from where the sun has its angles
-      atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
+): Promise<SceneHandle<LightShaftsArgs>> {
+  const view: ShaftView = shaftViews[args.view]
+  const renderer = await createRenderer(canvas, args.forceWebGL, false, true)
+  const scene = new Scene()
+  const camera = cameraOf(view)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const elapsed = frameClock(args.frame)
+  const current = { ...args }
+  const air = new Air(renderer, scene, camera, 'post')
+  const { atmosphere, sun, sky } = air
+  const { pipeline, picture, depth } = air.post!
+  atmosphere.place(view.place ?? { longitude: 139.77, latitude: 35.68 })
+  atmosphere.add(planetGround(), sunFlare())
+  const extent = view.land === 'city' ? CITY_SHADOW_EXTENT : SHADOW_EXTENT
+  castShadows(sun, extent)
+  if (view.fog !== undefined) atmosphere.add(heightFog(view.fog))
+  const luna = moon()
+  const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
+  if (view.isMoonlit) {
+    atmosphere.add(luna)
+    castShadows(moonlight, extent)
+    const moonSky = new SkyLightProbe(atmosphere, luna.source)
+    scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
+  }
+  const land = landOf(view, atmosphere)
+  if (land !== undefined) scene.add(land.object)
 
-      const luna = moon()
-      const moonlight = new MoonDirectionalLight(atmosphere, luna, 1000)
-      if (view.isNight) {
-        atmosphere.add(luna)
-        scene.add(moonlight, moonlight.target)
-      }
-      const light = view.isNight ? moonlight : sun
-      // #region light shafts
-      const shafts = lightShafts(atmosphere, camera, light) // the sun's, or a moon's
-      const lit = aerialPerspective(color, depth, camera, atmosphere, { shafts })
-      pipeline.outputNode = lit
-      // #endregion
+  const light = view.isMoonlit ? moonlight : sun
+  // #region light shafts
+  const shafts = lightShafts(atmosphere, camera, light) // the sun's, or a moon's
+  const lit = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
+  // #endregion
+  let color: Node = lit
+  let node: CloudsNode | undefined
+  if (view.clouds !== undefined) {
+    const { preset, coverage } = view.clouds
+    // #region shafts of clouds
+    const layers = cloudPreset(preset)
+    node = clouds(lit, depth, camera, atmosphere, layers)
+    const shadows = cloudShadow(node, shadow(light), light.source)
+    Object.assign(light.shadow, { shadowNode: shadows }) // clouds shade the land
+    cloudSkyLight(sky, node)
+    shafts.add(cloudAirShadow(node)) // and the air
+    // #endregion
+    if (coverage !== undefined) layers.at(0).set({ coverage })
+    if (args.frame) node.quality = STILL_QUALITY
+    node.field.bake(renderer)
+    node.time = TIME
+    color = node
+  }
+  // #region exposure under clouds
+  const exposed = autoExposure(color, atmosphere) // as bright as the picture is
+  pipeline.outputNode = exposed
+  // #endregion
 
-      let node: CloudsNode | undefined
-      let cover: CloudCover | undefined
-      if (view.clouds !== undefined) {
-        const { preset, coverage } = view.clouds
-        // #region shafts of clouds
-        const layers = cloudPreset(preset)
-        node = clouds(lit, depth, camera, atmosphere, layers)
-        pipeline.outputNode = node
-        Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
-        cloudSkyLight(sky, node)
-        shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-        cover = new CloudCover(layers, { light: node.light }) // and dim what eyes are used to
-        // #endregion
-        if (coverage !== undefined) layers.at(0).set({ coverage })
-        if (args.frame) node.quality = STILL.quality
-        node.time = TIME
-      }
-      const city = view.hasCity ? createCity(noise) : undefined
-      if (city !== undefined) scene.add(city.object)
-      if (view.fogBase !== undefined) {
-        atmosphere.add(heightFog({ base: view.fogBase, falloff: 40, density: 0.004 }))
-      }
-
-      let haze = NaN
-      return {
-        warmUpFrames: node === undefined ? undefined : STILL.frames,
-        place: () => view,
-        // Exposure is that of the tables, in every frame of a screenshot.
-        prepare: () => atmosphere.bake(renderer),
-        apply({ strength, turbidity, elevation, azimuth, exposure }) {
-          shafts.strength = strength
-          if (turbidity !== haze) atmosphere.parameters.set({ turbidity })
-          haze = turbidity
-          const direction = atmosphere.setSunAngles(elevation, azimuth).sunDirection
-          if (view.isNight) {
-            luna.set({ direction, phase: 0.5 })
-            atmosphere.setSunAngles(-40, azimuth + 180)
-          }
-          renderer.toneMappingExposure = exposureOf(exposure)
-        },
-        beforeDraw() {
-          const sources = view.isNight ? [luna.source] : []
-          // #region exposure under clouds
-          const exposure = exposureFor(atmosphere, camera, { clouds: cover, sources })
-          atmosphere.luminanceScale = 1e-4 * exposure // as sun, moon and camera move
-          // #endregion
-          if (args.frame) node?.field.bake(renderer)
-        },
-        dispose() {
-          city?.dispose()
-          node?.dispose()
-          shafts.dispose()
-          moonlight.dispose()
-        }
-      }
+  const apply = (): void => {
+    const { strength, turbidity, elevation, azimuth, exposure } = current
+    shafts.strength = strength
+    atmosphere.parameters.set({ turbidity })
+    const direction = atmosphere.setSunAngles(elevation, azimuth).sunDirection
+    if (view.isMoonlit) {
+      luna.set({ direction, phase: 0.5 })
+      atmosphere.setSunAngles(-40, azimuth + 180)
     }
-  )
+    renderer.toneMappingExposure = exposureOf(exposure)
+  }
+  apply()
+
+  const draw = (): void => {
+    explorer?.update(elapsed())
+    air.render()
+  }
+  return storyHandle({
+    renderer,
+    scene,
+    camera,
+    explorer,
+    current,
+    apply,
+    draw,
+    warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw, () => exposed),
+    dispose() {
+      land?.dispose()
+      node?.dispose()
+      exposed.dispose()
+      shafts.dispose()
+      moonlight.dispose()
+      air.dispose()
+    }
+  })
+}

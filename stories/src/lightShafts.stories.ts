@@ -2,6 +2,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { createLightShafts } from './lightShafts.scene'
 import type { LightShaftsArgs } from './lightShafts.scene'
 import { mount } from './mount'
+import { shaftViews, type ShaftView } from './shafts/views'
 import { rendererArgTypes, shaftArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
@@ -19,31 +20,34 @@ const { forceWebGL, frame } = rendererArgTypes
 const { strength, turbidity, azimuth, exposure } = shaftArgTypes
 const hidden = { table: { disable: true } }
 
+/** Air and light of a view, as its still has them. */
+const argsOf = (name: LightShaftsArgs['view']): Partial<LightShaftsArgs> => {
+  const { turbidity, light }: ShaftView = shaftViews[name]
+  return { view: name, turbidity, ...light }
+}
+
 const meta: Meta<LightShaftsArgs> = {
   title: 'Light shafts',
   render: mount(createLightShafts, code, ({ view }) => view),
   argTypes: {
     strength,
-    turbidity,
+    turbidity: { ...turbidity, control: { type: 'range', min: 1, max: 16, step: 0.25 } },
     elevation: {
       name: 'Elevation [°]',
       control: { type: 'range', min: -6, max: 60, step: 0.5 },
       description: 'Of the sun, or of the moon by night'
     },
     azimuth,
-    exposure,
+    exposure: { ...exposure, description: '0 as the picture asks for' },
     forceWebGL,
     frame,
     view: hidden,
     path: hidden
   },
   args: {
-    view: 'deck',
+    ...argsOf('deck'),
     strength: 1,
-    turbidity: 9,
-    elevation: 20,
-    azimuth: 45,
-    exposure: -1.75,
+    exposure: 0,
     forceWebGL: false,
     path: 'post',
     frame: false
@@ -57,32 +61,21 @@ type Story = StoryObj<LightShaftsArgs>
 /** Jacob's ladder: rays that fan out from the gaps of a deck. */
 export const Deck: Story = { name: 'Below a broken deck', tags: ['screenshot'] }
 
-/** Shadows of a ridge in the haze and the fog behind it, the sun 4° up. */
+/** Shadows of a ridge in the fog of the valley behind it, the sun 5° up. */
 export const Ridge: Story = {
   name: 'Ridge at sunrise',
-  args: { view: 'ridge', turbidity: 3, elevation: 4, azimuth: 100, exposure: -1.75 },
+  args: argsOf('ridge'),
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** Towers in haze, against the sun. */
-export const Towers: Story = {
-  name: 'Towers in haze',
-  args: { view: 'city', turbidity: 10, elevation: 12, azimuth: 236, exposure: -1 }
-}
+/** Towers against the sun, in haze and mist. */
+export const Towers: Story = { name: 'Towers in haze', args: argsOf('towers') }
 
-/** A storm's shadow on its anvil and on the haze below, from 10 km. */
-export const Storm: Story = {
-  name: "Storm's shadow from 10 km",
-  args: { view: 'storm', turbidity: 3, elevation: 12, azimuth: 192, exposure: -2 }
-}
+/** A storm's shadow on its anvil and on the haze below, from 9 km. */
+export const Storm: Story = { name: "Storm's shadow from 9 km", args: argsOf('storm') }
 
 /** Rays that run together opposite the sunset. */
-export const Opposite: Story = {
-  name: 'Anticrepuscular rays',
-  args: { view: 'opposite', turbidity: 3, elevation: 3, azimuth: 250, exposure: -1 }
-}
+export const Opposite: Story = { name: 'Anticrepuscular rays', args: argsOf('opposite') }
 
 /** Moonlight through the gaps of a deck. */
-export const Moonlight: Story = {
-  args: { view: 'moon', turbidity: 4, elevation: 25, azimuth: 40, exposure: 0.5 }
-}
+export const Moonlight: Story = { args: argsOf('moonlight') }

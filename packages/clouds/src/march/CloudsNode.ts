@@ -287,7 +287,7 @@ export class CloudsNode extends AtmosphereNode {
     field.depthScale.value = light.nodes.depthScale.value
     field.update(view, this.#time ?? frame.time)
     const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
-    this.shadows.update(renderer, view)
+    this.shadows.update(renderer, view, this.castsInto.size > 0)
     this.passes.setSize(width, height, this.#quality.block)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
     this.passes.render(renderer, view.up)

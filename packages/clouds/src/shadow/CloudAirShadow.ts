@@ -113,7 +113,7 @@ class CastShadow implements AirShadow {
  * shafts.add(cloudAirShadow(cloudsNode)) // before the first render, or set pipeline.needsUpdate
  * ```
  *
- * They are read from the clouds' shadow maps; beyond them the mean cover of the layers says how much passes, or the
+ * They are read from the clouds' shadow maps, up to 2,000 km above the ground; beyond them the mean cover of the layers says how much passes, or the
  * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
  * behind the clouds.
  */

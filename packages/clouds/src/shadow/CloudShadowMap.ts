@@ -25,10 +25,14 @@ const HALF_WIDTHS = [0, 1, 2].map(i => 5000 * CASCADE_RATIO ** i)
 const WIDENING_HEIGHT = 6000
 
 /**
- * Highest camera for which maps are drawn [m]: from farther away, clouds are a thin skin without shadows of
+ * Highest camera for which clouds and surfaces read maps [m]: from farther away, clouds are a thin skin without shadows of
  * their own (*World clouds*).
  */
 const HIGHEST = 150_000
+
+/** Highest camera for which air reads maps [m], and their most widening: the widest cascade then ends at its horizon. */
+const HIGHEST_IN_AIR = 2_000_000
+const MOST_WIDENING = 64
 
 /**
  * Cosine of the angle about the planet's centre after which the plane's origin follows the camera: 32 km on
@@ -111,6 +115,8 @@ export class CloudShadowMap {
   source: LightSource
   #inputs: readonly unknown[] = []
   #order = 0
+  /** False from so far away that neither clouds nor surfaces read maps. */
+  #isNear = true
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
 
@@ -126,6 +132,7 @@ export class CloudShadowMap {
         v: vector4(),
         w: vector4(),
         isDrawn: number(),
+        isCast: number(),
         atlasTile: number()
       },
       isDrawn: false,
@@ -149,9 +156,9 @@ export class CloudShadowMap {
     this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray, falling))
   }
 
-  /** True if there are maps: not before the first update, and not far away. */
+  /** True if there are maps for clouds and surfaces: not before the first update, and not far away. */
   get isDrawn(): boolean {
-    return this.#cascades[0].isDrawn
+    return this.#isNear && this.#cascades[0].isDrawn
   }
 
   /**
@@ -159,8 +166,9 @@ export class CloudShadowMap {
    * date.
    *
    * @param view - View of the field's camera, up to date.
+   * @param castsIntoAir - True if air reads the maps, too: then they are there from space.
    */
-  update(renderer: Renderer, view: AtmosphereView): void {
+  update(renderer: Renderer, view: AtmosphereView, castsIntoAir = false): void {
     const radius = this.field.radius.value
     viewpointMapped(view, this.camera)
     const { night, atmosphere } = this.field
@@ -168,7 +176,8 @@ export class CloudShadowMap {
     this.source = isMoonlit && night.source !== null ? night.source : atmosphere.sun
     this.nodes.isMoonlit.value = isMoonlit ? 1 : 0
     this.#light.copy(isMoonlit ? night.moonDirection.value : view.lightDirection)
-    if (view.height > HIGHEST) {
+    this.#isNear = view.height <= HIGHEST
+    if (view.height > (castsIntoAir ? HIGHEST_IN_AIR : HIGHEST)) {
       for (const cascade of this.#cascades) cascade.isDrawn = false
       this.#current = null
     } else {
@@ -186,7 +195,8 @@ export class CloudShadowMap {
     if (!(_below.dot(this.#anchor) > ANCHOR_COSINE * _below.length() * this.#anchor.length())) {
       this.#anchor.copy(_below)
     }
-    const scale = 2 ** Math.ceil(Math.log2(Math.max(view.height / WIDENING_HEIGHT, 1)))
+    const widening = 2 ** Math.ceil(Math.log2(Math.max(view.height / WIDENING_HEIGHT, 1)))
+    const scale = Math.min(widening, MOST_WIDENING)
     let oldest = this.#current
     for (const [index, cascade] of this.#cascades.entries()) {
       const halfWidth = HALF_WIDTHS[index] * scale
@@ -305,7 +315,8 @@ export class CloudShadowMap {
   /** Sets the uniforms of look-ups, for the camera and the clouds where they are now. */
   #updateNodes(): void {
     for (const { nodes, isDrawn, state } of this.#cascades) {
-      nodes.isDrawn.value = isDrawn ? 1 : 0
+      nodes.isCast.value = isDrawn ? 1 : 0
+      nodes.isDrawn.value = isDrawn && this.#isNear ? 1 : 0
       if (!isDrawn) continue
       const { atlasTile, halfWidth, anchor, across, measure, normal, center } = state
       nodes.atlasTile.value = atlasTile

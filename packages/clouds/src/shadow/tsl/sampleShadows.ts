@@ -9,8 +9,9 @@ export interface CascadeNodes {
   readonly u: UniformNode<'vec4', Vector4>
   readonly v: UniformNode<'vec4', Vector4>
   readonly w: UniformNode<'vec4', Vector4>
-  /** 1 once it is drawn. */
+  /** 1 once it is drawn for clouds and surfaces, and once it is for the air. */
   readonly isDrawn: UniformNode<'float', number>
+  readonly isCast: UniformNode<'float', number>
   /** Index of its tile in the map. */
   readonly atlasTile: UniformNode<'float', number>
 }
@@ -117,7 +118,7 @@ export function sampleShadowsAlong(
 ): (distance: Float) => LightDepths {
   const edge = dither.mul(-FADE).add(0.5 - MARGIN)
   const extent = vec3(edge, edge, edge.mul(2 * MAXIMUM_DISTANCE)).toConst() as Vec3
-  const stretches = cascades.map(({ u, v, w, isDrawn, atlasTile }) => {
+  const stretches = cascades.map(({ u, v, w, isCast, atlasTile }) => {
     const along = (inAtlas: Vec3): Vec3 =>
       vec3(inAtlas.dot(u.xyz), inAtlas.dot(v.xyz), inAtlas.dot(w.xyz))
     const start = along(from)
@@ -138,7 +139,7 @@ export function sampleShadowsAlong(
       slope: slope.mul(toAtlas).toConst(),
       first: first.x.max(first.y).max(first.z).toConst(),
       // Cascades that are not drawn end at the camera.
-      last: last.x.min(last.y).min(last.z).mul(isDrawn).toConst()
+      last: last.x.min(last.y).min(last.z).mul(isCast).toConst()
     }
   })
   return distance => {

@@ -13,7 +13,7 @@ import {
   vec3
 } from 'three/tsl'
 import { MeshStandardNodeMaterial, type Node } from 'three/webgpu'
-import { createNoiseTexture } from '../../stories/src/globe/detailNoise'
+import { createNoiseTexture } from '../globe/detailNoise'
 
 type Color = readonly [number, number, number]
 

@@ -13,8 +13,8 @@ import {
 } from 'three'
 import { vec3 } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
-import { limetree, spruce } from '../../stories/src/valley/forest'
-import { mottled } from '../../stories/src/valley/Trees'
+import { limetree, spruce } from '../valley/forest'
+import { mottled } from '../valley/Trees'
 import { hedgeDistance, soilMaterial, type Soil } from './soil'
 
 /** Half width of the hills [m]. */

@@ -1,0 +1,95 @@
+import type { CloudPresetName } from '@welkin/clouds'
+
+/** A view of shafts: what casts them, where their light stands, and where the camera looks. */
+export interface ShaftView {
+  readonly label: string
+  /** Features to look for. */
+  readonly about: string
+  /** Preset of clouds; left out, a clear sky. */
+  readonly clouds?: { readonly preset: CloudPresetName; readonly coverage?: number }
+  /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m]. */
+  readonly fog?: { readonly density: number; readonly falloff: number }
+  /** Place on the Earth, default Tokyo [°], and altitude above the ellipsoid [m]. */
+  readonly place?: { readonly longitude: number; readonly latitude: number }
+  readonly altitude: number
+  /** Turbidity of the air. */
+  readonly turbidity: number
+  /** Elevation and azimuth of the sun, or of the full moon, clockwise from north [°]. */
+  readonly light: { readonly elevation: number; readonly azimuth: number }
+  readonly isMoonlit?: true
+  /** Azimuth, clockwise from north, and pitch of the camera [°]. */
+  readonly view: { readonly azimuth: number; readonly pitch: number }
+  /** Hills and trees, towers and streets, or the bare planet. */
+  readonly land: 'hills' | 'city' | 'planet'
+}
+
+/** Views of the story *Light shafts*, which the stills of the same names draw at full size. */
+export const shaftViews = {
+  deck: {
+    label: 'Below a broken deck',
+    about:
+      "a broken deck under a sun of 20°: Jacob's ladder below it, no bands, no halo at edges of clouds",
+    clouds: { preset: 'stratocumulus', coverage: 0.6 },
+    place: { longitude: 140.81, latitude: 35.68 },
+    turbidity: 12,
+    light: { elevation: 20, azimuth: 30 },
+    view: { azimuth: 34, pitch: 12 },
+    altitude: 2,
+    land: 'hills'
+  },
+  ridge: {
+    label: 'Ridge at sunrise',
+    about:
+      'a ridge before a sun of 5°, over valley fog: its shadow in the fog, with one edge from the shoulder where the sun stands',
+    fog: { density: 0.004, falloff: 70 },
+    turbidity: 3,
+    light: { elevation: 5, azimuth: 150 },
+    view: { azimuth: 164, pitch: -3 },
+    altitude: 420,
+    land: 'hills'
+  },
+  towers: {
+    label: 'Towers in haze',
+    about:
+      'the sun of 11° down a street, in haze: bright where it comes between the towers, dark behind each',
+    fog: { density: 0.002, falloff: 120 },
+    turbidity: 6,
+    light: { elevation: 11, azimuth: 250 },
+    view: { azimuth: 248, pitch: 2 },
+    altitude: 30,
+    land: 'city'
+  },
+  storm: {
+    label: "Storm's shadow from 9 km",
+    about: "a storm's shadow on its own anvil's haze and on the air below, from 9 km",
+    clouds: { preset: 'cumulonimbus' },
+    place: { longitude: 139.571, latitude: 35.995 },
+    turbidity: 3,
+    light: { elevation: 9, azimuth: 20 },
+    view: { azimuth: 0, pitch: -3 },
+    altitude: 9000,
+    land: 'planet'
+  },
+  opposite: {
+    label: 'Anticrepuscular rays',
+    about: 'rays that run together opposite a sunset',
+    clouds: { preset: 'congestus', coverage: 0.4 },
+    turbidity: 3,
+    light: { elevation: 3, azimuth: 250 },
+    view: { azimuth: 70, pitch: 10 },
+    altitude: 2,
+    land: 'hills'
+  },
+  moonlight: {
+    label: 'Moonlight',
+    about: 'moonlight through the gaps of a deck: the rays of the deck, by night',
+    clouds: { preset: 'stratocumulus', coverage: 0.6 },
+    place: { longitude: 140.81, latitude: 35.68 },
+    turbidity: 6,
+    light: { elevation: 22, azimuth: 30 },
+    isMoonlit: true,
+    view: { azimuth: 34, pitch: 13 },
+    altitude: 2,
+    land: 'hills'
+  }
+} satisfies Record<string, ShaftView>
