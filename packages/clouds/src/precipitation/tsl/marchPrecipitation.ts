@@ -17,6 +17,7 @@ import {
   type Vec4
 } from '../../tsl-types'
 import { fallenFrom, fallExtinction, type FallNodes } from './fall'
+import { DIFFRACTED } from '../fallForm'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
 const STEPS = 0.6
@@ -36,9 +37,6 @@ const FIRST = 0.12
 
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
 const BLUR = 0.1
-
-/** Share of extinguished light that is diffracted, by a tenth of a degree: it counts as not scattered (Bohren & Huffman 1983, §4.4.3). */
-export const DIFFRACTED = 0.5
 
 /** Longest way of light through what falls, in which it counts as even [m]. */
 const LIT_WIDTH = 1500
