@@ -144,7 +144,7 @@ export class PrecipitationShafts {
   }
 
   /**
-   * What falls from a layer in the mean, for the light of the sky. To be called inside of a shader function. Twin: cpu/fallColumn.ts
+   * Rain and snow from a layer in the mean, for the light of the sky. To be called inside of a shader function. Twin: cpu/fallColumn.ts
    *
    * @param altitude - Altitude of a plane [m].
    */

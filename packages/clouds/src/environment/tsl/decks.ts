@@ -38,7 +38,7 @@ export function eddington(
   return { diffuse, direct, beam }
 }
 
-/** What falls under a layer, in the mean over the columns from which it falls: `FallColumn` of precipitation/cpu/fallColumn.ts. */
+/** Rain and snow under a layer, in the mean over the columns from which it falls: `FallColumn` of precipitation/cpu/fallColumn.ts. */
 export interface DeckFallNodes {
   /** Share of the clouded columns. */
   share: Float

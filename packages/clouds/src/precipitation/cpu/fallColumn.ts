@@ -3,7 +3,7 @@ import type { CloudLayerParameters } from '../../layers/CloudLayer'
 import { dry } from '../../layers/precipitation'
 import { DIFFRACTED, extinctionForm, fallForm } from '../fallForm'
 
-/** What falls under the columns of a layer from which it falls, in the mean, for the light of the sky. */
+/** Rain and snow under the columns of a layer from which they fall, in the mean, for the light of the sky. */
 export interface FallColumn {
   /** Share of the clouded columns. */
   readonly share: number
@@ -35,7 +35,7 @@ function extinctionOf(layer: CloudLayerParameters, rank: number, altitude: numbe
   return (perKm + extinctionForm.hail * stones) / 1000
 }
 
-/** What falls from a layer, in the mean over the columns from which it falls; null if nothing does. */
+/** Rain and snow from a layer, in the mean over the columns from which it falls; null if nothing does. */
 export function fallColumn(layer: CloudLayerParameters): FallColumn | null {
   const { baseAltitude, topAltitude } = layer
   const { rate, share } = { ...dry, ...layer.precipitation }
