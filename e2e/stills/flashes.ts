@@ -32,5 +32,16 @@ export const flashes = [
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 0, pitch: -4 },
     land: 'planet'
+  },
+  {
+    name: 'lightning-between',
+    about:
+      'the same storm as from the ground, between flashes: a dark cloud before stars and airglow, not black',
+    clouds: { preset: 'cumulonimbus' },
+    place: { longitude: 139.571, latitude: 35.995 },
+    altitude: 200,
+    sun: new Date('2026-06-14T14:00:00Z'),
+    view: { azimuth: 0, pitch: 16 },
+    land: 'planet'
   }
 ] as const

@@ -27,6 +27,12 @@ export const streets: StreetStill[] = [
     street: { rain: 0, snow: 2.5, wind: 1, elevation: -25, shutter: 1 / 60 }
   },
   {
+    name: 'snow-day',
+    about:
+      'snowfall by day: flakes of many sizes, dark before the sky and bright before walls; no rows',
+    street: { rain: 0, snow: 2.5, wind: 1, elevation: 20, shutter: 1 / 120 }
+  },
+  {
     name: 'rain-night',
     about: 'rain under lamps at night: bright against the light',
     street: { rain: 12, snow: 0, wind: 2, elevation: -25, shutter: 1 / 60 }

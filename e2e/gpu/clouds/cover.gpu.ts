@@ -17,7 +17,8 @@ import {
   CloudLightTable,
   cloudPreset,
   clouds,
-  cloudSkyLight
+  cloudSkyLight,
+  precipitationShafts
 } from '@welkin/clouds'
 import { Mesh, MeshLambertMaterial, PerspectiveCamera, PlaneGeometry, Scene, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
@@ -186,14 +187,20 @@ gpuTest(
     for (const [name, mu] of [
       ['fairWeather', 0.8],
       ['stratocumulus', 0.5],
-      ['mixed', 0.3]
+      ['mixed', 0.3],
+      ['nimbostratus', 0.6],
+      ['snowShower', 0.6]
     ] as const) {
       const field = new CloudField(atmosphere, cloudPreset(name))
       field.bake(renderer)
       field.pixelAngle.value = 1e-4
       field.depthScale.value = light.nodes.depthScale.value
       field.view.update({ camera })
-      field.update(atmosphere.update(renderer, camera), 0)
+      const seen = atmosphere.update(renderer, camera)
+      field.update(seen, 0)
+      const rains = field.layers.at(0).precipitation !== null
+      const falling = rains ? precipitationShafts() : undefined
+      falling?.update(field, seen)
       const lights = await evaluateOnGpu(renderer, places, ({ xyz }) => {
         const { view } = field
         const { air } = view
@@ -203,8 +210,8 @@ gpuTest(
         const offset = up.mul(field.radius.add(altitude)).sub(here).toConst() as Vec3
         const plane = { view, offset, altitude, up, cosLight, cosNormal: float(1) }
         const clear = horizontalIrradiance(air.uniforms, air.diffuse!, altitude, cosLight)
-        const sky = overcastIrradiance(field, light.nodes, plane, offset, clear.up)
-        const { above } = decksAround(field, light.nodes, offset, altitude, up, cosLight)
+        const sky = overcastIrradiance(field, light.nodes, plane, offset, clear.up, falling)
+        const { above } = decksAround(field, light.nodes, offset, altitude, up, cosLight, falling)
         return vec4(sky.y, above.beam, 0, 0)
       })
       const mean = (channel: number): number =>

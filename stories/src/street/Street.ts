@@ -54,10 +54,19 @@ const OVERCAST_ILLUMINANCE = [300, 21_000] as const
  */
 const TOWN_GLOW = 0.03
 const TOWN_COLOR = '#ffd9b0'
+/** Luminance of clouds over a town in snow [cd/m²]: Jechow & Hölker 2019, "Snowglow", J. Imaging 5(8), 69, who had 0.25 in a suburb. */
+const SNOW_GLOW = 0.25
+/**
+ * Lamplight off the ground, by which walls above the lamps and what falls there is seen: illuminance of the street [lx], share of it that gets
+ * there, and albedo of wet ground and of snow.
+ */
+const BOUNCE = { illuminance: 26, share: 0.15, wet: 0.1, snow: 0.8, color: '#ffc98a' }
 /** Radius of the dome that shows it [m]. Greater: it is lost in the haze. */
 const DOME = 190
 /** Water that rain has left on the ground [mm], and snow [mm of water]. */
 const FALLEN = { rain: 1.5, snow: 5 }
+
+const _bounced = new Vector3()
 
 /** A street in rain or snow, under a deck of haze. */
 export class Street {
@@ -138,16 +147,24 @@ export class Street {
   #lightClouds(): void {
     const { luminanceScale } = this.atmosphere
     const [atHorizon, more] = OVERCAST_ILLUMINANCE
-    const { elevation } = this.#weather
+    const { elevation, snow } = this.#weather
+    const isNight = this.#isNight
     const sine = Math.sin(MathUtils.degToRad(elevation))
-    const luminance = this.#isNight ? TOWN_GLOW : (atHorizon + more * Math.max(sine, 0)) / Math.PI
+    const glow = snow > 0 ? SNOW_GLOW : TOWN_GLOW
+    const luminance = isNight ? glow : (atHorizon + more * Math.max(sine, 0)) / Math.PI
     const { color, groundColor } = this.#overcast
-    color.set(this.#isNight ? TOWN_COLOR : '#ffffff').multiplyScalar(luminance * luminanceScale)
+    color.set(isNight ? TOWN_COLOR : '#ffffff').multiplyScalar(luminance * luminanceScale)
+    this.#dome.material.color.copy(color)
+    this.#clouds.value.setFromColor(color)
     groundColor.copy(color).multiplyScalar(0.2)
     this.#overcast.intensity = Math.PI
-    this.#clouds.value.setFromColor(color)
-    this.#dome.visible = this.#isNight
-    this.#dome.material.color.copy(color)
+    if (isNight) {
+      const { illuminance, share, wet, snow: white, color: lamps } = BOUNCE
+      const lit = (illuminance * share * (snow > 0 ? white : wet)) / Math.PI
+      groundColor.set(lamps).multiplyScalar(lit * luminanceScale)
+      this.#clouds.value.add(_bounced.setFromColor(groundColor))
+    }
+    this.#dome.visible = isNight
   }
 
   get #isNight(): boolean {

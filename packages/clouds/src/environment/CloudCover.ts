@@ -4,6 +4,7 @@ import { CloudLayers } from '../layers/CloudLayers'
 import { columnDensityAt, meanColumnOf } from '../layers/meanColumn'
 import { regionalCoverages } from '../layers/regionalCoverages'
 import { CloudLightTable } from '../light/CloudLightTable'
+import { fallColumnOf, fallDepthOver } from '../precipitation/cpu/fallColumn'
 import { fairWeatherPhase, scalePhase } from '../light/cpu/cloudPhase'
 import { deckFootprint, stackDecks, type BrokenClouds, type CloudDeck } from './cpu/decks'
 import { cloudyIrradiance } from './cpu/overcast'
@@ -26,7 +27,7 @@ type PlacedDeck = CloudDeck & { readonly top: number }
  * atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera, { clouds: cover })
  * ```
  *
- * It is the mean over the planet of what `cloudSkyLight` and `cloudShadow` have; single clouds and a map of the world
+ * It is the mean over the planet of what `cloudSkyLight` and `cloudShadow` have, with what falls from the layers; single clouds and a map of the world
  * have no part in it, nor have layers whose `shadow` is false.
  */
 export class CloudCover implements CloudedSky {
@@ -80,12 +81,19 @@ export class CloudCover implements CloudedSky {
       const over = Math.min(Math.max(topAltitude - altitude, 0), thickness)
       const rise = Math.abs((baseAltitude + topAltitude) / 2 - altitude)
       const covers = regionalCoverages(parameters, deckFootprint(rise))
-      const part = (length: number): BrokenClouds[] =>
+      const falls = fallColumnOf(parameters)
+      const [fallOver, fallAll] = [altitude, -Infinity].map(at => falls && fallDepthOver(falls, at))
+      const part = (length: number, depth: number): BrokenClouds[] =>
         covers.map(cover => ({
           coverage: cover,
-          thickness: density * columnDensityAt(column, cover) * depthScale * length
+          thickness: density * columnDensityAt(column, cover) * depthScale * length,
+          fall: { share: falls?.share ?? 0, thickness: depth }
         }))
-      return { top: topAltitude, over: part(over), under: part(thickness - over) }
+      return {
+        top: topAltitude,
+        over: part(over, fallOver ?? 0),
+        under: part(thickness - over, (fallAll ?? 0) - (fallOver ?? 0))
+      }
     })
     if (parts.length === 0) return null
     /** Tops count by how much light their layer takes. */

@@ -97,7 +97,8 @@ export class CloudFogLight implements FogOvercast {
 
   /** A texel: at the fog's altitude, below the clouds' camera. */
   #draw(): Vec4 {
-    const { field, light } = this.clouds
+    const { field, light, shadows } = this.clouds
+    const { falling } = shadows
     const { view } = field
     return Fn((): Vec4 => {
       const texel = uv() as unknown as Vec2
@@ -105,7 +106,7 @@ export class CloudFogLight implements FogOvercast {
       const up = view.up as unknown as Vec3
       const altitude = this.#altitude as Float
       const offset = up.mul(altitude.sub(view.height)).toConst() as Vec3
-      const decks = decksAround(field, light.nodes, offset, altitude, up, cosLight)
+      const decks = decksAround(field, light.nodes, offset, altitude, up, cosLight, falling)
       const result = vec4(decks.above.beam).toVar()
       If(texel.y.lessThan(0.5), () => {
         const { uniforms, transmittance, diffuse } = view.air
@@ -114,7 +115,7 @@ export class CloudFogLight implements FogOvercast {
           .toConst() as Vec4
         const sky = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight).up.toConst()
         const plane = { view, offset, altitude, up, cosLight, cosNormal: float(1) }
-        const cloudy = overcastIrradiance(field, light.nodes, plane, offset, sky)
+        const cloudy = overcastIrradiance(field, light.nodes, plane, offset, sky, falling)
         result.assign(
           cloudy.add(direct.mul(decks.above.beam)).div(direct.add(sky).max(1e-20)).min(MOST_DIFFUSE)
         )

@@ -55,7 +55,7 @@ export class CloudSkyLight {
   }
 
   #light(plane: SkyLitPlane, clear: Vec4): Vec4 {
-    const { field, light, isDisposed } = this.clouds
+    const { field, light, shadows, isDisposed } = this.clouds
     if (isDisposed) return clear
     // Displacement between two cameras. In float32 it may be a metre off, which the weather does not show.
     const viewpoint = ({ up, height }: ViewNodes): Vec3 => up.mul(field.radius.add(height))
@@ -63,7 +63,7 @@ export class CloudSkyLight {
       .add(viewpoint(plane.view).sub(viewpoint(field.view)))
       .toConst() as Vec3
     const without = clear.toConst() as Vec4
-    const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without)
+    const cloudy = overcastIrradiance(field, light.nodes, plane, offset, without, shadows.falling)
     return mix(without, cloudy, float(this.#strength))
   }
 

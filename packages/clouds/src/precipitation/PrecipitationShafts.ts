@@ -1,7 +1,7 @@
 import type { AtmosphereView, ScatteringPhase } from '@welkin/atmosphere'
 import { checkOptions, fail } from '@welkin/geo'
 import { MathUtils, Vector3, Vector4 } from 'three'
-import { If, int, mix, vec4 } from 'three/tsl'
+import { If, int, mix, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../density/CloudField'
 import type { LayerNodes } from '../density/tsl/layer'
 import type { CloudSample } from '../density/tsl/sample'
@@ -15,13 +15,15 @@ import type { SeenClouds } from '../march/tsl/seenPoints'
 import { shadePoints, type LitRay } from '../march/tsl/shadePoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
 import { encodeDistance } from '../temporal/tsl/packing'
+import type { DeckFallNodes } from '../environment/tsl/decks'
 import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
-import { fallForm } from './fallForm'
+import { fallColumnOf } from './cpu/fallColumn'
+import { DIFFRACTED, fallForm } from './fallForm'
 import { fallenFrom, fallExtinction } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
 import { lightPrecipitation } from './tsl/lightPrecipitation'
-import { DIFFRACTED, marchPrecipitation } from './tsl/marchPrecipitation'
+import { marchPrecipitation } from './tsl/marchPrecipitation'
 
 /** Options of {@link PrecipitationShafts}. */
 export interface PrecipitationShaftsOptions {
@@ -32,7 +34,7 @@ export interface PrecipitationShaftsOptions {
 }
 
 /** Vectors that a layer takes in the uniforms. */
-const STRIDE = 3
+const STRIDE = 4
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
 const NOWHERE = -1000
@@ -100,12 +102,13 @@ export class PrecipitationShafts {
       const growth =
         (Math.hypot(wind.east, wind.north) * (1 - fallForm.groundWind)) /
         Math.max(baseAltitude, 100)
-      const [first, second, third] = this.#values.slice(i * STRIDE)
+      const [first, second, third, fourth] = this.#values.slice(i * STRIDE)
       first.set(rate, share, virgaDepth > 0 ? 1 / virgaDepth : 0, freezingLevel)
       windAxis(wind, up, _axis)
       const { x, y, z } = _axis
       second.set(x, y, z, 0).multiplyScalar(growth / 2).w = hail
       third.set(x, y, z, 0).multiplyScalar(shear).w = layerCeiling
+      fourth.fromArray([...(fallColumnOf(parameters)?.parts ?? [0, 0, 0]), 0])
       state.push(...Object.values(all))
       if (rate === 0 || coverage === 0) continue
       ceiling = Math.max(ceiling, layerCeiling)
@@ -139,6 +142,26 @@ export class PrecipitationShafts {
       sample
     )
     return fallExtinction(rate, snow, hail).mul(1 - DIFFRACTED)
+  }
+
+  /**
+   * Rain and snow from a layer in the mean, for the light of the sky. To be called inside of a shader function. Twin: cpu/fallColumn.ts
+   *
+   * @param altitude - Altitude of a plane [m].
+   */
+  deckFall(index: Int, altitude: Float): DeckFallNodes {
+    const start = index.mul(int(STRIDE)).toConst()
+    const { share, ceiling } = this.fallOf(index)
+    const parts = this.#array.element(start.add(int(3))).xyz.toConst() as Vec3
+    const place = ceiling.sub(altitude).mul(3).div(ceiling.max(1))
+    const over = parts
+      .dot(
+        vec3(place)
+          .sub(vec3(0, 1, 2))
+          .clamp(0, 1)
+      )
+      .toConst() as Float
+    return { share, over, under: parts.dot(vec3(1)).sub(over).toConst() }
   }
 
   /** Precipitation of a layer, as shader nodes. */

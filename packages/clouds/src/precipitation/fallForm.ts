@@ -32,6 +32,9 @@ export const fallForm = {
   fallBlur: 0.03
 } as const
 
+/** Share of extinguished light that is diffracted, by a tenth of a degree: it counts as not scattered (Bohren & Huffman 1983, §4.4.3). */
+export const DIFFRACTED = 0.5
+
 /**
  * Extinction of visible light by what falls: a R^b per km for a rate R of water [mm/h].
  *

@@ -87,11 +87,11 @@ class CastShadow implements AirShadow {
   }
 
   diffuse({ view, offset }: AirPoint): Vec4 {
-    const { field, light } = this.#clouds
+    const { field, light, shadows } = this.#clouds
     const { altitude, cosLight, up } = view.localCoordinates(offset)
     if (field.worldMap === null) return this.#diffuse.sample(altitude, cosLight)
     const shifted = offset.add(this.#shift).toConst() as Vec3
-    const decks = decksAround(field, light.nodes, shifted, altitude, up, cosLight)
+    const decks = decksAround(field, light.nodes, shifted, altitude, up, cosLight, shadows.falling)
     return diffuseRatio(view, decks, altitude, cosLight)
   }
 

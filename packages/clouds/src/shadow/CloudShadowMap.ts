@@ -121,7 +121,10 @@ export class CloudShadowMap {
   #thickest = 0
 
   /** @param falling - Rain and snow, which shade too; updated before the maps. */
-  constructor(field: CloudField, falling?: ShadingFall) {
+  constructor(
+    field: CloudField,
+    readonly falling?: ShadingFall
+  ) {
     this.field = field
     this.source = field.atmosphere.sun
     const width = SIZE * (HALF_WIDTHS.length + 1) + TABLE_COLUMNS

@@ -19,14 +19,19 @@ export class DiffuseRatioTable {
   readonly #pass: FragmentPass
 
   constructor(shadows: CloudShadowMap, light: CloudLight) {
-    const { field } = shadows
+    const { field, falling } = shadows
     this.#shadows = shadows
     const { view } = field
     const ratio = Fn((): Vec4 => {
       const texel = uv() as unknown as Vec2
       const cosLight = cosLightOf(texel.x)
       const altitude = texel.y.mul(texel.y).mul(view.air.uniforms.thickness).toConst() as Float
-      return diffuseRatio(view, meanDecks(field, light, altitude, cosLight), altitude, cosLight)
+      return diffuseRatio(
+        view,
+        meanDecks(field, light, altitude, cosLight, falling),
+        altitude,
+        cosLight
+      )
     })
     this.#pass = new FragmentPass('Welkin.CloudDiffuse', ratio())
   }

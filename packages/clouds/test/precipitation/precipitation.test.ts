@@ -4,7 +4,9 @@ import { PerspectiveCamera } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { describe, expect, it, test } from 'vitest'
 import { CloudLayer, cloudPreset, clouds, precipitationShafts } from '../../src'
-import { fallForm } from '../../src/precipitation/fallForm'
+import { fallColumn, fallDepthOver } from '../../src/precipitation/cpu/fallColumn'
+import { DIFFRACTED, fallForm } from '../../src/precipitation/fallForm'
+import { CloudCover, CloudLayers } from '../../src'
 import { extinctionOf, lagOf, rateOf } from '../twins/precipitation'
 
 const rates = fc.double({ min: 0.1, max: 100, noNaN: true })
@@ -88,5 +90,65 @@ describe('precipitation', () => {
       }),
       { numRuns: 20 }
     )
+  })
+})
+
+describe('what falls, in the light of the sky', () => {
+  const layer = { baseAltitude: 1200, topAltitude: 4200, coverage: 1, density: 1e-4 }
+  const under = (precipitation: object, altitude: number): number => {
+    const { parameters } = new CloudLayer({
+      ...layer,
+      precipitation: { rate: 6, ...precipitation }
+    })
+    return fallDepthOver(fallColumn(parameters)!, altitude)
+  }
+
+  it('is as deep as its extinction along the way, of drops or flakes that evaporate', () => {
+    const { onset, melting } = fallForm
+    const ceiling = layer.baseAltitude + 3000 * onset
+    for (const [virgaDepth, freezingLevel] of [
+      [0, 9000],
+      [0, -900],
+      [600, 9000],
+      [0, 700]
+    ]) {
+      // By ranks and by heights, from the equation of what evaporates, in steps.
+      let sum = 0
+      for (let i = 0; i < 40; i++)
+        for (let k = 0; k < 60; k++) {
+          const altitude = ((k + 0.5) / 60) * ceiling
+          const depth = Math.max(layer.baseAltitude - altitude, 0)
+          const begun = Math.min((ceiling - altitude) / (ceiling - layer.baseAltitude), 1)
+          const rate = begun * rateOf(6, (i + 0.5) / 40, depth, virgaDepth)
+          const melted = Math.min(Math.max((altitude - freezingLevel) / melting + 1, 0), 1)
+          sum += extinctionOf(rate, melted ** 2 * (3 - 2 * melted), 0)
+        }
+      const expected = (1 - DIFFRACTED) * (sum / 40 / 60) * ceiling
+      expect(under({ virgaDepth, freezingLevel }, 0) / expected).toBeCloseTo(1, 1.5)
+    }
+  })
+
+  it('grows on the way down, from none at the ceiling', () => {
+    let last = 0
+    expect(under({}, 1400)).toBe(0)
+    for (let altitude = 1380; altitude >= 0; altitude -= 20) {
+      const depth = under({}, altitude)
+      expect(depth).toBeGreaterThanOrEqual(last)
+      last = depth
+    }
+    expect(last).toBeGreaterThan(0.3)
+  })
+
+  it('takes light from the ground as Beer and its share say, and none from above it', () => {
+    const covers = [null, { rate: 6, share: 0.4 }].map(
+      precipitation => new CloudCover(new CloudLayers([{ ...layer, precipitation }]))
+    )
+    const beam = (altitude: number): number => {
+      const [dry, wet] = covers.map(cover => cover.beam({ altitude, cosLight: 0.5 }))
+      return wet / dry
+    }
+    expect(beam(0)).toBeCloseTo(0.6 + 0.4 * Math.exp(-under({}, 0) / 0.5), 3)
+    expect(beam(0)).toBeLessThan(0.9)
+    expect(beam(1500)).toBe(1)
   })
 })

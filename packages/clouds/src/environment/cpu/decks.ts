@@ -14,7 +14,11 @@ export interface BrokenClouds {
   readonly thickness: number
   /** Part of the sky. */
   readonly coverage: number
+  /** Rain or snow: under a share of these clouds, and as thick. */
+  readonly fall?: { readonly share: number; readonly thickness: number }
 }
+
+const none = { share: 0, thickness: 0 }
 
 /** Cosine of the lowest light; one below it counts as this. */
 export const LOWEST_COSINE = 0.05
@@ -66,11 +70,11 @@ export function stackDecks(
   const mu = Math.max(cosLight, LOWEST_COSINE)
   const means = (part: (thickness: number) => number): number[] =>
     layers.map(regions =>
-      regions.reduce(
-        (sum, { coverage, thickness }) =>
-          sum + (1 + coverage * (part(thickness) - 1)) / regions.length,
-        0
-      )
+      regions.reduce((sum, { coverage, thickness, fall = none }) => {
+        const dry = (1 - fall.share) * part(thickness)
+        const through = dry + fall.share * part(thickness + fall.thickness)
+        return sum + (1 + coverage * (through - 1)) / regions.length
+      }, 0)
     )
   const series = (parts: number[]): number =>
     1 / parts.reduce((sum, part) => sum + 1 / part, 1 - parts.length)

@@ -1,7 +1,7 @@
-import { If, float, vec3 } from 'three/tsl'
+import { If, float, mix, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
-import type { Float, Vec3 } from '../../tsl-types'
+import type { Float, Int, Vec3 } from '../../tsl-types'
 import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
 import { columnDensityAt } from '../../density/tsl/unresolved'
@@ -38,6 +38,20 @@ export function eddington(
   return { diffuse, direct, beam }
 }
 
+/** Rain and snow under a layer, in the mean over the columns from which it falls: `FallColumn` of precipitation/cpu/fallColumn.ts. */
+export interface DeckFallNodes {
+  /** Share of the clouded columns. */
+  share: Float
+  /** Optical depths over and under a plane, as light gets through them. */
+  over: Float
+  under: Float
+}
+
+/** Rain and snow that light meets with the decks. */
+export interface FallingDecks {
+  deckFall(index: Int, altitude: Float): DeckFallNodes
+}
+
 /** Clouds above and below a place. */
 export interface Decks {
   above: PlacedDeck
@@ -50,6 +64,7 @@ export interface Decks {
  * To be called inside of a shader function.
  *
  * @param offset - Displacement from the field's camera, in the mapped space [m].
+ * @param falling - Rain and snow under them; undefined for none.
  */
 export function decksAround(
   field: CloudField,
@@ -57,10 +72,11 @@ export function decksAround(
   offset: Vec3,
   altitude: Float,
   up: Vec3,
-  cosLight: Float
+  cosLight: Float,
+  falling?: FallingDecks
 ): Decks {
   const distance = offset.length().toConst() as Float
-  return decksOf(field, light, altitude, cosLight, layer => {
+  return decksOf(field, light, altitude, cosLight, falling, layer => {
     const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
     const footprint = rise.mul(footprintForm.heights).max(footprintForm.least)
     const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
@@ -75,8 +91,9 @@ export const meanDecks = (
   field: CloudField,
   light: CloudLight,
   altitude: Float,
-  cosLight: Float
-): Decks => decksOf(field, light, altitude, cosLight, layer => layer.coverage)
+  cosLight: Float,
+  falling?: FallingDecks
+): Decks => decksOf(field, light, altitude, cosLight, falling, layer => layer.coverage)
 
 /** Clouds above and below an altitude, by the share of the sky that each layer covers. */
 function decksOf(
@@ -84,6 +101,7 @@ function decksOf(
   light: CloudLight,
   altitude: Float,
   cosLight: Float,
+  falling: FallingDecks | undefined,
   coverageOf: (layer: LayerNodes) => Float
 ): Decks {
   const mu = cosLight.max(LOWEST_COSINE).toConst() as Float
@@ -102,15 +120,21 @@ function decksOf(
         .toConst() as Float
       const over = top.sub(altitude).clamp(0, layer.thickness).toConst() as Float
       const passing = (part: Float): Float => filteredCoverage.mul(part.sub(1)).add(1)
-      const add = (sum: Vec3, length: Float, place: Float): Float => {
-        const through = eddington(depth.mul(length), mu, light.oneMinusAsymmetry)
-        const series = passing(through.diffuse).reciprocal().sub(1).toConst() as Float
-        const direct = passing(through.direct).reciprocal().sub(1)
-        sum.addAssign(vec3(series, direct, series.mul(place)))
-        return passing(through.beam)
+      const fall = falling?.deckFall(index, altitude)
+      const passed = (thickness: Float): Vec3 => {
+        const { diffuse, direct, beam } = eddington(thickness, mu, light.oneMinusAsymmetry)
+        return vec3(diffuse, direct, beam)
       }
-      beam.mulAssign(add(above, over, top))
-      add(below, layer.thickness.sub(over), top.min(altitude))
+      const add = (sum: Vec3, length: Float, place: Float, falls?: Float): Float => {
+        const clouds = depth.mul(length).toConst() as Float
+        const through = throughFall(clouds, fall?.share, falls, passed)
+        const series = passing(through.x).reciprocal().sub(1).toConst() as Float
+        const direct = passing(through.y).reciprocal().sub(1)
+        sum.addAssign(vec3(series, direct, series.mul(place)))
+        return passing(through.z)
+      }
+      beam.mulAssign(add(above, over, top, fall?.over))
+      add(below, layer.thickness.sub(over), top.min(altitude), fall?.under)
     })
   })
   const deck = (sum: Vec3, through: Float): PlacedDeck => ({
@@ -123,4 +147,20 @@ function decksOf(
       .toConst()
   })
   return { above: deck(above, beam), below: deck(below, float(1)) }
+}
+
+/** Light that passes columns of cloud, under a share of which it rains. */
+function throughFall(
+  clouds: Float,
+  share: Float | undefined,
+  falls: Float | undefined,
+  passed: (thickness: Float) => Vec3
+): Vec3 {
+  const through = passed(clouds)
+  if (share === undefined || falls === undefined) return through.toConst()
+  const both = through.toVar() as Vec3
+  If(falls.greaterThan(0), () => {
+    both.assign(mix(both, passed(clouds.add(falls)), share))
+  })
+  return both
 }

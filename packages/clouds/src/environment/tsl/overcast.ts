@@ -4,7 +4,7 @@ import { float, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { decksAround, type CloudDeckNodes, type Decks } from './decks'
+import { decksAround, type CloudDeckNodes, type Decks, type FallingDecks } from './decks'
 
 /** Light about a plane: see `ClearLight` of cpu/overcast.ts. */
 export interface ClearLightNodes {
@@ -57,15 +57,17 @@ export function cloudyIrradiance(
  *
  * @param offset - Displacement from the field's camera, in the mapped space [m].
  * @param clear - Irradiance without clouds.
+ * @param falling - Rain and snow under them; undefined for none.
  */
 export function overcastIrradiance(
   field: CloudField,
   light: CloudLight,
   { view, altitude, up, cosLight, cosNormal, isNight }: SkyLitPlane,
   offset: Vec3,
-  clear: Vec4
+  clear: Vec4,
+  falling?: FallingDecks
 ): Vec4 {
-  const decks = decksAround(field, light, offset, altitude, up, cosLight)
+  const decks = decksAround(field, light, offset, altitude, up, cosLight, falling)
   const lights = isNight ? evenLights(view) : lightsAbout(view, decks, altitude, cosLight).lights
   return cloudyIrradiance({ ...lights, plane: clear }, decks.above, decks.below, cosNormal)
 }

@@ -6,7 +6,8 @@ import { henyeyGreenstein, singlePhase } from '../../light/tsl/cloudPhase'
 import { lightAt, shade } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { DIFFRACTED, type SeenPrecipitation } from './marchPrecipitation'
+import { DIFFRACTED } from '../fallForm'
+import type { SeenPrecipitation } from './marchPrecipitation'
 
 /** Asymmetry of rain without what is only diffracted, g = 0.905 by Mie's theory: 2g − 1. */
 const ASYMMETRY = 0.81

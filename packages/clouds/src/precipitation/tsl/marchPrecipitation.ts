@@ -16,6 +16,7 @@ import {
   type Vec3,
   type Vec4
 } from '../../tsl-types'
+import { DIFFRACTED } from '../fallForm'
 import { fallenFrom, fallExtinction } from './fall'
 import type { FallNodes } from './fallColumn'
 
@@ -37,9 +38,6 @@ const FIRST = 0.12
 
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
 const BLUR = 0.1
-
-/** Share of extinguished light that is diffracted, by a tenth of a degree: it counts as not scattered (Bohren & Huffman 1983, §4.4.3). */
-export const DIFFRACTED = 0.5
 
 /** Longest way of light through what falls, in which it counts as even [m]. */
 const LIT_WIDTH = 1500

@@ -1,12 +1,13 @@
 import { float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
+import type { FallingDecks } from '../../environment/tsl/decks'
 import type { CloudSample } from '../../density/tsl/sample'
 import { loop, type Float, type Vec3 } from '../../tsl-types'
 import type { LayerSegment } from './layerSegment'
 
 /** Rain and snow as shadow maps see them. */
-export interface ShadingFall {
+export interface ShadingFall extends FallingDecks {
   /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
   readonly ceiling: Float
   /** Extinction of light by what falls from a layer, without what is only diffracted [1/m]. */
