@@ -38,6 +38,9 @@ const HAZE_SOFTNESS = 25
 /** Longest way through lit haze [m]. */
 const LONGEST_HAZE = 60_000
 
+/** Edge of a pixel of the glow, in marched ones: it is smooth. Greater: outlines of clouds before each other (*Storm at night*). */
+const GLOW_PIXEL = 2
+
 /** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
 const STORED_POWER = 1e9
 
@@ -154,7 +157,9 @@ export class LightningPasses {
   #smoothed(): Vec4 {
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const texel = vec2(0.5).div(this.#clouds.passes.viewRays.frame.marchedSize).toConst() as Vec2
+      const texel = vec2(0.5 * GLOW_PIXEL)
+        .div(this.#clouds.passes.viewRays.frame.marchedSize)
+        .toConst() as Vec2
       const glow = vec4(0).toVar() as Variable<Vec4>
       for (const [x, y] of [
         [-1, -1],
@@ -235,7 +240,8 @@ export class LightningPasses {
     this.#density.update(_offset)
     this.power.value = power.all
     const { passes } = this.#clouds
-    const { x, y } = passes.viewRays.frame.marchedSize.value
+    const marched = passes.viewRays.frame.marchedSize.value
+    const [x, y] = [marched.x, marched.y].map(size => Math.ceil(size / GLOW_PIXEL))
     this.#target.setSize(x, y)
     this.#smoothTarget.setSize(x, y)
     this.#pass.render(renderer, this.#target)
