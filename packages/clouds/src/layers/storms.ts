@@ -32,15 +32,26 @@ export function stormRadius(
   return (-Math.log(rank)) ** (1 / power) * scale * stormCell(layer)
 }
 
-/** Distance into a storm's body, without billows [m]; negative outside. */
+/** Distance of a storm's tower from the middle of its anvil, upwind [m]. */
+export function stormAside(
+  { baseAltitude, topAltitude, anvil, shear }: CloudLayerParameters,
+  radius: number
+): number {
+  const { aside, mostAside, anvilFrom } = stormShape
+  const grown = MathUtils.smoothstep(radius / (topAltitude - baseAltitude), ...anvilFrom)
+  return Math.min(aside * Math.abs(shear), mostAside) * anvil * grown * radius
+}
+
+/** Distance into a storm's body, without billows [m]; negative outside. Distances from the axes of anvil and tower [m]. */
 export function stormBody(
   { baseAltitude, topAltitude, anvil: share }: CloudLayerParameters,
   distance: number,
   radius: number,
-  height: number
+  height: number,
+  towerDistance = distance
 ): number {
   const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
-  const { anvilFrom, grown, least } = stormShape
+  const { anvilFrom, grown, least, vanishing } = stormShape
   const thickness = topAltitude - baseAltitude
   const tall = thickness * Math.max(Math.sqrt(Math.min(radius / thickness / grown, 1)), least)
   const y = height * thickness
@@ -53,7 +64,8 @@ export function stormBody(
   )
   const [atBase, atTop] = [0, 1].map(end => MathUtils.lerp(narrowing[end], widening[end], share))
   const column = base * MathUtils.lerp(atBase, atTop, height)
-  const inTower = column - Math.hypot(distance, Math.max(y - Math.max(dome * tall - column, 0), 0))
+  const inTower =
+    column - Math.hypot(towerDistance, Math.max(y - Math.max(dome * tall - column, 0), 0))
   const rise = y - anvil * tall
   const depth = tall * (rise > 0 ? above : below)
   const norm = Math.hypot(distance / wide, rise / depth)
@@ -61,5 +73,6 @@ export function stormBody(
   const inAnvil = ((1 - norm) * norm) / gradient
   const soft = blend * tall
   const part = MathUtils.clamp(0.5 + (0.5 * (inTower - inAnvil)) / soft, 0, 1)
-  return MathUtils.lerp(inAnvil, inTower, part) + soft * part * (1 - part)
+  const lost = Math.max(vanishing * thickness - radius, 0)
+  return MathUtils.lerp(inAnvil, inTower, part) + soft * part * (1 - part) - lost
 }
