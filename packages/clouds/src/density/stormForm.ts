@@ -48,9 +48,7 @@ export const stormShape = {
   anvilFrom: [0.15, 0.4],
   grown: 0.4,
   /** Least height of a storm. */
-  least: 0.2,
-  /** Radius over the thickness below which storms vanish [–]. 0: crumbs of them, which float in the air. */
-  vanishing: 0.12
+  least: 0.2
 } as const
 
 /** Billows of storms, in units of strength per deviation of their noise: displacements outwards and inwards. */

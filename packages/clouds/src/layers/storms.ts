@@ -32,16 +32,6 @@ export function stormRadius(
   return (-Math.log(rank)) ** (1 / power) * scale * stormCell(layer)
 }
 
-/** Distance of a storm's tower from the middle of its anvil, upwind [m]. */
-export function stormAside(
-  { baseAltitude, topAltitude, anvil, shear }: CloudLayerParameters,
-  radius: number
-): number {
-  const { aside, mostAside, anvilFrom } = stormShape
-  const grown = MathUtils.smoothstep(radius / (topAltitude - baseAltitude), ...anvilFrom)
-  return Math.min(aside * Math.abs(shear), mostAside) * anvil * grown * radius
-}
-
 /** Distance into a storm's body, without billows [m]; negative outside. Distances from the axes of anvil and tower [m]. */
 export function stormBody(
   { baseAltitude, topAltitude, anvil: share }: CloudLayerParameters,
@@ -51,7 +41,7 @@ export function stormBody(
   towerDistance = distance
 ): number {
   const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
-  const { anvilFrom, grown, least, vanishing } = stormShape
+  const { anvilFrom, grown, least } = stormShape
   const thickness = topAltitude - baseAltitude
   const tall = thickness * Math.max(Math.sqrt(Math.min(radius / thickness / grown, 1)), least)
   const y = height * thickness
@@ -73,6 +63,5 @@ export function stormBody(
   const inAnvil = ((1 - norm) * norm) / gradient
   const soft = blend * tall
   const part = MathUtils.clamp(0.5 + (0.5 * (inTower - inAnvil)) / soft, 0, 1)
-  const lost = Math.max(vanishing * thickness - radius, 0)
-  return MathUtils.lerp(inAnvil, inTower, part) + soft * part * (1 - part) - lost
+  return MathUtils.lerp(inAnvil, inTower, part) + soft * part * (1 - part)
 }

@@ -1,5 +1,5 @@
-import { Vector3 } from 'three'
-import { stormBillows, stormPlaces } from '../../src/density/stormForm'
+import { MathUtils, Vector3 } from 'three'
+import { stormBillows, stormPlaces, stormShape } from '../../src/density/stormForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import {
   smoothStormStrength,
@@ -7,10 +7,20 @@ import {
   stormNearness,
   stormRoughness
 } from '../../src/layers/meanColumn'
-import { stormAside, stormCell } from '../../src/layers/storms'
+import { stormCell } from '../../src/layers/storms'
 import { hashCell, type Vec3Array } from './noise'
 
 const wrap = (i: number, cells: number): number => ((i % cells) + cells) % cells
+
+/** Distance of a storm's tower from the middle of its anvil, upwind [m]. */
+export function stormAside(
+  { baseAltitude, topAltitude, anvil, shear }: CloudLayerParameters,
+  radius: number
+): number {
+  const { aside, mostAside, anvilFrom } = stormShape
+  const grown = MathUtils.smoothstep(radius / (topAltitude - baseAltitude), ...anvilFrom)
+  return Math.min(aside * Math.abs(shear), mostAside) * anvil * grown * radius
+}
 
 /** Distance from a storm's axis [cells]. */
 function axisDistance(gap: Vector3, up: Vector3): number {
@@ -51,7 +61,7 @@ function stormGap(place: Vec3Array, up: Vector3): Vector3 {
 /**
  * Float64 twin of `stormAround`: distances from the axes of the nearest storm's anvil and tower [m], and its rank.
  *
- * @param downwind - Where columns lean to, in the lattice, of any length.
+ * @param downwind - Direction that columns lean to, in the lattice, of any length.
  */
 export function stormAround(
   layer: CloudLayerParameters,

@@ -12,7 +12,7 @@ import { placeOf, squareFrom, stormGap, type StormNearby } from './stormNearby'
 export interface StormAround {
   /** Distance from the axis of its anvil [m]; a storm that stands aside of the surface is as far away at least. */
   readonly distance: Float
-  /** The same from the axis of its tower, which stands upwind [m]. */
+  /** Distance from the axis of its tower, which stands upwind, measured alike [m]. */
   readonly towerDistance: Float
   /** Rank of that distance among all places of the planet, in [0, 1]: 1 on the axis. */
   readonly rank: Float
@@ -38,7 +38,7 @@ const cellLength = (layer: LayerNodes): Float =>
     .reciprocal()
     .toConst()
 
-/** Distance of a storm's tower from the middle of its anvil [m]. Float64: layers/storms.ts. */
+/** Distance of a storm's tower from the middle of its anvil [m]. Twin: `stormAside` in test/twins/storm.ts */
 const asideOf = ({ anvil, thickness }: LayerNodes, shear: Float, radius: Float): Float =>
   shear
     .mul(stormShape.aside)
@@ -120,7 +120,7 @@ export const stormBody = /*#__PURE__*/ Fn(
     Float
   ]) => {
     const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
-    const { anvilFrom, grown, least, vanishing } = stormShape
+    const { anvilFrom, grown, least } = stormShape
     const aspect = radius.div(thickness).toConst() as Float
     const tall = aspect.div(grown).clamp(0, 1).sqrt().max(least).mul(thickness).toConst() as Float
     const y = height.mul(thickness).toConst() as Float
@@ -144,9 +144,7 @@ export const stormBody = /*#__PURE__*/ Fn(
     const inAnvil = norm.oneMinus().mul(norm.div(gradient)).toConst() as Float
     const soft = tall.mul(blend).toConst() as Float
     const share = inTower.sub(inAnvil).div(soft).mul(0.5).add(0.5).clamp(0, 1).toConst() as Float
-    return mix(inAnvil, inTower, share)
-      .add(soft.mul(share).mul(share.oneMinus()))
-      .sub(thickness.mul(vanishing).sub(radius).max(0))
+    return mix(inAnvil, inTower, share).add(soft.mul(share).mul(share.oneMinus()))
   },
   layout('welkinStormBody', 'float', {
     distance: 'float',
