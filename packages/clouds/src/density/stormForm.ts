@@ -41,7 +41,7 @@ export const stormShape = {
   /** Height of the anvil, and its greatest depth above and below that. Greater above: a dome; greater below: a funnel. */
   anvil: 0.67,
   above: 0.09,
-  below: 0.19,
+  below: 0.21,
   /** Length over which tower and anvil grow into each other. 0: a table on a leg. */
   blend: 0.12,
   /** Radius over the thickness between which storms get anvils, and from which they reach the layer's top [–]. */
@@ -64,9 +64,9 @@ export const stormBillows = {
   /** Softness of edges in ice: factor of their width less 1 [–]. */
   softIce: 3,
   /** Strength below which billows add nothing to clear air; they fade towards it [–]. Greater: islands float beside storms. */
-  reach: 5,
+  reach: 10,
   /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
-  offset: 0.65,
+  offset: 0,
   /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
-  most: 9
+  most: 10
 } as const

@@ -38,11 +38,14 @@ const cellLength = (layer: LayerNodes): Float =>
     .reciprocal()
     .toConst()
 
-/** Distance of a storm's tower from the middle of its anvil [m]. Twin: `stormAside` in test/twins/storm.ts */
-const asideOf = ({ anvil, thickness }: LayerNodes, shear: Float, radius: Float): Float =>
-  shear
-    .mul(stormShape.aside)
-    .min(stormShape.mostAside)
+/**
+ * Distance of a storm's tower from the middle of its anvil, over the shear, which is not 0 [m]. Twin: `stormAside` in
+ * test/twins/storm.ts
+ */
+const asidePerShear = ({ anvil, thickness }: LayerNodes, shear: Float, radius: Float): Float =>
+  float(stormShape.mostAside)
+    .div(shear.max(1e-6))
+    .min(stormShape.aside)
     .mul(anvil)
     .mul(smoothstep(...stormShape.anvilFrom, radius.div(thickness)))
     .mul(radius)
@@ -69,16 +72,17 @@ export function stormAround(
   const place = placeOf(layer, subpoint, bent)
   const found = nearby?.gap.sub(place.sub(nearby.place).mul(count)) ?? stormGap(place, zenith)
   const gap = found.toConst() as Vec3
-  const cells = squareFrom(gap, zenith).sqrt().toConst() as Float
+  const square = squareFrom(gap, zenith).toConst() as Float
+  const cells = square.sqrt().toConst() as Float
   const length = cellLength(layer)
   const lean = layer.shearAxis.cross(up).toConst() as Vec3
-  const aside = asideOf(layer, lean.length(), radius).div(length)
-  // A direction even where there is no shear.
-  const downwind = layer.directionInFields(lean.add(up.mul(1e-6)))
-  const towerGap = gap.sub(downwind.mul(aside)).toConst()
+  const aside = asidePerShear(layer, lean.length(), radius).mul(count)
+  // It is horizontal: heights stay.
+  const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
+  const towerSquare = square.add(downwind.dot(downwind.sub(gap.mul(2)))).max(0)
   return {
     distance: cells.mul(length).toConst(),
-    towerDistance: squareFrom(towerGap, zenith).sqrt().mul(length).toConst(),
+    towerDistance: towerSquare.sqrt().mul(length).toConst(),
     rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()
   }
 }
