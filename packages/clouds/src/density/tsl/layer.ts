@@ -76,6 +76,8 @@ export interface LayerNodes {
   fieldLattice: Lattice
   mesoscaleLattice: Lattice
   regionLattice: Lattice
+  /** Turns displacements into the fields' lattice, in its periods [1/m]. */
+  displacementInFields: (displacement: Vec3) => Vec3
   /** Turns directions into the fields' lattice, unit length. */
   directionInFields: (direction: Vec3) => Vec3
   /**
@@ -131,6 +133,10 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     fieldLattice: lattice(12),
     mesoscaleLattice: lattice(23),
     regionLattice: lattice(15),
+    displacementInFields: v => {
+      const [x, y, z] = [0, 1, 2].map(row => read(12 + row).xyz.dot(v))
+      return vec3(x, y, z)
+    },
     directionInFields: v => {
       const [x, y, z] = [0, 1, 2].map(row => read(12 + row).xyz.dot(v))
       return vec3(x, y, z).normalize()
