@@ -1,7 +1,7 @@
 import { checkOptions, fail } from '@welkin/geo'
 import { GridHeights, type GridHeightsOptions } from './GridHeights'
 
-/** What is used of a `GeoTIFFImage` of the package geotiff, which others may stand in for. */
+/** Part of a `GeoTIFFImage` of the package geotiff that is used; others may stand in for it. */
 export interface GeoTIFFRaster {
   getWidth(): number
   getHeight(): number
