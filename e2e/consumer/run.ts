@@ -70,7 +70,7 @@ function install(app: string): string {
     const [{ filename }] = JSON.parse(output) as [{ filename: string }]
     return `./${filename}`
   })
-  const tools = ['three', '@types/three', 'typescript', 'vite', '3d-tiles-renderer'].map(
+  const tools = ['three', '@types/three', 'typescript', 'vite', '3d-tiles-renderer', 'geotiff'].map(
     name => `${name}@${workspace[name]}`
   )
   const others = Object.entries(foreign).map(([name, version]) => `${name}@${version}`)

@@ -3,7 +3,12 @@ import { checkRange, withDefaults } from '@welkin/atmosphere'
 import { checkPositive } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
-import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
+import {
+  geographicGradient,
+  geographicPlace,
+  geographicY,
+  type GeographicPlace
+} from './geographic'
 import {
   isPolar,
   MERCATOR_LIMIT,
@@ -16,7 +21,14 @@ import {
 import { pagePlaces, type PagePlaces } from './pagePlaces'
 import { OVERSHOOT, type RasterSample } from './RasterSampler'
 import { TilePyramid, type FindTile, type HeightTile } from './TilePyramid'
-import { TILE_DEFAULTS, TilesAbout, TileStore, type TileOptions } from './TileStore'
+import {
+  pictureReader,
+  TILE_DEFAULTS,
+  TilesAbout,
+  TileStore,
+  type ReadTile,
+  type TileOptions
+} from './TileStore'
 import type { TileUrl } from './tileUrl'
 
 /** Options of {@link TerrariumTiles} and {@link TerrainRGBTiles}. */
@@ -42,11 +54,35 @@ const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const near: RasterSample = { value: 0, x: 0, y: 0 }
 const polar: RasterSample = { value: 0, x: 0, y: 0 }
 
+/** Makes what loads tiles. */
+export type ReaderOfHeights = (options: Required<HeightTilesOptions>) => ReadTile<HeightTile>
+
 /** Height of a pixel's colour, each of 0 to 255 [m]. */
 export type DecodeHeight = (red: number, green: number, blue: number) => number
 
+/** Reads heights from pictures: pixels beyond `lowest` and `highest` are holes. */
+export const readerOfPictures =
+  (decode: DecodeHeight): ReaderOfHeights =>
+  options =>
+    pictureReader(options, data => {
+      const { lowest, highest, size } = options
+      const heights = new Float32Array(size ** 2)
+      for (let i = 0; i < heights.length; i++) {
+        const height = decode(data[4 * i], data[4 * i + 1], data[4 * i + 2])
+        const isHeight = data[4 * i + 3] > 0 && height >= lowest && height <= highest
+        heights[i] = isHeight ? height : NaN
+      }
+      return heightTile(heights)
+    })
+
+/** Tile of heights, NaN where there is none; null if there is none at all. */
+export function heightTile(heights: Float32Array): HeightTile | null {
+  const holes = heights.reduce((sum, height) => sum + Number(Number.isNaN(height)), 0)
+  return holes < heights.length ? { heights, hasHoles: holes > 0 } : null
+}
+
 /**
- * Heights that are loaded as pictures in tiles of Web Mercator, as they are needed.
+ * Heights that are loaded in tiles, of Web Mercator or of longitude and latitude, as they are needed.
  *
  * What is there is used: a tile that does not exist, or is corrupt, is a hole that shows the coarser one; one that fails is tried
  * again, and its page is left to its parent meanwhile. The tiles of the coarsest level stay while all of them take no more than
@@ -64,21 +100,27 @@ export class HeightTiles implements PageSource {
   readonly #options: Required<HeightTilesOptions>
   readonly #pyramid: TilePyramid
   readonly #store: TileStore<HeightTile>
+  /** False of a map of longitude and latitude, which has rows up to the poles. */
+  readonly #isMercator: boolean
 
   /**
    * @param where - Class that the user called.
+   * @param readerOf - Loads tiles, by all options.
+   * @param isMercator - True of tiles of Web Mercator, false of longitude and latitude, two at level 0.
    * @throws If the address is no template, or an option is unknown or out of its range.
    */
   constructor(
     where: string,
     url: string | TileUrl,
-    decode: DecodeHeight,
-    options: HeightTilesOptions = {}
+    readerOf: ReaderOfHeights,
+    options: HeightTilesOptions = {},
+    isMercator = true
   ) {
     const all = withDefaults(where, DEFAULTS, options)
     const { minZoom, maxZoom, size, lowest, highest } = all
     const bytes = Float32Array.BYTES_PER_ELEMENT
-    this.#store = new TileStore(where, url, all, 1, bytes, data => this.#decoded(data, decode))
+    const wide = isMercator ? 1 : 2
+    this.#store = new TileStore(where, url, all, wide, bytes, readerOf(all))
     checkPositive(where, 'steepest', all.steepest)
     checkRange(where, 'highest', highest, lowest, 1e5)
     checkRange(where, 'lowest', lowest, -1e5, highest)
@@ -89,7 +131,9 @@ export class HeightTiles implements PageSource {
     // Between pixels heights may go beyond theirs.
     this.lowest = lowest - OVERSHOOT * 1000
     this.highest = highest + OVERSHOOT * 1000
-    this.#pyramid = new TilePyramid(size, minZoom, Math.min(Math.max(0, lowest), highest))
+    const otherwise = Math.min(Math.max(0, lowest), highest)
+    this.#pyramid = new TilePyramid(size, minZoom, otherwise, wide)
+    this.#isMercator = isMercator
   }
 
   /** Counts up whenever heights have arrived. */
@@ -111,17 +155,20 @@ export class HeightTiles implements PageSource {
     const { radii } = this.#options.ellipsoid
     geographicPlace(positionECEF, radii, place)
     const x = mercatorX(place.longitude)
-    const y = mercatorY(place.latitude)
+    const y = this.#rowOf(place.latitude)
     let z = this.maxZoom
-    const keyAt = (): number => tileKey(z, Math.floor(x * 2 ** z), Math.floor(y * 2 ** z))
+    const { wide } = this.#store
+    const keyAt = (): number =>
+      tileKey(z, Math.floor(x * wide * 2 ** z), Math.floor(y * 2 ** z), wide)
     while (z > this.minZoom && this.#store.peek(keyAt()) === undefined) z--
     this.#store.get(keyAt())
     // A new function each time: the tiles that were found before may be others now.
     this.#sample(z, x, y, key => this.#store.peek(key), near)
     target.height = near.value
-    // Rows are stretched by 1 / cos latitude.
     const byLongitude = near.x / (2 * Math.PI)
-    const byLatitude = -near.y / (2 * Math.PI * Math.max(Math.cos(place.latitude), 1e-3))
+    // Rows of Web Mercator are stretched by 1 / cos latitude.
+    const stretch = this.#isMercator ? 2 * Math.max(Math.cos(place.latitude), 1e-3) : 1
+    const byLatitude = -near.y / (Math.PI * stretch)
     geographicGradient(place, byLongitude, byLatitude, positionECEF, radii, target.gradient)
     return target
   }
@@ -137,7 +184,7 @@ export class HeightTiles implements PageSource {
       const heights = new Float32Array(side * side)
       for (let i = 0; i < heights.length; i++) {
         const [x, y] = [places.x[i], places.y[i]]
-        heights[i] = isPolar(y)
+        heights[i] = this.#isPolar(y)
           ? this.#sample(z, x, y, find, near).value
           : this.#pyramid.valueAt(z, x, y, find)
       }
@@ -159,44 +206,40 @@ export class HeightTiles implements PageSource {
     this.#pyramid.forget()
   }
 
+  #rowOf(latitude: number): number {
+    return this.#isMercator ? mercatorY(latitude) : geographicY(latitude)
+  }
+
+  /** True for a row near a pole that the map has not. */
+  #isPolar(y: number): boolean {
+    return this.#isMercator && isPolar(y)
+  }
+
   /** Place on the map. */
   #project(positionECEF: Vector3, target: { x: number; y: number }): void {
     geographicPlace(positionECEF, this.#options.ellipsoid.radii, place)
     target.x = mercatorX(place.longitude)
-    target.y = mercatorY(place.latitude)
+    target.y = this.#rowOf(place.latitude)
   }
 
   /** Tiles of which places need pixels. */
   #keysOf(z: number, { x, y }: PagePlaces): Set<number> {
     const { size, coarsest } = this.#pyramid
-    const about = new TilesAbout(2 / size)
+    const about = new TilesAbout(2 / size, this.#store.wide)
     const edges = new Set<number>()
     for (let i = 0; i < x.length; i++) {
       if (y[i] >= 0 && y[i] <= 1) about.add(z, x[i], y[i])
       else edges.add(y[i] < 0 ? 0 : 1)
-      if (isPolar(y[i])) about.add(coarsest, x[i], y[i])
+      if (this.#isPolar(y[i])) about.add(coarsest, x[i], y[i])
     }
     for (const y of edges) for (const column of EDGE_COLUMNS) about.add(coarsest, column, y)
     return about.keys
   }
 
-  #decoded(data: ArrayLike<number>, decode: DecodeHeight): HeightTile | null {
-    const { lowest, highest, size } = this.#options
-    const heights = new Float32Array(size ** 2)
-    let holes = 0
-    for (let i = 0; i < heights.length; i++) {
-      const height = decode(data[4 * i], data[4 * i + 1], data[4 * i + 2])
-      const isHeight = data[4 * i + 3] > 0 && height >= lowest && height <= highest
-      heights[i] = isHeight ? height : NaN
-      if (!isHeight) holes++
-    }
-    return holes < heights.length ? { heights, hasHoles: holes > 0 } : null
-  }
-
   /** Height at a place, and its slopes per width of the map. */
   #sample(z: number, x: number, y: number, find: FindTile, target: RasterSample): RasterSample {
     if (y >= 0 && y <= 1) this.#pyramid.sample(z, x, y, find, target)
-    if (!isPolar(y)) return target
+    if (!this.#isPolar(y)) return target
     const latitude = Math.abs(mercatorLatitude(y))
     const edge = Math.min(Math.max(y, 0), 1)
     // Towards the pole: the coarsest level, then its mean along the edge of the map.

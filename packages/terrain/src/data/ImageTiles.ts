@@ -3,10 +3,17 @@ import { withDefaults } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import type { PageImage, PageImages } from '../pages/PageImages'
 import type { PageRequest } from '../pages/PageSource'
-import { geographicPlace, type GeographicPlace } from './geographic'
+import { geographicPlace, geographicY, type GeographicPlace } from './geographic'
 import { mercatorX, mercatorY, tileKey } from './mercator'
 import { pagePlaces, type PagePlaces } from './pagePlaces'
-import { TILE_DEFAULTS, TilesAbout, TileStore, type HeldTile, type TileOptions } from './TileStore'
+import {
+  pictureReader,
+  TILE_DEFAULTS,
+  TilesAbout,
+  TileStore,
+  type HeldTile,
+  type TileOptions
+} from './TileStore'
 import type { TileUrl } from './tileUrl'
 
 /** Options of {@link ImageTiles}. */
@@ -29,9 +36,6 @@ const place: GeographicPlace = { longitude: 0, latitude: 0 }
 
 /** Places of the four pixels about one. */
 const pixelPlaces = new Uint32Array(4)
-
-/** Row of a latitude on a map of longitude and latitude: 0 at the north pole, 1 at the south pole. */
-const geographicY = (latitude: number): number => 0.5 - latitude / Math.PI
 
 /**
  * Pictures of the ground in tiles of XYZ, TMS or WMTS servers, loaded as they are needed.
@@ -68,7 +72,7 @@ export class ImageTiles implements PageImages {
     this.#options = all
     this.attribution = all.attribution
     const wide = all.scheme === 'mercator' ? 1 : 2
-    this.#store = new TileStore(where, url, all, wide, 4, decoded)
+    this.#store = new TileStore(where, url, all, wide, 4, pictureReader(all, decoded))
   }
 
   /** Counts up whenever a picture has arrived. */

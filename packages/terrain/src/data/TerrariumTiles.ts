@@ -1,4 +1,4 @@
-import { HeightTiles, type HeightTilesOptions } from './HeightTiles'
+import { HeightTiles, readerOfPictures, type HeightTilesOptions } from './HeightTiles'
 import type { TileUrl } from './tileUrl'
 
 /**
@@ -22,7 +22,7 @@ export class TerrariumTiles extends HeightTiles {
     super(
       'TerrariumTiles',
       url,
-      (red, green, blue) => red * 256 + green + blue / 256 - 32_768,
+      readerOfPictures((red, green, blue) => red * 256 + green + blue / 256 - 32_768),
       options
     )
   }
@@ -42,6 +42,9 @@ export class TerrainRGBTiles extends HeightTiles {
   constructor(url: string | TileUrl, options: HeightTilesOptions = {}) {
     const decode = (red: number, green: number, blue: number): number =>
       (red * 65_536 + green * 256 + blue) / 10 - 10_000
-    super('TerrainRGBTiles', url, decode, { ...options, lowest: options.lowest ?? -9999 })
+    super('TerrainRGBTiles', url, readerOfPictures(decode), {
+      ...options,
+      lowest: options.lowest ?? -9999
+    })
   }
 }

@@ -27,11 +27,13 @@ export class TilePyramid {
    * @param size - Pixels along a tile's edge.
    * @param coarsest - Level that ends the search.
    * @param otherwise - Height where nothing is there [m].
+   * @param wide - Tiles of level 0 from west to east.
    */
   constructor(
     readonly size: number,
     readonly coarsest: number,
-    readonly otherwise: number
+    readonly otherwise: number,
+    readonly wide = 1
   ) {}
 
   /**
@@ -44,10 +46,10 @@ export class TilePyramid {
     if (find !== this.#find) this.#lastZ = -1
     this.#find = find
     const scale = this.size * 2 ** z
-    const column = x * scale - 0.5
+    const column = x * this.wide * scale - 0.5
     const row = y * scale - 0.5
     sampleRaster((i, j) => this.#pixelAt(z, i, j), column, row, target)
-    target.x *= scale
+    target.x *= this.wide * scale
     target.y *= scale
     return target
   }
@@ -58,7 +60,7 @@ export class TilePyramid {
     if (find !== this.#find) this.#lastZ = -1
     this.#find = find
     const scale = size * 2 ** z
-    const column = x * scale - 0.5
+    const column = x * this.wide * scale - 0.5
     const row = y * scale - 0.5
     const left = column - Math.floor(column / size) * size
     const top = row - Math.floor(row / size) * size
@@ -83,7 +85,7 @@ export class TilePyramid {
       this.#lastZ = z
       this.#lastX = x
       this.#lastY = y
-      this.#last = this.#find(tileKey(z, x, y))
+      this.#last = this.#find(tileKey(z, x, y, this.wide))
     }
     return this.#last
   }
@@ -106,7 +108,7 @@ export class TilePyramid {
     for (let level = z - 1; level >= this.coarsest; level--) {
       const x = column / 2 ** (z - level)
       const y = row / 2 ** (z - level)
-      const tile = this.#find(tileKey(level, Math.floor(x / size), Math.floor(y / size)))
+      const tile = this.#find(tileKey(level, Math.floor(x / size), Math.floor(y / size), this.wide))
       if (tile === undefined) continue
       const height = linear(tile.heights, size, x % size, y % size)
       if (!Number.isNaN(height)) return height

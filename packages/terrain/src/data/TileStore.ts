@@ -46,6 +46,26 @@ export const TILE_DEFAULTS: Required<TileOptions> = {
   loadPixels
 }
 
+/** Loads a tile: null if there is none, or nothing on it, an error if it may be tried again. */
+export type ReadTile<T> = (url: string, signal: AbortSignal) => Promise<T | null>
+
+/**
+ * Reads tiles that are pictures.
+ *
+ * @param decode - Tile of RGBA pixels; null if nothing is on it.
+ */
+export function pictureReader<T>(
+  { size, loadPixels }: Required<TileOptions>,
+  decode: (data: ArrayLike<number>) => T | null
+): ReadTile<T> {
+  return async (url, signal) => {
+    const pixels = await loadPixels(url, signal)
+    const isWhole =
+      pixels?.width === size && pixels.height === size && pixels.data.length === 4 * size ** 2
+    return isWhole && !signal.aborted ? decode(pixels.data) : null
+  }
+}
+
 /** A tile in memory. */
 export interface HeldTile {
   /** True if coarser tiles show through it. */
@@ -59,7 +79,7 @@ export interface HeldTile {
 export class TileStore<T extends HeldTile> {
   readonly #options: Required<TileOptions>
   readonly #url: TileUrl
-  readonly #decode: (data: ArrayLike<number>) => T | null
+  readonly #read: ReadTile<T>
   readonly #bytes: number
   readonly #cache: TileCache<T>
   readonly #requests: TileRequests<T>
@@ -71,7 +91,7 @@ export class TileStore<T extends HeldTile> {
    * @param where - Class that the user called.
    * @param wide - Tiles of level 0 from west to east.
    * @param pixelBytes - Memory of a decoded pixel.
-   * @param decode - Tile of RGBA pixels; null if nothing is on it.
+   * @param read - Loads a tile.
    * @throws If the address is no template, or an option is out of its range.
    */
   constructor(
@@ -80,7 +100,7 @@ export class TileStore<T extends HeldTile> {
     options: Required<TileOptions>,
     readonly wide: number,
     pixelBytes: number,
-    decode: (data: ArrayLike<number>) => T | null
+    read: ReadTile<T>
   ) {
     const { minZoom, maxZoom, size, memory, concurrency, retries } = options
     for (const [name, value, least, most] of [
@@ -98,7 +118,7 @@ export class TileStore<T extends HeldTile> {
     checkEllipsoid(where, options.ellipsoid)
     this.#options = options
     this.#url = typeof url === 'function' ? url : tileUrl(url)
-    this.#decode = decode
+    this.#read = read
     this.#bytes = pixelBytes * size ** 2
     const budget = 1e6 * memory
     const isSmall = wide * 4 ** minZoom * this.#bytes <= budget / 2
@@ -172,13 +192,8 @@ export class TileStore<T extends HeldTile> {
 
   async #load(key: number, signal: AbortSignal): Promise<T> {
     const { z, x, y } = tileOfKey(key, this.wide)
-    const { size } = this.#options
-    const pixels = await this.#options.loadPixels(this.#url(z, x, y), signal)
+    const tile = await this.#read(this.#url(z, x, y), signal)
     if (signal.aborted) throw new PermanentFailure('given up')
-    if (pixels?.width !== size || pixels.height !== size || pixels.data.length !== 4 * size ** 2) {
-      throw new PermanentFailure(`no picture of ${size} × ${size} pixels`)
-    }
-    const tile = this.#decode(pixels.data)
     if (tile === null) throw new PermanentFailure('nothing on it')
     this.#cache.set(key, tile, this.#bytes)
     this.#version++

@@ -8,6 +8,9 @@ export interface GeographicPlace {
   latitude: number
 }
 
+/** Row of a latitude on a map of longitude and latitude: 0 at the north pole, 1 at the south pole. */
+export const geographicY = (latitude: number): number => 0.5 - latitude / Math.PI
+
 /**
  * Geodetic longitude and latitude of a point on an ellipsoid: those of its normal.
  *

@@ -11,7 +11,7 @@ export interface Pixels {
  * Answers of a server after which it need not be asked again. 403 is among them: storage that nobody may list gives it for
  * files that do not exist. 401 is not: a name or a key may come later.
  */
-const GONE = new Set([204, 400, 403, 404, 410])
+export const GONE: ReadonlySet<number> = new Set([204, 400, 403, 404, 410])
 
 /**
  * Loads the pixels of a picture in a browser, as they stand in the file: no colour profile or alpha is applied to them.

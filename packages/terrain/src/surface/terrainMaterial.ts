@@ -163,6 +163,7 @@ export function terrainMaterial(
   material.roughnessNode = mix(surface.roughness, sea.variance.sqrt().sqrt(), cover)
   material.aoNode = mix(surface.occlusion, float(1), cover).mul(blend.w)
   material.normalNode = litView
+  material.ground = transformNormalToView(normal) as unknown as Vec3
   const water = { cover, normal: litView, variance: sea.variance }
   material.emissiveNode = new WaterMirrorNode(atmosphere, water)
   return material
