@@ -123,7 +123,9 @@ export async function createLightShafts(
 
   const light = view.isMoonlit ? moonlight : sun
   // #region light shafts
-  const shafts = lightShafts(atmosphere, camera, light) // the sun's, or a moon's
+  // #shown const picture = scenePass.getTextureNode() // without its air
+  // #shown const light = sun // or a moon's
+  const shafts = lightShafts(atmosphere, camera, light)
   const lit = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
   // #endregion
   let color: Node = lit
@@ -131,6 +133,7 @@ export async function createLightShafts(
   if (view.clouds !== undefined) {
     const { preset, coverage } = view.clouds
     // #region shafts of clouds
+    // #shown const preset = 'stratocumulus'
     const layers = cloudPreset(preset)
     node = clouds(lit, depth, camera, atmosphere, layers)
     const shadows = cloudShadow(node, shadow(light), light.source)

@@ -20,14 +20,8 @@ import {
 import type { Texture } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
-import {
-  boardCockpit,
-  coarseGlobe,
-  descend,
-  DESCENT_SECONDS,
-  landingGround,
-  toZenith
-} from './shell/descent'
+import { Descent } from './shell/Descent'
+import { boardCockpit, coarseGlobe, isAboard, landingGround, toZenith } from './shell/descentPath'
 import { changeOf, createRenderer, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -130,6 +124,11 @@ export async function createShell(
     meshes.push(ball)
     scene.add(ball)
     // #region shell
+    // #shown const light = new DirectionalLight()
+    // #shown const ball = new Mesh(new SphereGeometry(1, 256, 128), new MeshStandardMaterial())
+    // #shown scene.add(light, light.target, ball)
+    // #shown const parameters = new AtmosphereParameters()
+    // #shown const model = 'tables' // or 'single-scattering', which needs none
     const shell = new AtmosphereShell(parameters, 1, { sun: light, model })
     ball.add(shell) // a mesh whose geometry has radius 1, of any scale
     // #endregion
@@ -183,8 +182,8 @@ export async function createShell(
   const elapsed = frameClock(args.frame)
   const current = { ...args }
   const isMoved = changeOf()
-  /** Part of the descent that is done. */
-  let part = 0
+  const descent =
+    args.view === 'descent' ? new Descent(meshes[0].position, EARTH_RADIUS, explorer) : undefined
   const apply = (): void => {
     const angle = (current.sun * Math.PI) / 180
     if (args.view === 'map') light.position.set(Math.sin(angle), 0.3, Math.cos(angle))
@@ -198,7 +197,7 @@ export async function createShell(
     if (args.view === 'cockpit' && isMoved([current.height])) {
       camera.position.set(0, 1e-3 * current.height * KILOMETER, 0)
     }
-    if (args.view === 'descent' && isMoved([current.descent])) part = current.descent
+    if (descent !== undefined && isMoved([current.descent])) descent.start(current.descent)
     renderer.toneMappingExposure = exposureOf(current.exposure)
     camera.updateProjectionMatrix()
     camera.updateMatrixWorld()
@@ -212,16 +211,14 @@ export async function createShell(
   const up = new Vector3()
   const draw = (): void => {
     const seconds = elapsed()
-    const descends = args.view === 'descent' && (part < 1 || args.frame)
-    if (descends) {
-      descend(camera, part, meshes[0].position, EARTH_RADIUS)
-      part = Math.min(part + seconds / DESCENT_SECONDS, 1)
-    }
+    descent?.update(camera, seconds)
     explorer?.update(seconds)
     cockpit.position.copy(camera.position)
     up.copy(camera.position).sub(meshes[0].position).normalize()
     cockpit.quaternion.setFromUnitVectors(cockpit.up, up) // level, as far as one flies
-    if (descends) boardCockpit(cockpit, camera, part)
+    if (descent?.runs) boardCockpit(cockpit, camera, descent.part)
+    // Who takes over before it is there flies without it.
+    cockpit.visible = descent === undefined || descent.runs || isAboard(descent.part)
     renderer.render(scene, camera)
   }
 

@@ -7,7 +7,7 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<ShellArgs> = {
   title: 'Shell',
-  render: mount(createShell, storyCode('shell.scene.ts', 'shell')),
+  render: mount(createShell, storyCode(['shell.scene.ts', 'shell'])),
   argTypes: {
     view: { name: 'View', table: { disable: true } },
     model: {
@@ -69,7 +69,7 @@ export const CockpitInSpace: Story = {
   args: { view: 'cockpit', sun: 20, height: 300_000 }
 }
 
-/** One take from the map into the cockpit and down to the ground. */
+/** One take from the map into the cockpit and down to the ground; any key, press or wheel takes over. */
 export const Descent: Story = {
   args: { view: 'descent', sun: 35 }
 }

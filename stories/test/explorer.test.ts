@@ -1,45 +1,11 @@
 import { Ellipsoid } from '@welkin/geo'
 import { Walker, type Ground } from '@welkin/terrain'
-import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import { Matrix4, Quaternion, Vector3 } from 'three'
+import type { PerspectiveCamera } from 'three'
 import { describe, expect, it } from 'vitest'
-import { Explorer } from '../src/moving/Explorer'
 import type { ExplorerOptions } from '../src/moving/Explorer'
 import { formatState, parseState } from '../src/moving/ExplorerState'
-
-/** An explorer on a canvas without a page, whose events tests make. */
-function explore(options: ExplorerOptions = {}, height = 2) {
-  const page = new EventTarget()
-  const ownerDocument = Object.assign(new EventTarget(), { defaultView: page })
-  const canvas = Object.assign(new EventTarget(), {
-    ownerDocument,
-    style: {},
-    clientHeight: 500,
-    setPointerCapture() {}
-  })
-  const camera = new PerspectiveCamera(60)
-  camera.position.set(0, height, 0)
-  const explorer = new Explorer(camera, canvas as unknown as HTMLCanvasElement, options)
-  const send = (to: EventTarget, type: string, values: object): void => {
-    const event = new Event(type, { cancelable: true })
-    for (const [name, value] of Object.entries(values)) {
-      Object.defineProperty(event, name, { value })
-    }
-    to.dispatchEvent(event)
-  }
-  return {
-    camera,
-    explorer,
-    press: (code: string, target: object = page) => send(page, 'keydown', { code, target }),
-    release: (code: string) => send(page, 'keyup', { code }),
-    hide: () => send(page, 'blur', {}),
-    wheel: (deltaY: number) => send(canvas, 'wheel', { deltaY, deltaMode: 0 }),
-    pointer: (type: string, pointerType: string, pointerId: number, x: number, y: number) =>
-      send(canvas, type, { pointerType, pointerId, button: 0, clientX: x, clientY: y }),
-    run: (seconds: number, step = 1 / 60): void => {
-      for (let t = step / 2; t < seconds; t += step) explorer.update(step)
-    }
-  }
-}
+import { explore } from './explore'
 
 const directionOf = (camera: PerspectiveCamera): Vector3 => camera.getWorldDirection(new Vector3())
 
@@ -163,6 +129,25 @@ describe('looking', () => {
     run(1)
     expect(camera.position.z).toBeLessThan(-2)
     expect(explorer.state.heading).toBeCloseTo(351)
+  })
+
+  it('brings a tilted view level while one looks, without a jump', () => {
+    const { camera, pointer, run } = explore()
+    const tilt = (): number =>
+      Math.asin(new Vector3(1, 0, 0).applyQuaternion(camera.quaternion).y) * (180 / Math.PI)
+    camera.rotation.set(-0.5, 0, 1.2, 'YXZ')
+    run(1)
+    const before = tilt()
+    expect(before).toBeGreaterThan(50)
+    pointer('pointerdown', 'mouse', 1, 100, 100)
+    const view = new Quaternion()
+    for (let i = 1; i <= 180; i++) {
+      view.copy(camera.quaternion)
+      pointer('pointermove', 'mouse', 1, 100 + i, 100)
+      run(1 / 60)
+      expect(view.angleTo(camera.quaternion)).toBeLessThan(0.06)
+    }
+    expect(Math.abs(tilt())).toBeLessThan(0.1)
   })
 
   it('leaves drags to others until it walks', () => {

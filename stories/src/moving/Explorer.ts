@@ -19,6 +19,8 @@ const WALKING_SPEED = 3
 const FAST = 4
 /** Time in which speed comes and goes [s]. */
 const EASE = 0.1
+/** Time in which a view that others left tilted comes level while one looks around [s]. */
+const LEVELLING = 0.4
 /** Least height of flight above the ground [m]. */
 const CLEARANCE = 0.5
 /** Turn of a drag across the canvas, over the field of view. */
@@ -32,6 +34,7 @@ const axis = new Vector3()
 const before = new Vector3()
 const after = new Vector3()
 const quaternion = new Quaternion()
+const LEVEL = new Quaternion()
 
 /**
  * Moves a camera by keys, mouse and touch: flight, and walks on the ground.
@@ -57,6 +60,7 @@ export class Explorer {
   private readonly walker: ExplorerOptions['walker']
   /** Eyes of the walker, as it left them. */
   private readonly eye = new Vector3()
+  private isViewSet = false
 
   constructor(camera: PerspectiveCamera, canvas: HTMLElement, options: ExplorerOptions = {}) {
     this.camera = camera
@@ -101,7 +105,18 @@ export class Explorer {
     this.camera.position.set(x, y, z).divideScalar(this.metersPerUnit)
     this.turnTo({ heading: heading / DEGREES, pitch: pitch / DEGREES })
     this.isWalking = walking !== 0
+    this.isViewSet = true
     this.camera.updateMatrixWorld()
+  }
+
+  /**
+   * True if any key was pressed, the pointer pressed, the wheel turned or {@link state} set since it was last asked for: who
+   * moves the camera leaves it to the explorer then.
+   */
+  takeUse(): boolean {
+    const used = this.input.takeUse() || this.isViewSet
+    this.isViewSet = false
+    return used
   }
 
   /** Called once per frame. */
@@ -119,7 +134,7 @@ export class Explorer {
       }
       this.stop()
     }
-    if (turn.lengthSq() > 0) this.look()
+    if (turn.lengthSq() > 0) this.look(seconds)
     if (this.walk === undefined) this.fly(seconds)
     else this.step(this.walk, seconds)
   }
@@ -177,11 +192,14 @@ export class Explorer {
     this.axesAt(this.camera.position).rotation(angles, this.camera.quaternion)
   }
 
-  private look(): void {
+  private look(seconds: number): void {
     const { heading, pitch } = this.angles()
     const share = (TURN * this.camera.fov) / DEGREES
     const raised = Math.min(Math.max(pitch + turn.y * share, -MOST_PITCH), MOST_PITCH)
+    const tilt = this.axes.rotation({ heading, pitch }, quaternion).invert()
+    tilt.multiply(this.camera.quaternion).slerp(LEVEL, 1 - Math.exp(-seconds / LEVELLING))
     this.turnTo({ heading: heading + turn.x * share, pitch: raised })
+    this.camera.quaternion.multiply(tilt)
   }
 
   private follow(flight: Flight, seconds: number): void {

@@ -41,6 +41,7 @@ export class ExplorerInput {
   private readonly turned = new Vector2()
   private readonly listeners = new AbortController()
   private isToggled = false
+  private isUsed = false
 
   constructor(canvas: HTMLElement) {
     this.canvas = canvas
@@ -102,6 +103,13 @@ export class ExplorerInput {
     return toggled
   }
 
+  /** True if any key was pressed, the pointer pressed or the wheel turned since it was last asked for. */
+  takeUse(): boolean {
+    const used = this.isUsed
+    this.isUsed = false
+    return used
+  }
+
   dispose(): void {
     this.listeners.abort()
     this.release()
@@ -114,16 +122,19 @@ export class ExplorerInput {
 
   private press(event: KeyboardEvent): void {
     const { code, target, repeat } = event
-    if (event.ctrlKey || event.metaKey || event.altKey || !USED.has(code)) return
+    if (event.ctrlKey || event.metaKey || event.altKey) return
     const element = target as Partial<Element> | null
     const ignored = code === 'Space' ? `${TYPED}, ${PRESSED}` : TYPED
     if (element?.closest?.(ignored)) return
+    this.isUsed = true
+    if (!USED.has(code)) return
     if (code === 'Space') event.preventDefault()
     if (code === 'KeyF' && !repeat) this.isToggled = true
     this.keys.add(code)
   }
 
   private touch({ pointerId, pointerType, button, clientX, clientY }: PointerEvent): void {
+    this.isUsed = true
     if (!this.isLooking || (pointerType === 'mouse' && button !== 0)) return
     this.canvas.setPointerCapture(pointerId)
     const start = new Vector2(clientX, clientY)
@@ -145,6 +156,7 @@ export class ExplorerInput {
   }
 
   private roll(event: WheelEvent): void {
+    this.isUsed = true
     if (!this.isLooking) return
     event.preventDefault()
     // Firefox may count in lines.

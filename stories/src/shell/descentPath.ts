@@ -104,6 +104,9 @@ export function descend(
   camera.updateMatrixWorld()
 }
 
+/** True where the cockpit is all around the camera. */
+export const isAboard = (part: number): boolean => part >= BOARDING[1]
+
 /** Turns a cockpit, which is where the camera is, as the camera is turned; on the map it is still below. */
 export function boardCockpit(cockpit: Object3D, camera: PerspectiveCamera, part: number): void {
   cockpit.quaternion.copy(camera.quaternion)
