@@ -59,9 +59,8 @@ export class Air {
     this.sun = sun
     this.sky = sky
     if (path === 'post') {
-      scene.backgroundNode = null
-      scene.fogNode = null
       // #region post effect
+      scene.backgroundNode = scene.fogNode = null // the post effect draws sky and haze
       const scenePass = pass(scene, camera, { samples: 0 }) // one: colour and depth of the same point
       const depth = scenePass.getTextureNode('depth')
       const color = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)

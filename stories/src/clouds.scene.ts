@@ -75,6 +75,9 @@ export async function createClouds(
     const { pipeline, color, depth } = post
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
     // #region clouds
+    // #shown const preset = 'fairWeather' // or another
+    // #shown const quality = 'medium'
+    // #shown const worldMap = null // of cloud cover, for globes
     const layers = cloudPreset(preset)
     const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
     pipeline.outputNode = node

@@ -9,11 +9,11 @@ import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('air.ts', 'post effect')}
-
-${storyCode('clouds.scene.ts', 'clouds')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['clouds.scene.ts', 'clouds']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 const hidden = { table: { disable: true } }

@@ -63,7 +63,8 @@ export async function createDay(
   scene.add(...meshes)
 
   // #region day
-  const atmosphere = new Atmosphere({ parameters: standardEarthParameters() }) // twilight as it is
+  // #shown // new Atmosphere({ parameters: standardEarthParameters() }) has twilight as it is
+  const atmosphere = new Atmosphere({ parameters: standardEarthParameters() }) // #hidden
   const luna = moon()
   atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 50) // 50 m from its target
@@ -75,9 +76,15 @@ export async function createDay(
   const air = new Air(renderer, scene, camera, args.path, atmosphere)
   const exposure = air.expose()
   // #region cycle
+  // #shown import { autoExposure } from '@welkin/atmosphere'
+  // #shown import { pass } from 'three/tsl'
+  // #shown import { RenderPipeline } from 'three/webgpu'
+  // #shown const exposure = autoExposure(pass(scene, camera), atmosphere)
+  // #shown const pipeline = new RenderPipeline(renderer)
+  // #shown pipeline.outputNode = exposure
   const cycle = new DayCycle(atmosphere, {
     rate: 1440, // a day in a minute
-    autoExposure: exposure // autoExposure(pass(scene, camera), atmosphere), the pipeline's output
+    autoExposure: exposure
   })
   // #endregion
   air.sun.castShadow = true

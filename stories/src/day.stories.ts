@@ -5,13 +5,12 @@ import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('day.scene.ts', 'day')}
-
-${storyCode('day.scene.ts', 'cycle')}
-
-${storyCode('day.scene.ts', 'each frame')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['day.scene.ts', 'day'],
+  ['day.scene.ts', 'cycle'],
+  ['day.scene.ts', 'each frame']
+)
 
 const meta: Meta<DayArgs> = {
   title: '24 hours',

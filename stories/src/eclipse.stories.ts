@@ -5,9 +5,7 @@ import moonMeta from './moon.stories'
 import { mount } from './mount'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('moon.scene.ts', 'moon')}`
+const code = storyCode(['quickStart.ts', 'quick start'], ['moon.scene.ts', 'moon'])
 
 const meta: Meta<MoonArgs> = {
   title: 'Eclipse',

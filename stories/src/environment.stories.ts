@@ -5,9 +5,7 @@ import { mount } from './mount'
 import { rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('environment.scene.ts', 'environment')}`
+const code = storyCode(['quickStart.ts', 'quick start'], ['environment.scene.ts', 'environment'])
 
 const meta: Meta<EnvironmentArgs> = {
   title: 'Environment',

@@ -5,9 +5,7 @@ import { mount } from './mount'
 import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('fogValley.scene.ts', 'fog')}`
+const code = storyCode(['quickStart.ts', 'quick start'], ['fogValley.scene.ts', 'fog'])
 
 const meta: Meta<FogValleyArgs> = {
   title: 'Fog valley',

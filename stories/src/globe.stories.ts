@@ -6,11 +6,11 @@ import { mount } from './mount'
 import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('globe.scene.ts', 'globe')}
-
-${storyCode('globe.scene.ts', 'globe night')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['globe.scene.ts', 'globe'],
+  ['globe.scene.ts', 'globe night']
+)
 
 const meta: Meta<GlobeArgs> = {
   title: 'Globe',

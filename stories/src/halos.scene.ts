@@ -73,6 +73,7 @@ export async function createHalos(
   atmosphere.add(planetGround())
   const layers = cloudPreset(view.clouds ?? 'fairWeather')
   // #region droplets
+  // #shown const layers = cloudPreset('cirrus')
   const crystals = iceCrystals() // halo and sun dogs, in cirrus
   const light = new DropletLightTable({ crystals }) // glory, cloudbow and corona
   const node = clouds(color, depth, camera, atmosphere, layers, { light })
@@ -83,6 +84,7 @@ export async function createHalos(
   const mist = heightFog({ density: 0.004, falloff: 150, droplets: drops })
   const rain = raindrops({ rate: 8 }) // rainbow; mm/h
   const shower = heightFog({ density: rain.extinction, falloff: 250, droplets: rain })
+  // #shown atmosphere.add(mist) // or the shower
   // #endregion
   if (view.clouds === null) {
     atmosphere.add(args.view === 'rainbow' ? shower : mist)

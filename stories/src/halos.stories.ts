@@ -5,11 +5,11 @@ import { mount } from './mount'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('air.ts', 'post effect')}
-
-${storyCode('halos.scene.ts', 'droplets')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['halos.scene.ts', 'droplets']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 const share = (name: string, description: string) => ({

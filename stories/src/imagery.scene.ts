@@ -67,12 +67,16 @@ async function loadHeights(): Promise<GridHeights> {
 /** Pictures of the arguments. */
 function imageryOf({ url }: ImageryArgs): ImageTiles {
   if (url !== '') return new ImageTiles(url, { maxZoom: 17, attribution: new URL(url).host })
+  const tiles = `${dataUrl('natural-earth/')}{z}/{x}/{-y}.jpg`
   // #region imagery
-  const imagery = new ImageTiles(`${dataUrl('natural-earth/')}{z}/{x}/{-y}.jpg`, {
+  // #shown const tiles = 'natural-earth/{z}/{x}/{-y}.jpg'
+  const imagery = new ImageTiles(tiles, {
     scheme: 'geographic', // two tiles at level 0, rows from the south
     maxZoom: 2,
     attribution: 'Natural Earth'
   })
+  // #shown import { MountainHeights, Terrain } from '@welkin/terrain'
+  // #shown scene.add(new Terrain(atmosphere, new MountainHeights(), { imagery }))
   // #endregion
   return imagery
 }

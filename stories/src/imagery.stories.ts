@@ -9,7 +9,7 @@ const meta: Meta<ImageryArgs> = {
   title: 'Imagery',
   render: mount(
     createImagery,
-    storyCode('imagery.scene.ts', 'imagery'),
+    storyCode(['imagery.scene.ts', 'imagery']),
     ({ url }: ImageryArgs) => url
   ),
   argTypes: {

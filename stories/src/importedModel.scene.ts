@@ -31,16 +31,19 @@ export async function createImportedModel(
   const { atmosphere } = air
   const url = await squareURL()
   // #region model
+  // #shown const url = 'square.glb'
   const { scene: model } = await new GLTFLoader().loadAsync(url)
   scene.add(model)
+  const lamps = new Map<PointLight, number>() // of KHR_lights_punctual, and their candela
+  model.traverse(part => {
+    if (part instanceof Mesh) part.castShadow = part.receiveShadow = true
+    if (part instanceof PointLight) lamps.set(part, part.intensity)
+  })
+  // #endregion
   const meshes: Mesh[] = []
-  const lamps: { light: PointLight; candela: number }[] = [] // of KHR_lights_punctual
   model.traverse(part => {
     if (part instanceof Mesh) meshes.push(part)
-    if (part instanceof PointLight) lamps.push({ light: part, candela: part.intensity })
   })
-  for (const mesh of meshes) mesh.castShadow = mesh.receiveShadow = true
-  // #endregion
   URL.revokeObjectURL(url)
   const glowing = meshes.flatMap(({ name, material }) =>
     name === 'lamp' || name === 'window' ? (material as MeshStandardMaterial) : []
@@ -65,13 +68,14 @@ export async function createImportedModel(
     explorer?.update(elapsed())
     camera.updateMatrixWorld()
     // #region lamps
+    // #shown const lampsBelow = 0.03 // sine of the sun's elevation
     const exposure = exposureFor(atmosphere, camera, { floor: 10 }) // lux of the lamps
     atmosphere.luminanceScale = 1e-4 * exposure // each frame
     const isDark = atmosphere.sunDirection.y < lampsBelow
     const scale = isDark ? atmosphere.luminanceScale : 0 // lamps follow the exposure
-    for (const { light, candela } of lamps) light.intensity = candela * scale
-    glowing.forEach((material, i) => (material.emissiveIntensity = luminances[i] * scale))
+    for (const [lamp, candela] of lamps) lamp.intensity = candela * scale
     // #endregion
+    glowing.forEach((material, i) => (material.emissiveIntensity = luminances[i] * scale))
     air.render()
   }
   apply()
@@ -87,7 +91,7 @@ export async function createImportedModel(
     dispose() {
       air.dispose()
       disposeMeshes(meshes)
-      for (const { light } of lamps) light.dispose()
+      for (const lamp of lamps.keys()) lamp.dispose()
     }
   })
 }

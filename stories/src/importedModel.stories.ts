@@ -5,11 +5,11 @@ import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('importedModel.scene.ts', 'model')}
-
-${storyCode('importedModel.scene.ts', 'lamps')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['importedModel.scene.ts', 'model'],
+  ['importedModel.scene.ts', 'lamps']
+)
 
 const meta: Meta<ImportedModelArgs> = {
   title: 'An imported model',

@@ -111,7 +111,7 @@ export const createLightShafts = (
     ({ scene, camera, renderer, air, noise }) => {
       const { atmosphere, sun, sky, post } = air
       if (post === undefined) throw new Error('createLightShafts: there must be a post effect')
-      const { pipeline, picture: color, depth } = post
+      const { pipeline, picture, depth } = post
       const view: ShaftView = VIEWS[args.view]
       atmosphere.place(view) // from where the sun has its angles
       atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
@@ -124,24 +124,29 @@ export const createLightShafts = (
       }
       const light = view.isNight ? moonlight : sun
       // #region light shafts
-      const shafts = lightShafts(atmosphere, camera, light) // the sun's, or a moon's
-      const lit = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+      // #shown const picture = scenePass.getTextureNode() // without its air
+      // #shown const light = sun // or a moon's
+      const shafts = lightShafts(atmosphere, camera, light)
+      const lit = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
       pipeline.outputNode = lit
       // #endregion
 
-      let node: CloudsNode | undefined
-      let cover: CloudCover | undefined
+      let cloudsNode: CloudsNode | undefined
+      let clouded: CloudCover | undefined
       if (view.clouds !== undefined) {
         const { preset, coverage } = view.clouds
         // #region shafts of clouds
+        // #shown const preset = 'stratocumulus'
         const layers = cloudPreset(preset)
-        node = clouds(lit, depth, camera, atmosphere, layers)
+        const node = clouds(lit, depth, camera, atmosphere, layers)
         pipeline.outputNode = node
         Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
         cloudSkyLight(sky, node)
         shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-        cover = new CloudCover(layers, { light: node.light }) // and dim what eyes are used to
+        const cover = new CloudCover(layers, { light: node.light }) // and dim what eyes are used to
         // #endregion
+        cloudsNode = node
+        clouded = cover
         if (coverage !== undefined) layers.at(0).set({ coverage })
         if (args.frame) node.quality = STILL.quality
         node.time = TIME
@@ -154,7 +159,7 @@ export const createLightShafts = (
 
       let haze = NaN
       return {
-        warmUpFrames: node === undefined ? undefined : STILL.frames,
+        warmUpFrames: cloudsNode === undefined ? undefined : STILL.frames,
         place: () => view,
         // Exposure is that of the tables, in every frame of a screenshot.
         prepare: () => atmosphere.bake(renderer),
@@ -172,14 +177,15 @@ export const createLightShafts = (
         beforeDraw() {
           const sources = view.isNight ? [luna.source] : []
           // #region exposure under clouds
-          const exposure = exposureFor(atmosphere, camera, { clouds: cover, sources })
+          // #shown const exposure = exposureFor(atmosphere, camera, { clouds: cover })
+          const exposure = exposureFor(atmosphere, camera, { clouds: clouded, sources }) // #hidden
           atmosphere.luminanceScale = 1e-4 * exposure // as sun, moon and camera move
           // #endregion
-          if (args.frame) node?.field.bake(renderer)
+          if (args.frame) cloudsNode?.field.bake(renderer)
         },
         dispose() {
           city?.dispose()
-          node?.dispose()
+          cloudsNode?.dispose()
           shafts.dispose()
           moonlight.dispose()
         }

@@ -5,15 +5,13 @@ import { mount } from './mount'
 import { rendererArgTypes, shaftArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('air.ts', 'post effect')}
-
-${storyCode('lightShafts.scene.ts', 'light shafts')}
-
-${storyCode('lightShafts.scene.ts', 'shafts of clouds')}
-
-${storyCode('lightShafts.scene.ts', 'exposure under clouds')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['lightShafts.scene.ts', 'light shafts'],
+  ['lightShafts.scene.ts', 'shafts of clouds'],
+  ['lightShafts.scene.ts', 'exposure under clouds']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 const { strength, turbidity, azimuth, exposure } = shaftArgTypes

@@ -104,7 +104,8 @@ export async function createMoon(
   const { atmosphere } = air
   const mapSize = args.frame ? Math.min(args.mapSize, FRAME_MAP_SIZE) : args.mapSize
   // #region moon
-  const luna = moon({ mapSize }) // where the date has it, in its phase
+  // #shown const luna = moon() // where the date has it, in its phase
+  const luna = moon({ mapSize }) // #hidden
   atmosphere.add(sunFlare(), luna) // far before near
 
   const moonlight = new MoonDirectionalLight(atmosphere, luna, 150) // 150 m from its target

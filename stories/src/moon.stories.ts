@@ -5,9 +5,7 @@ import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('moon.scene.ts', 'moon')}`
+const code = storyCode(['quickStart.ts', 'quick start'], ['moon.scene.ts', 'moon'])
 
 const meta: Meta<MoonArgs> = {
   title: 'Moon phases',

@@ -92,14 +92,19 @@ export async function createMountainShadows(
 
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
   const heights = heightsAbovePlane(terrain, place => ground.heightAt(place))
+  const { picture, depth, pipeline } = post
   // #region mountain shadows
+  // #shown import { DataTexture, FloatType, RedFormat } from 'three'
+  // #shown const FIELD = 110_000 // side [m]
+  // #shown const metres = new Float32Array(512 * 512) // from the south, above y = 0
+  // #shown const heights = new DataTexture(metres, 512, 512, RedFormat, FloatType)
   // From the field, whose first texel is in the south-west, to the world: x is east, y up, z south.
   const toWorld = new Matrix4()
   toWorld.set(FIELD, 0, 0, -FIELD / 2, 0, 0, 1, 0, 0, -FIELD, 0, FIELD / 2, 0, 0, 0, 1)
-  const hills = heightFieldShadow(heights, toWorld) // a texture in metres
+  const hills = heightFieldShadow(heights, toWorld)
   const shafts = lightShafts(atmosphere, camera, sun).add(hills) // into the air, and onto the ground:
   Object.assign(sun.shadow, { shadowNode: terrainShadow(hills, sun, shadow(sun)) })
-  const { picture, depth, pipeline } = post
+  // #shown const picture = scenePass.getTextureNode() // without its air
   pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
   // #endregion
 

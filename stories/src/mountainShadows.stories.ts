@@ -5,9 +5,7 @@ import type { MountainShadowsArgs } from './mountainShadows.scene'
 import { rendererArgTypes, shaftArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('air.ts', 'post effect')}
-
-${storyCode('mountainShadows.scene.ts', 'mountain shadows')}`
+const code = storyCode(['air.ts', 'post effect'], ['mountainShadows.scene.ts', 'mountain shadows'])
 
 const { forceWebGL, frame } = rendererArgTypes
 const { strength, turbidity, azimuth, exposure } = shaftArgTypes

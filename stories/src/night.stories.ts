@@ -6,9 +6,7 @@ import { CONSTELLATIONS } from './night/constellations'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('night.scene.ts', 'night')}
-
-${storyCode('night.scene.ts', 'night exposure')}`
+const code = storyCode(['night.scene.ts', 'night'], ['night.scene.ts', 'night exposure'])
 
 const meta: Meta<NightArgs> = {
   title: 'Starry night',

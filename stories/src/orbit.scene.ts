@@ -37,10 +37,11 @@ export async function createOrbit(
   const current = { ...args }
   const pictures = await earthPictures()
   // #region orbit
+  // #shown const pictures = {} // or textures: surface, water, nightLights
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
   atmosphere.date = new Date('2026-06-20T23:00:00Z')
-  const ground = planetGround({ ...pictures, nightLuminance: 0.02 }) // surface, water, nightLights
+  const ground = planetGround({ ...pictures, nightLuminance: 0.02 })
   atmosphere.add(milkyWay(), stars(), ground, airglow()) // far before near
   scene.backgroundNode = skyBackground(atmosphere)
   // #endregion

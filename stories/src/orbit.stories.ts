@@ -5,9 +5,7 @@ import type { OrbitArgs } from './orbit.scene'
 import { rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('orbit.scene.ts', 'orbit')}
-
-${storyCode('orbit.scene.ts', 'orbit exposure')}`
+const code = storyCode(['orbit.scene.ts', 'orbit'], ['orbit.scene.ts', 'orbit exposure'])
 
 const meta: Meta<OrbitArgs> = {
   title: 'Low Earth orbit',

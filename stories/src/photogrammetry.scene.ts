@@ -40,8 +40,8 @@ export async function createPhotogrammetry(
   const scene = new Scene()
   const camera = new PerspectiveCamera(50, 1, 1, 1e7)
   const current = { ...args }
-  const pipeline = new RenderPipeline(renderer)
   // #region photogrammetry
+  const pipeline = new RenderPipeline(renderer)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const sun = new SunDirectionalLight(atmosphere)
   const sky = new SkyLightProbe(atmosphere)

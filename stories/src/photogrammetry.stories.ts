@@ -8,7 +8,7 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<PhotogrammetryArgs> = {
   title: 'Photogrammetry tiles',
-  render: mount(createPhotogrammetry, storyCode('photogrammetry.scene.ts', 'photogrammetry')),
+  render: mount(createPhotogrammetry, storyCode(['photogrammetry.scene.ts', 'photogrammetry'])),
   argTypes: {
     url: {
       name: 'Tileset',

@@ -7,7 +7,7 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<PlainArgs> = {
   title: 'Plain scene',
-  render: mount(createPlain, storyCode('quickStart.ts', 'quick start')),
+  render: mount(createPlain, storyCode(['quickStart.ts', 'quick start'])),
   argTypes: {
     longitude: {
       name: 'Longitude [°]',

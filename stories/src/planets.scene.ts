@@ -82,6 +82,7 @@ export async function createPlanets(
   const show = async (): Promise<void> => {
     const { planet, dust } = current
     // #region planets
+    // #shown const [planet, dust] = ['made-up', 0.5] as const
     const parameters = {
       earth: new AtmosphereParameters(),
       'made-up': new AtmosphereParameters(),
@@ -95,6 +96,7 @@ export async function createPlanets(
     if (planet === 'earth' || planet === 'made-up') {
       const options = planet === 'earth' ? pictures : { seed: 3 }
       // #region planet's ground
+      // #shown const options = { seed: 3 }
       const ground = planetGround(options) // pictures: { surface, water, nightLights }; none are needed
       atmosphere.add(ground)
       parameters.set({ groundAlbedo: await ground.meanAlbedo(renderer, parameters) })

@@ -11,9 +11,7 @@ const range = (name: string, min: number, max: number, step: number, description
   control: { type: 'range' as const, min, max, step }
 })
 
-const code = `${storyCode('planets.scene.ts', 'planets')}
-
-${storyCode('planets.scene.ts', "planet's ground")}`
+const code = storyCode(['planets.scene.ts', 'planets'], ['planets.scene.ts', "planet's ground"])
 
 const meta: Meta<PlanetsArgs> = {
   title: 'Planets',

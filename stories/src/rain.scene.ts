@@ -110,8 +110,10 @@ export async function createRain(
   const { pipeline, color, depth } = air.post!
   atmosphere.place(view.place)
   atmosphere.add(planetGround())
+  const preset = view.clouds
   // #region rain
-  const layers = cloudPreset(view.clouds)
+  // #shown const preset = 'shower'
+  const layers = cloudPreset(preset)
   const layer = layers.at(0)
   layer.precipitation = { rate: 12 } // mm/h; at any time
 

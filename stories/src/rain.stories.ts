@@ -5,11 +5,11 @@ import type { RainArgs } from './rain.scene'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('air.ts', 'post effect')}
-
-${storyCode('rain.scene.ts', 'rain')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['rain.scene.ts', 'rain']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 

@@ -70,7 +70,12 @@ export async function createRealOrNot(
     const quality = qualityOf(args)
     const field = new SimulatedClouds(simulation, atmosphere, { ...VIEWS.ground, height: BASE })
     const split = uniform(args.split)
+    const { extinction } = field
     // #region two skies
+    // #shown import { float } from 'three/tsl'
+    // #shown const [BASE, SIMULATED_THICKNESS, MOST_EXTINCTION] = [1000, 1500, 0.226]
+    // #shown const [quality, split] = ['high', 0.5] as const
+    // #shown const extinction = () => float(0) // of your clouds at a place [1/m]
     const preset = cloudPreset('fairWeather')
     preset.at(0).set({ baseAltitude: BASE, topAltitude: BASE + 1200, coverage: 0.3 })
     const made = clouds(color, depth, camera, atmosphere, preset, { quality })
@@ -80,7 +85,7 @@ export async function createRealOrNot(
     ])
     const simulated = clouds(color, depth, camera, atmosphere, given, {
       quality,
-      extinction: field.extinction,
+      extinction,
       noise: made.noise,
       light: made.light
     })

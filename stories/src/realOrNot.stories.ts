@@ -6,9 +6,11 @@ import type { RealOrNotArgs } from './realOrNot.scene'
 import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('realOrNot.scene.ts', 'two skies')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['realOrNot.scene.ts', 'two skies']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 

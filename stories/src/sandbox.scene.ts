@@ -88,7 +88,8 @@ export async function createSandbox(
     if (sky === undefined || sky.parameters.bottomRadius !== init.bottomRadius) build(init)
     const { parameters } = sky!
     // #region sandbox
-    // They were given to it: new Atmosphere({ parameters: new AtmosphereParameters({ … }) })
+    // #shown const { parameters } = atmosphere
+    // #shown const init = { turbidity: 4, ozone: 350, mieAnisotropy: 0.76 } // and all else
     parameters.set(init) // at any time; tables are baked again, no shader is compiled
     // #endregion
     shownAir = air

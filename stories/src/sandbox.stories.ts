@@ -8,7 +8,7 @@ import type { SandboxArgs } from './sandbox.scene'
 import { rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = storyCode('sandbox.scene.ts', 'sandbox')
+const code = storyCode(['sandbox.scene.ts', 'sandbox'])
 
 const degrees = [-90, 90, 0.25] as const
 const turn = [-180, 180, 1] as const

@@ -124,6 +124,11 @@ export async function createShell(
     meshes.push(ball)
     scene.add(ball)
     // #region shell
+    // #shown const light = new DirectionalLight()
+    // #shown const ball = new Mesh(new SphereGeometry(1, 256, 128), new MeshStandardMaterial())
+    // #shown scene.add(light, light.target, ball)
+    // #shown const parameters = new AtmosphereParameters()
+    // #shown const model = 'tables' // or 'single-scattering', which needs none
     const shell = new AtmosphereShell(parameters, 1, { sun: light, model })
     ball.add(shell) // a mesh whose geometry has radius 1, of any scale
     // #endregion

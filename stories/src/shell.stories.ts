@@ -7,7 +7,7 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<ShellArgs> = {
   title: 'Shell',
-  render: mount(createShell, storyCode('shell.scene.ts', 'shell')),
+  render: mount(createShell, storyCode(['shell.scene.ts', 'shell'])),
   argTypes: {
     view: { name: 'View', table: { disable: true } },
     model: {

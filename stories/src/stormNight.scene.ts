@@ -56,11 +56,11 @@ export async function createStorm(
   const night = new NightLightProbe(atmosphere)
   atmosphere.add(stars(), planetGround())
   scene.add(night)
+  // #region lightning
   const node = clouds(color, depth, camera, atmosphere, cloudPreset('cumulonimbus'))
   pipeline.outputNode = node
   cloudSkyLight(sky, node)
-  cloudSkyLight(night, node)
-  // #region lightning
+  cloudSkyLight(night, node) // #hidden
   const storm = lightning(node, { rate: 6 }) // flashes a minute
   scene.add(storm.light) // lights the ground
   storm.addEventListener('thunder', ({ distance, duration }) => {

@@ -5,11 +5,11 @@ import type { StormArgs } from './stormNight.scene'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
-const code = `${storyCode('quickStart.ts', 'quick start')}
-
-${storyCode('air.ts', 'post effect')}
-
-${storyCode('stormNight.scene.ts', 'lightning')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['stormNight.scene.ts', 'lightning']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 

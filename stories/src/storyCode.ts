@@ -1,4 +1,4 @@
-import { codeRegion } from './codeRegion'
+import { codeOf, type Region } from './codeRegion'
 
 const sources = import.meta.glob<string>(
   [
@@ -12,7 +12,7 @@ const sources = import.meta.glob<string>(
   { query: '?raw', import: 'default', eager: true }
 )
 
-/** The code of a story, as `mount` shows it: the region NAME of a file beside this one. */
-export function storyCode(file: string, name: string): string {
-  return codeRegion(sources[`./${file}`] ?? '', name)
+/** The code of a story, as `mount` shows it: regions of files beside this one, with their imports. */
+export function storyCode(...regions: Region[]): string {
+  return codeOf(regions, file => sources[`./${file}`] ?? '')
 }

@@ -5,9 +5,12 @@ import { storyCode } from './storyCode'
 import { createStreet } from './streetWeather.scene'
 import type { StreetArgs } from './streetWeather.scene'
 
-const code = `${storyCode('street/Street.ts', 'wet ground')}
-
-${storyCode('street/Street.ts', 'rain and snow')}`
+const code = storyCode(
+  ['quickStart.ts', 'quick start'],
+  ['air.ts', 'post effect'],
+  ['street/Street.ts', 'wet ground'],
+  ['street/Street.ts', 'rain and snow']
+)
 
 const { forceWebGL, frame } = rendererArgTypes
 

@@ -135,6 +135,7 @@ export async function createTables(
   const apply = (): void => {
     const { turbidity, ozone, groundAlbedo, altitude, sunElevation } = current
     // #region tables
+    // #shown const [turbidity, ozone, groundAlbedo, sunElevation] = [2, 300, 0.1, 30]
     atmosphere.parameters
       .set({ turbidity, ozone })
       .set({ groundAlbedo: [groundAlbedo, groundAlbedo, groundAlbedo, groundAlbedo] })

@@ -7,7 +7,7 @@ import type { TablesArgs } from './tables.scene'
 
 const meta: Meta<TablesArgs> = {
   title: 'Tables',
-  render: mount(createTables, storyCode('tables.scene.ts', 'tables')),
+  render: mount(createTables, storyCode(['tables.scene.ts', 'tables'])),
   argTypes: {
     turbidity: {
       name: 'Turbidity',

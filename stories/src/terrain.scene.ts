@@ -109,7 +109,8 @@ export async function createTerrain(
   const options = args.frame ? STILL : {}
   // #region terrain
   const heights = new MountainHeights({ seed: 513 }) // a function: nothing is loaded
-  const terrain = new Terrain(atmosphere, heights, options)
+  // #shown const terrain = new Terrain(atmosphere, heights)
+  const terrain = new Terrain(atmosphere, heights, options) // #hidden
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
   // #endregion

@@ -7,7 +7,7 @@ import type { TerrainArgs } from './terrain.scene'
 
 const meta: Meta<TerrainArgs> = {
   title: 'Terrain',
-  render: mount(createTerrain, storyCode('terrain.scene.ts', 'terrain')),
+  render: mount(createTerrain, storyCode(['terrain.scene.ts', 'terrain'])),
   argTypes: {
     view: {
       name: 'Place',

@@ -10,11 +10,11 @@ import { openingState } from './valley/openingState'
 import { VIEWS } from './valley/views'
 import { weathers } from './valley/weather'
 
-const code = `${storyCode('valleyAir.ts', 'sky and light')}
-
-${storyCode('valleyAir.ts', 'everything')}
-
-${storyCode('valleyFactors.ts', 'factors')}`
+const code = storyCode(
+  ['valleyAir.ts', 'sky and light'],
+  ['valleyAir.ts', 'everything'],
+  ['valleyFactors.ts', 'factors']
+)
 
 const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
 

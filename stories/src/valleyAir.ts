@@ -68,6 +68,8 @@ export function valleyAir(
   falling: ValleyPrecipitation
 ): ValleyAir {
   // #region sky and light
+  // #shown import { airglow, milkyWay, moon, stars } from '@welkin/atmosphere'
+  // #shown const [galaxy, starlight, glow, luna] = [milkyWay(), stars(), airglow(), moon()]
   const atmosphere = new Atmosphere({ parameters: standardEarthParameters() })
   const flare = sunFlare()
   atmosphere.add(galaxy, starlight, luna, glow, flare) // far before near
@@ -91,22 +93,31 @@ export function valleyAir(
   })
 
   // #region everything
+  // #shown import { cloudPreset, precipitationShafts } from '@welkin/clouds'
+  // #shown import { RenderPipeline } from 'three/webgpu'
+  // #shown const layers = cloudPreset('fairWeather')
   const scenePass = pass(scene, camera, { samples: 0 })
   const depth = scenePass.getTextureNode('depth')
   const shafts = lightShafts(atmosphere, camera, sun)
   const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
-  const precipitation = falling.shafts // rain and snow under clouds
-  const node = clouds(air, depth, camera, atmosphere, layers, { quality, precipitation })
-  Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) })
+  // #shown const precipitation = precipitationShafts() // rain and snow under clouds
+  const precipitation = falling.shafts // #hidden
+  // #shown const node = clouds(air, depth, camera, atmosphere, layers, { precipitation })
+  const node = clouds(air, depth, camera, atmosphere, layers, { quality, precipitation }) // #hidden
+  // #shown Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+  Object.assign(sun.shadow, { shadowNode: cloudShadow(node, cascades) }) // #hidden
   const ofMoon = cloudShadow(node, shadow(moonlight), luna.source)
   Object.assign(moonlight.shadow, { shadowNode: ofMoon, filterNode: BasicShadowFilter })
   for (const each of [sky, moonlitSky, night]) cloudSkyLight(each, node)
   shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-  const lights = [sun, sky, moonlight, moonlitSky, night]
-  const around = falling.over(node, depth, camera, atmosphere, lights) // and around the camera
-  const picture = withDepth(around, scenePass) // drawn once, for exposure and the lake's mirror
-  const exposure = autoExposure(picture, atmosphere) // as bright as what the camera sees
+  // #shown const exposure = autoExposure(node, atmosphere) // as bright as what the camera sees
+  // #shown const pipeline = new RenderPipeline(renderer)
+  // #shown pipeline.outputNode = exposure
   // #endregion
+  const lights = [sun, sky, moonlight, moonlitSky, night]
+  const around = falling.over(node, depth, camera, atmosphere, lights)
+  const picture = withDepth(around, scenePass) // drawn once, for exposure and the lake's mirror
+  const exposure = autoExposure(picture, atmosphere)
   return {
     atmosphere,
     scenePass,

@@ -62,20 +62,28 @@ const NO_FLARE = { innerStrength: 0, outerStrength: 0 }
 /** Sets the valley's factors; what is switched off has none. */
 export function applyFactors(
   state: ValleyFactors & ValleyFeatures,
-  air: AirStyle,
+  style: AirStyle,
   { shafts, node, sky: [galaxy, starlight, glow], luna, flare, exposure }: FactorTargets
 ): void {
-  const { twilightSaturation, ambient } = state
-  const [hasHaze, hasShafts] = [Number(state.haze), Number(state.shafts)]
-  const [hasStars, hasGlow, strength] = [state.stars, state.airglow, state.moon].map(Number)
+  const { twilightSaturation, ambient, earthshine, purkinjeShift } = state
+  const haze = Number(state.haze) * state.hazeStrength
+  const shaftStrength = Number(state.shafts) * state.shaftStrength
+  const nightSky = Number(state.stars) * state.starlight
+  const glowStrength = Number(state.airglow) * state.airglowStrength
+  const strength = Number(state.moon)
   // #region factors
-  air.set({ haze: hasHaze * state.hazeStrength, twilightSaturation }) // atmosphere.add(airStyle())
+  // #shown import { airStyle } from '@welkin/atmosphere'
+  // #shown const [haze, twilightSaturation, ambient, shaftStrength] = [0.7, 1.3, 1.1, 0.8]
+  // #shown const [nightSky, glowStrength, strength, earthshine, purkinjeShift] = [2, 2, 1, 3, 1]
+  // #shown const style = airStyle()
+  // #shown atmosphere.add(style)
+  style.set({ haze, twilightSaturation })
   node.ambient = ambient
-  shafts.strength = hasShafts * state.shaftStrength
-  galaxy.intensity = starlight.intensity = hasStars * state.starlight
-  glow.intensity = hasGlow * state.airglowStrength
-  luna.set({ strength, earthshine: state.earthshine })
-  flare.set(state.flare ? FLARE : NO_FLARE)
-  exposure.purkinjeShift = state.purkinjeShift // nights as eyes see them
+  shafts.strength = shaftStrength
+  galaxy.intensity = starlight.intensity = nightSky
+  glow.intensity = glowStrength
+  luna.set({ strength, earthshine })
+  exposure.purkinjeShift = purkinjeShift // nights as eyes see them
   // #endregion
+  flare.set(state.flare ? FLARE : NO_FLARE)
 }

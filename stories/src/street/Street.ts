@@ -104,15 +104,19 @@ export class Street {
     camera.lookAt(-0.4, 2.6, -12)
     const scenePass = pass(scene, camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
-    const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
-    const shelter = (this.#shelter = new PrecipitationShelter(scene))
+    const color = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
     // #region rain and snow
-    const lights = [sun, sky, night, overcast, ...houses.lamps]
-    const options = { lights, shelter, depth, depthCamera: camera, time }
+    const shelter = new PrecipitationShelter(scene) // dry under roofs
+    // #shown const lights = [sun, sky] // and lamps, and all else that lights
+    const lights = [sun, sky, night, overcast, ...houses.lamps] // #hidden
+    // #shown const options = { lights, shelter, depth, depthCamera: camera }
+    const options = { lights, shelter, depth, depthCamera: camera, time } // #hidden
     const rain = rainfall(atmosphere, { ...options, rate: 12 }) // mm/h
     const snow = snowfall(atmosphere, { ...options, rate: 0 })
-    const picture = precipitationOverlay(air, camera, [rain, snow])
+    const picture = precipitationOverlay(color, camera, [rain, snow])
+    // #shown pipeline.outputNode = picture
     // #endregion
+    this.#shelter = shelter
     this.rain = rain
     this.snow = snow
     this.exposure = autoExposure(picture, atmosphere)
