@@ -7,7 +7,7 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<FlatWorldArgs> = {
   title: 'Flat world',
-  render: mount(createFlatWorld, storyCode('flatWorld.scene.ts', 'flat world')),
+  render: mount(createFlatWorld, storyCode(['flatWorld.scene.ts', 'flat world'])),
   argTypes: {
     seaLevel: {
       name: 'Level of lakes [m]',

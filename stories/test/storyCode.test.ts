@@ -44,7 +44,7 @@ declare global {
 }
 `
 
-/** What the compiler says of some modules, by name, beside those names. */
+/** Compiles some modules, by name, together with the given names; returns what the compiler says. */
 function compile(modules: Record<string, string>): string {
   const cache = fileURLToPath(new URL('../.cache/', import.meta.url))
   mkdirSync(cache, { recursive: true })

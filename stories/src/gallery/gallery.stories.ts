@@ -1,5 +1,5 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
-import { listStories, type ListedStory } from './listStories'
+import { listStories, withPictures, type GalleryEntry } from './listStories'
 
 /** Sources of the stories, and the pictures that tests compare them with. */
 const sources = import.meta.glob<string>('../*.stories.ts', {
@@ -20,25 +20,38 @@ const STYLE = `
   .gallery a { color: inherit; text-decoration: none }
   .gallery img { display: block; width: 100%; aspect-ratio: 16 / 9; object-fit: cover; border-radius: 6px }
   .gallery b { display: block; margin-top: 4px }
+  .gallery figure { position: relative; margin: 0 }
+  .gallery figcaption { position: absolute; left: 6px; bottom: 6px; padding: 1px 6px; border-radius: 4px;
+    background: rgb(5 7 10 / 70%); font-size: 12px }
 `
 
-/** A story's picture, name and sentence, which lead to it. */
-function tile({ id, name, about }: ListedStory, picture: string): HTMLElement {
+const urlOf = (picture: string): string | undefined =>
+  pictures[`../../../e2e/visual/baselines/${picture}.png`]
+
+/** A story's picture, name and sentence, which lead to it; the picture of another story says so. */
+function tile({ id, name, about, picture, pictureOf }: GalleryEntry): HTMLElement {
   const link = document.createElement('a')
   link.href = `?path=/story/${id}`
   // The page around the story's own.
   link.target = '_top'
   const image = document.createElement('img')
-  Object.assign(image, { src: picture, alt: name, loading: 'lazy' })
+  Object.assign(image, { src: urlOf(picture), alt: pictureOf ?? name, loading: 'lazy' })
+  const figure = document.createElement('figure')
+  figure.append(image)
+  if (pictureOf !== undefined) {
+    const caption = document.createElement('figcaption')
+    caption.textContent = `Picture of “${pictureOf}”`
+    figure.append(caption)
+  }
   const title = document.createElement('b')
   title.textContent = name
   const text = document.createElement('span')
   text.textContent = about
-  link.append(image, title, text)
+  link.append(figure, title, text)
   return link
 }
 
-/** All stories that have a picture, by their titles. */
+/** All stories, by their titles. */
 function gallery(): HTMLElement {
   const page = document.createElement('div')
   page.className = 'gallery'
@@ -47,10 +60,7 @@ function gallery(): HTMLElement {
   page.append(style)
   for (const [file, source] of Object.entries(sources)) {
     const { title, stories } = listStories(file, source)
-    const shown = stories.flatMap(story => {
-      const picture = pictures[`../../../e2e/visual/baselines/${story.picture}.png`]
-      return picture === undefined ? [] : [tile(story, picture)]
-    })
+    const shown = withPictures(stories, picture => urlOf(picture) !== undefined).map(tile)
     if (shown.length === 0) continue
     const heading = document.createElement('h2')
     heading.textContent = title
