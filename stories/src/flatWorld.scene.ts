@@ -68,6 +68,9 @@ const rolling: HeightSource = {
 /** A plane with hills on it: y is up, north is −z, and units are metres. */
 function flatWorld(options: TerrainOptions): Terrain {
   // #region flat world
+  // #shown import { MountainHeights } from '@welkin/terrain'
+  // #shown const rolling = new MountainHeights() // or any HeightSource
+  // #shown const options = { seaLevel: -10 }
   const atmosphere = new Atmosphere({ flat: true })
   const terrain = new Terrain(atmosphere, rolling, options) // heights at places (x, 0, z)
   // #endregion

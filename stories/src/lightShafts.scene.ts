@@ -94,7 +94,6 @@ function cameraOf({ altitude, view, land }: ShaftView): PerspectiveCamera {
 export async function createLightShafts(
   canvas: HTMLCanvasElement,
   args: LightShaftsArgs
-<<<<<<< HEAD
 ): Promise<SceneHandle<LightShaftsArgs>> {
   const view: ShaftView = shaftViews[args.view]
   const renderer = await createRenderer(canvas, args.forceWebGL, false, true)
@@ -136,12 +135,13 @@ export async function createLightShafts(
     // #region shafts of clouds
     // #shown const preset = 'stratocumulus'
     const layers = cloudPreset(preset)
-    node = clouds(lit, depth, camera, atmosphere, layers)
-    const shadows = cloudShadow(node, shadow(light), light.source)
+    const deck = clouds(lit, depth, camera, atmosphere, layers)
+    const shadows = cloudShadow(deck, shadow(light), light.source)
     Object.assign(light.shadow, { shadowNode: shadows }) // clouds shade the land
-    cloudSkyLight(sky, node)
-    shafts.add(cloudAirShadow(node)) // and the air
+    cloudSkyLight(sky, deck)
+    shafts.add(cloudAirShadow(deck)) // and the air
     // #endregion
+    node = deck
     if (coverage !== undefined) layers.at(0).set({ coverage })
     if (args.frame) node.quality = STILL_QUALITY
     node.field.bake(renderer)
@@ -161,95 +161,6 @@ export async function createLightShafts(
     if (view.isMoonlit) {
       luna.set({ direction, phase: 0.5 })
       atmosphere.setSunAngles(-40, azimuth + 180)
-=======
-): Promise<SceneHandle<LightShaftsArgs>> =>
-  createLand<LightShaftsArgs>(
-    canvas,
-    { ...args, path: 'post' },
-    55,
-    ({ scene, camera, renderer, air, noise }) => {
-      const { atmosphere, sun, sky, post } = air
-      if (post === undefined) throw new Error('createLightShafts: there must be a post effect')
-      const { pipeline, picture, depth } = post
-      const view: ShaftView = VIEWS[args.view]
-      atmosphere.place(view) // from where the sun has its angles
-      atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
-
-      const luna = moon()
-      const moonlight = new MoonDirectionalLight(atmosphere, luna, 1000)
-      if (view.isNight) {
-        atmosphere.add(luna)
-        scene.add(moonlight, moonlight.target)
-      }
-      const light = view.isNight ? moonlight : sun
-      // #region light shafts
-      // #shown const picture = scenePass.getTextureNode() // without its air
-      // #shown const light = sun // or a moon's
-      const shafts = lightShafts(atmosphere, camera, light)
-      const lit = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
-      pipeline.outputNode = lit
-      // #endregion
-
-      let cloudsNode: CloudsNode | undefined
-      let clouded: CloudCover | undefined
-      if (view.clouds !== undefined) {
-        const { preset, coverage } = view.clouds
-        // #region shafts of clouds
-        // #shown const preset = 'stratocumulus'
-        const layers = cloudPreset(preset)
-        const node = clouds(lit, depth, camera, atmosphere, layers)
-        pipeline.outputNode = node
-        Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
-        cloudSkyLight(sky, node)
-        shafts.add(cloudAirShadow(node)) // clouds cast their shadows into the air
-        const cover = new CloudCover(layers, { light: node.light }) // and dim what eyes are used to
-        // #endregion
-        cloudsNode = node
-        clouded = cover
-        if (coverage !== undefined) layers.at(0).set({ coverage })
-        if (args.frame) node.quality = STILL.quality
-        node.time = TIME
-      }
-      const city = view.hasCity ? createCity(noise) : undefined
-      if (city !== undefined) scene.add(city.object)
-      if (view.fogBase !== undefined) {
-        atmosphere.add(heightFog({ base: view.fogBase, falloff: 40, density: 0.004 }))
-      }
-
-      let haze = NaN
-      return {
-        warmUpFrames: cloudsNode === undefined ? undefined : STILL.frames,
-        place: () => view,
-        // Exposure is that of the tables, in every frame of a screenshot.
-        prepare: () => atmosphere.bake(renderer),
-        apply({ strength, turbidity, elevation, azimuth, exposure }) {
-          shafts.strength = strength
-          if (turbidity !== haze) atmosphere.parameters.set({ turbidity })
-          haze = turbidity
-          const direction = atmosphere.setSunAngles(elevation, azimuth).sunDirection
-          if (view.isNight) {
-            luna.set({ direction, phase: 0.5 })
-            atmosphere.setSunAngles(-40, azimuth + 180)
-          }
-          renderer.toneMappingExposure = exposureOf(exposure)
-        },
-        beforeDraw() {
-          const sources = view.isNight ? [luna.source] : []
-          // #region exposure under clouds
-          // #shown const exposure = exposureFor(atmosphere, camera, { clouds: cover })
-          const exposure = exposureFor(atmosphere, camera, { clouds: clouded, sources }) // #hidden
-          atmosphere.luminanceScale = 1e-4 * exposure // as sun, moon and camera move
-          // #endregion
-          if (args.frame) cloudsNode?.field.bake(renderer)
-        },
-        dispose() {
-          city?.dispose()
-          cloudsNode?.dispose()
-          shafts.dispose()
-          moonlight.dispose()
-        }
-      }
->>>>>>> every2
     }
     renderer.toneMappingExposure = exposureOf(exposure)
   }

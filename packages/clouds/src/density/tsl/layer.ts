@@ -105,8 +105,7 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const once = (slot: number): Vec4 => read(slot).toConst()
-  const [extent, form] = [once(0), once(1)]
-  const [shear, kind, column, edges, periods] = [18, 19, 20, 21, 22].map(once)
+  const [extent, form, shear, kind, column, edges, periods] = [0, 1, 18, 19, 20, 21, 22].map(once)
   const lattice =
     (slot: number): Lattice =>
     v => {
@@ -114,6 +113,10 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
       const [x, y, z] = [0, 1, 2].map(row => read(slot + row).dot(point))
       return vec3(x, y, z)
     }
+  const turn = (slot: number, v: Vec3): Vec3 => {
+    const [x, y, z] = [0, 1, 2].map(row => read(slot + row).xyz.dot(v))
+    return vec3(x, y, z)
+  }
   return {
     index,
     hasStorms: hasStorms(field, known),
@@ -133,18 +136,9 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     fieldLattice: lattice(12),
     mesoscaleLattice: lattice(23),
     regionLattice: lattice(15),
-    displacementInFields: v => {
-      const [x, y, z] = [0, 1, 2].map(row => read(12 + row).xyz.dot(v))
-      return vec3(x, y, z)
-    },
-    directionInFields: v => {
-      const [x, y, z] = [0, 1, 2].map(row => read(12 + row).xyz.dot(v))
-      return vec3(x, y, z).normalize()
-    },
-    directionInSystems: v => {
-      const [x, y, z] = [0, 1, 2].map(row => read(15 + row).xyz.dot(v))
-      return rotate(fromRegions, vec3(x, y, z).mul(noisePeriods.regions).toConst())
-    },
+    displacementInFields: v => turn(12, v),
+    directionInFields: v => turn(12, v).normalize(),
+    directionInSystems: v => rotate(fromRegions, turn(15, v).mul(noisePeriods.regions).toConst()),
     directionFromSystems: v => {
       const inRegions = rotate(toRegions, v).mul(noisePeriods.regions).toConst() as Vec3
       const [x, y, z] = [0, 1, 2].map(row =>

@@ -120,7 +120,7 @@ export function fallenFrom(
       const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
       const width = footprint.max(blur).mul(layer.perShapePeriod)
       const level = levelOf(width, 1 / NOISE_SIZE.shape)
-      const { coarse, fine } = billows(field, layer, atBase, column.zw as Vec2, level)
+      const { coarse, fine } = billows(field, layer, atBase, column.zw, level)
       const streak = coarse
         .mul(fallForm.coarseStreaks)
         .add(fine.mul(fallForm.fineStreaks))
