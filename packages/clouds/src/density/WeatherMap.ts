@@ -44,6 +44,9 @@ const DISPLACEMENT = 1e5
 /** Texels at each edge that bilinear look-ups must not leave. */
 const MARGIN = 0.5
 
+/** Farthest from the middle of a tile that it is looked up, with the texels next to those, in texture coordinates of the tile. */
+const RIM = 0.5 + 2 / SIZE
+
 /**
  * Texture coordinates of a tile per unit of position, from its middle.
  *
@@ -70,7 +73,8 @@ interface PlaceInMap {
  * there take one texture read in place of three that wait for each other. Farther away they take four, but the long code of
  * fronts and belts is not in their shader: a second map has the weather of whole regions, for all layers, as far as clouds are in sight.
  *
- * Where there is precipitation, it is mapped as well, by the columns from which it falls: that is smooth, and the search for storms is long.
+ * Where there is precipitation, it is mapped as well, by the columns from which it falls: that is smooth, and the search
+ * for storms is long. A layer from which nothing falls costs nothing there.
  *
  * Each layer has a tile, one above the other, and another one aside of it for what falls. Positions are displacements in the plane that touches the sphere at
  * the subpoint, at ρ / (ρ + EVEN) for a distance ρ from it.
@@ -148,23 +152,24 @@ export class WeatherMap {
       const position = at.fract().sub(0.5).div(perPosition).toConst() as Vec2
       const place = this.#placeAt(position, float(EVEN), layer.baseAltitude)
       const { flat, subpoint, footprint } = place
-      const up = zenithAt(field, subpoint)
-      const found = weatherBackground(
-        field,
-        layer,
-        subpoint,
-        { up },
-        footprint,
-        this.#systemsAt(flat)
-      ).toVar() as Variable<Vec4>
-      if (fallOf !== undefined) {
+      // Nothing falls.
+      const found = vec4(-1, 0, 0, 0).toVar() as Variable<Vec4>
+      // Corners are never looked up.
+      const isInCircle = at.fract().sub(0.5).length().lessThan(RIM)
+      const fall = fallOf?.(index)
+      const isWanted = fall && isFall.not().or(fall.rate.greaterThan(0))
+      If(isWanted?.and(isInCircle) ?? isInCircle, () => {
+        const around = this.#systemsAt(flat)
+        const up = zenithAt(field, subpoint)
+        found.assign(weatherBackground(field, layer, subpoint, { up }, footprint, around))
+        if (fall === undefined) return
         If(isFall, () => {
           const far = flat.length().add(EVEN).toConst() as Float
           const texel = far.mul(far).mul(1 / (EVEN * SIZE * FALL_PER_POSITION))
           const width = footprint.max(texel).toConst() as Float
-          found.assign(fallColumn(field, layer, fallOf(index), found, subpoint, width))
+          found.assign(fallColumn(field, layer, fall, found, subpoint, width))
         })
-      }
+      })
       return found
     })()
   }
