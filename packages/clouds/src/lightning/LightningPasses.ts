@@ -241,7 +241,8 @@ export class LightningPasses {
     this.power.value = power.all
     const { passes } = this.#clouds
     const marched = passes.viewRays.frame.marchedSize.value
-    const [x, y] = [marched.x, marched.y].map(size => Math.ceil(size / GLOW_PIXEL))
+    // Never a half: pixels between two marched ones would take either, by the backend.
+    const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
     this.#target.setSize(x, y)
     this.#smoothTarget.setSize(x, y)
     this.#pass.render(renderer, this.#target)
