@@ -32,13 +32,12 @@ export function stormRadius(
   return (-Math.log(rank)) ** (1 / power) * scale * stormCell(layer)
 }
 
-/** Distance into a storm's body, without billows [m]; negative outside. Distances from the axes of anvil and tower [m]. */
+/** Distance into a storm's body, without billows [m]; negative outside. */
 export function stormBody(
   { baseAltitude, topAltitude, anvil: share }: CloudLayerParameters,
   distance: number,
   radius: number,
-  height: number,
-  towerDistance = distance
+  height: number
 ): number {
   const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
   const { anvilFrom, grown, least } = stormShape
@@ -54,8 +53,7 @@ export function stormBody(
   )
   const [atBase, atTop] = [0, 1].map(end => MathUtils.lerp(narrowing[end], widening[end], share))
   const column = base * MathUtils.lerp(atBase, atTop, height)
-  const inTower =
-    column - Math.hypot(towerDistance, Math.max(y - Math.max(dome * tall - column, 0), 0))
+  const inTower = column - Math.hypot(distance, Math.max(y - Math.max(dome * tall - column, 0), 0))
   const rise = y - anvil * tall
   const depth = tall * (rise > 0 ? above : below)
   const norm = Math.hypot(distance / wide, rise / depth)

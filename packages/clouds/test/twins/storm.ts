@@ -1,46 +1,23 @@
-import { MathUtils, Vector3 } from 'three'
-import { stormBillows, stormPlaces, stormShape } from '../../src/density/stormForm'
+import { Vector3 } from 'three'
+import { stormBillows, stormPlaces } from '../../src/density/stormForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
-import {
-  smoothStormStrength,
-  stormEdge,
-  stormNearness,
-  stormRoughness
-} from '../../src/layers/meanColumn'
+import { smoothStormStrength, stormEdge, stormRoughness } from '../../src/layers/meanColumn'
 import { stormCell } from '../../src/layers/storms'
 import { hashCell, type Vec3Array } from './noise'
 
 const wrap = (i: number, cells: number): number => ((i % cells) + cells) % cells
 
-/** Distance of a storm's tower from the middle of its anvil, upwind [m]. */
-export function stormAside(
-  { baseAltitude, topAltitude, anvil, shear }: CloudLayerParameters,
-  radius: number
-): number {
-  const { aside, mostAside, anvilFrom } = stormShape
-  const grown = MathUtils.smoothstep(radius / (topAltitude - baseAltitude), ...anvilFrom)
-  return Math.min(aside * Math.abs(shear), mostAside) * anvil * grown * radius
-}
-
-/** Distance from a storm's axis [cells]. */
-function axisDistance(gap: Vector3, up: Vector3): number {
-  const height = gap.dot(up)
-  const across = gap.clone().addScaledVector(up, -height)
-  return Math.hypot(across.length(), Math.sqrt(stormPlaces.away) * height ** 3)
-}
-
 /**
- * Float64 twin of `stormGap`, over all cells around, of which the shader looks at the nearest eight [cells].
+ * Float64 twin of `stormDistance`, over all cells around, of which the shader looks at the nearest eight [cells].
  *
  * @param place - Place in the lattice, in its periods.
  * @param up - Zenith in the lattice.
  */
-function stormGap(place: Vec3Array, up: Vector3): Vector3 {
-  const { cells, seed, jitter } = stormPlaces
+export function stormDistance(place: Vec3Array, up: Vector3): number {
+  const { cells, seed, jitter, away } = stormPlaces
   const at = new Vector3(...place).multiplyScalar(cells)
   const base = at.clone().floor()
-  const nearest = new Vector3(Infinity, Infinity, Infinity)
-  let least = Infinity
+  let nearest = Infinity
   for (let corner = 0; corner < 27; corner++) {
     const [i, j, k] = [corner % 3, Math.floor(corner / 3) % 3, Math.floor(corner / 9)].map(
       (digit, axis) => base.getComponent(axis) + digit - 1
@@ -51,32 +28,23 @@ function stormGap(place: Vec3Array, up: Vector3): Vector3 {
       .multiplyScalar(jitter)
       .add(new Vector3(i + 0.5, j + 0.5, k + 0.5))
       .sub(at)
-    const distance = axisDistance(gap, up)
-    if (distance < least) nearest.copy(gap)
-    least = Math.min(least, distance)
+    const height = gap.dot(up)
+    const across = gap.clone().addScaledVector(up, -height)
+    nearest = Math.min(nearest, Math.hypot(across.length(), Math.sqrt(away) * height ** 3))
   }
   return nearest
 }
 
-/**
- * Float64 twin of `stormAround`: distances from the axes of the nearest storm's anvil and tower [m], and its rank.
- *
- * @param downwind - Direction that columns lean to, in the lattice, of any length.
- */
+/** Float64 twin of `stormAround`: distance from the axis of the nearest storm [m], and its rank. */
 export function stormAround(
   layer: CloudLayerParameters,
   place: Vec3Array,
-  up: Vector3,
-  downwind = new Vector3(),
-  radius = 0
-): { distance: number; towerDistance: number; rank: number } {
-  const gap = stormGap(place, up)
-  const cells = axisDistance(gap, up)
-  const tower = downwind.clone().setLength(stormAside(layer, radius) / stormCell(layer))
+  up: Vector3
+): { distance: number; rank: number } {
+  const cells = stormDistance(place, up)
   const { scale, power } = stormPlaces
   return {
     distance: cells * stormCell(layer),
-    towerDistance: axisDistance(gap.sub(tower), up) * stormCell(layer),
     rank: Math.exp(-(Math.max(cells / scale, 1e-4) ** power))
   }
 }
@@ -84,20 +52,14 @@ export function stormAround(
 /** Float64 twin of `stormStrength`. */
 export function stormStrength(
   layer: CloudLayerParameters,
-  { distance, towerDistance, radius }: { distance: number; towerDistance: number; radius: number },
+  { distance, radius }: { distance: number; radius: number },
   coarse: number,
   fine: number,
   height: number
-): {
-  body: number
-  strength: number
-  detail: number
-  edge: number
-  crumbs: number
-} {
+): { body: number; strength: number; detail: number; edge: number; crumbs: number } {
   const amount = stormRoughness(layer, height)
-  const smooth = smoothStormStrength(layer, distance, radius, height, towerDistance)
-  const body = smooth + amount * stormNearness(smooth) * stormBillows.coarse * coarse
+  const body =
+    smoothStormStrength(layer, distance, radius, height) + amount * stormBillows.coarse * coarse
   return {
     body,
     strength: body + amount * stormBillows.fine * fine,

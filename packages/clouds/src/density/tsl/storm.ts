@@ -10,10 +10,8 @@ import { placeOf, squareFrom, stormGap, type StormNearby } from './stormNearby'
 
 /** A storm around a place. */
 export interface StormAround {
-  /** Distance from the axis of its anvil [m]; a storm that stands aside of the surface is as far away at least. */
+  /** Distance from its axis [m]; a storm that stands aside of the surface is as far away at least. */
   readonly distance: Float
-  /** Distance from the axis of its tower, which stands upwind, measured alike [m]. */
-  readonly towerDistance: Float
   /** Rank of that distance among all places of the planet, in [0, 1]: 1 on the axis. */
   readonly rank: Float
 }
@@ -39,24 +37,11 @@ const cellLength = (layer: LayerNodes): Float =>
     .toConst()
 
 /**
- * Distance of a storm's tower from the middle of its anvil, over the shear, which is not 0 [m]. Twin: `stormAside` in
- * test/twins/storm.ts
- */
-const asidePerShear = ({ anvil, thickness }: LayerNodes, shear: Float, radius: Float): Float =>
-  float(stormShape.mostAside)
-    .div(shear.max(1e-6))
-    .min(stormShape.aside)
-    .mul(anvil)
-    .mul(smoothstep(...stormShape.anvilFrom, radius.div(thickness)))
-    .mul(radius)
-
-/**
  * The storm around a place.
  *
  * @param subpoint - As of `cloudWeather`.
  * @param up - Zenith there, in the mapped space.
  * @param bent - Displacement of the look-up along two axes of the lattice [m].
- * @param radius - `stormRadius` [m].
  * @param nearby - The nearest storm, if it is known; left out, it is looked for.
  */
 export function stormAround(
@@ -64,25 +49,15 @@ export function stormAround(
   subpoint: Vec3,
   up: Vec3,
   bent: Vec2,
-  radius: Float,
   nearby?: StormNearby
 ): StormAround {
   const { scale, power, cells: count } = stormPlaces
   const zenith = layer.directionInFields(up).toConst() as Vec3
   const place = placeOf(layer, subpoint, bent)
-  const found = nearby?.gap.sub(place.sub(nearby.place).mul(count)) ?? stormGap(place, zenith)
-  const gap = found.toConst() as Vec3
-  const square = squareFrom(gap, zenith).toConst() as Float
-  const cells = square.sqrt().toConst() as Float
-  const length = cellLength(layer)
-  const lean = layer.shearAxis.cross(up).toConst() as Vec3
-  const aside = asidePerShear(layer, lean.length(), radius).mul(count)
-  // It is horizontal: heights stay.
-  const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
-  const towerSquare = square.add(downwind.dot(downwind.sub(gap.mul(2)))).max(0)
+  const gap = nearby?.gap.sub(place.sub(nearby.place).mul(count)) ?? stormGap(place, zenith)
+  const cells = squareFrom(gap.toConst(), zenith).sqrt().toConst() as Float
   return {
-    distance: cells.mul(length).toConst(),
-    towerDistance: towerSquare.sqrt().mul(length).toConst(),
+    distance: cells.mul(cellLength(layer)).toConst(),
     rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()
   }
 }
@@ -107,22 +82,14 @@ export function stormRadius(layer: LayerNodes, background: Float, quantile: Floa
 
 /**
  * Distance into a storm's body, without billows [m]: a tower with a dome, an anvil, and a smooth union of both. Negative
- * outside. Float64: layers/storms.ts.
+ * outside. Float64: layers/stormBody.ts.
  *
- * @param distance - Distance from the axis of its anvil [m].
- * @param towerDistance - Distance from the axis of its tower [m].
+ * @param distance - Distance from its axis [m].
  * @param radius - `stormRadius` [m].
  * @param height - ĥ in the layer, in [0, 1].
  */
 export const stormBody = /*#__PURE__*/ Fn(
-  ([distance, towerDistance, radius, height, thickness, anvilShare]: [
-    Float,
-    Float,
-    Float,
-    Float,
-    Float,
-    Float
-  ]) => {
+  ([distance, radius, height, thickness, anvilShare]: [Float, Float, Float, Float, Float]) => {
     const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
     const { anvilFrom, grown, least } = stormShape
     const aspect = radius.div(thickness).toConst() as Float
@@ -134,9 +101,7 @@ export const stormBody = /*#__PURE__*/ Fn(
     const [atBase, atTop] = [0, 1].map(end => mix(float(narrowing[end]), widening[end], anvilShare))
     const column = base.mul(mix(atBase, atTop, height)).toConst() as Float
     const overDome = y.sub(tall.mul(dome).sub(column).max(0)).max(0).toConst()
-    const inTower = column
-      .sub(towerDistance.mul(towerDistance).add(overDome.mul(overDome)).sqrt())
-      .toConst()
+    const inTower = column.sub(distance.mul(distance).add(overDome.mul(overDome)).sqrt()).toConst()
     const rise = y.sub(tall.mul(anvil)).toConst() as Float
     const depth = tall.mul(rise.greaterThan(0).select(float(above), float(below))).toConst()
     // Distance from an ellipsoid, to first order.
@@ -152,7 +117,6 @@ export const stormBody = /*#__PURE__*/ Fn(
   },
   layout('welkinStormBody', 'float', {
     distance: 'float',
-    towerDistance: 'float',
     radius: 'float',
     height: 'float',
     thickness: 'float',
@@ -160,7 +124,6 @@ export const stormBody = /*#__PURE__*/ Fn(
   })
 ) as unknown as (
   distance: Float,
-  towerDistance: Float,
   radius: Float,
   height: Float,
   thickness: Float,

@@ -16,9 +16,8 @@ export interface CloudWeather {
   readonly sum: Float
   /** Makes the share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
   readonly filteredCoverage: () => Float
-  /** In layers of storms, distances from the axes of the nearest one's anvil and tower, and its radius [m]; 0 in others. */
+  /** In layers of storms, distance from the axis of the nearest one, and its radius [m]; 0 in others. */
   readonly stormDistance: Float
-  readonly towerDistance: Float
   readonly stormRadius: Float
 }
 
@@ -67,15 +66,13 @@ export function cloudWeather(
   const bent = bend.add(background.shift).toConst() as Vec2
   const single = float(0).toVar() as Float
   const stormDistance = float(0).toVar() as Float
-  const towerDistance = float(0).toVar() as Float
   const radius = float(0).toVar() as Float
   ifStorm(
     layer,
     () => {
-      radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
-      const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, radius, nearby)
+      const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, nearby)
       stormDistance.assign(storm.distance)
-      towerDistance.assign(storm.towerDistance)
+      radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
       single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
     },
     () => {
@@ -90,13 +87,7 @@ export function cloudWeather(
   const filteredCoverage = (): Float =>
     coverageOf(layer, blurred, lostVariance, background.coverage).toConst()
   const sum = blurred.mul(gain).toConst() as Float
-  return {
-    sum,
-    filteredCoverage,
-    stormDistance,
-    towerDistance,
-    stormRadius: radius
-  }
+  return { sum, filteredCoverage, stormDistance, stormRadius: radius }
 }
 
 /**
