@@ -45,19 +45,13 @@ import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { createNoiseTexture } from '../../stories/src/globe/detailNoise'
 import { createCity, type City } from '../../stories/src/globe/city'
 import { Landscape } from '../../stories/src/hills/Landscape'
+import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
 import type { Still } from './scenes'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
 import { readPicture } from './readPicture'
 
 /** Vertical field of view [°]. */
 const FIELD_OF_VIEW = 55
-/** Distance of the sun from its target: its shadows begin there [m]. */
-const LIGHT_DISTANCE = 20_000
-/** Half widths of the shadow maps of hills, and of a city [m]. */
-const SHADOW_EXTENT = 6000
-const CITY_SHADOW_EXTENT = 1500
-
-const extentOf = ({ land }: Still): number => (land === 'city' ? CITY_SHADOW_EXTENT : SHADOW_EXTENT)
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
 
@@ -75,21 +69,6 @@ function marsBody(): Atmosphere {
   const parameters = marsParameters()
   const radius = parameters.bottomRadius
   return new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
-}
-
-/** A light with shadows of the land. */
-function shadowOf<L extends SunDirectionalLight | MoonDirectionalLight>(
-  light: L,
-  extent: number
-): L {
-  light.castShadow = true
-  light.shadow.mapSize.setScalar(4096)
-  const { camera } = light.shadow
-  camera.left = camera.bottom = -extent
-  camera.right = camera.top = extent
-  camera.far = 3 * LIGHT_DISTANCE
-  light.shadow.normalBias = extent / 300
-  return light
 }
 
 /** Direction in the Y-up frame on the ground, north along −z. */
@@ -162,10 +141,7 @@ export class StillView {
     const atmosphere = (this.#atmosphere = atmosphereOf(still))
     const camera = cameraOf(still, width / height)
     const scene = new Scene()
-    const sun = (this.#sun = shadowOf(
-      new SunDirectionalLight(atmosphere, LIGHT_DISTANCE),
-      extentOf(still)
-    ))
+    const sun = (this.#sun = castLandShadow(new SunDirectionalLight(atmosphere), still.land))
     const sky = new SkyLightProbe(atmosphere)
     scene.add(sun, sun.target, sky)
     const isNight = still.sun instanceof Date || still.moon !== undefined
@@ -276,7 +252,7 @@ export class StillView {
     const luna = at === undefined ? moon() : moon({ direction: directionOf(at), phase: 0.5 })
     atmosphere.add(milkyWay(), stars(), luna, airglow())
     const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
-    if (at !== undefined) shadowOf(moonlight, SHADOW_EXTENT)
+    if (at !== undefined) castLandShadow(moonlight, 'hills')
     const moonSky = new SkyLightProbe(atmosphere, luna.source)
     scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
     return moonlight

@@ -10,7 +10,7 @@ import {
   SkyLightProbe,
   sunFlare
 } from '@welkin/atmosphere'
-import type { Atmosphere, SunDirectionalLight } from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
 import { cloudAirShadow, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
@@ -26,6 +26,7 @@ import { meadow } from './hills/soil'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { castLandShadow, LIGHT_DISTANCE } from './shafts/landShadow'
 import { shaftViews, type ShaftView } from './shafts/views'
 import { storyHandle } from './storyHandle'
 
@@ -48,22 +49,6 @@ const TIME = 300
 
 /** Frames after which a still has settled. */
 const FRAMES = 5
-
-/** Distance of a light from its target, where its shadows begin, and half widths of shadow maps [m]. */
-const LIGHT_DISTANCE = 20_000
-const SHADOW_EXTENT = 6000
-const CITY_SHADOW_EXTENT = 1500
-
-function castShadows(light: SunDirectionalLight | MoonDirectionalLight, extent: number): void {
-  light.castShadow = true
-  light.distance = LIGHT_DISTANCE
-  light.shadow.mapSize.setScalar(4096)
-  light.shadow.normalBias = extent / 300
-  const { camera } = light.shadow
-  camera.left = camera.bottom = -extent
-  camera.right = camera.top = extent
-  camera.far = 3 * LIGHT_DISTANCE
-}
 
 /** Hills or a city about the camera, if a view has any, in a Y-up frame on the ground. */
 function landOf(
@@ -107,14 +92,13 @@ export async function createLightShafts(
   const { pipeline, picture, depth } = air.post!
   atmosphere.place(view.place ?? { longitude: 139.77, latitude: 35.68 })
   atmosphere.add(planetGround(), sunFlare())
-  const extent = view.land === 'city' ? CITY_SHADOW_EXTENT : SHADOW_EXTENT
-  castShadows(sun, extent)
+  castLandShadow(sun, view.land)
   if (view.fog !== undefined) atmosphere.add(heightFog(view.fog))
   const luna = moon()
   const moonlight = new MoonDirectionalLight(atmosphere, luna, LIGHT_DISTANCE)
   if (view.isMoonlit) {
     atmosphere.add(luna)
-    castShadows(moonlight, extent)
+    castLandShadow(moonlight, view.land)
     const moonSky = new SkyLightProbe(atmosphere, luna.source)
     scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
   }

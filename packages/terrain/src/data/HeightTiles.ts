@@ -60,24 +60,30 @@ export type ReaderOfHeights = (options: Required<HeightTilesOptions>) => ReadTil
 /** Height of a pixel's colour, each of 0 to 255 [m]. */
 export type DecodeHeight = (red: number, green: number, blue: number) => number
 
-/** Reads heights from pictures: pixels beyond `lowest` and `highest` are holes. */
+/** Reads heights from pictures. */
 export const readerOfPictures =
   (decode: DecodeHeight): ReaderOfHeights =>
   options =>
     pictureReader(options, data => {
-      const { lowest, highest, size } = options
-      const heights = new Float32Array(size ** 2)
+      const heights = new Float32Array(options.size ** 2)
       for (let i = 0; i < heights.length; i++) {
-        const height = decode(data[4 * i], data[4 * i + 1], data[4 * i + 2])
-        const isHeight = data[4 * i + 3] > 0 && height >= lowest && height <= highest
-        heights[i] = isHeight ? height : NaN
+        const at = 4 * i
+        heights[i] = data[at + 3] > 0 ? decode(data[at], data[at + 1], data[at + 2]) : NaN
       }
-      return heightTile(heights)
+      return heightTile(heights, options)
     })
 
-/** Tile of heights, NaN where there is none; null if there is none at all. */
-export function heightTile(heights: Float32Array): HeightTile | null {
-  const holes = heights.reduce((sum, height) => sum + Number(Number.isNaN(height)), 0)
+/** Tile of heights: those beyond `lowest` and `highest`, or NaN, are holes. Null if all are. */
+export function heightTile(
+  heights: Float32Array,
+  { lowest, highest }: Required<HeightTilesOptions>
+): HeightTile | null {
+  let holes = 0
+  for (let i = 0; i < heights.length; i++) {
+    if (heights[i] >= lowest && heights[i] <= highest) continue
+    heights[i] = NaN
+    holes++
+  }
   return holes < heights.length ? { heights, hasHoles: holes > 0 } : null
 }
 

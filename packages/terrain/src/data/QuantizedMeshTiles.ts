@@ -63,11 +63,7 @@ export class QuantizedMeshTiles extends HeightTiles {
         const buffer = await loadTile(tileUrl, signal)
         if (buffer === null || signal.aborted) return null
         try {
-          const heights = rasterizeMesh(parse(buffer), all.size)
-          for (let i = 0; i < heights.length; i++) {
-            if (!(heights[i] >= all.lowest && heights[i] <= all.highest)) heights[i] = NaN
-          }
-          return heightTile(heights)
+          return heightTile(rasterizeMesh(parse(buffer), all.size), all)
         } catch {
           return null
         }
