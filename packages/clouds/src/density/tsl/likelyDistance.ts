@@ -41,14 +41,14 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
  * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
  * regions, as grain (*Cumulus*).
  */
-const MOST_BILLOWS = 1.4
+const MOST_BILLOWS = 0.6
 const ANVIL = 99
 
 /**
  * Distance over which the background's part of the strength changes by 1 [periods of the weather]. Greater: faster, and
  * edges of clear regions get ragged (*Cockpit*).
  */
-const BACKGROUND_LIKELY = 0.12
+const BACKGROUND_LIKELY = 0.3
 
 /** Distance that is taken off per footprint: from afar clouds blur [–]. Smaller: far clouds vanish (*Cockpit*). */
 const BLUR = 32

@@ -1,5 +1,5 @@
 import { Break, If, float, int, vec4 } from 'three/tsl'
-import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
+import { loop, type Bool, type Float, type Int, type Variable, type Vec3 } from '../../tsl-types'
 import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
@@ -7,6 +7,9 @@ import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
+
+/** Most crossings of a ray with the boundaries of a layer: two with each, on the way down and up again. */
+const CROSSINGS = 4
 
 /** A ray from the camera, in the mapped space. */
 export interface CloudRay {
@@ -53,46 +56,62 @@ export function marchClouds(
   const state = stepState(jitter)
   const segment = segmentState()
   const clear = vec4(0).toVar() as ClearLayers
-  const steps = float(0).toVar()
+  /** Pairs of samples so far, of all segments. */
+  const pairs = int(0).toVar() as Variable<Int>
   const position = float(0).toVar()
   /** Distance of the first layer; 0 before. */
   const entry = float(0).toVar()
 
-  loop('cloudPair', quality.pairs, () => {
-    If(position.greaterThanEqual(end).or(seen.transmittance.lessThan(LEAST_TRANSMITTANCE)), () => {
+  const isDone = (until: Float): Bool =>
+    position
+      .greaterThanEqual(until)
+      .or(seen.transmittance.lessThan(LEAST_TRANSMITTANCE))
+      .or(pairs.greaterThanEqual(quality.pairs))
+  const enterSegment = (): void => {
+    endStratum(seen)
+    const boundary = nextLayerBoundary(field, cosView, position.mul(1 + 1e-6).add(0.01))
+      .min(end)
+      .toConst() as Float
+    const { altitude } = view.localCoordinates(direction.mul(position.add(boundary).mul(0.5)))
+    const { base, top, density, range } = layersAt(field, altitude)
+    segment.end.assign(boundary)
+    segment.range.first.assign(range.first)
+    segment.range.last.assign(range.last)
+    enterSteps(state, field, quality, density.mul(light.depthScale), position, boundary)
+    If(base.greaterThan(top), () => {
+      position.assign(boundary)
+    }).ElseIf(entry.equal(0), () => {
+      entry.assign(position.max(1))
+    })
+  }
+  const goOn = (): void => {
+    const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
+    const { length } = pair
+    const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
+    const middle = sampleAt(position.add(length))
+    const { range } = segment
+    const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
+    const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
+    const accept = (): void => {
+      addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
+    }
+    position.addAssign(advance(state, pair, quality, found, accept))
+  }
+
+  // A loop in a loop: rays side by side wait for each other at each boundary, and so run the code of the same layers.
+  loop('cloudSegment', CROSSINGS * field.layers.length + 1, () => {
+    If(isDone(end), () => {
       Break()
     })
-    steps.addAssign(2)
-    If(position.greaterThanEqual(segment.end), () => {
-      endStratum(seen)
-      const boundary = nextLayerBoundary(field, cosView, position.mul(1 + 1e-6).add(0.01))
-        .min(end)
-        .toConst() as Float
-      const { altitude } = view.localCoordinates(direction.mul(position.add(boundary).mul(0.5)))
-      const { base, top, density, range } = layersAt(field, altitude)
-      segment.end.assign(boundary)
-      segment.range.first.assign(range.first)
-      segment.range.last.assign(range.last)
-      enterSteps(state, field, quality, density.mul(light.depthScale), position, boundary)
-      If(base.greaterThan(top), () => {
-        position.assign(boundary)
-      }).ElseIf(entry.equal(0), () => {
-        entry.assign(position.max(1))
+    enterSegment()
+    loop('cloudPair', quality.pairs, () => {
+      If(isDone(segment.end), () => {
+        Break()
       })
-    }).Else(() => {
-      const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
-      const { length } = pair
-      const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
-      const middle = sampleAt(position.add(length))
-      const { range } = segment
-      const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
-      const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
-      const accept = (): void => {
-        addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
-      }
-      position.addAssign(advance(state, pair, quality, found, accept))
+      pairs.addAssign(1)
+      goOn()
     })
   })
   const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY)) as Float
-  return { ...seenClouds(seen, nothing), steps }
+  return { ...seenClouds(seen, nothing), steps: float(pairs).mul(2) }
 }
