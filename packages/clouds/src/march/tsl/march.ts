@@ -85,6 +85,7 @@ export function marchClouds(
     })
   }
   const goOn = (): void => {
+    pairs.addAssign(1)
     const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
     const { length } = pair
     const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
@@ -98,19 +99,24 @@ export function marchClouds(
     position.addAssign(advance(state, pair, quality, found, accept))
   }
 
-  // A loop in a loop: rays side by side wait for each other at each boundary, and so run the code of the same layers.
-  loop('cloudSegment', CROSSINGS * field.layers.length + 1, () => {
+  const isMapped = weatherMap !== undefined
+  loop('cloudSegment', isMapped ? CROSSINGS * field.layers.length + 1 : quality.pairs, () => {
     If(isDone(end), () => {
       Break()
     })
-    enterSegment()
-    loop('cloudPair', quality.pairs, () => {
-      If(isDone(segment.end), () => {
-        Break()
+    if (isMapped) {
+      // A loop in a loop: rays side by side wait for each other at each boundary, and so run the code of the same layers.
+      enterSegment()
+      loop('cloudPair', quality.pairs, () => {
+        If(isDone(segment.end), () => {
+          Break()
+        })
+        goOn()
       })
-      pairs.addAssign(1)
-      goOn()
-    })
+    } else {
+      // With all look-ups of the weather the code is so long that software renderers take minutes to compile it twice nested.
+      If(position.greaterThanEqual(segment.end), enterSegment).Else(goOn)
+    }
   })
   const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY)) as Float
   return { ...seenClouds(seen, nothing), steps: float(pairs).mul(2) }
