@@ -78,8 +78,11 @@ export function likelyDistanceByBackground(
     .sub(footprint.mul(BLUR))
 }
 
-/** Part of the stretch that is surely clear of storms which the next pair of samples may reach over. Greater: towers get ragged (*Storm*). */
-const SURE = 0.6
+/**
+ * Length of each of the next two steps over the stretch that is surely clear of storms. From 0.5 on they reach over its end,
+ * and what is there is not looked at: horizontal slits in towers (*Storm*).
+ */
+const SURE = 0.45
 
 /**
  * Likely distance of the storms of a layer, whatever billows and turbulence add: there these need not be looked up [m]. 0
