@@ -313,6 +313,17 @@ export const stills: readonly AnyStill[] = [
     land: 'hills'
   },
   {
+    name: '3km-storm',
+    about:
+      'a storm 30 km away: its base and tower aside, the underside of the anvil, cumulus below',
+    clouds: { preset: 'cumulonimbus' },
+    place: { longitude: 139.571, latitude: 35.965 },
+    altitude: 3000,
+    sun: { elevation: 35, azimuth: 280 },
+    view: { azimuth: 0, pitch: 5 },
+    land: 'planet'
+  },
+  {
     name: '10km-storm',
     about: 'from an airliner: a tower and its anvil aside, small cumulus below',
     clouds: { preset: 'cumulonimbus' },

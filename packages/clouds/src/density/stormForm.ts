@@ -24,18 +24,24 @@ export const stormPlaces = {
 /** Shape of a storm: a tower under an anvil. Heights are parts of the layer's thickness. */
 export const stormShape = {
   /** Radius of the tower over that of the anvil, and over the thickness at least [–]. Greater: a storm as wide as its anvil. */
-  tower: 0.35,
+  tower: 0.38,
   leastTower: 0.15,
+  /**
+   * Distance of the tower from the middle of its anvil, upwind, in radii of the anvil: per shear of the wind, and at most
+   * [–]. 0: a mushroom whose tower stands in the anvil's shade.
+   */
+  aside: 2.25,
+  mostAside: 0.5,
   /** Factors of the tower's radius at its base and at the top, under a full anvil [–]. */
   widening: [0.9, 1.15],
   /** Factors of a tower without an anvil [–]: a heap. As under an anvil: a block with upright sides (*Shower*). */
   narrowing: [1.15, 0.35],
   /** Height that the tower's dome reaches: it overshoots the anvil. */
   dome: 0.93,
-  /** Height of the anvil, and its greatest depth above and below that. Greater below: a funnel. */
-  anvil: 0.66,
-  above: 0.15,
-  below: 0.24,
+  /** Height of the anvil, and its greatest depth above and below that. Greater above: a dome; greater below: a funnel. */
+  anvil: 0.67,
+  above: 0.09,
+  below: 0.21,
   /** Length over which tower and anvil grow into each other. 0: a table on a leg. */
   blend: 0.12,
   /** Radius over the thickness between which storms get anvils, and from which they reach the layer's top [–]. */
@@ -54,11 +60,13 @@ export const stormBillows = {
   fine: 0.8,
   detail: 0.3,
   /** Factor of all of them in ice [–]: anvils are smooth. */
-  inIce: 0.75,
+  inIce: 0.6,
   /** Softness of edges in ice: factor of their width less 1 [–]. */
   softIce: 3,
+  /** Strength below which billows add nothing to clear air; they fade towards it [–]. Greater: islands float beside storms. */
+  reach: 10,
   /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
-  offset: 0.65,
+  offset: 0,
   /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
   most: 10
 } as const

@@ -64,6 +64,10 @@ export const stormRoughness = (
   height: number
 ): number => shapeAmount * MathUtils.lerp(1, stormBillows.inIce, iceAt(anvil, height))
 
+/** Factor of coarse billows in clear air of a strength [–]. */
+export const stormNearness = (strength: number): number =>
+  MathUtils.clamp(1 + strength / stormBillows.reach, 0, 1)
+
 /** Strength over which density rises at a storm's edges [–]. */
 export const stormEdge = (layer: CloudLayerParameters, height: number): number =>
   layerForms(layer).edge * (1 + stormBillows.softIce * iceAt(layer.anvil, height))
@@ -73,9 +77,11 @@ export const smoothStormStrength = (
   layer: CloudLayerParameters,
   distance: number,
   radius: number,
-  height: number
+  height: number,
+  towerDistance = distance
 ): number =>
-  stormBody(layer, distance, radius, height) / (stormBillows.unit * layerPeriods(layer).shape) -
+  stormBody(layer, distance, radius, height, towerDistance) /
+    (stormBillows.unit * layerPeriods(layer).shape) -
   stormBillows.offset * layer.shapeAmount
 
 /** Strength over which density rises at edges at a height [–]: `edgeAt` of density/tsl/density.ts. */
@@ -160,7 +166,8 @@ function strengthsOfStorm(layer: CloudLayerParameters, coverage: number): Streng
   return (i, height) => {
     const distance = radius * Math.sqrt(1 - (i + 0.5) / COLUMNS)
     const column = smoothStormStrength(layer, distance, radius, height)
-    return { column, needed: 0, rough: stormRoughness(layer, height) * stormBillows.coarse }
+    const rough = stormRoughness(layer, height) * stormNearness(column) * stormBillows.coarse
+    return { column, needed: 0, rough }
   }
 }
 

@@ -32,12 +32,13 @@ export function stormRadius(
   return (-Math.log(rank)) ** (1 / power) * scale * stormCell(layer)
 }
 
-/** Distance into a storm's body, without billows [m]; negative outside. */
+/** Distance into a storm's body, without billows [m]; negative outside. Distances from the axes of anvil and tower [m]. */
 export function stormBody(
   { baseAltitude, topAltitude, anvil: share }: CloudLayerParameters,
   distance: number,
   radius: number,
-  height: number
+  height: number,
+  towerDistance = distance
 ): number {
   const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
   const { anvilFrom, grown, least } = stormShape
@@ -53,7 +54,8 @@ export function stormBody(
   )
   const [atBase, atTop] = [0, 1].map(end => MathUtils.lerp(narrowing[end], widening[end], share))
   const column = base * MathUtils.lerp(atBase, atTop, height)
-  const inTower = column - Math.hypot(distance, Math.max(y - Math.max(dome * tall - column, 0), 0))
+  const inTower =
+    column - Math.hypot(towerDistance, Math.max(y - Math.max(dome * tall - column, 0), 0))
   const rise = y - anvil * tall
   const depth = tall * (rise > 0 ? above : below)
   const norm = Math.hypot(distance / wide, rise / depth)

@@ -4,7 +4,7 @@ import { cloudPreset } from '../../src'
 import { stormPlaces } from '../../src/density/stormForm'
 import { isStorm, stormBody, stormCell, stormRadius } from '../../src/layers/storms'
 import { hashBits } from '../twins/noise'
-import { stormAround } from '../twins/storm'
+import { stormAround, stormAside } from '../twins/storm'
 
 const { parameters: storm } = cloudPreset('cumulonimbus').at(0)
 const THICKNESS = storm.topAltitude - storm.baseAltitude
@@ -75,6 +75,25 @@ describe('storms', () => {
     expect(areas[5]).toBeLessThan(0.4)
   })
 
+  it('have a tower upwind of the middle of the anvil, within its rim', () => {
+    const radius = 8000
+    const aside = stormAside(storm, radius)
+    const bodyAt = (x: number, height: number): number =>
+      stormBody(storm, Math.abs(x), radius, height, Math.abs(x + aside))
+    expect(aside).toBeGreaterThan(0.3 * radius)
+    for (const height of [0.05, 0.2, 0.35]) {
+      expect(bodyAt(-aside, height)).toBeGreaterThan(1000)
+      expect(bodyAt(-radius, height)).toBeLessThan(0)
+      expect(bodyAt(aside, height)).toBeLessThan(0)
+    }
+    expect(bodyAt(0.9 * radius, 0.68)).toBeGreaterThan(0)
+    // The dome is over the tower.
+    expect(bodyAt(-aside, 0.85)).toBeGreaterThan(0)
+    expect(bodyAt(aside, 0.85)).toBeLessThan(0)
+    expect(stormAside({ ...storm, shear: 0 }, radius)).toBe(0)
+    expect(stormAside({ ...storm, shear: -5 }, radius)).toBeLessThanOrEqual(0.5 * radius)
+  })
+
   it('are no taller than their thickness, and lower where they are small', () => {
     const top = (radius: number): number => {
       const heights = Array.from({ length: 200 }, (_, i) => (i + 0.5) / 200)
@@ -85,16 +104,38 @@ describe('storms', () => {
     expect(top(1500)).toBeLessThan(0.65)
   })
 
+  it('have no walls where they crowd: one whose anvil is farther may have the nearer tower', () => {
+    const radius = stormRadius(storm, 0, 0.7, 2)
+    const step = 20
+    let steepest = 0
+    for (const { place, up } of places) {
+      const downwind = new Vector3(1, 0, 0).cross(up)
+      const along = up.clone().cross(downwind).normalize()
+      along.addScaledVector(downwind, 2 / downwind.length()).normalize()
+      const moved = along.multiplyScalar(step / stormCell(storm) / stormPlaces.cells)
+      const there = place.map((x, i) => x + moved.getComponent(i)) as [number, number, number]
+      const [before, after] = [place, there].map(at => {
+        const { distance, towerDistance } = stormAround(storm, at, up, downwind, radius)
+        return stormBody(storm, distance, radius, 0.3, towerDistance)
+      })
+      steepest = Math.max(steepest, Math.abs(after - before) / step)
+    }
+    // Places aside of the surface have greater slopes: the cube of their height is in the distance.
+    expect(steepest).toBeLessThan(3)
+  })
+
   it('have a distance outside of their bodies within which there is none of them', () => {
     for (const { place } of places) {
       const [distance, height, radius] = [20_000 * place[0], place[1], 1000 + 11_000 * place[2]]
-      const here = stormBody(storm, distance, radius, height)
+      const aside = stormAside(storm, radius)
+      const here = stormBody(storm, distance, radius, height, Math.abs(distance + aside))
       if (here > 0) continue
       for (let angle = 0; angle < 2 * Math.PI; angle += Math.PI / 8) {
         const [x, y] = [Math.cos(angle), Math.sin(angle)].map(part => -0.9 * here * part)
         const there = height + y / THICKNESS
         if (there < 0 || there > 1) continue
-        const body = stormBody(storm, Math.abs(distance + x), radius, there)
+        const [from, fromTower] = [distance + x, distance + x + aside].map(Math.abs)
+        const body = stormBody(storm, from, radius, there, fromTower)
         expect(body, `${distance} ${height} ${radius} ${here}`).toBeLessThan(0)
       }
     }

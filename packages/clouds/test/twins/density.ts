@@ -63,8 +63,10 @@ export interface CloudWeather {
   readonly unresolvedFraction: number
   /** Displacement of noise along the axes of its lattices [m]. */
   readonly shift: Vector3
-  /** The nearest storm, in layers of storms: distance from its axis, and its radius [m]. */
-  readonly storm: { readonly distance: number; readonly radius: number } | undefined
+  /** The nearest storm, in layers of storms: distances from the axes of its anvil and tower, and its radius [m]. */
+  readonly storm:
+    | { readonly distance: number; readonly towerDistance: number; readonly radius: number }
+    | undefined
 }
 
 const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
@@ -209,13 +211,11 @@ export function weatherAt(
   const lean = new Vector3()
   if (layer.shear !== 0) {
     if (state.zenith === undefined) throw new Error('CloudState: shear needs a zenith')
-    const rise = height * (layer.topAltitude - layer.baseAltitude)
-    windAxis(layer.wind, state.zenith, lean)
-      .cross(zenith)
-      .multiplyScalar(layer.shear * rise)
+    windAxis(layer.wind, state.zenith, lean).cross(zenith).multiplyScalar(layer.shear)
   }
   const [bendX, bendY] = bendAt(shift)
-  const subpointInLayer = subpoint.sub(lean).applyQuaternion(ownRotation)
+  const rise = height * (layer.topAltitude - layer.baseAltitude)
+  const subpointInLayer = subpoint.addScaledVector(lean, -rise).applyQuaternion(ownRotation)
   const bend = new Vector3(bendX, bendY, (bendX - bendY) / Math.SQRT2).add(shift).toArray()
   const level = levelOf(footprint, period / NOISE_SIZE.weather)
   const clouds = sample(
@@ -230,6 +230,7 @@ export function weatherAt(
     scales.regions *
       (region[2] + scaleWeights.regionCells * region[0] + scaleWeights.regionBands * region[3]) +
     scales.planet * frontsAndBelts(zenithThere, waves, region, cyclone)
+  const radius = stormRadius(layer, background, coverage, scales.clouds[2])
   const storm = isStorm(layer)
     ? stormAround(
         layer,
@@ -238,7 +239,9 @@ export function weatherAt(
           bend,
           1 / fieldPeriod
         ),
-        zenith.clone().applyQuaternion(ownRotation).applyQuaternion(latticeRotations.fields)
+        zenith.clone().applyQuaternion(ownRotation).applyQuaternion(latticeRotations.fields),
+        lean.clone().applyQuaternion(ownRotation).applyQuaternion(latticeRotations.fields),
+        radius
       )
     : undefined
   const single = storm
@@ -264,7 +267,8 @@ export function weatherAt(
     shift,
     storm: storm && {
       distance: storm.distance,
-      radius: stormRadius(layer, background, coverage, scales.clouds[2])
+      towerDistance: storm.towerDistance,
+      radius
     }
   }
 }

@@ -1,50 +1,86 @@
-import { Vector3 } from 'three'
-import { stormBillows, stormPlaces } from '../../src/density/stormForm'
+import { MathUtils, Vector3 } from 'three'
+import { stormBillows, stormPlaces, stormShape } from '../../src/density/stormForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
-import { smoothStormStrength, stormEdge, stormRoughness } from '../../src/layers/meanColumn'
+import {
+  smoothStormStrength,
+  stormEdge,
+  stormNearness,
+  stormRoughness
+} from '../../src/layers/meanColumn'
 import { stormCell } from '../../src/layers/storms'
 import { hashCell, type Vec3Array } from './noise'
 
 const wrap = (i: number, cells: number): number => ((i % cells) + cells) % cells
 
+/** Distance of a storm's tower from the middle of its anvil, upwind [m]. */
+export function stormAside(
+  { baseAltitude, topAltitude, anvil, shear }: CloudLayerParameters,
+  radius: number
+): number {
+  const { aside, mostAside, anvilFrom } = stormShape
+  const grown = MathUtils.smoothstep(radius / (topAltitude - baseAltitude), ...anvilFrom)
+  return Math.min(aside * Math.abs(shear), mostAside) * anvil * grown * radius
+}
+
+/** Distance from a storm's axis [cells]. */
+function axisDistance(gap: Vector3, up: Vector3): number {
+  const height = gap.dot(up)
+  const across = gap.clone().addScaledVector(up, -height)
+  return Math.hypot(across.length(), Math.sqrt(stormPlaces.away) * height ** 3)
+}
+
 /**
- * Float64 twin of `stormDistance`, over all cells around, of which the shader looks at the nearest eight [cells].
+ * Float64 twin of `stormGaps`, over all cells around, of which the shader looks at the nearest eight [cells].
  *
  * @param place - Place in the lattice, in its periods.
  * @param up - Zenith in the lattice.
+ * @param downwind - From a storm's tower to the middle of its anvil [cells].
+ * @returns Displacements to the axes of the nearest anvil and of the nearest tower.
  */
-export function stormDistance(place: Vec3Array, up: Vector3): number {
-  const { cells, seed, jitter, away } = stormPlaces
+function stormGaps(
+  place: Vec3Array,
+  up: Vector3,
+  downwind: Vector3
+): { anvil: Vector3; tower: Vector3 } {
+  const { cells, seed, jitter } = stormPlaces
   const at = new Vector3(...place).multiplyScalar(cells)
   const base = at.clone().floor()
-  let nearest = Infinity
-  for (let corner = 0; corner < 27; corner++) {
+  const gaps = Array.from({ length: 27 }, (_, corner) => {
     const [i, j, k] = [corner % 3, Math.floor(corner / 3) % 3, Math.floor(corner / 9)].map(
       (digit, axis) => base.getComponent(axis) + digit - 1
     )
     const [x, y, z] = [i, j, k].map(n => wrap(n, cells))
-    const gap = hashCell(x, y, z + seed)
+    return hashCell(x, y, z + seed)
       .subScalar(0.5)
       .multiplyScalar(jitter)
       .add(new Vector3(i + 0.5, j + 0.5, k + 0.5))
       .sub(at)
-    const height = gap.dot(up)
-    const across = gap.clone().addScaledVector(up, -height)
-    nearest = Math.min(nearest, Math.hypot(across.length(), Math.sqrt(away) * height ** 3))
-  }
-  return nearest
+  })
+  const nearest = (all: Vector3[]): Vector3 =>
+    all.reduce((best, gap) => (axisDistance(gap, up) < axisDistance(best, up) ? gap : best))
+  return { anvil: nearest(gaps), tower: nearest(gaps.map(gap => gap.clone().sub(downwind))) }
 }
 
-/** Float64 twin of `stormAround`: distance from the axis of the nearest storm [m], and its rank. */
+/**
+ * Float64 twin of `stormAround`: distances from the axes of the nearest anvil and of the nearest tower [m], and the
+ * anvil's rank.
+ *
+ * @param downwind - Direction that columns lean to, in the lattice, of any length.
+ */
 export function stormAround(
   layer: CloudLayerParameters,
   place: Vec3Array,
-  up: Vector3
-): { distance: number; rank: number } {
-  const cells = stormDistance(place, up)
+  up: Vector3,
+  downwind = new Vector3(),
+  radius = 0
+): { distance: number; towerDistance: number; rank: number } {
+  const aside = downwind.clone().setLength(stormAside(layer, radius) / stormCell(layer))
+  const { anvil, tower } = stormGaps(place, up, aside)
+  const cells = axisDistance(anvil, up)
   const { scale, power } = stormPlaces
   return {
     distance: cells * stormCell(layer),
+    towerDistance: axisDistance(tower, up) * stormCell(layer),
     rank: Math.exp(-(Math.max(cells / scale, 1e-4) ** power))
   }
 }
@@ -52,14 +88,20 @@ export function stormAround(
 /** Float64 twin of `stormStrength`. */
 export function stormStrength(
   layer: CloudLayerParameters,
-  { distance, radius }: { distance: number; radius: number },
+  { distance, towerDistance, radius }: { distance: number; towerDistance: number; radius: number },
   coarse: number,
   fine: number,
   height: number
-): { body: number; strength: number; detail: number; edge: number; crumbs: number } {
+): {
+  body: number
+  strength: number
+  detail: number
+  edge: number
+  crumbs: number
+} {
   const amount = stormRoughness(layer, height)
-  const body =
-    smoothStormStrength(layer, distance, radius, height) + amount * stormBillows.coarse * coarse
+  const smooth = smoothStormStrength(layer, distance, radius, height, towerDistance)
+  const body = smooth + amount * stormNearness(smooth) * stormBillows.coarse * coarse
   return {
     body,
     strength: body + amount * stormBillows.fine * fine,

@@ -76,6 +76,8 @@ export interface LayerNodes {
   fieldLattice: Lattice
   mesoscaleLattice: Lattice
   regionLattice: Lattice
+  /** Turns displacements into the fields' lattice, in its periods [1/m]. */
+  displacementInFields: (displacement: Vec3) => Vec3
   /** Turns directions into the fields' lattice, unit length. */
   directionInFields: (direction: Vec3) => Vec3
   /**
@@ -134,6 +136,7 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     fieldLattice: lattice(12),
     mesoscaleLattice: lattice(23),
     regionLattice: lattice(15),
+    displacementInFields: v => turn(12, v),
     directionInFields: v => turn(12, v).normalize(),
     directionInSystems: v => rotate(fromRegions, turn(15, v).mul(noisePeriods.regions).toConst()),
     directionFromSystems: v => {

@@ -6,10 +6,11 @@ import { neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
 import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
-import { stormNearby, type KeptStorm } from './stormNearby'
+import { stormNearby } from './storm'
+import type { KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
-import { cloudWeather, leanAt } from './weather'
+import { cloudWeather, leanAt, stormRadiusIn } from './weather'
 import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
@@ -77,8 +78,11 @@ export function likelyDistanceByBackground(
     .sub(footprint.mul(BLUR))
 }
 
-/** Part of the stretch that is surely clear of storms which the next pair of samples may reach over. Greater: towers get ragged (*Storm*). */
-const SURE = 0.6
+/**
+ * Length of each of the next two steps over the stretch that is surely clear of storms. From 0.5 on they reach over its end,
+ * and what is there is not looked at: horizontal slits in towers (*Storm*).
+ */
+const SURE = 0.45
 
 /**
  * Likely distance of the storms of a layer, whatever billows and turbulence add: there these need not be looked up [m]. 0
@@ -86,7 +90,7 @@ const SURE = 0.6
  *
  * @param middle - The place in the middle between a pair of samples.
  * @param length - Distance between them; as much lies beyond them [m].
- * @param nearby - Gets the storm nearest to it.
+ * @param nearby - Gets the storms nearest to it.
  */
 export function clearOfStorms(
   field: CloudField,
@@ -102,9 +106,10 @@ export function clearOfStorms(
     .toConst() as Vec3
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const around = unpackBackground(background)
-  const found = stormNearby(layer, subpoint, zenithAt(field, subpoint), around.shift)
-  nearby.place.assign(found.place)
-  nearby.gap.assign(found.gap)
+  const zenith = zenithAt(field, subpoint)
+  const found = stormNearby(layer, subpoint, zenith, around.shift, stormRadiusIn(layer, around))
+  nearby.anvil.assign(found.anvil)
+  nearby.tower.assign(found.tower)
   const still = vec2(0) as Vec2
   const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
   const clear = smoothStormStrength(layer, weather, height)

@@ -72,7 +72,7 @@ export function samplePair(
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
       const likely = float(0).toVar()
-      const storm = { place: vec3(0).toVar(), gap: vec3(0).toVar() }
+      const storm = { anvil: vec3(0).toVar(), tower: vec3(0).toVar() }
       ifStorm(
         layer,
         () => {

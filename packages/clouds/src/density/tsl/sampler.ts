@@ -1,11 +1,15 @@
-import { If, float, int, vec2, vec4 } from 'three/tsl'
+import { If, float, int, vec2, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
+import { hasStorms } from '../kinds'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
-import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
-import { weatherBackground, type PackedBackground } from './weatherBackground'
+import { ifStorm, stormNearby } from './storm'
+import type { KeptStorm } from './stormNearby'
+import { leanAt, stormRadiusIn } from './weather'
+import { unpackBackground, weatherBackground, type PackedBackground } from './weatherBackground'
 
 // The only answer to where the clouds are. `sampleLayerAt` (sampleLayer.ts) goes from a place and the weather's
 // background to extinction and strength; pixels, shadows and light differ in which layers they ask, and in
@@ -36,7 +40,29 @@ export interface WeatherCache {
   readonly background: PackedBackground
   /** The layer's index. */
   readonly layer: Int
+  /** The nearest storms, if it is a layer of storms; undefined where there are none. */
+  readonly storm: KeptStorm | undefined
 }
+
+/** The storms nearest to a sample of a layer of storms: all samples of its light share one search. */
+function keepStorm(
+  field: CloudField,
+  layer: LayerNodes,
+  background: PackedBackground,
+  sample: CloudSample,
+  kept: KeptStorm
+): void {
+  const height = heightIn(layer, sample.altitude)
+  const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
+  const around = unpackBackground(background)
+  const radius = stormRadiusIn(layer, around)
+  const place = subpoint.toConst() as Vec3
+  const found = stormNearby(layer, place, zenithAt(field, place), around.shift, radius)
+  kept.anvil.assign(found.anvil)
+  kept.tower.assign(found.tower)
+}
+
+const nothing = (): void => undefined
 
 /** Weather around a place in the clouds. */
 export function weatherCacheAt(
@@ -48,27 +74,39 @@ export function weatherCacheAt(
   const background = vec4(0).toVar() as Vec4
   const densest = int(0).toVar() as Int
   const most = float(-1).toVar()
+  const isAlone = field.layers.length === 1
+  const variables = (): KeptStorm => ({ anvil: vec3(0).toVar(), tower: vec3(0).toVar() })
+  const storm = hasStorms(field) === false ? undefined : variables()
   forLayers(
     field,
     index => {
       const layer = layerAt(field, index)
       If(isWithin(layer, heightIn(layer, sample.altitude)), () => {
         const found = backgroundAt(field, layer, sample, { map, index })
-        if (field.layers.length === 1) {
+        const own = isAlone || storm === undefined ? storm : variables()
+        if (own !== undefined) {
+          ifStorm(layer, () => keepStorm(field, layer, found, sample, own), nothing)
+        }
+        if (isAlone) {
           background.assign(found)
           return
         }
-        const { extinction } = sampleLayer(field, layer, found, sample, LIT)
+        const options = { ...LIT, storm: own }
+        const { extinction } = sampleLayer(field, layer, found, sample, options)
         If(extinction.greaterThan(most), () => {
           most.assign(extinction)
           background.assign(found)
           densest.assign(index)
+          if (storm !== undefined && own !== undefined) {
+            storm.anvil.assign(own.anvil)
+            storm.tower.assign(own.tower)
+          }
         })
       })
     },
     range
   )
-  return { background, layer: densest }
+  return { background, layer: densest, storm }
 }
 
 /**
@@ -78,14 +116,15 @@ export function weatherCacheAt(
  */
 export function extinctionNearby(
   field: CloudField,
-  { background, layer: kept }: WeatherCache,
+  { background, layer: kept, storm }: WeatherCache,
   sample: CloudSample
 ): Float {
   const layer = layerAt(field, field.layers.length === 1 ? int(0) : kept)
   const height = heightIn(layer, sample.altitude)
   const extinction = float(0).toVar()
   If(height.greaterThan(0).and(height.lessThan(1)), () => {
-    extinction.assign(sampleLayer(field, layer, background, sample, LIT).extinction)
+    const options = { ...LIT, storm }
+    extinction.assign(sampleLayer(field, layer, background, sample, options).extinction)
   })
   return extinction
 }

@@ -3,15 +3,17 @@ import { noisePeriods } from '../../layers/layerUniforms'
 import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 import { stormPlaces, stormShape } from '../stormForm'
 import type { LayerNodes } from './layer'
-import { placeOf, squareFrom, stormGap, type StormNearby } from './stormNearby'
+import { placeOf, squareFrom, stormGaps, type StormGaps, type StormNearby } from './stormNearby'
 
 // Storms: layers of the weather of cumulonimbus alone. Noise cut at a threshold has no anatomy; a storm has a place, a
 // tower and an anvil, and its surface is a distance [m], so that billows stand out as far to all sides.
 
-/** A storm around a place. */
+/** Storms around a place. */
 export interface StormAround {
-  /** Distance from its axis [m]; a storm that stands aside of the surface is as far away at least. */
+  /** Distance from the axis of the nearest anvil [m]; a storm that stands aside of the surface is as far away at least. */
   readonly distance: Float
+  /** Distance from the axis of the nearest tower, which stands upwind of its anvil, measured alike [m]. */
+  readonly towerDistance: Float
   /** Rank of that distance among all places of the planet, in [0, 1]: 1 on the axis. */
   readonly rank: Float
 }
@@ -37,27 +39,90 @@ const cellLength = (layer: LayerNodes): Float =>
     .toConst()
 
 /**
- * The storm around a place.
+ * Distance of a storm's tower from the middle of its anvil, over the shear, which is not 0 [m]. Twin: `stormAside` in
+ * test/twins/storm.ts
+ */
+const asidePerShear = ({ anvil, thickness }: LayerNodes, shear: Float, radius: Float): Float =>
+  float(stormShape.mostAside)
+    .div(shear.max(1e-6))
+    .min(stormShape.aside)
+    .mul(anvil)
+    .mul(smoothstep(...stormShape.anvilFrom, radius.div(thickness)))
+    .mul(radius)
+
+/** A place among storms, in their lattice. */
+interface PlaceAmongStorms {
+  /** The place [cells]. */
+  readonly at: Vec3
+  /** Zenith there. */
+  readonly zenith: Vec3
+  /** Displacement from a storm's tower to the middle of its anvil, horizontal [cells]. */
+  readonly downwind: Vec3
+  /** Displacements to the nearest storms [cells]; looked for when it is called. */
+  readonly search: () => StormGaps
+}
+
+/** See `stormAround`. */
+function placeAmongStorms(
+  layer: LayerNodes,
+  subpoint: Vec3,
+  up: Vec3,
+  bent: Vec2,
+  radius: Float
+): PlaceAmongStorms {
+  const place = placeOf(layer, subpoint, bent)
+  const zenith = layer.directionInFields(up).toConst() as Vec3
+  const lean = layer.shearAxis.cross(up).toConst() as Vec3
+  const aside = asidePerShear(layer, lean.length(), radius).mul(stormPlaces.cells)
+  const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
+  const search = (): StormGaps => stormGaps(place, zenith, downwind)
+  return { at: place.mul(stormPlaces.cells).toConst(), zenith, downwind, search }
+}
+
+/**
+ * The storms nearest to a place, without turbulence: what `stormAround` takes as `nearby`.
+ *
+ * @param shift - `shift` of `WeatherBackground` [m].
+ */
+export function stormNearby(
+  layer: LayerNodes,
+  subpoint: Vec3,
+  up: Vec3,
+  shift: Vec2,
+  radius: Float
+): StormNearby {
+  const { at, search } = placeAmongStorms(layer, subpoint, up, shift, radius)
+  const { anvil, tower } = search()
+  return { anvil: at.add(anvil), tower: at.add(tower) }
+}
+
+/**
+ * The storms around a place: the nearest anvil, and the nearest tower, which may be another storm's. One storm alone
+ * would end in a wall where another's anvil is nearer than its own.
  *
  * @param subpoint - As of `cloudWeather`.
  * @param up - Zenith there, in the mapped space.
  * @param bent - Displacement of the look-up along two axes of the lattice [m].
- * @param nearby - The nearest storm, if it is known; left out, it is looked for.
+ * @param radius - `stormRadius` [m].
+ * @param nearby - The nearest storms, if they are known; left out, they are looked for.
  */
 export function stormAround(
   layer: LayerNodes,
   subpoint: Vec3,
   up: Vec3,
   bent: Vec2,
+  radius: Float,
   nearby?: StormNearby
 ): StormAround {
-  const { scale, power, cells: count } = stormPlaces
-  const zenith = layer.directionInFields(up).toConst() as Vec3
-  const place = placeOf(layer, subpoint, bent)
-  const gap = nearby?.gap.sub(place.sub(nearby.place).mul(count)) ?? stormGap(place, zenith)
-  const cells = squareFrom(gap.toConst(), zenith).sqrt().toConst() as Float
+  const { scale, power } = stormPlaces
+  const { at, zenith, downwind, search } = placeAmongStorms(layer, subpoint, up, bent, radius)
+  const found = nearby ? { anvil: nearby.anvil.sub(at), tower: nearby.tower.sub(at) } : search()
+  const cells = squareFrom(found.anvil.toConst(), zenith).sqrt().toConst() as Float
+  const toTower = found.tower.sub(downwind).toConst() as Vec3
+  const length = cellLength(layer)
   return {
-    distance: cells.mul(cellLength(layer)).toConst(),
+    distance: cells.mul(length).toConst(),
+    towerDistance: squareFrom(toTower, zenith).sqrt().mul(length).toConst(),
     rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()
   }
 }
@@ -82,14 +147,22 @@ export function stormRadius(layer: LayerNodes, background: Float, quantile: Floa
 
 /**
  * Distance into a storm's body, without billows [m]: a tower with a dome, an anvil, and a smooth union of both. Negative
- * outside. Float64: layers/stormBody.ts.
+ * outside. Float64: layers/storms.ts.
  *
- * @param distance - Distance from its axis [m].
+ * @param distance - Distance from the axis of its anvil [m].
+ * @param towerDistance - Distance from the axis of its tower [m].
  * @param radius - `stormRadius` [m].
  * @param height - ĥ in the layer, in [0, 1].
  */
 export const stormBody = /*#__PURE__*/ Fn(
-  ([distance, radius, height, thickness, anvilShare]: [Float, Float, Float, Float, Float]) => {
+  ([distance, towerDistance, radius, height, thickness, anvilShare]: [
+    Float,
+    Float,
+    Float,
+    Float,
+    Float,
+    Float
+  ]) => {
     const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
     const { anvilFrom, grown, least } = stormShape
     const aspect = radius.div(thickness).toConst() as Float
@@ -101,7 +174,9 @@ export const stormBody = /*#__PURE__*/ Fn(
     const [atBase, atTop] = [0, 1].map(end => mix(float(narrowing[end]), widening[end], anvilShare))
     const column = base.mul(mix(atBase, atTop, height)).toConst() as Float
     const overDome = y.sub(tall.mul(dome).sub(column).max(0)).max(0).toConst()
-    const inTower = column.sub(distance.mul(distance).add(overDome.mul(overDome)).sqrt()).toConst()
+    const inTower = column
+      .sub(towerDistance.mul(towerDistance).add(overDome.mul(overDome)).sqrt())
+      .toConst()
     const rise = y.sub(tall.mul(anvil)).toConst() as Float
     const depth = tall.mul(rise.greaterThan(0).select(float(above), float(below))).toConst()
     // Distance from an ellipsoid, to first order.
@@ -117,6 +192,7 @@ export const stormBody = /*#__PURE__*/ Fn(
   },
   layout('welkinStormBody', 'float', {
     distance: 'float',
+    towerDistance: 'float',
     radius: 'float',
     height: 'float',
     thickness: 'float',
@@ -124,6 +200,7 @@ export const stormBody = /*#__PURE__*/ Fn(
   })
 ) as unknown as (
   distance: Float,
+  towerDistance: Float,
   radius: Float,
   height: Float,
   thickness: Float,

@@ -1,7 +1,16 @@
-import { Fn, float, step, vec3, vec4 } from 'three/tsl'
+import { Fn, float, int, mat3, step, vec3, vec4 } from 'three/tsl'
 import { noisePeriods } from '../../layers/layerUniforms'
 import { cellOf, digitsOf, hashCell, wrapped } from '../../noise/tsl/cellHash'
-import { layout, loop, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
+import {
+  layout,
+  loop,
+  type Float,
+  type Int,
+  type Mat3,
+  type Variable,
+  type Vec2,
+  type Vec3
+} from '../../tsl-types'
 import { stormPlaces } from '../stormForm'
 import { inLattice, type LayerNodes } from './layer'
 
@@ -15,22 +24,32 @@ export const squareFrom = (gap: Vec3, up: Vec3): Float => {
   return gap.dot(gap).sub(square).add(aside).max(0)
 }
 
+/** Displacements to the axes of storms, in the lattice [cells]. */
+export interface StormGaps {
+  /** To the axis of the nearest anvil. */
+  readonly anvil: Vec3
+  /** To the axis of the anvil whose tower is nearest: where storms crowd, it may be that of another storm. */
+  readonly tower: Vec3
+}
+
 /**
- * Displacement to the nearest storm. Twin of its length: `stormDistance` in test/twins/storm.ts
+ * Displacements to the nearest storms, as columns of a matrix: `StormGaps`, and 0. Twin: `stormGaps` in
+ * test/twins/storm.ts
  *
  * @param p - Place in the lattice, in its periods.
  * @param up - Zenith in the lattice, unit length.
- * @returns To a point of its axis, in the lattice [cells]
+ * @param downwind - Displacement from a storm's tower to the middle of its anvil, horizontal [cells].
  */
-export const stormGap = /*#__PURE__*/ Fn(
-  ([p, up]: [Vec3, Vec3]) => {
+const gapsAround = /*#__PURE__*/ Fn(
+  ([p, up, downwind]: [Vec3, Vec3, Vec3]) => {
     const { cells, seed, jitter } = stormPlaces
     const count = vec3(cells)
     const { base, part, origin, index } = cellOf(p, count, float(seed))
     // The eight nearest cells: towards the nearer neighbour along each axis.
     const side = step(vec3(0.5), part).mul(2).sub(1).toConst()
     const stride = wrapped(base.add(side), count).sub(origin).toConst()
-    const nearest = vec4(0, 0, 0, 99).toVar()
+    const anvil = vec4(0, 0, 0, 99).toVar()
+    const tower = vec4(0, 0, 0, 99).toVar()
     loop('stormCell', 8, corner => {
       const digits = digitsOf(corner, 2).toConst()
       const place = hashCell(index.add(stride.mul(digits)))
@@ -38,12 +57,27 @@ export const stormGap = /*#__PURE__*/ Fn(
         .add((1 - jitter) / 2)
       const gap = side.mul(vec3(digits)).add(place).sub(part).toConst()
       const square = squareFrom(gap, up).toConst()
-      nearest.assign(square.lessThan(nearest.w).select(vec4(gap, square), nearest))
+      anvil.assign(square.lessThan(anvil.w).select(vec4(gap, square), anvil))
+      // Less what is the same for all.
+      const fromTower = square.sub(downwind.dot(gap).mul(2)).toConst()
+      tower.assign(fromTower.lessThan(tower.w).select(vec4(gap, fromTower), tower))
     })
-    return nearest.xyz
+    return mat3(anvil.xyz, tower.xyz, vec3(0))
   },
-  layout('welkinStormGap', 'vec3', { p: 'vec3', up: 'vec3' })
-) as unknown as (p: Vec3, up: Vec3) => Vec3
+  layout('welkinStormGaps', 'mat3', { p: 'vec3', up: 'vec3', downwind: 'vec3' })
+) as unknown as (p: Vec3, up: Vec3, downwind: Vec3) => Mat3
+
+/** A matrix whose columns are read, which its type lacks. */
+interface Columns {
+  element: (index: Int) => Vec3
+}
+
+/** Displacements to the nearest storms: see `gapsAround`. */
+export function stormGaps(p: Vec3, up: Vec3, downwind: Vec3): StormGaps {
+  const gaps = gapsAround(p, up, downwind).toConst() as unknown as Columns
+  const [anvil, tower] = [0, 1].map(column => gaps.element(int(column)))
+  return { anvil, tower }
+}
 
 /** Place in the lattice of storms, in its periods, of a displaced look-up. */
 export const placeOf = (layer: LayerNodes, subpoint: Vec3, bent: Vec2): Vec3 =>
@@ -52,26 +86,8 @@ export const placeOf = (layer: LayerNodes, subpoint: Vec3, bent: Vec2): Vec3 =>
     .add(inLattice(bent).mul(layer.perWeatherPeriod.div(noisePeriods.fields)))
     .toConst()
 
-/** The storm nearest to a place, kept for places nearby. */
-export interface StormNearby {
-  /** The place in the lattice, in its periods. */
-  readonly place: Vec3
-  /** Displacement from there to a point of the storm's axis, in the lattice [cells]. */
-  readonly gap: Vec3
-}
+/** Points of the axes of the storms nearest to a place, kept for places nearby, in the lattice [cells]: `StormGaps`. */
+export type StormNearby = StormGaps
 
 /** Variables that hold it. */
 export type KeptStorm = { readonly [Key in keyof StormNearby]: Variable<Vec3> }
-
-/**
- * The storm nearest to a place, without turbulence.
- *
- * @param subpoint - As of `cloudWeather`.
- * @param up - Zenith there, in the mapped space.
- * @param shift - `shift` of `WeatherBackground` [m].
- */
-export function stormNearby(layer: LayerNodes, subpoint: Vec3, up: Vec3, shift: Vec2): StormNearby {
-  const place = placeOf(layer, subpoint, shift)
-  const gap = stormGap(place, layer.directionInFields(up).toConst()).toConst() as Vec3
-  return { place, gap }
-}

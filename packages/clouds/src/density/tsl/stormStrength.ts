@@ -20,10 +20,14 @@ export interface StormStrength {
 /** Strength of a storm without billows [–]: its distance into the body. */
 export const smoothStormStrength = (
   layer: LayerNodes,
-  { stormDistance, stormRadius }: Pick<CloudWeather, 'stormDistance' | 'stormRadius'>,
+  {
+    stormDistance,
+    towerDistance,
+    stormRadius
+  }: Pick<CloudWeather, 'stormDistance' | 'towerDistance' | 'stormRadius'>,
   height: Float
 ): Float =>
-  stormBody(stormDistance, stormRadius, height, layer.thickness, layer.anvil)
+  stormBody(stormDistance, towerDistance, stormRadius, height, layer.thickness, layer.anvil)
     .mul(layer.perShapePeriod.div(stormBillows.unit))
     .sub(layer.shapeAmount.mul(stormBillows.offset))
     .toConst()
@@ -35,12 +39,13 @@ export function stormStrength(
   billows: Billows,
   height: Float
 ): StormStrength {
-  const { coarse, fine, detail, inIce, softIce } = stormBillows
+  const { coarse, fine, detail, inIce, softIce, reach } = stormBillows
   const ice = iceAt(layer, height)
   const amount = ice.mix(1, inIce).mul(layer.shapeAmount).toConst() as Float
-  const body = smoothStormStrength(layer, weather, height)
-    .add(billows.coarse.mul(amount).mul(coarse))
-    .toConst() as Float
+  const smooth = smoothStormStrength(layer, weather, height)
+  // Bulges of the surface, not clouds beside it.
+  const near = smooth.div(reach).add(1).clamp(0, 1)
+  const body = smooth.add(billows.coarse.mul(amount).mul(near).mul(coarse)).toConst() as Float
   return {
     body,
     strength: body.add(billows.fine.mul(amount).mul(fine)).toConst(),

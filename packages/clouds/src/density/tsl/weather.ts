@@ -16,8 +16,9 @@ export interface CloudWeather {
   readonly sum: Float
   /** Makes the share of the sky that is covered, over the footprint of a sample; in [0, 1]. */
   readonly filteredCoverage: () => Float
-  /** In layers of storms, distance from the axis of the nearest one, and its radius [m]; 0 in others. */
+  /** In layers of storms, distances from the axes of the nearest anvil and the nearest tower, and their radius [m]; 0 in others. */
   readonly stormDistance: Float
+  readonly towerDistance: Float
   readonly stormRadius: Float
 }
 
@@ -42,6 +43,10 @@ function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage
   return coverage.greaterThan(0).select(all, 0)
 }
 
+/** Radius of storms in a background of the weather [m]. */
+export const stormRadiusIn = (layer: LayerNodes, { sum, coverage }: WeatherBackground): Float =>
+  stormRadius(layer, sum, quantileOf(coverage))
+
 /** Displacement of a layer's columns with height, by the wind's shear, in the mapped space [m]. */
 export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
   layer.shearAxis.cross(up).mul(height.mul(layer.thickness))
@@ -52,7 +57,7 @@ export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
  * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
  *   `leanAt`.
  * @param bend - Displacement by turbulence [m].
- * @param nearby - In layers of storms, the nearest one, if it is known.
+ * @param nearby - In layers of storms, the nearest ones, if they are known.
  */
 export function cloudWeather(
   field: CloudField,
@@ -66,13 +71,15 @@ export function cloudWeather(
   const bent = bend.add(background.shift).toConst() as Vec2
   const single = float(0).toVar() as Float
   const stormDistance = float(0).toVar() as Float
+  const towerDistance = float(0).toVar() as Float
   const radius = float(0).toVar() as Float
   ifStorm(
     layer,
     () => {
-      const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, nearby)
+      radius.assign(stormRadiusIn(layer, background))
+      const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, radius, nearby)
       stormDistance.assign(storm.distance)
-      radius.assign(stormRadius(layer, background.sum, quantileOf(background.coverage)))
+      towerDistance.assign(storm.towerDistance)
       single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
     },
     () => {
@@ -87,7 +94,13 @@ export function cloudWeather(
   const filteredCoverage = (): Float =>
     coverageOf(layer, blurred, lostVariance, background.coverage).toConst()
   const sum = blurred.mul(gain).toConst() as Float
-  return { sum, filteredCoverage, stormDistance, stormRadius: radius }
+  return {
+    sum,
+    filteredCoverage,
+    stormDistance,
+    towerDistance,
+    stormRadius: radius
+  }
 }
 
 /**

@@ -5,6 +5,7 @@ import type { FallingDecks } from '../../environment/tsl/decks'
 import type { CloudSample } from '../../density/tsl/sample'
 import { loop, type Float, type Vec3 } from '../../tsl-types'
 import type { LayerSegment } from './layerSegment'
+import { NO_CLOUDS, type StretchMoments } from './segmentMoments'
 
 /** Rain and snow as shadow maps see them. */
 export interface ShadingFall extends FallingDecks {
@@ -17,14 +18,14 @@ export interface ShadingFall extends FallingDecks {
 /** Samples of a ray of light through what falls. Fewer: bands in the shadows of shafts (*Rain and snow*). */
 const FALL_STEPS = 16
 
-/** Depth of what falls on a stretch of a ray, the same times place and times its square, not scaled. */
+/** What falls, on a stretch of a ray. */
 export function fallMoments(
   field: CloudField,
   falling: ShadingFall,
   layer: LayerNodes,
   { front, back }: LayerSegment,
   sampleAt: (distance: Float) => CloudSample
-): Vec3 {
+): StretchMoments {
   const length = front.sub(back).div(FALL_STEPS).toConst() as Float
   const sums = vec3(0).toVar() as Vec3
   loop('fallShade', FALL_STEPS, index => {
@@ -33,5 +34,5 @@ export function fallMoments(
     const extinction = falling.extinctionAt(field, layer, sampleAt(at)).div(field.depthScale)
     sums.addAssign(vec3(1, at, at.mul(at)).mul(extinction.mul(length)))
   })
-  return sums
+  return { sums, entry: sums.x.greaterThan(0).select(front, NO_CLOUDS) }
 }

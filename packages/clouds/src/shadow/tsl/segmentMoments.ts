@@ -1,10 +1,21 @@
-import { Break, If, bool, int, vec3 } from 'three/tsl'
+import { Break, If, bool, float, int, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { sampleLayerPair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
 import { loop, type Bool, type Float, type Int, type Vec3 } from '../../tsl-types'
 import type { LayerSegment } from './layerSegment'
+
+/** What a ray of light meets on a stretch. */
+export interface StretchMoments {
+  /** Optical depth, the same times place and times its square, not scaled. */
+  readonly sums: Vec3
+  /** Distance at which clouds begin on the side of the light; `NO_CLOUDS` if there are none [m]. */
+  readonly entry: Float
+}
+
+/** Distance of the first cloud where there are none [m]. */
+export const NO_CLOUDS = -1e9
 
 /** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun (*Shadows*). */
 export const STEPS = 48
@@ -33,7 +44,7 @@ interface Assignable<T> {
 }
 
 /**
- * Optical depth of a layer on a segment, and the same times place and times its square: a march from the
+ * Optical depth of a layer on a segment, its moments, and where it begins: a march from the
  * side of the light, in pairs of samples that share weather.
  *
  * @param length - Length of a step [m].
@@ -45,13 +56,15 @@ export function segmentMoments(
   { front, back }: LayerSegment,
   length: Float,
   sampleAt: (distance: Float) => CloudSample
-): Vec3 {
+): StretchMoments {
   const sums = vec3(0).toVar() as Vec3
+  const entry = float(NO_CLOUDS).toVar()
   const add = (top: Float, extinction: Float): void => {
     const width = top.sub(back).clamp(0, length).toConst() as Float
     const middle = top.sub(width.mul(0.5)).toConst() as Float
     const square = middle.mul(middle).add(width.mul(width).div(12))
     sums.addAssign(vec3(1, middle, square).mul(extinction.mul(width)))
+    entry.assign(extinction.greaterThan(0).select(entry.max(top), entry))
   }
   const position = front.toVar() as Float
   const search = edgeSearch(front, length)
@@ -67,14 +80,14 @@ export function segmentMoments(
     const [middle, first, second] = [1, 0.5, 1.5].map(steps => sampleAt(from.sub(step.mul(steps))))
     const found = sampleLayerPair(field, layer, middle, [first, second])
     /** First of the two in clouds, in steps; 2.5 if both are clear. */
-    const entry = found.x.greaterThan(0).select(0.5, found.y.greaterThan(0).select(1.5, 2.5))
-    const at = from.sub(step.mul(entry)).toConst() as Float
+    const cloudy = found.x.greaterThan(0).select(0.5, found.y.greaterThan(0).select(1.5, 2.5))
+    const at = from.sub(step.mul(cloudy)).toConst() as Float
     If(isCutting, () => {
       narrow(search, at, step)
       search.cuts.subAssign(int(1))
       position.assign(at.add(step.mul(0.5)))
     })
-      .ElseIf(wasClear.and(entry.lessThan(2)).and(search.searches.greaterThan(0)), () => {
+      .ElseIf(wasClear.and(cloudy.lessThan(2)).and(search.searches.greaterThan(0)), () => {
         narrow(search, at, step)
         search.cuts.assign(int(CUTS))
         search.searches.subAssign(int(1))
@@ -87,7 +100,7 @@ export function segmentMoments(
         position.subAssign(length.mul(2))
       })
   })
-  return sums
+  return { sums, entry }
 }
 
 /** No search yet: short steps need none. */

@@ -7,7 +7,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { fallMoments, type ShadingFall } from './fallDepth'
 import { layerSegment, type RadialRay } from './layerSegment'
-import { segmentMoments, STEPS } from './segmentMoments'
+import { NO_CLOUDS, segmentMoments, STEPS, type StretchMoments } from './segmentMoments'
 
 /** Uniforms of the shader that draws a cascade. Vectors are in the mapped space, from the camera [m]. */
 export interface ShadowRayUniforms {
@@ -97,7 +97,10 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
     const weighted = vec3(0).toVar() as Vec3
     /** Optical depths, of all and of layers that cast shadows. */
     const depths = vec2(0).toVar() as Vec2
-    const add = (sums: Vec3, layer: LayerNodes): void => {
+    /** Where the first cloud begins, from the light. */
+    const first = float(NO_CLOUDS).toVar()
+    const add = ({ sums, entry }: StretchMoments, layer: LayerNodes): void => {
+      first.assign(first.max(entry))
       const depth = sums.x.toConst() as Float
       weighted.addAssign(sums.mul(depth))
       depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
@@ -129,17 +132,21 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
         )
       })
     })
-    return evenStretch(weighted, depths, ray.halfWidth)
+    return evenStretch(weighted, depths, first, ray.halfWidth)
   })()
 }
 
-/** The even stretch of cloud that has the same moments: see `shadowRay`. */
-function evenStretch(weighted: Vec3, depths: Vec2, halfWidth: Float): Vec4 {
+/**
+ * The even stretch of cloud that has the same moments: see `shadowRay`. It begins no nearer to the light than the first
+ * cloud: two storms behind each other would darken the air before them.
+ */
+function evenStretch(weighted: Vec3, depths: Vec2, first: Float, halfWidth: Float): Vec4 {
   const weight = weighted.x.max(1e-12).toConst()
   const mean = weighted.y.div(weight).toConst() as Float
   const variance = weighted.z.div(weight).sub(mean.mul(mean))
   // An even stretch has a deviation of its length over √12.
-  const half = variance.max(1).mul(3).sqrt().div(halfWidth).toConst()
+  const most = first.sub(mean).max(1)
+  const half = variance.max(1).mul(3).sqrt().min(most).div(halfWidth).toConst()
   const front = mean.div(halfWidth).add(half)
   const depth = depths.min(MOST).toConst() as Vec2
   return vec4(vec2(front, half).mul(depth.x), depth)
