@@ -53,10 +53,17 @@ export class ScreenShafts implements ScreenShadows {
     this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
   }
 
+  prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
+    const shafts = this.#shafts
+    shafts.prepare(renderer, view, frame)
+    shafts.view.update(view)
+    shafts.update(view)
+  }
+
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     const shafts = this.#shafts
     if (this.#isElsewhere) return
-    shafts.prepare(renderer, view, frame)
+    if (this.foreground === undefined) shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.grid.resize(width, height, spacingIn(shafts.spacing, width, height))
     if (!shafts.isActive) return

@@ -1,7 +1,8 @@
-import type { Node, NodeFrame } from 'three/webgpu'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
+import type { AtmosphereView } from './AtmosphereView'
 import type { SkyLayer } from './SkyLayer'
 
 /** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
@@ -18,6 +19,11 @@ export interface ForegroundLayer {
 
 /** Shadows in the air of a picture. */
 export interface ScreenShadows extends SkyLayer {
+  /**
+   * Draws the shadows before a foreground layer is drawn, which may take light past them: `prepare` of a layer with a
+   * foreground goes on from there.
+   */
+  prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
   dim(color: Vec3): Vec3
   /**

@@ -6,6 +6,7 @@ import type { Renderer } from 'three/webgpu'
 import type { CloudField } from '../density/CloudField'
 import { compiledByKinds, kindsOf } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
+import { castAlong, ownShafts, type ShadedClouds } from '../light/tsl/castAlong'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
@@ -32,6 +33,8 @@ export interface CloudScene extends ShadingContext {
   readonly viewRays: FrameInputs
   /** Rain and snow under the clouds. */
   readonly precipitation?: PrecipitationShafts
+  /** What casts into the light shafts of these clouds' camera shades them. */
+  readonly clouds: ShadedClouds
 }
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
@@ -109,9 +112,10 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
       }
       const { direction, directionView } = viewRayAt(viewRays, at)
       const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
-      const seen = precipitation?.among(scene, direction, noise, ray, clouds, distances) ?? {
+      const context = { ...scene, castAt: castAlong(scene.clouds, direction, noise) }
+      const seen = precipitation?.among(context, direction, noise, ray, clouds, distances) ?? {
         ...clouds,
-        radiance: shadePoints(scene, direction, points)
+        radiance: shadePoints(context, direction, points)
       }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
@@ -132,8 +136,10 @@ export class CloudRenderer {
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
   readonly #weatherMap: WeatherMap
   readonly #field: CloudField
-  /** Kinds of the layers for which the march was compiled. */
+  /** Kinds of the layers for which the march was compiled, and casters for which its light was. */
   #kinds = ''
+  #casters = ''
+  readonly #clouds: ShadedClouds
   readonly #march: FragmentPass
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
@@ -155,6 +161,7 @@ export class CloudRenderer {
     )
     this.#field = compiledByKinds(field)
     const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
+    this.#clouds = inputs.clouds
     this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
@@ -162,7 +169,7 @@ export class CloudRenderer {
     this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen))
     for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
-      material.customProgramCacheKey = () => key() + kindsOf(field)
+      material.customProgramCacheKey = () => key() + kindsOf(field) + this.#casters
     }
     const { marched: shaded } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
@@ -214,12 +221,18 @@ export class CloudRenderer {
     this.accumulated.distances.value = distances
   }
 
-  /** Has what has code for storms compiled anew where layers of storms come or go. */
+  /** Has what has code for storms compiled anew where layers of storms come or go, and light where casters do. */
   #compile(): void {
     const kinds = kindsOf(this.#field)
-    if (kinds === this.#kinds) return
+    const casters = ownShafts(this.#clouds)
+      .map(({ version }) => version)
+      .join()
+    if (kinds !== this.#kinds) this.#march.material.needsUpdate = true
+    if (kinds !== this.#kinds || casters !== this.#casters) {
+      this.#shade.material.needsUpdate = true
+    }
     this.#kinds = kinds
-    for (const { material } of [this.#march, this.#shade]) material.needsUpdate = true
+    this.#casters = casters
   }
 
   /** Frees the render targets. */

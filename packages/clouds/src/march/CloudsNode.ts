@@ -104,7 +104,10 @@ export class CloudsNode extends AtmosphereNode {
   readonly passes: CloudRenderer
   readonly #exposure = uniform(1)
   /** Layers of the picture with the clouds, drawn by this node: shadows in the air of `cloudAirShadow`, and `lightning`. */
-  readonly screens = new Set<Pick<ScreenShadows, 'prepare' | 'update' | 'dim'>>()
+  readonly screens = new Set<
+    Pick<ScreenShadows, 'prepare' | 'update' | 'dim'> &
+      Partial<Pick<ScreenShadows, 'prepareShadows'>>
+  >()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
   #quality: CloudQuality = cloudQualities.high
@@ -154,6 +157,7 @@ export class CloudsNode extends AtmosphereNode {
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
       precipitation,
+      clouds: this,
       viewRays: {
         field: this.field,
         frame: this.#frame,
@@ -290,6 +294,7 @@ export class CloudsNode extends AtmosphereNode {
     this.shadows.update(renderer, view, this.castsInto.size > 0)
     this.passes.setSize(width, height, this.#quality.block)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
+    for (const screen of this.screens) screen.prepareShadows?.(renderer, view, frame)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value
     for (const screen of this.screens) screen.prepare?.(renderer, view, frame)

@@ -8,7 +8,7 @@ import type {
   ShadowedShafts
 } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
-import { If } from 'three/tsl'
+import { If, float } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
@@ -65,8 +65,10 @@ class CastShadow implements AirShadow {
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
   }
 
-  transmittance({ view, direction, jitter }: AirViewRay): (place: AirPoint) => Float {
+  transmittance(ray: AirViewRay): (place: AirPoint) => Float {
     const { field, light, shadows } = this.#clouds
+    const { view, direction, jitter, receiver } = ray
+    if (receiver === this.#clouds) return () => float(1)
     const mapped = sampleShadowsAlong(shadows.nodes, this.#shift, direction, jitter)
     return ({ offset, distance }) => {
       const { shadow, inMap } = mapped(distance)
@@ -115,7 +117,7 @@ class CastShadow implements AirShadow {
  *
  * They are read from the clouds' shadow maps, up to 2,000 km above the ground; beyond them the mean cover of the layers says how much passes, or the
  * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
- * behind the clouds.
+ * behind the clouds, and all else that casts into them shades the clouds, too: the light's shadow maps, and hills.
  */
 export class CloudAirShadow implements AirOccluder {
   /** Shared, not owned. */

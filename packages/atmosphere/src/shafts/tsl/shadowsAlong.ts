@@ -3,8 +3,8 @@ import type { TextureNode } from 'three/webgpu'
 import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import type { AirPoint, AirShadow } from '../AirOccluder'
-import { darkPart, type PolarFrame, type PolarRay } from './polarMap'
+import type { AirPoint, AirShadow, AirViewRay } from '../AirOccluder'
+import { darkPart, polarRay, type PolarFrame, type PolarRay } from './polarMap'
 
 /** A view ray through media. */
 export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
@@ -36,6 +36,8 @@ export interface ShaftRay {
   readonly distance: Float
   /** Part of the light from a distance [m] that reaches the picture; left out, all. */
   readonly seenFrom?: (distance: Float) => Float
+  /** See `AirViewRay`. */
+  readonly receiver?: object
 }
 
 /** Shadows on a view ray, by the distance from the camera. */
@@ -50,7 +52,7 @@ export interface Shadows {
 export function shadowsAlong(
   view: ViewUniforms,
   { map, frame, shadows, toWorld }: ShadowedAir,
-  { direction, seenFrom }: ShaftRay,
+  { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
   polar: PolarRay,
   jitter: Float
 ): Shadows {
@@ -58,7 +60,7 @@ export function shadowsAlong(
     const offset = direction.mul(distance).toConst() as Vec3
     return { view, offset, distance, jitter, positionWorld: () => toWorld(offset) }
   }
-  const passing = shadows.map(shadow => shadow.transmittance({ view, direction, jitter }))
+  const passing = shadows.map(shadow => shadow.transmittance({ view, direction, jitter, receiver }))
   const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
   const missingAt = (distance: Float): Vec4 => {
     const parts = dimming.map(shadow => shadow.diffuse!(placeAt(distance)))
@@ -84,5 +86,26 @@ export function shadowsAlong(
       return seenFrom?.(distance).mul(dark) ?? dark
     },
     missingAt: dimming.length > 0 ? missingAt : null
+  }
+}
+
+/** Part of the light that arrives on a view ray, by the distance from the camera: see `ShadowedShafts.litAlong`. */
+export function litAlong(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  ray: Omit<AirViewRay, 'view'>,
+  strength: Float
+): (distance: Float) => Float {
+  const { direction, jitter } = ray
+  const { frame, maximumRho } = shadowedAir
+  const polar = polarRay(frame, direction, direction.dot(view.lightDirection).toConst())
+  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
+  const { darkAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter)
+  return distance => {
+    const lit = float(1).toVar() as Float
+    If(strength.greaterThan(0), () => {
+      lit.subAssign(darkAt(distance, distance.lessThan(mapped)).mul(strength.min(1)))
+    })
+    return lit
   }
 }

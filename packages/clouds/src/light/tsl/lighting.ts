@@ -32,7 +32,7 @@ export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample)
   const direction = isMoonlit.select(night.moonDirection, view.lightDirection).toConst() as Vec3
   const isMapped = isMoonlit.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
   const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
-  return { direction, isMapped, cosine }
+  return { direction, isMoonlit, isMapped, cosine }
 }
 
 /** Source function of a place towards the viewpoint: the light that it scatters there. */
@@ -56,8 +56,9 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     cosViewLight
   }
-  const direct = cloudSource(light, lit)
-  const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
+  const cast = context.castAt?.(sample.distance, source.isMoonlit) ?? 1
+  const direct = cloudSource(light, lit).mul(cast)
+  const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude }).mul(cast)
   const ambient = cloudAmbientShares(light, {
     depthAbove: depths.above.mul(scale),
     depthBelow: depths.below.mul(scale),
