@@ -1,11 +1,12 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
+import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume } from '../skyVolume/tsl/skyVolume'
-import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { ArrivingLight } from '../scattering/tsl/segment'
+import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -15,12 +16,15 @@ import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
-import type { ShaftRay } from './tsl/shadowsAlong'
+import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
 
 /** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const OPAQUE = 0.01
+
+/** Places between two points of a mesh's ray whose shadows are looked up. Fewer: grain at the edges of shadows, by orthographic cameras. */
+const LOOKS = 6
 
 const _size = new Vector2()
 
@@ -41,6 +45,8 @@ export class ScreenShafts implements ScreenShadows {
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
   readonly #strength = number()
+  /** Likewise, for a mesh that marches its air itself. */
+  readonly #marchedStrength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
   /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
@@ -51,6 +57,10 @@ export class ScreenShafts implements ScreenShadows {
     this.#shafts = shafts
     this.isMesh = depthNode === null
     this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
+  }
+
+  get version(): number {
+    return this.#shafts.version
   }
 
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -98,15 +108,39 @@ export class ScreenShafts implements ScreenShadows {
     return lost
   }
 
-  drawIn(frame: NodeFrame, sun: object): void {
-    const { view, camera } = this.#shafts
+  drawIn(frame: NodeFrame, sun: object | null, isMarched: boolean): void {
+    const { view, camera, strengthNow } = this.#shafts
     const { atmosphere, source } = view
     const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
     const seen = isTheirs ? view.prepare(frame) : undefined
-    this.#strength.value = 0
+    this.#strength.value = this.#marchedStrength.value = 0
     if (seen === undefined) return
+    if (isMarched) {
+      this.prepareShadows(frame.renderer!, seen, frame)
+      this.#marchedStrength.value = strengthNow.value
+      return
+    }
     this.prepare(frame.renderer!, seen, frame)
     this.update(seen)
+  }
+
+  arrivingBetween(start: Vec3, end: Vec3): ArrivingLight {
+    const { view, shadowedAir } = this.#shafts
+    const strength = this.#marchedStrength
+    const direct = float(1).toVar() as Float
+    const diffuse = vec4(1).toVar() as Vec4
+    If(strength.greaterThan(0), () => {
+      const jitter = staggered(screenCoordinate.xy.floor())
+      const share = strength.min(1).div(LOOKS).toConst() as Float
+      loop('look', LOOKS, look => {
+        const part = float(look).add(jitter).div(LOOKS)
+        const offset = view.toMapped(mix(start, end, part)).toConst()
+        const { dark, missing } = shadowAt(view, shadowedAir, offset, jitter)
+        direct.subAssign(dark.mul(share))
+        if (missing !== null) diffuse.subAssign(missing.mul(share))
+      })
+    })
+    return { direct, diffuse }
   }
 
   /** Place of a fragment in the picture: meshes have coordinates of their own. */

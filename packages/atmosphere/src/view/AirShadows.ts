@@ -1,6 +1,7 @@
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
+import type { ArrivingLight } from '../scattering/tsl/segment'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
 import type { SkyLayer } from './SkyLayer'
@@ -19,6 +20,8 @@ export interface ForegroundLayer {
 
 /** Shadows in the air of a picture. */
 export interface ScreenShadows extends SkyLayer {
+  /** Grows whenever shaders with {@link arrivingBetween} must be compiled anew. */
+  readonly version: number
   /**
    * Draws the shadows before a foreground layer is drawn, which may take light past them: `prepare` of a layer with a
    * foreground goes on from there.
@@ -32,8 +35,14 @@ export interface ScreenShadows extends SkyLayer {
    * @param position - Position of what is seen, or of any point in front of the sky, in view space [world units].
    */
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined
-  /** Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun. */
-  drawIn(frame: NodeFrame, sun: object): void
+  /**
+   * Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun.
+   *
+   * @param isMarched - True if it marches its air itself, and reads {@link arrivingBetween}; else it reads {@link dim}.
+   */
+  drawIn(frame: NodeFrame, sun: object | null, isMarched: boolean): void
+  /** Parts of the light that arrive between two points of a ray, which need not start at the camera; in view space [world units]. */
+  arrivingBetween(start: Vec3, end: Vec3): ArrivingLight
 }
 
 /**

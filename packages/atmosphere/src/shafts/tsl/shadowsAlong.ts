@@ -89,6 +89,19 @@ export function shadowsAlong(
   }
 }
 
+/** Shadows on a ray from the camera, on which the map is read where it has any. */
+function mappedShadows(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  ray: Omit<AirViewRay, 'view'>
+): { darkAt: (distance: Float) => Float } & Pick<Shadows, 'missingAt'> {
+  const { frame, maximumRho } = shadowedAir
+  const polar = polarRay(frame, ray.direction, ray.direction.dot(view.lightDirection).toConst())
+  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
+  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, ray.jitter)
+  return { darkAt: distance => darkAt(distance, distance.lessThan(mapped)), missingAt }
+}
+
 /** Part of the light that arrives on a view ray, by the distance from the camera: see `ShadowedShafts.litAlong`. */
 export function litAlong(
   view: ViewUniforms,
@@ -96,16 +109,25 @@ export function litAlong(
   ray: Omit<AirViewRay, 'view'>,
   strength: Float
 ): (distance: Float) => Float {
-  const { direction, jitter } = ray
-  const { frame, maximumRho } = shadowedAir
-  const polar = polarRay(frame, direction, direction.dot(view.lightDirection).toConst())
-  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
-  const { darkAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter)
+  const { darkAt } = mappedShadows(view, shadowedAir, ray)
   return distance => {
     const lit = float(1).toVar() as Float
     If(strength.greaterThan(0), () => {
-      lit.subAssign(darkAt(distance, distance.lessThan(mapped)).mul(strength.min(1)))
+      lit.subAssign(darkAt(distance).mul(strength.min(1)))
     })
     return lit
   }
+}
+
+/** Part of the light scattered once, and of that scattered more often, that is missing at a place. */
+export function shadowAt(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  offset: Vec3,
+  jitter: Float
+): { dark: Float; missing: Vec4 | null } {
+  const distance = offset.length().max(1e-3).toConst() as Float
+  const direction = offset.div(distance).toConst() as Vec3
+  const { darkAt, missingAt } = mappedShadows(view, shadowedAir, { direction, jitter })
+  return { dark: darkAt(distance), missing: missingAt?.(distance) ?? null }
 }

@@ -1,7 +1,7 @@
 import { float, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
-import { scatterSegment } from '../../scattering/tsl/segment'
+import { scatterSegment, type ArrivingLight } from '../../scattering/tsl/segment'
 import { scatteredRadiance } from '../../scattering/tsl/scattering'
 import { stepExponent } from '../../scattering/tsl/march'
 import type { Air, Ray } from '../../scattering/tsl/ray'
@@ -66,8 +66,14 @@ export function marchFromLowest(
  * Light of the air along a segment from the tables, all orders of scattering.
  *
  * @param steps - Number of steps, two evaluations each.
+ * @param arriving - Parts of the light that arrive between two places of the segment [m]; left out, all.
  */
-export function marchedShellLight(air: Air, segment: AirSegment, steps: number): MediumSegment {
+export function marchedShellLight(
+  air: Air,
+  segment: AirSegment,
+  steps: number,
+  arriving?: (start: Float, end: Float) => ArrivingLight
+): MediumSegment {
   const { altitude, radius, radiusCosView, radiusCosSun, cosViewLight } = segment
   const ray: Ray = {
     altitude,
@@ -80,7 +86,8 @@ export function marchedShellLight(air: Air, segment: AirSegment, steps: number):
   const depth = vec4(0).toVar()
   const exponentOf = (rise: Float): Float => stepExponent(air.uniforms, rise)
   marchFromLowest(air.uniforms, segment, steps, exponentOf, (start, end) => {
-    const step = scatterSegment(air, ray, start, end, { direct: true, diffuse: true })
+    const lights = { direct: true, diffuse: true, arriving: arriving?.(start, end) }
+    const step = scatterSegment(air, ray, start, end, lights)
     const transmittance = depth.negate().exp().toConst()
     molecular.addAssign(step.molecular.mul(transmittance))
     aerosol.addAssign(step.aerosol.mul(transmittance))
