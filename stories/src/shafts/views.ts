@@ -40,10 +40,10 @@ export const shaftViews = {
   ridge: {
     label: 'Ridge at sunrise',
     about:
-      'a ridge before a sun of 5°, over valley fog: its shadow in the fog, with one edge from the shoulder where the sun stands',
+      'the sun has risen over a ridge, 9° up: its rays and the shadow of the ridge fan out from there in the valley fog',
     fog: { density: 0.004, falloff: 70 },
     turbidity: 3,
-    light: { elevation: 5, azimuth: 150 },
+    light: { elevation: 9, azimuth: 150 },
     view: { azimuth: 164, pitch: -3 },
     altitude: 420,
     land: 'hills'

@@ -40,15 +40,15 @@ export interface ShadowedShafts extends AirShadows {
   readonly source: LightSource
   /** True if there are shadows to be drawn, as of the last `prepare` for the camera. */
   readonly isActive: boolean
-  /** Grows whenever shaders with {@link litAlong} must be compiled anew. */
+  /** Grows whenever shaders with {@link litAt} must be compiled anew. */
   readonly version: number
   /**
-   * Part of the light that arrives at places of a view ray of the camera, in [0, 1], for what takes light there, such as clouds:
-   * past the shadow maps of the light and all that was added. Called as {@link AirShadow.transmittance} is.
+   * Part of the light that arrives at a place on a view ray of the camera, in [0, 1], for what takes light there, such as
+   * clouds: past the shadow maps of the light and all that was added. To be called within a shader function.
    *
-   * @returns Part by the distance from the camera [m].
+   * @param distance - Distance from the camera [m].
    */
-  litAlong(ray: Omit<AirViewRay, 'view'>): (distance: Float) => Float
+  litAt(ray: Omit<AirViewRay, 'view'>, distance: Float): Float
 }
 
 /** Shadow that something casts into the air, in one light. */

@@ -22,7 +22,7 @@ import { ShaftVolume } from './ShaftVolume'
 import { SunPolarMap } from './SunPolarMap'
 import { isShadowed, mediaIn } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
-import { litAlong, type ShadowedAir } from './tsl/shadowsAlong'
+import { litAt, type ShadowedAir } from './tsl/shadowsAlong'
 import { distanceOf, without } from './tsl/without'
 
 /** Options of {@link LightShafts}. */
@@ -218,8 +218,8 @@ export class LightShafts implements ShadowedShafts {
     return this.#isActive
   }
 
-  litAlong(ray: Omit<AirViewRay, 'view'>): (distance: Float) => Float {
-    return litAlong(this.view, this.shadowedAir, ray, this.strengthNow)
+  litAt(ray: Omit<AirViewRay, 'view'>, distance: Float): Float {
+    return litAt(this.view, this.shadowedAir, ray, distance, this.strengthNow)
   }
 
   /** Pixels of a large picture from one that is marched to the next. */

@@ -135,7 +135,9 @@ export class ScreenShafts implements ScreenShadows {
       loop('look', LOOKS, look => {
         const part = float(look).add(jitter).div(LOOKS)
         const offset = view.toMapped(mix(start, end, part)).toConst()
-        const { dark, missing } = shadowAt(view, shadowedAir, offset, jitter)
+        const distance = offset.length().max(1e-3).toConst() as Float
+        const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
+        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance)
         direct.subAssign(dark.mul(share))
         if (missing !== null) diffuse.subAssign(missing.mul(share))
       })

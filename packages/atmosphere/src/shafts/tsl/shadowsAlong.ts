@@ -89,45 +89,31 @@ export function shadowsAlong(
   }
 }
 
-/** Shadows on a ray from the camera, on which the map is read where it has any. */
-function mappedShadows(
-  view: ViewUniforms,
-  shadowedAir: ShadowedAir,
-  ray: Omit<AirViewRay, 'view'>
-): { darkAt: (distance: Float) => Float } & Pick<Shadows, 'missingAt'> {
-  const { frame, maximumRho } = shadowedAir
-  const polar = polarRay(frame, ray.direction, ray.direction.dot(view.lightDirection).toConst())
-  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
-  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, ray.jitter)
-  return { darkAt: distance => darkAt(distance, distance.lessThan(mapped)), missingAt }
-}
-
-/** Part of the light that arrives on a view ray, by the distance from the camera: see `ShadowedShafts.litAlong`. */
-export function litAlong(
-  view: ViewUniforms,
-  shadowedAir: ShadowedAir,
-  ray: Omit<AirViewRay, 'view'>,
-  strength: Float
-): (distance: Float) => Float {
-  const { darkAt } = mappedShadows(view, shadowedAir, ray)
-  return distance => {
-    const lit = float(1).toVar() as Float
-    If(strength.greaterThan(0), () => {
-      lit.subAssign(darkAt(distance).mul(strength.min(1)))
-    })
-    return lit
-  }
-}
-
-/** Part of the light scattered once, and of that scattered more often, that is missing at a place. */
+/** Part of the light scattered once, and of that scattered more often, that is missing at a place on a ray from the camera. */
 export function shadowAt(
   view: ViewUniforms,
   shadowedAir: ShadowedAir,
-  offset: Vec3,
-  jitter: Float
+  ray: Omit<AirViewRay, 'view'>,
+  distance: Float
 ): { dark: Float; missing: Vec4 | null } {
-  const distance = offset.length().max(1e-3).toConst() as Float
-  const direction = offset.div(distance).toConst() as Vec3
-  const { darkAt, missingAt } = mappedShadows(view, shadowedAir, { direction, jitter })
-  return { dark: darkAt(distance), missing: missingAt?.(distance) ?? null }
+  const { frame, maximumRho } = shadowedAir
+  const polar = polarRay(frame, ray.direction, ray.direction.dot(view.lightDirection).toConst())
+  const isMapped = distance.mul(polar.sinViewLight).lessThan(maximumRho)
+  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, ray.jitter)
+  return { dark: darkAt(distance, isMapped), missing: missingAt?.(distance) ?? null }
+}
+
+/** Part of the light that arrives at a place on a ray: see `ShadowedShafts.litAt`. */
+export function litAt(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  ray: Omit<AirViewRay, 'view'>,
+  distance: Float,
+  strength: Float
+): Float {
+  const lit = float(1).toVar() as Float
+  If(strength.greaterThan(0), () => {
+    lit.subAssign(shadowAt(view, shadowedAir, ray, distance).dark.mul(strength.min(1)))
+  })
+  return lit
 }

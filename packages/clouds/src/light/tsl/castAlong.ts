@@ -27,16 +27,14 @@ export function castAlong(
   direction: Vec3,
   jitter: Float
 ): ShadingContext['castAt'] {
-  const lights = ownShafts(clouds).map(shafts => ({
-    isSun: shafts.source === clouds.atmosphere.sun,
-    litAt: shafts.litAlong({ direction, jitter, receiver: clouds })
-  }))
+  const lights = ownShafts(clouds)
   if (lights.length === 0) return undefined
+  const ray = { direction, jitter, receiver: clouds }
   return (distance, isMoonlit) => {
     const lit = float(1).toVar()
-    for (const { isSun, litAt } of lights) {
-      If(isSun ? isMoonlit.not() : isMoonlit, () => {
-        lit.mulAssign(litAt(distance))
+    for (const shafts of lights) {
+      If(shafts.source === clouds.atmosphere.sun ? isMoonlit.not() : isMoonlit, () => {
+        lit.mulAssign(shafts.litAt(ray, distance))
       })
     }
     return lit

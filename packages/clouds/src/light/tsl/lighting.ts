@@ -56,16 +56,21 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     cosViewLight
   }
-  const cast = context.castAt?.(sample.distance, source.isMoonlit) ?? 1
-  const direct = cloudSource(light, lit).mul(cast)
-  const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude }).mul(cast)
+  const direct = cloudSource(light, lit)
+  const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
   const ambient = cloudAmbientShares(light, {
     depthAbove: depths.above.mul(scale),
     depthBelow: depths.below.mul(scale),
     layered,
     cosView
   })
-  return { direct, sky: ambient.sky, ground: ambient.ground, fine }
+  const cast = context.castAt?.(sample.distance, source.isMoonlit) ?? 1
+  return {
+    direct: direct.mul(cast),
+    sky: ambient.sky,
+    ground: ambient.ground,
+    fine: fine?.mul(cast)
+  }
 }
 
 /**
