@@ -1,11 +1,11 @@
 import { Vector2 } from 'three'
 import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume } from '../skyVolume/tsl/skyVolume'
-import type { ArrivingLight } from '../scattering/tsl/segment'
+import { scatterSegment } from '../scattering/tsl/segment'
 import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
@@ -18,6 +18,7 @@ import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
 import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR } from './tsl/without'
+import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
 
 /** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
@@ -25,6 +26,9 @@ const OPAQUE = 0.01
 
 /** Places between two points of a mesh's ray whose shadows are looked up. Fewer: grain at the edges of shadows, by orthographic cameras. */
 const LOOKS = 6
+
+/** Height in radii of the planet from which meshes have no shafts: shadow maps' rays of light are one direction from there. */
+const FARTHEST = 20
 
 const _size = new Vector2()
 
@@ -45,6 +49,9 @@ export class ScreenShafts implements ScreenShadows {
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
   readonly #strength = number()
+  /** Material that marches these shadows, and version of the shafts that it was compiled for. */
+  #material: NodeMaterial | undefined
+  #compiled = 0
   /** Likewise, for a mesh that marches its air itself. */
   readonly #marchedStrength = number()
   /** 1 if what is behind the foreground has shafts already. */
@@ -59,8 +66,11 @@ export class ScreenShafts implements ScreenShadows {
     this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
   }
 
-  get version(): number {
-    return this.#shafts.version
+  compileWith(material: NodeMaterial): void {
+    const key = material.customProgramCacheKey.bind(material)
+    material.customProgramCacheKey = () => key() + String(this.#shafts.version)
+    this.#material = material
+    this.#compiled = this.#shafts.version
   }
 
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -68,6 +78,9 @@ export class ScreenShafts implements ScreenShadows {
     shafts.prepare(renderer, view, frame)
     shafts.view.update(view)
     shafts.update(view)
+    if (this.#material === undefined || this.#compiled === shafts.version) return
+    this.#compiled = shafts.version
+    this.#material.needsUpdate = true
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -108,23 +121,43 @@ export class ScreenShafts implements ScreenShadows {
     return lost
   }
 
-  drawIn(frame: NodeFrame, sun: object | null, isMarched: boolean): void {
+  drawIn(frame: NodeFrame, sun: object, isMarched: boolean): void {
     const { view, camera, strengthNow } = this.#shafts
     const { atmosphere, source } = view
     const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
     const seen = isTheirs ? view.prepare(frame) : undefined
     this.#strength.value = this.#marchedStrength.value = 0
     if (seen === undefined) return
-    if (isMarched) {
+    const { bottomRadius } = atmosphere.parameters
+    if (isMarched && seen.height < FARTHEST * bottomRadius) {
       this.prepareShadows(frame.renderer!, seen, frame)
       this.#marchedStrength.value = strengthNow.value
-      return
     }
+    if (isMarched) return
     this.prepare(frame.renderer!, seen, frame)
     this.update(seen)
   }
 
-  arrivingBetween(start: Vec3, end: Vec3): ArrivingLight {
+  scatterAlong(entry: Float): typeof scatterSegment {
+    const { direction, origin } = screenRay()
+    const start = this.#shafts.view.toMapped(origin).toConst() as Vec3
+    const along = this.#shafts.view.toMapped(direction).normalize().toConst() as Vec3
+    const offsetAt = (distance: Float): Vec3 => start.add(along.mul(entry.add(distance)))
+    return (air, ray, from, to) => {
+      const { direct, diffuse } = this.#arriving(offsetAt(from), offsetAt(to))
+      const [once, again] = [true, false].map(isDirect =>
+        scatterSegment(air, ray, from, to, { direct: isDirect, diffuse: !isDirect })
+      )
+      return {
+        molecular: once.molecular.mul(direct).add(again.molecular.mul(diffuse)),
+        aerosol: once.aerosol.mul(direct),
+        depth: once.depth
+      }
+    }
+  }
+
+  /** Parts of the light that arrive between two points, by their offsets [m]: straight from the source, and scattered before. */
+  #arriving(start: Vec3, end: Vec3): { direct: Float; diffuse: Vec4 } {
     const { view, shadowedAir } = this.#shafts
     const strength = this.#marchedStrength
     const direct = float(1).toVar() as Float
@@ -134,7 +167,7 @@ export class ScreenShafts implements ScreenShadows {
       const share = strength.min(1).div(LOOKS).toConst() as Float
       loop('look', LOOKS, look => {
         const part = float(look).add(jitter).div(LOOKS)
-        const offset = view.toMapped(mix(start, end, part)).toConst()
+        const offset = mix(start, end, part).toConst() as Vec3
         const distance = offset.length().max(1e-3).toConst() as Float
         const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
         const { dark, missing } = shadowAt(view, shadowedAir, ray, distance)

@@ -30,8 +30,7 @@ import { marchedShellLight } from './tsl/shellMarch'
 import { sampleAir, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { singleScatteringLight } from './tsl/singleScattering'
 import type { ViewSegment } from './tsl/viewSegment'
-import type { ArrivingLight } from '../scattering/tsl/segment'
-import type { Bool, Float } from '../tsl-types'
+import type { Bool } from '../tsl-types'
 import type { AirShadows, ScreenShadows } from '../view/AirShadows'
 
 /** Options of {@link AtmosphereShell}. */
@@ -135,8 +134,6 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   readonly #shafts: AirShadows | undefined
   /** Shadows in its air as pixels have them, while it has a renderer. */
   #shadows: ScreenShadows | undefined
-  /** Version of the shadows for which the material was compiled. */
-  #compiled = 0
   /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
   readonly #viewpoint = new ViewpointUniforms()
@@ -175,8 +172,6 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.renderOrder = 1
     this.visible = !parameters.isAirless
 
-    const key = this.material.customProgramCacheKey.bind(this.material)
-    this.material.customProgramCacheKey = () => key() + String(this.#compiled)
     this.model = model
     const { sun } = this
     const lends = isAtmosphere(sun) && sun.parameters === parameters
@@ -206,6 +201,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         tables.volumes.segments
       )
     this.#shadows = this.#shafts?.upTo(null)
+    this.#shadows?.compileWith(this.material)
     const { color, depth } = shellFragment(
       air,
       this.#view,
@@ -228,9 +224,6 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   /** Acquires tables before three looks at the material. */
   override onBeforeRender(renderer: unknown): void {
     this.#acquire(renderer as Renderer)
-    const version = this.#shadows?.version ?? 0
-    if (version !== this.#compiled) this.material.needsUpdate = true
-    this.#compiled = version
   }
 
   /** Light of a segment: from the sky volume, marched on the tables, or scattered once. */
@@ -243,10 +236,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         light.radiance.assign(radiance)
         light.depth.assign(depth)
       }
-      const arriving = (start: Float, end: Float): ArrivingLight =>
-        this.#shadows!.arrivingBetween(segment.positionView(start), segment.positionView(end))
-      const shadowed = this.#shadows && arriving
-      If(isMarched, () => take(marchedShellLight(air, segment, TABLE_STEPS, shadowed))).Else(() => {
+      const scatter = this.#shadows?.scatterAlong(segment.entry)
+      If(isMarched, () => take(marchedShellLight(air, segment, TABLE_STEPS, scatter))).Else(() => {
         const lit = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
         take(lit)
       })
@@ -311,12 +302,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (this.#volumes !== null && this.#tables !== null) {
       this.#updateVolume(renderer, camera, this.#volumes, this.#tables.version)
     }
-    if (frame)
-      this.#shadows?.drawIn(frame, this.#isFar ? null : this.sun, this.#isMarched.value > 0)
-  }
-
-  get #isFar(): boolean {
-    return this.#view.height.value > FAR_HEIGHT * this.parameters.bottomRadius
+    if (frame) this.#shadows?.drawIn(frame, this.sun, this.#isMarched.value > 0)
   }
 
   #updateSun(): void {
@@ -337,7 +323,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   ): void {
     const { parameters } = this
     const height = this.#view.height.value
-    const isMarched = isOrthographic(camera) || this.#isFar || tablesVersion === 0
+    const isFar = height > FAR_HEIGHT * parameters.bottomRadius
+    const isMarched = isOrthographic(camera) || isFar || tablesVersion === 0
     this.#isMarched.value = isMarched ? 1 : 0
     if (isMarched) return
     const cosLight = this.#view.up.value.dot(this.#view.sunDirectionMapped.value)

@@ -1,7 +1,7 @@
-import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import type { ArrivingLight } from '../scattering/tsl/segment'
+import type { scatterSegment } from '../scattering/tsl/segment'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
 import type { SkyLayer } from './SkyLayer'
@@ -20,8 +20,8 @@ export interface ForegroundLayer {
 
 /** Shadows in the air of a picture. */
 export interface ScreenShadows extends SkyLayer {
-  /** Grows whenever shaders with {@link arrivingBetween} must be compiled anew. */
-  readonly version: number
+  /** Compiles a material with {@link scatterAlong} anew whenever its shader changes. */
+  compileWith(material: NodeMaterial): void
   /**
    * Draws the shadows before a foreground layer is drawn, which may take light past them: `prepare` of a layer with a
    * foreground goes on from there.
@@ -38,11 +38,15 @@ export interface ScreenShadows extends SkyLayer {
   /**
    * Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun.
    *
-   * @param isMarched - True if it marches its air itself, and reads {@link arrivingBetween}; else it reads {@link dim}.
+   * @param isMarched - True if it marches its air itself, by {@link scatterAlong}; else it reads {@link dim}.
    */
-  drawIn(frame: NodeFrame, sun: object | null, isMarched: boolean): void
-  /** Parts of the light that arrive between two points of a ray, which need not start at the camera; in view space [world units]. */
-  arrivingBetween(start: Vec3, end: Vec3): ArrivingLight
+  drawIn(frame: NodeFrame, sun: object, isMarched: boolean): void
+  /**
+   * Light scattered between two places of the fragment's ray, which need not start at the camera, in these shadows.
+   *
+   * @param entry - Distance on the ray from which those of its places are [m].
+   */
+  scatterAlong(entry: Float): typeof scatterSegment
 }
 
 /**

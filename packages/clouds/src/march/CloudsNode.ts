@@ -9,6 +9,7 @@ import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
+import type { CloudCaster } from '../light/tsl/shadingContext'
 import type { CloudNoise } from '../noise/CloudNoise'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { CloudRenderer, sizeOf } from './CloudRenderer'
@@ -110,6 +111,8 @@ export class CloudsNode extends AtmosphereNode {
   >()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
+  /** What else casts into those of them that have the clouds' camera. */
+  readonly casters = new Set<CloudCaster>()
   #quality: CloudQuality = cloudQualities.high
 
   /** @throws If an argument is missing or of the wrong kind, or layers have precipitation and nothing shows it. */
@@ -157,7 +160,7 @@ export class CloudsNode extends AtmosphereNode {
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
       precipitation,
-      clouds: this,
+      casters: this.casters,
       viewRays: {
         field: this.field,
         frame: this.#frame,

@@ -16,14 +16,15 @@ import { meanDepthTowards, opticalDepthTowards } from '../density/tsl/columns'
 import { decksAround } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudsNode } from '../march/CloudsNode'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { CloudCaster } from '../light/tsl/shadingContext'
+import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
 import { CloudForeground } from './CloudForeground'
 import { DiffuseRatioTable } from './DiffuseRatioTable'
 import { sampleShadowsAlong } from './tsl/sampleShadows'
 
 /** Shadow of clouds in the air, in one light: the part of it that arrives. */
-class CastShadow implements AirShadow {
+class CastShadow implements AirShadow, CloudCaster {
   readonly #clouds: CloudsNode
   readonly #shafts: ShadowedShafts
   readonly #foreground: CloudForeground
@@ -47,6 +48,7 @@ class CastShadow implements AirShadow {
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
+    clouds.casters.add(this)
     clouds.needsUpdate = true
   }
 
@@ -63,6 +65,19 @@ class CastShadow implements AirShadow {
     this.#isMapped.value = shadows.source === this.#shafts.source ? 1 : 0
     viewpointMapped(view, this.#shift.value).sub(shadows.camera)
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
+  }
+
+  get version(): number {
+    return this.#shafts.version
+  }
+
+  litAt(ray: Pick<AirViewRay, 'direction' | 'jitter'>, distance: Float, isMoonlit: Bool): Float {
+    const { source } = this.#shafts
+    const lit = float(1).toVar() as Float
+    If(source === this.#clouds.atmosphere.sun ? isMoonlit.not() : isMoonlit, () => {
+      lit.assign(this.#shafts.litAt({ ...ray, receiver: this.#clouds }, distance))
+    })
+    return lit
   }
 
   transmittance(ray: AirViewRay): (place: AirPoint) => Float {
@@ -103,6 +118,7 @@ class CastShadow implements AirShadow {
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)
+    this.#clouds.casters.delete(this)
     this.#screen.dispose?.()
     this.#clouds.needsUpdate = true
   }

@@ -24,16 +24,6 @@ export const RAYLEIGH_MOMENT_2 = 1 / 10
 export interface LightParts {
   direct: boolean
   diffuse: boolean
-  /** Parts of them that arrive past shadows; left out, all. */
-  arriving?: ArrivingLight
-}
-
-/** Parts of the light that arrive at a place past shadows, in [0, 1]; above thin clouds more is scattered. */
-export interface ArrivingLight {
-  /** Part of the light that comes straight from the source. */
-  direct: Float
-  /** Part of the light that was scattered before. */
-  diffuse: Vec4
 }
 
 /** Source function at a point of a ray: light scattered into it per metre. */
@@ -53,7 +43,6 @@ export function sourceFunction(
   if (lights.direct) {
     const sunlight = lightTransmittance(uniforms, air.transmittance, point.altitude, point.cosLight)
       .mul(RADIANCE_SCALE)
-      .mul(lights.arriving?.direct ?? 1)
       .toConst()
     molecular = byMolecules.mul(sunlight).mul(rayleighPhase(ray.cosViewLight))
     aerosol = byAerosols.mul(sunlight)
@@ -61,10 +50,9 @@ export function sourceFunction(
   if (lights.diffuse && air.diffuse !== null) {
     const moments = diffuseMoments(uniforms, air.diffuse, point.altitude, point.cosLight)
     const basis = momentBasis(point.cosView, point.cosLight, ray.cosViewLight)
-    const again = byMolecules
-      .mul(applyMoments(moments, basis, 0, RAYLEIGH_MOMENT_2))
+    molecular = molecular
+      .add(byMolecules.mul(applyMoments(moments, basis, 0, RAYLEIGH_MOMENT_2)))
       .add(byAerosols.mul(applyMoments(moments, basis, uniforms.mieMoment1, uniforms.mieMoment2)))
-    molecular = molecular.add(again.mul(lights.arriving?.diffuse ?? 1))
   }
   return { molecular, aerosol }
 }

@@ -4,7 +4,7 @@ import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPoint, AirShadow, AirViewRay } from '../AirOccluder'
-import { darkPart, polarRay, type PolarFrame, type PolarRay } from './polarMap'
+import { darkPart, ditheredDark, polarRay, type PolarFrame, type PolarRay } from './polarMap'
 
 /** A view ray through media. */
 export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
@@ -54,7 +54,8 @@ export function shadowsAlong(
   { map, frame, shadows, toWorld }: ShadowedAir,
   { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
   polar: PolarRay,
-  jitter: Float
+  jitter: Float,
+  readMap: typeof ditheredDark = darkPart
 ): Shadows {
   const placeAt = (distance: Float): AirPoint => {
     const offset = direction.mul(distance).toConst() as Vec3
@@ -71,7 +72,7 @@ export function shadowsAlong(
     darkAt(distance, isMapped) {
       const dark = float(0).toVar() as Float
       const addMap = (): void => {
-        dark.assign(darkPart(map, frame, polar, distance))
+        dark.assign(readMap(map, frame, polar, distance, jitter))
       }
       if (isMapped === true) addMap()
       else if (isMapped !== false) If(isMapped, addMap)
@@ -99,7 +100,14 @@ export function shadowAt(
   const { frame, maximumRho } = shadowedAir
   const polar = polarRay(frame, ray.direction, ray.direction.dot(view.lightDirection).toConst())
   const isMapped = distance.mul(polar.sinViewLight).lessThan(maximumRho)
-  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, ray.jitter)
+  const { darkAt, missingAt } = shadowsAlong(
+    view,
+    shadowedAir,
+    ray,
+    polar,
+    ray.jitter,
+    ditheredDark
+  )
   return { dark: darkAt(distance, isMapped), missing: missingAt?.(distance) ?? null }
 }
 

@@ -1,7 +1,7 @@
 import { float, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
-import { scatterSegment, type ArrivingLight } from '../../scattering/tsl/segment'
+import { scatterSegment } from '../../scattering/tsl/segment'
 import { scatteredRadiance } from '../../scattering/tsl/scattering'
 import { stepExponent } from '../../scattering/tsl/march'
 import type { Air, Ray } from '../../scattering/tsl/ray'
@@ -66,13 +66,13 @@ export function marchFromLowest(
  * Light of the air along a segment from the tables, all orders of scattering.
  *
  * @param steps - Number of steps, two evaluations each.
- * @param arriving - Parts of the light that arrive between two places of the segment [m]; left out, all.
+ * @param scatter - Light scattered between two places of the segment; left out, without shadows.
  */
 export function marchedShellLight(
   air: Air,
   segment: AirSegment,
   steps: number,
-  arriving?: (start: Float, end: Float) => ArrivingLight
+  scatter = scatterSegment
 ): MediumSegment {
   const { altitude, radius, radiusCosView, radiusCosSun, cosViewLight } = segment
   const ray: Ray = {
@@ -86,8 +86,7 @@ export function marchedShellLight(
   const depth = vec4(0).toVar()
   const exponentOf = (rise: Float): Float => stepExponent(air.uniforms, rise)
   marchFromLowest(air.uniforms, segment, steps, exponentOf, (start, end) => {
-    const lights = { direct: true, diffuse: true, arriving: arriving?.(start, end) }
-    const step = scatterSegment(air, ray, start, end, lights)
+    const step = scatter(air, ray, start, end, { direct: true, diffuse: true })
     const transmittance = depth.negate().exp().toConst()
     molecular.addAssign(step.molecular.mul(transmittance))
     aerosol.addAssign(step.aerosol.mul(transmittance))

@@ -31,8 +31,8 @@ export interface ViewSegment extends AirSegment {
    * the ground or the lowest point; from outside no farther than the nearest ground in the pixel.
    */
   middleView: Vec3
-  /** Point at a distance from the segment's start [m], in view space [world units]. */
-  positionView: (distance: Float) => Vec3
+  /** Distance from the ray's origin to the segment's start [m]. */
+  entry: Float
 }
 
 /** Fraction of the camera's height below which the lowest point of a ray counts as close to the ground. */
@@ -177,7 +177,6 @@ export function viewSegment(uniforms: AtmosphereUniforms, view: ShellView): View
   const cosViewLight = dot(d, view.sunDirectionMapped).clamp(-1, 1).toConst() as Float
   const nearestCosSun = dot(chord.nearest, view.sunDirectionMapped).mul(start.radius)
   const middle = middleDistance(uniforms, chord, view.pixel)
-  const pointAt = (distance: Float): Vec3 => origin.add(directionView.mul(distance.mul(perMeter)))
   return {
     altitude,
     radius,
@@ -188,7 +187,7 @@ export function viewSegment(uniforms: AtmosphereUniforms, view: ShellView): View
     hitsGround,
     length,
     fromCamera: { cosView, sinView, cosViewLight, hitsGround, length },
-    middleView: pointAt(middle),
-    positionView: distance => pointAt(chord.entry.add(distance))
+    entry: chord.entry,
+    middleView: origin.add(directionView.mul(middle.mul(perMeter)))
   }
 }

@@ -42,3 +42,17 @@ export interface ShadingLight {
   /** Cosine between it and the zenith. */
   readonly cosine: Float
 }
+
+/** Something besides the clouds that shades them. */
+export interface CloudCaster {
+  /** Grows whenever its shader changes. */
+  readonly version: number
+  /**
+   * Part of the light that passes, in [0, 1].
+   *
+   * @param ray - View ray of the clouds' camera; noise in (0, 1).
+   * @param distance - Distance from the camera [m].
+   * @param isMoonlit - True where the light is the moon's.
+   */
+  litAt(ray: { direction: Vec3; jitter: Float }, distance: Float, isMoonlit: Bool): Float
+}
