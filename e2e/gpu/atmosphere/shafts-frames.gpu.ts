@@ -21,7 +21,7 @@ import {
 } from 'three'
 import { SunLight } from 'three/addons/lights/SunLight.js'
 import { SunLightNode } from 'three/addons/lights/SunLightNode.js'
-import { pass } from 'three/tsl'
+import { float, pass, vec3 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { quantile } from '../../validate/score'
 import { drawToFloat } from '../harness/atmosphere'
@@ -303,3 +303,74 @@ gpuTest('takes from the air of a shell what it takes from the sky', async t => {
   light.dispose()
   atmosphere.dispose()
 })
+
+gpuTest(
+  'takes light from the air of a shell along the parallel rays of an orthographic camera',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const air = new AtmosphereParameters({ groundAlbedo: [0, 0, 0, 0] })
+    const { bottomRadius: radius } = air
+    const atmosphere = new Atmosphere({ parameters: air, ellipsoid: new Ellipsoid(radius) })
+    atmosphere.worldToECEF.identity()
+    atmosphere.sunDirection = new Vector3(0.3, 0.6, 0.6)
+    const light = new SunDirectionalLight(atmosphere)
+    // 400 km across, from 500 km up, obliquely down.
+    const half = 200_000
+    const camera = new OrthographicCamera(-half, half, (half * 9) / 16, (-half * 9) / 16, 1e4, 1e7)
+    camera.position.set(0, 0, radius + 500_000)
+    camera.rotation.x = 0.6
+    camera.updateMatrixWorld()
+    const shafts = lightShafts(atmosphere, camera, light)
+    const shell = new AtmosphereShell(air, radius, { shafts })
+    const scene = new Scene().add(shell)
+    const draw = async (occluder?: AirOccluder): Promise<Picture> => {
+      if (occluder !== undefined) shafts.add(occluder)
+      let picture: Picture | undefined
+      for (let i = 0; i < 2; i++) {
+        await nextFrame()
+        picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      }
+      if (occluder !== undefined) shafts.remove(occluder)
+      return picture!
+    }
+    const plane = (normal: Vector3, from: number, isFlipped = false): AirOccluder => ({
+      castInto: () => ({
+        transmittance: () => place => {
+          const isAbove = place.positionWorld().dot(vec3(normal)).greaterThan(from)
+          return isAbove.select(isFlipped ? 1 : 0, isFlipped ? 0 : 1)
+        }
+      })
+    })
+    const lit = await draw()
+    const dark = await draw({ castInto: () => ({ transmittance: () => () => float(0) }) })
+    // A wall along the rays: each pixel is on one side of it, as no ray from the camera's own place would be.
+    const wall = 80_000
+    const walled = await draw(plane(new Vector3(1, 0, 0), wall))
+    let places = 0
+    for (let y = 0; y < size.height; y += 5) {
+      for (let x = 0; x < size.width; x++) {
+        const east = ((x + 0.5) / size.width - 0.5) * 2 * half
+        if (Math.abs(east - wall) < half / size.width) continue
+        const [all, none, here] = [lit, dark, walled].map(picture => picture.at(x, y)[1])
+        expectTrue(none < 0.95 * all && none > 0, `${x}, ${y}: ${none} of ${all}`)
+        expectClose(here, east > wall ? none : all, { relative: 1e-4 }, `${x}, ${y}`)
+        places++
+      }
+    }
+    // What a plane among the air and its other side take is all that there is to take.
+    const normal = new Vector3(0.02, Math.sin(0.054), Math.cos(0.054))
+    const from = radius + 4000
+    const [above, below] = [await draw(plane(normal, from)), await draw(plane(normal, from, true))]
+    const lost = [dark, above, below].map(picture => apart(lit, picture))
+    t.note(
+      `${places} places; ${lost.map(sum => (sum / lost[0]).toFixed(4)).join(', ')} of the light`
+    )
+    expectTrue(Math.min(lost[1], lost[2]) > 0.1 * lost[0], 'both sides take light')
+    expectClose(lost[1] + lost[2], lost[0], { relative: 0.01 }, 'both sides')
+    shafts.enabled = false
+    expectSame(await draw(), lit, 'without shadows')
+    for (const owned of [shell, shafts, light, atmosphere]) owned.dispose()
+  },
+  // The looks of shafts in the sky, which WebGL draws, too.
+  { backends: ['webgpu'] }
+)

@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
-import { float, vec3, vec4 } from 'three/tsl'
+import { float, vec2, vec3, vec4 } from 'three/tsl'
+import { LostLightGrid } from '../../../packages/atmosphere/src/shafts/LostLightGrid'
 import {
   columnAt,
   lightRayAt,
@@ -10,6 +11,7 @@ import { warpedSteps } from '../../../packages/atmosphere/src/shafts/tsl/warpedS
 import type { Float, Vec3 } from '../../../packages/atmosphere/src/tsl-types'
 import { warpedDistance } from '../../../packages/atmosphere/test/twins/shafts/warpedSteps'
 import { random } from '../harness/atmosphere'
+import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { parameters } from '../harness/shaft-stage'
@@ -108,3 +110,38 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     )
   })
 })
+
+gpuTest(
+  'takes the part of the light that pixels around lose, at the edges of the picture, too',
+  async t => {
+    const renderer = await t.createRenderer({ width: 8, height: 8 })
+    const [width, height, part] = [48, 30, 0.25]
+    const grid = new LostLightGrid()
+    grid.resize(width, height, 2)
+    // Neighbours are at other depths, so that none are mixed.
+    grid.render(renderer, 1, (_, pixel) => {
+      const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
+      return { lost: vec3(part), lit: vec3(1), distance: isFar.select(1e4, 100).toConst() }
+    })
+    // Rounding puts places a little beyond the middles of the first and the last pixels.
+    const places = [0.5 - 1e-4, 0.5, width / 3, width - 0.5, width - 0.5 + 1e-4].flatMap(x =>
+      [0.5 - 1e-4, 0.5, height / 3, height - 0.5, height - 0.5 + 1e-4].map(y => [
+        x / width,
+        y / height
+      ])
+    )
+    const results = await evaluateOnGpu(
+      renderer,
+      places.map(([x, y]) => [x, y, 1000, 0]),
+      ({ x, y, z }) =>
+        vec4(
+          grid.read(vec2(x, y), z, () => vec3(2)),
+          0
+        )
+    )
+    places.forEach((at, i) => {
+      expectClose(results[4 * i], 2 * part, { relative: 2e-3 }, `at ${at.join(', ')}`)
+    })
+    grid.dispose()
+  }
+)

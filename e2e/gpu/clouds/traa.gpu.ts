@@ -9,7 +9,8 @@ import { coarse, onGround } from '../harness/cloud-view'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
-import { Picture } from '../harness/picture'
+import type { Picture } from '../harness/picture'
+import { psnr, supersample } from '../harness/supersample'
 
 const size = { width: 96, height: 54 }
 /** Frames in which TRAA converges, and turn of a frame [rad]. */
@@ -18,30 +19,6 @@ const TURN = 0.012
 const TURNS = 12
 /** Frames of which the supersampled picture is the mean. */
 const SAMPLES = 16
-
-/** Van der Corput's sequence: offsets within a pixel, as TRAA's are. */
-const halton = (index: number, base: number): number => {
-  let [result, part, rest] = [0, 1, index + 1]
-  while (rest > 0) {
-    part /= base
-    result += part * (rest % base)
-    rest = Math.floor(rest / base)
-  }
-  return result
-}
-
-/** Signal over noise of a picture as it is shown, in [0, 1] [dB]. */
-function psnr(a: Picture, b: Picture): number {
-  let sum = 0
-  let count = 0
-  for (let i = 0; i < a.data.length; i++) {
-    if (i % 4 === 3) continue
-    const [x, y] = [a.data[i], b.data[i]].map(value => Math.min(value, 1) ** (1 / 2.2))
-    sum += (x - y) ** 2
-    count++
-  }
-  return -10 * Math.log10(sum / count)
-}
 
 /** Clouds over boxes, under TRAA or not. */
 class CloudyStage {
@@ -98,20 +75,8 @@ class CloudyStage {
   }
 
   /** Mean of frames with offsets within a pixel. */
-  async supersample(): Promise<Picture> {
-    const mean = new Picture(
-      size.width,
-      size.height,
-      new Float32Array(4 * size.width * size.height)
-    )
-    for (let i = 0; i < SAMPLES; i++) {
-      const [x, y] = [halton(i, 2) - 0.5, halton(i, 3) - 0.5]
-      this.camera.setViewOffset(size.width, size.height, x, y, size.width, size.height)
-      const drawn = await this.draw()
-      drawn.data.forEach((value, k) => (mean.data[k] += Math.min(value, 1) / SAMPLES))
-    }
-    this.camera.clearViewOffset()
-    return mean
+  supersample(): Promise<Picture> {
+    return supersample(this.camera, size, SAMPLES, () => this.draw())
   }
 
   dispose(): void {

@@ -40,10 +40,10 @@ export const shaftViews = {
   ridge: {
     label: 'Ridge at sunrise',
     about:
-      'a ridge before a sun of 5°, over valley fog: its shadow in the fog, with one edge from the shoulder where the sun stands',
+      'the sun has risen over a ridge, 9° up: its rays and the shadow of the ridge fan out from there in the valley fog',
     fog: { density: 0.004, falloff: 70 },
     turbidity: 3,
-    light: { elevation: 5, azimuth: 150 },
+    light: { elevation: 9, azimuth: 150 },
     view: { azimuth: 164, pitch: -3 },
     altitude: 420,
     land: 'hills'
@@ -72,13 +72,15 @@ export const shaftViews = {
   },
   opposite: {
     label: 'Anticrepuscular rays',
-    about: 'rays that run together opposite a sunset',
-    clouds: { preset: 'congestus', coverage: 0.4 },
-    turbidity: 3,
-    light: { elevation: 3, azimuth: 250 },
-    view: { azimuth: 70, pitch: 10 },
-    altitude: 2,
-    land: 'hills'
+    about:
+      'shadows of storms behind the camera, opposite a sunset of 2°: rays that run together at the horizon over the sea',
+    clouds: { preset: 'cumulonimbus' },
+    place: { longitude: 139.571, latitude: 35.995 },
+    turbidity: 4,
+    light: { elevation: 2, azimuth: 10 },
+    view: { azimuth: 190, pitch: 8 },
+    altitude: 400,
+    land: 'planet'
   },
   moonlight: {
     label: 'Moonlight',

@@ -25,6 +25,8 @@ export interface AirPoint {
 export interface AirViewRay extends Pick<AirPoint, 'view' | 'jitter'> {
   /** Unit length, in the mapped space. */
   readonly direction: Vec3
+  /** What takes the light on the ray, if that is not air: its own shadow does not count. */
+  readonly receiver?: object
 }
 
 /** Light shafts as what casts shadows into them sees them. */
@@ -38,6 +40,15 @@ export interface ShadowedShafts extends AirShadows {
   readonly source: LightSource
   /** True if there are shadows to be drawn, as of the last `prepare` for the camera. */
   readonly isActive: boolean
+  /** Grows whenever shaders with {@link litAt} must be compiled anew. */
+  readonly version: number
+  /**
+   * Part of the light that arrives at a place on a view ray of the camera, in [0, 1], for what takes light there, such as
+   * clouds: past the shadow maps of the light and all that was added. To be called within a shader function.
+   *
+   * @param distance - Distance from the camera [m].
+   */
+  litAt(ray: Omit<AirViewRay, 'view'>, distance: Float): Float
 }
 
 /** Shadow that something casts into the air, in one light. */

@@ -13,7 +13,7 @@ import type { LightSource } from '../view/LightSource'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
-import type { AirOccluder, ShadowedShafts } from './AirOccluder'
+import type { AirOccluder, AirViewRay, ShadowedShafts } from './AirOccluder'
 import { CastShadows } from './CastShadows'
 import { ScreenShafts } from './ScreenShafts'
 import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
@@ -22,7 +22,7 @@ import { ShaftVolume } from './ShaftVolume'
 import { SunPolarMap } from './SunPolarMap'
 import { isShadowed, mediaIn } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
-import type { ShadowedAir } from './tsl/shadowsAlong'
+import { litAt, type ShadowedAir } from './tsl/shadowsAlong'
 import { distanceOf, without } from './tsl/without'
 
 /** Options of {@link LightShafts}. */
@@ -216,6 +216,10 @@ export class LightShafts implements ShadowedShafts {
   /** True if there are shadows to be drawn, as of the last {@link prepare} for the camera. */
   get isActive(): boolean {
     return this.#isActive
+  }
+
+  litAt(ray: Omit<AirViewRay, 'view'>, distance: Float): Float {
+    return litAt(this.view, this.shadowedAir, ray, distance, this.strengthNow)
   }
 
   /** Pixels of a large picture from one that is marched to the next. */

@@ -188,7 +188,8 @@ export class LostLightGrid {
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
-      const first = place.floor().toConst() as Vec2
+      // Rounding may put the picture's edge before the first pixel.
+      const first = place.floor().max(0).toConst() as Vec2
       const last = size.sub(1).toConst() as Vec2
       const single = vec2(size.x.add(1), 0).toConst() as Vec2
       const weights = float(0).toVar()

@@ -1,11 +1,12 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
+import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume } from '../skyVolume/tsl/skyVolume'
-import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { scatterSegment } from '../scattering/tsl/segment'
+import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -15,12 +16,19 @@ import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
-import type { ShaftRay } from './tsl/shadowsAlong'
+import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR } from './tsl/without'
+import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
 
 /** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const OPAQUE = 0.01
+
+/** Places between two points of a mesh's ray whose shadows are looked up. Fewer: grain at the edges of shadows, by orthographic cameras. */
+const LOOKS = 6
+
+/** Height in radii of the planet from which meshes have no shafts: shadow maps' rays of light are one direction from there. */
+const FARTHEST = 20
 
 const _size = new Vector2()
 
@@ -41,6 +49,11 @@ export class ScreenShafts implements ScreenShadows {
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
   readonly #strength = number()
+  /** Material that marches these shadows, and version of the shafts that it was compiled for. */
+  #material: NodeMaterial | undefined
+  #compiled = 0
+  /** Likewise, for a mesh that marches its air itself. */
+  readonly #marchedStrength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
   /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
@@ -53,10 +66,27 @@ export class ScreenShafts implements ScreenShadows {
     this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
   }
 
+  compileWith(material: NodeMaterial): void {
+    const key = material.customProgramCacheKey.bind(material)
+    material.customProgramCacheKey = () => key() + String(this.#shafts.version)
+    this.#material = material
+    this.#compiled = this.#shafts.version
+  }
+
+  prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
+    const shafts = this.#shafts
+    shafts.prepare(renderer, view, frame)
+    shafts.view.update(view)
+    shafts.update(view)
+    if (this.#material === undefined || this.#compiled === shafts.version) return
+    this.#compiled = shafts.version
+    this.#material.needsUpdate = true
+  }
+
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     const shafts = this.#shafts
     if (this.#isElsewhere) return
-    shafts.prepare(renderer, view, frame)
+    if (this.foreground === undefined) shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.grid.resize(width, height, spacingIn(shafts.spacing, width, height))
     if (!shafts.isActive) return
@@ -91,15 +121,61 @@ export class ScreenShafts implements ScreenShadows {
     return lost
   }
 
-  drawIn(frame: NodeFrame, sun: object): void {
-    const { view, camera } = this.#shafts
+  drawIn(frame: NodeFrame, sun: object, isMarched: boolean): void {
+    const { view, camera, strengthNow } = this.#shafts
     const { atmosphere, source } = view
     const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
     const seen = isTheirs ? view.prepare(frame) : undefined
-    this.#strength.value = 0
+    this.#strength.value = this.#marchedStrength.value = 0
     if (seen === undefined) return
+    const { bottomRadius } = atmosphere.parameters
+    if (isMarched && seen.height < FARTHEST * bottomRadius) {
+      this.prepareShadows(frame.renderer!, seen, frame)
+      this.#marchedStrength.value = strengthNow.value
+    }
+    if (isMarched) return
     this.prepare(frame.renderer!, seen, frame)
     this.update(seen)
+  }
+
+  scatterAlong(entry: Float): typeof scatterSegment {
+    const { direction, origin } = screenRay()
+    const start = this.#shafts.view.toMapped(origin).toConst() as Vec3
+    const along = this.#shafts.view.toMapped(direction).normalize().toConst() as Vec3
+    const offsetAt = (distance: Float): Vec3 => start.add(along.mul(entry.add(distance)))
+    return (air, ray, from, to) => {
+      const { direct, diffuse } = this.#arriving(offsetAt(from), offsetAt(to))
+      const [once, again] = [true, false].map(isDirect =>
+        scatterSegment(air, ray, from, to, { direct: isDirect, diffuse: !isDirect })
+      )
+      return {
+        molecular: once.molecular.mul(direct).add(again.molecular.mul(diffuse)),
+        aerosol: once.aerosol.mul(direct),
+        depth: once.depth
+      }
+    }
+  }
+
+  /** Parts of the light that arrive between two points, by their offsets [m]: straight from the source, and scattered before. */
+  #arriving(start: Vec3, end: Vec3): { direct: Float; diffuse: Vec4 } {
+    const { view, shadowedAir } = this.#shafts
+    const strength = this.#marchedStrength
+    const direct = float(1).toVar() as Float
+    const diffuse = vec4(1).toVar() as Vec4
+    If(strength.greaterThan(0), () => {
+      const jitter = staggered(screenCoordinate.xy.floor())
+      const share = strength.min(1).div(LOOKS).toConst() as Float
+      loop('look', LOOKS, look => {
+        const part = float(look).add(jitter).div(LOOKS)
+        const offset = mix(start, end, part).toConst() as Vec3
+        const distance = offset.length().max(1e-3).toConst() as Float
+        const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
+        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance)
+        direct.subAssign(dark.mul(share))
+        if (missing !== null) diffuse.subAssign(missing.mul(share))
+      })
+    })
+    return { direct, diffuse }
   }
 
   /** Place of a fragment in the picture: meshes have coordinates of their own. */

@@ -201,6 +201,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         tables.volumes.segments
       )
     this.#shadows = this.#shafts?.upTo(null)
+    this.#shadows?.compileWith(this.material)
     const { color, depth } = shellFragment(
       air,
       this.#view,
@@ -235,7 +236,8 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         light.radiance.assign(radiance)
         light.depth.assign(depth)
       }
-      If(isMarched, () => take(marchedShellLight(air, segment, TABLE_STEPS))).Else(() => {
+      const scatter = this.#shadows?.scatterAlong(segment.entry)
+      If(isMarched, () => take(marchedShellLight(air, segment, TABLE_STEPS, scatter))).Else(() => {
         const lit = sampleAir(air.uniforms, volumes.atlas, this.#viewpoint, segment.fromCamera)
         take(lit)
       })
@@ -300,7 +302,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (this.#volumes !== null && this.#tables !== null) {
       this.#updateVolume(renderer, camera, this.#volumes, this.#tables.version)
     }
-    if (frame) this.#shadows?.drawIn(frame, this.#isMarched.value ? this : this.sun)
+    if (frame) this.#shadows?.drawIn(frame, this.sun, this.#isMarched.value > 0)
   }
 
   #updateSun(): void {

@@ -1,7 +1,9 @@
-import type { Node, NodeFrame } from 'three/webgpu'
+import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
+import type { scatterSegment } from '../scattering/tsl/segment'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
+import type { AtmosphereView } from './AtmosphereView'
 import type { SkyLayer } from './SkyLayer'
 
 /** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
@@ -18,6 +20,13 @@ export interface ForegroundLayer {
 
 /** Shadows in the air of a picture. */
 export interface ScreenShadows extends SkyLayer {
+  /** Compiles a material with {@link scatterAlong} anew whenever its shader changes. */
+  compileWith(material: NodeMaterial): void
+  /**
+   * Draws the shadows before a foreground layer is drawn, which may take light past them: `prepare` of a layer with a
+   * foreground goes on from there.
+   */
+  prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
   dim(color: Vec3): Vec3
   /**
@@ -26,8 +35,18 @@ export interface ScreenShadows extends SkyLayer {
    * @param position - Position of what is seen, or of any point in front of the sky, in view space [world units].
    */
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined
-  /** Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun. */
-  drawIn(frame: NodeFrame, sun: object): void
+  /**
+   * Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun.
+   *
+   * @param isMarched - True if it marches its air itself, by {@link scatterAlong}; else it reads {@link dim}.
+   */
+  drawIn(frame: NodeFrame, sun: object, isMarched: boolean): void
+  /**
+   * Light scattered between two places of the fragment's ray, which need not start at the camera, in these shadows.
+   *
+   * @param entry - Distance on the ray from which those of its places are [m].
+   */
+  scatterAlong(entry: Float): typeof scatterSegment
 }
 
 /**

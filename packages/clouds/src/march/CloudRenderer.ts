@@ -1,12 +1,12 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
 import { FloatType, NearestFilter, UnsignedByteType, Vector2 } from 'three'
 import type { RenderTarget, Texture, Vector3 } from 'three'
-import { If, texture, uv, vec4 } from 'three/tsl'
+import { If, float, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from '../density/CloudField'
 import { compiledByKinds, kindsOf } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
-import type { ShadingContext } from '../light/tsl/shadingContext'
+import type { CloudCaster, ShadingContext } from '../light/tsl/shadingContext'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { gatherCells } from '../temporal/tsl/cells'
@@ -17,7 +17,7 @@ import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
 import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type FrameInputs } from './tsl/viewRay'
-import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
+import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
 
@@ -32,6 +32,8 @@ export interface CloudScene extends ShadingContext {
   readonly viewRays: FrameInputs
   /** Rain and snow under the clouds. */
   readonly precipitation?: PrecipitationShafts
+  /** What shades the clouds besides themselves. */
+  readonly casters: ReadonlySet<CloudCaster>
 }
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
@@ -92,6 +94,20 @@ function marchPixels(scene: CloudScene): Outputs {
   })
 }
 
+/** Part of the light that arrives on a view ray past all casters. */
+function castAlong(
+  { casters }: CloudScene,
+  direction: Vec3,
+  jitter: Float
+): ShadingContext['castAt'] {
+  if (casters.size === 0) return undefined
+  return (distance, isMoonlit) =>
+    [...casters].reduce(
+      (lit, caster) => lit.mul(caster.litAt({ direction, jitter }, distance, isMoonlit)),
+      float(1) as Float
+    )
+}
+
 /** Shades what was marched: light with the air in front of it, and its distances. */
 function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
   const { field, viewRays, precipitation } = scene
@@ -109,9 +125,10 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
       }
       const { direction, directionView } = viewRayAt(viewRays, at)
       const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
-      const seen = precipitation?.among(scene, direction, noise, ray, clouds, distances) ?? {
+      const context = { ...scene, castAt: castAlong(scene, direction, noise) }
+      const seen = precipitation?.among(context, direction, noise, ray, clouds, distances) ?? {
         ...clouds,
-        radiance: shadePoints(scene, direction, points)
+        radiance: shadePoints(context, direction, points)
       }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
@@ -132,8 +149,10 @@ export class CloudRenderer {
   readonly #accumulatedTargets = [0, 1].map(i => cloudTarget(`Accumulated${i}`, true))
   readonly #weatherMap: WeatherMap
   readonly #field: CloudField
-  /** Kinds of the layers for which the march was compiled. */
+  /** Kinds of the layers for which the march was compiled, and casters for which its light was. */
   #kinds = ''
+  #castersVersion = ''
+  readonly #casters: ReadonlySet<CloudCaster>
   readonly #march: FragmentPass
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
@@ -155,6 +174,7 @@ export class CloudRenderer {
     )
     this.#field = compiledByKinds(field)
     const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
+    this.#casters = inputs.casters
     this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
@@ -162,7 +182,7 @@ export class CloudRenderer {
     this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen))
     for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
-      material.customProgramCacheKey = () => key() + kindsOf(field)
+      material.customProgramCacheKey = () => key() + kindsOf(field) + this.#castersVersion
     }
     const { marched: shaded } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
@@ -214,12 +234,16 @@ export class CloudRenderer {
     this.accumulated.distances.value = distances
   }
 
-  /** Has what has code for storms compiled anew where layers of storms come or go. */
+  /** Has what has code for storms compiled anew where layers of storms come or go, and light where casters do. */
   #compile(): void {
     const kinds = kindsOf(this.#field)
-    if (kinds === this.#kinds) return
+    const casters = Array.from(this.#casters, ({ version }) => version).join()
+    if (kinds !== this.#kinds) this.#march.material.needsUpdate = true
+    if (kinds !== this.#kinds || casters !== this.#castersVersion) {
+      this.#shade.material.needsUpdate = true
+    }
     this.#kinds = kinds
-    for (const { material } of [this.#march, this.#shade]) material.needsUpdate = true
+    this.#castersVersion = casters
   }
 
   /** Frees the render targets. */

@@ -9,6 +9,7 @@ import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
 import type { CloudLayers } from '../layers/CloudLayers'
 import { CloudLightTable } from '../light/CloudLightTable'
+import type { CloudCaster } from '../light/tsl/shadingContext'
 import type { CloudNoise } from '../noise/CloudNoise'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { CloudRenderer, sizeOf } from './CloudRenderer'
@@ -104,9 +105,14 @@ export class CloudsNode extends AtmosphereNode {
   readonly passes: CloudRenderer
   readonly #exposure = uniform(1)
   /** Layers of the picture with the clouds, drawn by this node: shadows in the air of `cloudAirShadow`, and `lightning`. */
-  readonly screens = new Set<Pick<ScreenShadows, 'prepare' | 'update' | 'dim'>>()
+  readonly screens = new Set<
+    Pick<ScreenShadows, 'prepare' | 'update' | 'dim'> &
+      Partial<Pick<ScreenShadows, 'prepareShadows'>>
+  >()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
+  /** What else casts into those of them that have the clouds' camera. */
+  readonly casters = new Set<CloudCaster>()
   #quality: CloudQuality = cloudQualities.high
 
   /** @throws If an argument is missing or of the wrong kind, or layers have precipitation and nothing shows it. */
@@ -154,6 +160,7 @@ export class CloudsNode extends AtmosphereNode {
       shadows: this.shadows.nodes,
       quality: this.#uniforms,
       precipitation,
+      casters: this.casters,
       viewRays: {
         field: this.field,
         frame: this.#frame,
@@ -290,6 +297,7 @@ export class CloudsNode extends AtmosphereNode {
     this.shadows.update(renderer, view, this.castsInto.size > 0)
     this.passes.setSize(width, height, this.#quality.block)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
+    for (const screen of this.screens) screen.prepareShadows?.(renderer, view, frame)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value
     for (const screen of this.screens) screen.prepare?.(renderer, view, frame)

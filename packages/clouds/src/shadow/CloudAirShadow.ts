@@ -8,7 +8,7 @@ import type {
   ShadowedShafts
 } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
-import { If } from 'three/tsl'
+import { If, float } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
@@ -16,14 +16,15 @@ import { meanDepthTowards, opticalDepthTowards } from '../density/tsl/columns'
 import { decksAround } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudsNode } from '../march/CloudsNode'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { CloudCaster } from '../light/tsl/shadingContext'
+import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
 import { CloudForeground } from './CloudForeground'
 import { DiffuseRatioTable } from './DiffuseRatioTable'
 import { sampleShadowsAlong } from './tsl/sampleShadows'
 
 /** Shadow of clouds in the air, in one light: the part of it that arrives. */
-class CastShadow implements AirShadow {
+class CastShadow implements AirShadow, CloudCaster {
   readonly #clouds: CloudsNode
   readonly #shafts: ShadowedShafts
   readonly #foreground: CloudForeground
@@ -47,6 +48,7 @@ class CastShadow implements AirShadow {
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
+    clouds.casters.add(this)
     clouds.needsUpdate = true
   }
 
@@ -65,8 +67,23 @@ class CastShadow implements AirShadow {
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
   }
 
-  transmittance({ view, direction, jitter }: AirViewRay): (place: AirPoint) => Float {
+  get version(): number {
+    return this.#shafts.version
+  }
+
+  litAt(ray: Pick<AirViewRay, 'direction' | 'jitter'>, distance: Float, isMoonlit: Bool): Float {
+    const { source } = this.#shafts
+    const lit = float(1).toVar() as Float
+    If(source === this.#clouds.atmosphere.sun ? isMoonlit.not() : isMoonlit, () => {
+      lit.assign(this.#shafts.litAt({ ...ray, receiver: this.#clouds }, distance))
+    })
+    return lit
+  }
+
+  transmittance(ray: AirViewRay): (place: AirPoint) => Float {
     const { field, light, shadows } = this.#clouds
+    const { view, direction, jitter, receiver } = ray
+    if (receiver === this.#clouds) return () => float(1)
     const mapped = sampleShadowsAlong(shadows.nodes, this.#shift, direction, jitter)
     return ({ offset, distance }) => {
       const { shadow, inMap } = mapped(distance)
@@ -101,6 +118,7 @@ class CastShadow implements AirShadow {
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)
+    this.#clouds.casters.delete(this)
     this.#screen.dispose?.()
     this.#clouds.needsUpdate = true
   }
@@ -115,7 +133,7 @@ class CastShadow implements AirShadow {
  *
  * They are read from the clouds' shadow maps, up to 2,000 km above the ground; beyond them the mean cover of the layers says how much passes, or the
  * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
- * behind the clouds.
+ * behind the clouds, and all else that casts into them shades the clouds, too: the light's shadow maps, and hills.
  */
 export class CloudAirShadow implements AirOccluder {
   /** Shared, not owned. */

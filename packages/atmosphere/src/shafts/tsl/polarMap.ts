@@ -2,6 +2,9 @@ import { atan, mix, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { loadTexel, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 
+/** Factor on noise for numbers that are not alike: 4√5. */
+const NOISE_STRIDE = 8.944
+
 /**
  * Polar coordinates about the camera with the source of light as pole: θ from the source, φ around it, ρ the
  * distance from the line between both. A view ray has one θ and one φ, a ray of light one φ and one ρ. All in
@@ -93,19 +96,42 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
 export function darkPart(
   map: TextureNode,
   frame: PolarFrame,
-  { sinViewLight, angle, isTowards, rows, betweenRows }: PolarRay,
+  ray: PolarRay,
   distance: Float
 ): Float {
+  const { sinViewLight, rows, betweenRows } = ray
   const column = columnAt(frame, distance.mul(sinViewLight)).toConst() as Float
   const first = column.floor().toConst() as Float
   const columns = [first, first.add(1).min(frame.columns.sub(1)).toConst() as Float]
   const dark = columns.map(x => {
-    const [here, next] = rows.map(y => {
-      const { x: occluder, y: behind } = loadTexel(map, vec2(x, y)).toConst()
-      const isDark = isTowards.select(angle.greaterThan(occluder), angle.lessThan(behind))
-      return isDark.select(1, 0)
-    })
+    const [here, next] = rows.map(y => isDark(map, ray, x, y))
     return mix(here, next, betweenRows)
   })
   return mix(dark[0], dark[1], column.sub(first)).toConst()
+}
+
+/**
+ * As {@link darkPart} in the mean, from one of the four rays: for what is read often, or has a history.
+ *
+ * @param noise - In [0, 1).
+ */
+export function ditheredDark(
+  map: TextureNode,
+  frame: PolarFrame,
+  ray: PolarRay,
+  distance: Float,
+  noise: Float
+): Float {
+  const column = columnAt(frame, distance.mul(ray.sinViewLight))
+  // Noise of columns is apart from that of rows.
+  const x = column.add(noise.mul(NOISE_STRIDE).fract()).floor().min(frame.columns.sub(1))
+  const y = ray.betweenRows.greaterThan(noise).select(ray.rows[1], ray.rows[0])
+  return isDark(map, ray, x.toConst(), y.toConst()).toConst()
+}
+
+/** 1 if a view ray's place is dark by a ray of light, else 0. */
+function isDark(map: TextureNode, ray: PolarRay, x: Float, y: Float): Float {
+  const { angle, isTowards } = ray
+  const { x: occluder, y: behind } = loadTexel(map, vec2(x, y)).toConst()
+  return isTowards.select(angle.greaterThan(occluder), angle.lessThan(behind)).select(1, 0)
 }

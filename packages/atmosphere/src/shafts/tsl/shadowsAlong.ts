@@ -3,8 +3,8 @@ import type { TextureNode } from 'three/webgpu'
 import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
-import type { AirPoint, AirShadow } from '../AirOccluder'
-import { darkPart, type PolarFrame, type PolarRay } from './polarMap'
+import type { AirPoint, AirShadow, AirViewRay } from '../AirOccluder'
+import { darkPart, ditheredDark, polarRay, type PolarFrame, type PolarRay } from './polarMap'
 
 /** A view ray through media. */
 export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
@@ -36,6 +36,8 @@ export interface ShaftRay {
   readonly distance: Float
   /** Part of the light from a distance [m] that reaches the picture; left out, all. */
   readonly seenFrom?: (distance: Float) => Float
+  /** See `AirViewRay`. */
+  readonly receiver?: object
 }
 
 /** Shadows on a view ray, by the distance from the camera. */
@@ -50,15 +52,16 @@ export interface Shadows {
 export function shadowsAlong(
   view: ViewUniforms,
   { map, frame, shadows, toWorld }: ShadowedAir,
-  { direction, seenFrom }: ShaftRay,
+  { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
   polar: PolarRay,
-  jitter: Float
+  jitter: Float,
+  readMap: typeof ditheredDark = darkPart
 ): Shadows {
   const placeAt = (distance: Float): AirPoint => {
     const offset = direction.mul(distance).toConst() as Vec3
     return { view, offset, distance, jitter, positionWorld: () => toWorld(offset) }
   }
-  const passing = shadows.map(shadow => shadow.transmittance({ view, direction, jitter }))
+  const passing = shadows.map(shadow => shadow.transmittance({ view, direction, jitter, receiver }))
   const dimming = shadows.filter(shadow => shadow.diffuse !== undefined)
   const missingAt = (distance: Float): Vec4 => {
     const parts = dimming.map(shadow => shadow.diffuse!(placeAt(distance)))
@@ -69,7 +72,7 @@ export function shadowsAlong(
     darkAt(distance, isMapped) {
       const dark = float(0).toVar() as Float
       const addMap = (): void => {
-        dark.assign(darkPart(map, frame, polar, distance))
+        dark.assign(readMap(map, frame, polar, distance, jitter))
       }
       if (isMapped === true) addMap()
       else if (isMapped !== false) If(isMapped, addMap)
@@ -85,4 +88,40 @@ export function shadowsAlong(
     },
     missingAt: dimming.length > 0 ? missingAt : null
   }
+}
+
+/** Part of the light scattered once, and of that scattered more often, that is missing at a place on a ray from the camera. */
+export function shadowAt(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  ray: Omit<AirViewRay, 'view'>,
+  distance: Float
+): { dark: Float; missing: Vec4 | null } {
+  const { frame, maximumRho } = shadowedAir
+  const polar = polarRay(frame, ray.direction, ray.direction.dot(view.lightDirection).toConst())
+  const isMapped = distance.mul(polar.sinViewLight).lessThan(maximumRho)
+  const { darkAt, missingAt } = shadowsAlong(
+    view,
+    shadowedAir,
+    ray,
+    polar,
+    ray.jitter,
+    ditheredDark
+  )
+  return { dark: darkAt(distance, isMapped), missing: missingAt?.(distance) ?? null }
+}
+
+/** Part of the light that arrives at a place on a ray: see `ShadowedShafts.litAt`. */
+export function litAt(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  ray: Omit<AirViewRay, 'view'>,
+  distance: Float,
+  strength: Float
+): Float {
+  const lit = float(1).toVar() as Float
+  If(strength.greaterThan(0), () => {
+    lit.subAssign(shadowAt(view, shadowedAir, ray, distance).dark.mul(strength.min(1)))
+  })
+  return lit
 }

@@ -66,8 +66,14 @@ export function marchFromLowest(
  * Light of the air along a segment from the tables, all orders of scattering.
  *
  * @param steps - Number of steps, two evaluations each.
+ * @param scatter - Light scattered between two places of the segment; left out, without shadows.
  */
-export function marchedShellLight(air: Air, segment: AirSegment, steps: number): MediumSegment {
+export function marchedShellLight(
+  air: Air,
+  segment: AirSegment,
+  steps: number,
+  scatter = scatterSegment
+): MediumSegment {
   const { altitude, radius, radiusCosView, radiusCosSun, cosViewLight } = segment
   const ray: Ray = {
     altitude,
@@ -80,7 +86,7 @@ export function marchedShellLight(air: Air, segment: AirSegment, steps: number):
   const depth = vec4(0).toVar()
   const exponentOf = (rise: Float): Float => stepExponent(air.uniforms, rise)
   marchFromLowest(air.uniforms, segment, steps, exponentOf, (start, end) => {
-    const step = scatterSegment(air, ray, start, end, { direct: true, diffuse: true })
+    const step = scatter(air, ray, start, end, { direct: true, diffuse: true })
     const transmittance = depth.negate().exp().toConst()
     molecular.addAssign(step.molecular.mul(transmittance))
     aerosol.addAssign(step.aerosol.mul(transmittance))

@@ -31,6 +31,8 @@ export interface ViewSegment extends AirSegment {
    * the ground or the lowest point; from outside no farther than the nearest ground in the pixel.
    */
   middleView: Vec3
+  /** Distance from the ray's origin to the segment's start [m]. */
+  entry: Float
 }
 
 /** Fraction of the camera's height below which the lowest point of a ray counts as close to the ground. */
@@ -185,6 +187,7 @@ export function viewSegment(uniforms: AtmosphereUniforms, view: ShellView): View
     hitsGround,
     length,
     fromCamera: { cosView, sinView, cosViewLight, hitsGround, length },
+    entry: chord.entry,
     middleView: origin.add(directionView.mul(middle.mul(perMeter)))
   }
 }

@@ -32,7 +32,7 @@ export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample)
   const direction = isMoonlit.select(night.moonDirection, view.lightDirection).toConst() as Vec3
   const isMapped = isMoonlit.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
   const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
-  return { direction, isMapped, cosine }
+  return { direction, isMoonlit, isMapped, cosine }
 }
 
 /** Source function of a place towards the viewpoint: the light that it scatters there. */
@@ -64,7 +64,13 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     layered,
     cosView
   })
-  return { direct, sky: ambient.sky, ground: ambient.ground, fine }
+  const cast = context.castAt?.(sample.distance, source.isMoonlit) ?? 1
+  return {
+    direct: direct.mul(cast),
+    sky: ambient.sky,
+    ground: ambient.ground,
+    fine: fine?.mul(cast)
+  }
 }
 
 /**

@@ -5,7 +5,7 @@ import type { WeatherCache } from '../../density/tsl/sampler'
 import type { QualityUniforms } from '../../march/quality'
 import type { LayersAt } from '../../march/tsl/layerBoundaries'
 import type { CloudShadows } from '../../shadow/tsl/sampleShadows'
-import type { Float, Vec3 } from '../../tsl-types'
+import type { Bool, Float, Vec3 } from '../../tsl-types'
 import type { CloudLight } from '../CloudLightTable'
 
 /** Inputs of shading that are the same for all rays of a picture. */
@@ -16,6 +16,8 @@ export interface ShadingContext {
   readonly light: CloudLight
   readonly shadows: CloudShadows
   readonly quality: QualityUniforms
+  /** Part of the light that arrives at a distance on the view ray, past what casts shadows besides the clouds; left out, all. */
+  readonly castAt?: (distance: Float, isMoonlit: Bool) => Float
 }
 
 /** Place in the clouds that is to be shaded. */
@@ -34,8 +36,23 @@ export interface ShadedSample {
 export interface ShadingLight {
   /** Direction to it, unit length, in the mapped space. */
   readonly direction: Vec3
+  readonly isMoonlit: Bool
   /** 1 if the shadow maps are of this light, else 0. */
   readonly isMapped: Float
   /** Cosine between it and the zenith. */
   readonly cosine: Float
+}
+
+/** Something besides the clouds that shades them. */
+export interface CloudCaster {
+  /** Grows whenever its shader changes. */
+  readonly version: number
+  /**
+   * Part of the light that passes, in [0, 1].
+   *
+   * @param ray - View ray of the clouds' camera; noise in (0, 1).
+   * @param distance - Distance from the camera [m].
+   * @param isMoonlit - True where the light is the moon's.
+   */
+  litAt(ray: { direction: Vec3; jitter: Float }, distance: Float, isMoonlit: Bool): Float
 }

@@ -96,6 +96,7 @@ export function lightPrecipitation(
   const hidden = mix(fall.mul(fall).add(1).reciprocal(), 1, layered)
   const sky = mix(0.5, under.sky, hidden)
   const ground = mix(0.5, under.ground, hidden)
-  const shares = vec3(often.max(0), sky, ground).mul(weight).toConst() as Vec3
-  return shade(field, sample, shares, once)
+  const cast = context.castAt?.(distance, source.isMoonlit) ?? 1
+  const shares = vec3(often.max(0).mul(cast), sky, ground).mul(weight).toConst() as Vec3
+  return shade(field, sample, shares, once.mul(cast))
 }
