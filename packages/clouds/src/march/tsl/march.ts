@@ -8,6 +8,13 @@ import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
 
+/**
+ * Number of layers from which a ray has a loop in a loop: rays side by side then wait for each other at each boundary, and
+ * so run the code of the same layer. Fewer: slower with one layer, and software renderers take long to compile it;
+ * more: skies of several layers take half as long again.
+ */
+const NESTED_FROM = 3
+
 /** Most crossings of a ray with the boundaries of a layer: two with each, on the way down and up again. */
 const CROSSINGS = 4
 
@@ -99,13 +106,13 @@ export function marchClouds(
     position.addAssign(advance(state, pair, quality, found, accept))
   }
 
-  const isMapped = weatherMap !== undefined
-  loop('cloudSegment', isMapped ? CROSSINGS * field.layers.length + 1 : quality.pairs, () => {
+  const { length } = field.layers
+  const isNested = weatherMap !== undefined && length >= NESTED_FROM
+  loop('cloudSegment', isNested ? CROSSINGS * length + 1 : quality.pairs, () => {
     If(isDone(end), () => {
       Break()
     })
-    if (isMapped) {
-      // A loop in a loop: rays side by side wait for each other at each boundary, and so run the code of the same layers.
+    if (isNested) {
       enterSegment()
       loop('cloudPair', quality.pairs, () => {
         If(isDone(segment.end), () => {
@@ -114,7 +121,6 @@ export function marchClouds(
         goOn()
       })
     } else {
-      // With all look-ups of the weather the code is so long that software renderers take minutes to compile it twice nested.
       If(position.greaterThanEqual(segment.end), enterSegment).Else(goOn)
     }
   })
