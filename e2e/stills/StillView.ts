@@ -50,7 +50,7 @@ import type { Still } from './scenes'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
 import { readPicture } from './readPicture'
 
-/** Vertical field of view [°]. */
+/** Vertical field of view by default [°]. */
 const FIELD_OF_VIEW = 55
 /** Clouds have drifted for so long [s]. */
 const TIME = 300
@@ -79,9 +79,14 @@ const directionOf = ({ elevation, azimuth }: { elevation: number; azimuth: numbe
     MathUtils.degToRad(180 - azimuth)
   )
 
-function cameraOf({ altitude, view, land }: Still, aspect: number): PerspectiveCamera {
+function cameraOf({ altitude, view, fieldOfView, land }: Still, aspect: number): PerspectiveCamera {
   const isFar = land === 'planet'
-  const camera = new PerspectiveCamera(FIELD_OF_VIEW, aspect, isFar ? 2000 : 1, isFar ? 2e7 : 4e5)
+  const camera = new PerspectiveCamera(
+    fieldOfView ?? FIELD_OF_VIEW,
+    aspect,
+    isFar ? 2000 : 1,
+    isFar ? 2e7 : 4e5
+  )
   camera.position.y = altitude
   camera.rotation.order = 'YXZ'
   camera.rotation.x = MathUtils.degToRad(view.pitch)
@@ -180,10 +185,11 @@ export class StillView {
     const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
     let picture: Node = air
     if (still.clouds !== undefined) {
-      const { preset, coverage, precipitation: falls } = still.clouds
+      const { preset, coverage, precipitation: falls, layer } = still.clouds
       const layers = cloudPreset(preset)
       if (falls !== undefined) layers.at(0).set({ precipitation: falls })
       if (coverage !== undefined) layers.at(0).set({ coverage })
+      if (layer !== undefined) layers.at(0).set(layer)
       const { dropletRadius } = still
       const light =
         dropletRadius === undefined
@@ -207,7 +213,7 @@ export class StillView {
       this.#clouds = node
       picture = node
     }
-    this.#exposure = autoExposure(picture, atmosphere)
+    this.#exposure = autoExposure(picture, atmosphere, { compensation: still.compensation })
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputNode = this.#exposure
   }

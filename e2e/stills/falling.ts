@@ -27,13 +27,18 @@ export const falling = [
     about: 'streaks below altocumulus at sunset that end in the air, the strongest deepest',
     clouds: {
       preset: 'altocumulus',
-      coverage: 0.5,
-      precipitation: { rate: 4, share: 0.5, virgaDepth: 1200, freezingLevel: 0 }
+      layer: {
+        topAltitude: 4600,
+        coverage: 0.3,
+        weatherScale: 0.5,
+        shapeScale: 0.7,
+        precipitation: { rate: 6, share: 0.6, virgaDepth: 1500, freezingLevel: 0 }
+      }
     },
     place: { longitude: 139.17, latitude: 35.33 },
     altitude: 60,
-    sun: { elevation: 4, azimuth: 10 },
-    view: { azimuth: 30, pitch: 20 },
+    sun: { elevation: 3, azimuth: 350 },
+    view: { azimuth: 30, pitch: 16 },
     land: 'hills'
   },
   {

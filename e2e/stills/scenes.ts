@@ -1,4 +1,4 @@
-import type { CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
+import type { CloudLayerParameters, CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import type { ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 import { falling } from './falling'
@@ -12,7 +12,13 @@ export interface Still {
   /** Features to look for. */
   about: string
   /** Preset of clouds; default: a clear sky. */
-  clouds?: { preset: CloudPresetName; coverage?: number; precipitation?: CloudPrecipitation }
+  clouds?: {
+    preset: CloudPresetName
+    coverage?: number
+    precipitation?: CloudPrecipitation
+    /** Other parameters of the first layer. */
+    layer?: Partial<CloudLayerParameters>
+  }
   /** Effective radius of the clouds' droplets [µm]; default: lobes of fair weather. */
   dropletRadius?: number
   /** Fog about the ground: extinction [1/m], altitude over which it falls to 1/e [m]; radius of its droplets [µm], default: a smooth phase function. */
@@ -35,6 +41,10 @@ export interface Still {
   sun: { elevation: number; azimuth: number } | Date
   /** Azimuth, clockwise from north, and pitch of the camera [°]. */
   view: { azimuth: number; pitch: number }
+  /** Vertical field of view [°]; default 55. */
+  fieldOfView?: number
+  /** Exposure over what is metered [EV]. */
+  compensation?: number
   /** Hills and trees about the camera, the same under snow, towers and streets, or the bare planet. */
   land: 'hills' | 'snow' | 'city' | 'planet'
 }
@@ -108,12 +118,25 @@ const optics: Still[] = [
   {
     name: 'optics-glory',
     about:
-      'from an aeroplane over a deck, the sun behind: coloured rings of 1 to 3° about the middle, a pale cloudbow 40° from it',
-    clouds: { preset: 'stratocumulus', coverage: 0.97 },
-    dropletRadius: 9,
+      'from an aeroplane over a thin deck, the sun behind: coloured rings of 1 to 4° about the middle, the shadow point',
+    clouds: { preset: 'overcast', layer: { density: 0.003 } },
+    dropletRadius: 8,
     altitude: 2600,
-    sun: { elevation: 30, azimuth: 210 },
-    view: { azimuth: 30, pitch: -27 },
+    sun: { elevation: 38, azimuth: 210 },
+    view: { azimuth: 30, pitch: -38 },
+    fieldOfView: 26,
+    land: 'hills'
+  },
+  {
+    name: 'optics-cloudbow',
+    about:
+      'the same deck with a wide lens: the glory in the middle, about it a pale bow of 40°, on all sides',
+    clouds: { preset: 'overcast', layer: { density: 0.004 } },
+    dropletRadius: 12,
+    altitude: 2600,
+    sun: { elevation: 45, azimuth: 210 },
+    view: { azimuth: 30, pitch: -45 },
+    fieldOfView: 90,
     land: 'hills'
   },
   {
@@ -149,6 +172,18 @@ const rainbows: Still[] = [
     altitude: 10,
     sun: { elevation: 14, azimuth: 180 },
     view: { azimuth: 0, pitch: 18 },
+    land: 'hills'
+  },
+  {
+    name: 'optics-moonbow',
+    about: 'a full moon of 14° behind: the bow in a shaft of rain, pale and nearly white',
+    clouds: { preset: 'shower', coverage: 0.15 },
+    place: { longitude: 140.6798, latitude: 35.2496 },
+    altitude: 60,
+    sun: { elevation: -40, azimuth: 20 },
+    moon: { elevation: 12, azimuth: 206 },
+    compensation: 2,
+    view: { azimuth: 60, pitch: 10 },
     land: 'hills'
   }
 ]

@@ -5,6 +5,7 @@ import {
   droplets,
   heightFog,
   moon,
+  raindrops,
   skyBackground,
   type HeightFog
 } from '@welkin/atmosphere'
@@ -163,8 +164,32 @@ gpuTest('reads its light from a table in post effects as materials compute it', 
   await compareByPaths(t, atmosphere, mist)
 })
 
+/** What makes bows: angles from the point opposite the light inside of one, in it, and outside [°]. */
+const bows = [
+  {
+    name: 'droplets in sunlight',
+    make: () => droplets({ radius: 10 }),
+    isMoonlit: false,
+    angles: [
+      [28, 32],
+      [36, 40],
+      [44, 48]
+    ]
+  },
+  {
+    name: 'rain in moonlight',
+    make: () => raindrops({ rate: 8 }),
+    isMoonlit: true,
+    angles: [
+      [32, 37],
+      [39.5, 42.5],
+      [44, 49]
+    ]
+  }
+] as const
+
 gpuTest(
-  'of droplets has a bow 38° from the point opposite the sun',
+  'of droplets has a bow 38° from the point opposite the sun, rain one of 41° by the moon',
   async t => {
     const renderer = await t.createRenderer(size)
     const scene = new Scene()
@@ -172,39 +197,47 @@ gpuTest(
     camera.position.y = 30
     camera.rotation.x = 0.3
     camera.updateMatrixWorld()
-    const atmosphere = new Atmosphere().setSunAngles(12, 180)
-    const drops = droplets({ radius: 10 })
-    const fog = { falloff: 200, density: 2e-3 }
-    const mist = heightFog({ ...fog, droplets: drops })
-    const smooth = heightFog({ ...fog, asymmetry: drops.asymmetry })
-    const opposite = atmosphere.sunDirection.clone().negate()
-    atmosphere.add(mist)
-    const drawn = await drawForward(renderer, scene, camera, atmosphere)
-    expectLight(drawn, 'bow')
-    atmosphere.remove(mist).add(smooth)
-    const without = await drawForward(renderer, scene, camera, atmosphere)
-    const point = new Vector3()
-    /** Light over that of smooth fog, 2 to 25° above the horizon, between angles from the point opposite the sun [°]. */
-    const mean = (from: number, to: number): number => {
-      let [sum, count] = [0, 0]
-      for (let y = 0; y < size.height; y++) {
-        for (let x = 0; x < size.width; x++) {
-          point.set((2 * x + 1) / size.width - 1, 1 - (2 * y + 1) / size.height, 0.5)
-          point.unproject(camera).sub(camera.position).normalize()
-          const angle = (point.angleTo(opposite) * 180) / Math.PI
-          if (point.y < 0.035 || point.y > 0.42 || angle < from || angle > to) continue
-          sum += luminance(drawn.at(x, y)) / luminance(without.at(x, y))
-          count++
+    for (const { name, make, isMoonlit, angles } of bows) {
+      const atmosphere = new Atmosphere().setSunAngles(12, 180)
+      const light = atmosphere.sunDirection.clone()
+      const luna = moon({ direction: light, phase: 0.5 })
+      if (isMoonlit) atmosphere.setSunAngles(-40, 0).add(luna)
+      const sources = isMoonlit ? [luna.source] : []
+      const drops = make()
+      const fog = { falloff: 200, density: 2e-3, sources }
+      const mist = heightFog({ ...fog, droplets: drops })
+      const smooth = heightFog({ ...fog, asymmetry: drops.asymmetry })
+      const opposite = light.negate()
+      atmosphere.add(mist)
+      const drawn = await drawForward(renderer, scene, camera, atmosphere)
+      expectLight(drawn, name)
+      atmosphere.remove(mist).add(smooth)
+      const without = await drawForward(renderer, scene, camera, atmosphere)
+      const point = new Vector3()
+      /** Light over that of smooth fog, 2 to 25° above the horizon, between angles from the point opposite the light [°]. */
+      const mean = ([from, to]: readonly [number, number]): number => {
+        let [sum, count] = [0, 0]
+        for (let y = 0; y < size.height; y++) {
+          for (let x = 0; x < size.width; x++) {
+            point.set((2 * x + 1) / size.width - 1, 1 - (2 * y + 1) / size.height, 0.5)
+            point.unproject(camera).sub(camera.position).normalize()
+            const angle = (point.angleTo(opposite) * 180) / Math.PI
+            if (point.y < 0.035 || point.y > 0.42 || angle < from || angle > to) continue
+            sum += luminance(drawn.at(x, y)) / luminance(without.at(x, y))
+            count++
+          }
         }
+        expectTrue(count > 5, `${count} pixels from ${from} to ${to}°`)
+        return sum / count
       }
-      expectTrue(count > 5, `${count} pixels from ${from} to ${to}°`)
-      return sum / count
+      const [inside, bow, outside] = angles.map(mean)
+      t.note(
+        `${name}: ${inside.toFixed(3)} inside, ${bow.toFixed(3)} in it, ${outside.toFixed(3)} outside`
+      )
+      expectTrue(bow > 1.03 * inside && bow > 1.1 * outside, `${inside}, ${bow}, ${outside}`)
+      drops.dispose()
+      atmosphere.dispose()
     }
-    const [inside, bow, outside] = [mean(28, 32), mean(36, 40), mean(44, 48)]
-    t.note(`${inside.toFixed(3)} inside, ${bow.toFixed(3)} in it, ${outside.toFixed(3)} outside`)
-    expectTrue(bow > 1.03 * inside && bow > 1.1 * outside, `${inside}, ${bow}, ${outside}`)
-    drops.dispose()
-    atmosphere.dispose()
   },
   // What is read, and the sums with it, other tests hold on both.
   { backends: ['webgpu'] }

@@ -73,6 +73,20 @@ gpuTest('rain and snow dim a view as much as their sizes say', async t => {
     const expected = 1 - Math.exp(-drawnDepth(kind, rate, widthOf))
     t.note(`${kind.name}: ${opacity.toExponential(3)} of ${expected.toExponential(3)}`)
     expectClose(opacity, expected, { relative: 0.03 }, kind.name)
+    if (kind === rain) {
+      // The longer the shutter is open, the longer streaks are, each as much fainter.
+      const seen = async (shutter: number): Promise<{ touched: number; opacity: number }> => {
+        falling.shutter = shutter
+        const picture = await t.render(renderer, scene, camera, size)
+        const touched = picture.data.filter((alpha, i) => i % 4 === 3 && alpha > 1e-6).length
+        return { touched, opacity: mean(picture, 3) }
+      }
+      const [brief, long] = [await seen(1 / 500), await seen(1 / 60)]
+      const longer = long.touched / brief.touched
+      t.note(`at 1/60 s ${longer.toFixed(2)} times as many pixels as at 1/500 s`)
+      expectTrue(longer > 1.5, `${longer} times as many pixels`)
+      expectClose(long.opacity, brief.opacity, { relative: 0.05 }, 'opacity at 1/60 s')
+    }
     falling.rate = 0
     const none = await t.render(renderer, scene, camera, size)
     expectTrue(mean(none, 3) === 0, `${kind.name} at rate 0`)
@@ -107,6 +121,25 @@ gpuTest(
     expectLight(open, 'rain')
     const light = mean(open, 1)
     expectTrue(light > 0, `rain has light ${light}`)
+
+    // Lamps add up: four spots at a place are one of four times its light.
+    const lampOptions = { rate: 40, time: 10, maxParticles: 20_000 }
+    const litBy = async (intensity: number, count: number): Promise<number> => {
+      const lamps = Array.from({ length: count }, () => new SpotLight('#ffffff', intensity))
+      for (const one of lamps) {
+        one.position.copy(camera.position).y += 1
+        one.updateMatrixWorld()
+      }
+      const own = rainfall(atmosphere, { ...lampOptions, lights: lamps })
+      scene.remove(falling).add(own)
+      const drawn = mean(await draw(), 1)
+      scene.remove(own).add(falling)
+      own.dispose()
+      return drawn
+    }
+    const [four, one] = [await litBy(5, 4), await litBy(20, 1)]
+    expectTrue(one > 0, 'a spot lights rain')
+    expectClose(four, one, { relative: 1e-3 }, 'four spots')
 
     // A wall before the left half, nearer than the first drops.
     const black = new MeshBasicMaterial({ color: 0, side: 2 })

@@ -213,7 +213,7 @@ function rainDepth(
 }
 
 gpuTest(
-  'lets rain and snow fall where float64 does, as opaque as their rates say',
+  'lets rain, snow and hail fall where float64 does, as opaque as their rates say',
   async t => {
     const rates = [0.5, 3, 12, 60]
     const layer = {
@@ -229,7 +229,8 @@ gpuTest(
     const state = scene.state()
     const { zenith, bottomRadius } = state
     for (const rate of rates) {
-      const falls = { rate, share: 0.7, freezingLevel: 600, virgaDepth: rate > 3 ? 900 : 0 }
+      const [virgaDepth, hail] = [rate > 3 ? 900 : 0, rate === 60 ? 0.4 : 0]
+      const falls = { rate, share: 0.7, freezingLevel: 600, virgaDepth, hail }
       layers.at(0).precipitation = falls
       medium.update(scene.field, { up: zenith } as AtmosphereView)
       const places = { ...state, layers: [layers.at(0).parameters] }
@@ -249,7 +250,8 @@ gpuTest(
           const rank = fallenRank(places, twin, 0, at, distance)
           const here = rank > 0 ? rateOf(rate, rank, 1000 - altitude, falls.virgaDepth) : 0
           const snow = MathUtils.smoothstep(altitude, 600 - fallForm.melting, 600)
-          depth += (extinctionOf(here, snow, 0) * RAIN_DEPTH) / COLUMN_STEPS
+          const stones = here * hail * MathUtils.smoothstep(rank, ...fallForm.hailFrom)
+          depth += (extinctionOf(here - stones, snow, stones) * RAIN_DEPTH) / COLUMN_STEPS
         }
         if (depth > 0.01) wet++
         const got = results[4 * i]

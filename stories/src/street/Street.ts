@@ -30,6 +30,7 @@ import { pass, uniform } from 'three/tsl'
 import { MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { createHouses, type Houses } from './houses'
+import { StreetMirror } from './StreetMirror'
 
 /** Settings of the street's weather. */
 export interface StreetWeather {
@@ -60,7 +61,7 @@ const SNOW_GLOW = 0.25
  * Lamplight off the ground, by which walls above the lamps and what falls there is seen: illuminance of the street [lx], share of it that gets
  * there, and albedo of wet ground and of snow.
  */
-const BOUNCE = { illuminance: 26, share: 0.15, wet: 0.1, snow: 0.8, color: '#ffc98a' }
+const BOUNCE = { illuminance: 15, share: 0.15, wet: 0.1, snow: 0.8, color: '#ffc98a' }
 /** Radius of the dome that shows it [m]. Greater: it is lost in the haze. */
 const DOME = 190
 /** Water that rain has left on the ground [mm], and snow [mm of water]. */
@@ -79,7 +80,9 @@ export class Street {
   readonly pipeline: RenderPipeline
   readonly #sun: SunDirectionalLight
   readonly #sky: SkyLightProbe
+  readonly #renderer: WebGPURenderer
   readonly #houses: Houses
+  readonly #mirror = new StreetMirror()
   readonly #shelter: PrecipitationShelter
   readonly #fog = heightFog({ density: 0.0015, falloff: 900 })
   readonly #water: SurfaceWater
@@ -93,6 +96,7 @@ export class Street {
   #weather: StreetWeather = { rain: 0, snow: 0, wind: 0, elevation: 25, shutter: 1 / 60 }
 
   constructor(renderer: WebGPURenderer, time: number | null) {
+    this.#renderer = renderer
     const { atmosphere, camera, scene } = this
     atmosphere.add(this.#fog)
     const sun = (this.#sun = new SunDirectionalLight(atmosphere, 80))
@@ -105,6 +109,8 @@ export class Street {
     // #endregion
     this.#water = water
     const houses = (this.#houses = createHouses(ground, water))
+    ground.envNode = this.#mirror.environment(this.#clouds)
+    this.#mirror.leaveOut(camera, houses.ground, ...houses.globes)
     const overcast = this.#overcast
     scene.add(sun, sun.target, sky, night, houses.object, this.#dome, camera)
     scene.environmentNode = this.#clouds
@@ -183,6 +189,7 @@ export class Street {
   render(): void {
     this.#lightClouds()
     this.#houses.light(this.#isNight ? 1 : 0.15, this.atmosphere.luminanceScale)
+    this.#mirror.render(this.#renderer, this.scene, this.camera)
     this.pipeline.render()
   }
 
@@ -193,6 +200,7 @@ export class Street {
     this.snow.dispose()
     this.#shelter.dispose()
     this.#houses.dispose()
+    this.#mirror.dispose()
     this.#dome.geometry.dispose()
     this.#dome.material.dispose()
     this.#sun.dispose()

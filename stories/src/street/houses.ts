@@ -1,30 +1,32 @@
 import {
   BoxGeometry,
-  ConeGeometry,
   CylinderGeometry,
   Group,
   Mesh,
   MeshStandardMaterial,
   PlaneGeometry,
-  SphereGeometry,
-  SpotLight
+  PointLight,
+  SphereGeometry
 } from 'three'
 import { wetSurface, type SurfaceWater } from '@welkin/atmosphere'
 import { float } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 
-/** Luminous intensity of a street lamp [cd], and height of its bulb [m]. */
-const LAMP = 900
-const LAMP_HEIGHT = 5.2
-/** Luminance of a lit window, and of a lamp's glass [cd/m²]. */
+/** Luminous intensity of a street lamp [cd], 6,200 lm of sodium light to all sides; radius and height of its globe [m]. */
+const LAMP = 490
+const GLOBE = 0.25
+const LAMP_HEIGHT = 4.6
+/** Luminance of a lit window, and of a globe [cd/m²]. */
 const WINDOW = 6
-const GLASS = 2500
+const GLASS = LAMP / (Math.PI * GLOBE ** 2)
 
 /** A street between two rows of houses, towards −Z, and the lamps along it. */
 export interface Houses {
   readonly object: Group
-  readonly lamps: readonly SpotLight[]
+  readonly ground: Mesh
+  readonly lamps: readonly PointLight[]
+  readonly globes: readonly Mesh[]
   /** @param share - Part of the lamps' light, in [0, 1]. */
   light(share: number, luminanceScale: number): void
   dispose(): void
@@ -41,14 +43,15 @@ export function createHouses(
   const random = randomSequence(11)
   const object = new Group()
   const glow: { material: MeshStandardMaterial; luminance: number }[] = []
-  const lamps: SpotLight[] = []
+  const lamps: PointLight[] = []
+  const globes: Mesh[] = []
   const add = (mesh: Mesh, x: number, y: number, z: number): Mesh => {
     mesh.position.set(x, y, z)
     mesh.castShadow = mesh.receiveShadow = true
     object.add(mesh)
     return mesh
   }
-  add(new Mesh(new PlaneGeometry(400, 400).rotateX(-Math.PI / 2), ground), 0, 0, 0)
+  const street = add(new Mesh(new PlaneGeometry(400, 400).rotateX(-Math.PI / 2), ground), 0, 0, 0)
   const roofs = new MeshStandardNodeMaterial({ color: '#33261f', roughness: 0.9 })
   if (water !== undefined) Object.assign(roofs, wetSurface(water, { exposure: float(0.55) }))
   const panes = new MeshStandardMaterial({ color: '#15181b', roughness: 0.2 })
@@ -77,18 +80,19 @@ export function createHouses(
   for (let i = 0; i < 4; i++) {
     const [x, z] = [(i % 2 === 0 ? -1 : 1) * 4.4, -6 - 8 * i]
     add(new Mesh(new CylinderGeometry(0.05, 0.08, LAMP_HEIGHT, 8), iron), x, LAMP_HEIGHT / 2, z)
-    add(new Mesh(new ConeGeometry(0.4, 0.25, 12), iron), x, LAMP_HEIGHT + 0.3, z)
-    const bulb = add(new Mesh(new SphereGeometry(0.14, 16, 12), glass), x, LAMP_HEIGHT, z)
-    bulb.castShadow = false
-    const lamp = new SpotLight('#ffc98a', 0, 60, 1.25, 0.4)
+    const globe = add(new Mesh(new SphereGeometry(GLOBE, 24, 16), glass), x, LAMP_HEIGHT, z)
+    globe.castShadow = false
+    globes.push(globe)
+    const lamp = new PointLight('#ffc98a', 0, 60)
     lamp.position.set(x, LAMP_HEIGHT, z)
-    lamp.target.position.set(x, 0, z)
-    object.add(lamp, lamp.target)
+    object.add(lamp)
     lamps.push(lamp)
   }
   return {
     object,
+    ground: street,
     lamps,
+    globes,
     light(share, luminanceScale) {
       for (const { material, luminance } of glow) {
         material.emissiveIntensity = share * luminance * luminanceScale
