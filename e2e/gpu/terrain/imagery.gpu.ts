@@ -1,24 +1,11 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { ImageTiles, Terrain, type HeightSource } from '@welkin/terrain'
+import { ImageTiles, Terrain } from '@welkin/terrain'
 import { Color, Matrix4, PerspectiveCamera, Scene } from 'three'
-import { vec4 } from 'three/tsl'
 import { gpuTest } from '../harness/gpu-test'
+import { levelGround } from '../harness/ground'
 
 const SIZE = 32
 const PICTURE = { width: 48, height: 32 }
-
-/** Level ground. */
-const level: HeightSource = {
-  lowest: 0,
-  highest: 0,
-  variation: () => 0,
-  sampleAt(_, target) {
-    target.height = 0
-    target.gradient.set(0, 0, 0)
-    return target
-  },
-  sample: () => vec4(0)
-}
 
 /** Linear light of a byte of sRGB. */
 const linear = (byte: number): number => {
@@ -55,7 +42,7 @@ gpuTest('pictures are drawn on the ground, a bad tile shows its parent', async t
     }
   })
   const options = { resolution: 8, seaLevel: -Infinity, pageMemory: 12, imagery }
-  const terrain = new Terrain(atmosphere, level, options)
+  const terrain = new Terrain(atmosphere, levelGround, options)
   terrain.material.fragmentNode = terrain.material.colorNode
   const scene = new Scene()
   scene.background = new Color(0, 0, 0)

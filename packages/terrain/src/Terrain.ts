@@ -18,6 +18,8 @@ import { grainTexture } from './surface/grainTexture'
 import { distanceToGround } from './rays/distanceToGround'
 import { groundNormal } from './rays/Ground'
 import { raycastGround } from './rays/raycastGround'
+import type { GroundMaps } from './surface/maps/GroundMaps'
+import type { GroundMask } from './surface/maps/GroundMask'
 import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
 import { checkFixed, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
@@ -70,6 +72,10 @@ export class Terrain extends SeaMesh {
   readonly source: HeightSource | PageSource
   /** Pictures of the ground; shared, not owned; null for its made-up colours. */
   readonly imagery: PageImages | null
+  /** Maps of the ground's materials; shared, not owned; null for made-up ones. */
+  readonly maps: GroundMaps | null
+  /** Picture of what the ground consists of; shared, not owned; null for none. */
+  readonly mask: GroundMask | null
   /** Cells along a tile's edge. */
   readonly resolution: number
   /** Distance at which a tile is split, in diagonals of it. */
@@ -93,7 +99,7 @@ export class Terrain extends SeaMesh {
     checkAtmosphere(where, atmosphere)
     checkSource(where, source)
     const all = withDefaults(where, DEFAULTS, options)
-    const { resolution, detail, pageMemory, imagery, ...settings } = all
+    const { resolution, detail, pageMemory, imagery, maps, mask, ...settings } = all
     checkFixed(where, all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
@@ -106,13 +112,17 @@ export class Terrain extends SeaMesh {
       uniforms,
       isFlat(figure) ? planeInShader : ellipsoidInShader,
       resolution,
-      detail
+      detail,
+      maps,
+      mask
     )
     super(tileGrid(resolution, CAPACITY), material, uniforms)
     this.atmosphere = atmosphere
     this.#figure = figure
     this.source = source
     this.imagery = imagery
+    this.maps = maps
+    this.mask = mask
     this.resolution = resolution
     this.detail = detail
     this.pageMemory = pageMemory
@@ -285,6 +295,8 @@ export class Terrain extends SeaMesh {
     this.#uniforms.skirt.value = isFine ? SHALLOW : 2 ** (selection.lag + 2)
     this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + clearance / 2
     this.#uniforms.referenceECEF(reference)
+    this.maps?.update(renderer)
+    this.mask?.update(figure, reference)
     writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
       tree.range(level)
     )

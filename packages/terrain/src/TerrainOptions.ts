@@ -3,6 +3,8 @@ import { checkRange } from '@welkin/atmosphere'
 import { checkFinite, fail } from '@welkin/geo'
 import type { HeightSource } from './heights/HeightSource'
 import type { PageImages } from './pages/PageImages'
+import type { GroundMaps } from './surface/maps/GroundMaps'
+import type { GroundMask } from './surface/maps/GroundMask'
 import { isPageSource, type PageSource } from './pages/PageSource'
 
 /** Options of `Terrain`. */
@@ -15,6 +17,10 @@ export interface TerrainOptions {
   imagery?: PageImages | null
   /** Reflectance of white in the pictures, ≥ 0, default 1 [–]: many are brighter than what they show. */
   imageAlbedo?: number
+  /** Maps of the ground's materials of one's own; null, the default, for made-up ones. */
+  maps?: GroundMaps | null
+  /** Picture of what the ground consists of; null, the default, where height, slope and latitude tell. */
+  mask?: GroundMask | null
   /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
   seaLevel?: number
   /** Wind over the sea, in [0, 40], default 7 [m/s]: more of it has steeper waves, and a wider glint of the sun. */
@@ -48,6 +54,8 @@ export const DEFAULTS: Required<TerrainOptions> = {
   detail: 1.5,
   imagery: null,
   imageAlbedo: 1,
+  maps: null,
+  mask: null,
   seaLevel: 0,
   windSpeed: 7,
   waveTime: 0,
@@ -71,12 +79,16 @@ export function checkSource(where: string, source: HeightSource | PageSource): v
 /** @throws If an option that cannot change later is out of its range. */
 export function checkFixed(
   where: string,
-  { resolution, detail, pageMemory, imagery }: Required<TerrainOptions>
+  { resolution, detail, pageMemory, imagery, maps, mask }: Required<TerrainOptions>
 ): void {
   checkRange(where, 'resolution', resolution, 4, 128)
   if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
   checkRange(where, 'detail', detail, 1.2, 4)
   checkRange(where, 'pageMemory', pageMemory, 4, 1000)
+  if (maps !== null && !Array.isArray(maps?.layers))
+    fail(where, 'maps must be GroundMaps or null', maps)
+  if (mask !== null && !Array.isArray(mask?.materials))
+    fail(where, 'mask must be a GroundMask or null', mask)
   if (imagery === null) return
   const isImagery =
     typeof imagery?.imageOf === 'function' && typeof imagery.loadImage === 'function'

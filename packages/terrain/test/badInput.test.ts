@@ -1,6 +1,13 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
-import { Vector3 } from 'three'
+import {
+  GroundMask,
+  GroundMaps,
+  MountainHeights,
+  Terrain,
+  terrainView,
+  type GroundMaskOptions
+} from '@welkin/terrain'
+import { Texture, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 
 const atmosphere = new Atmosphere()
@@ -10,6 +17,8 @@ const wrong = (value: unknown): never => value as never
 const bounds = { sampleAt: () => null, variation: () => 0 }
 const make = (options = {}) => new Terrain(atmosphere, heights, options)
 const terrain = make({ resolution: 4 })
+const albedo = new Texture()
+const painted: GroundMaskOptions = { materials: ['sand'], west: 0, east: 1, south: 0, north: 1 }
 
 const cases: [message: string, call: () => unknown][] = [
   ['Terrain: atmosphere must be an Atmosphere', () => new Terrain(wrong({}), heights)],
@@ -31,6 +40,36 @@ const cases: [message: string, call: () => unknown][] = [
   [
     'Terrain: source must be a HeightSource',
     () => new Terrain(atmosphere, wrong({ loadHeights: true, ...bounds }))
+  ],
+  ['Terrain: maps must be GroundMaps or null', () => make({ maps: wrong({}) })],
+  ['Terrain: mask must be a GroundMask or null', () => make({ mask: wrong({}) })],
+  ['GroundMaps: at least one material needs maps', () => new GroundMaps({})],
+  ['GroundMaps: materials are rock, scree', () => new GroundMaps(wrong({ lava: { albedo } }))],
+  ['GroundMaps: rock.albedo must be a Texture', () => new GroundMaps({ rock: wrong({}) })],
+  [
+    'GroundMaps: sand.ao must be a Texture',
+    () => new GroundMaps({ sand: wrong({ albedo, ao: 1 }) })
+  ],
+  ["GroundMaps: unknown option 'size'", () => new GroundMaps({ sand: wrong({ albedo, size: 1 }) })],
+  ['GroundMaps: sand.side must be', () => new GroundMaps({ sand: { albedo, side: 0 } })],
+  ['GroundMaps: sand.relief must be', () => new GroundMaps({ sand: { albedo, relief: 2 } })],
+  [
+    'GroundMaps: size must be a power of two',
+    () => new GroundMaps({ sand: { albedo } }, { size: 100 })
+  ],
+  ['GroundMask: texture must be a Texture', () => new GroundMask(wrong(1), painted)],
+  [
+    'GroundMask: materials must be one to four',
+    () => new GroundMask(albedo, { ...painted, materials: [] })
+  ],
+  [
+    "GroundMask: materials must be 'rock', 'scree'",
+    () => new GroundMask(albedo, { ...painted, materials: [wrong('lava')] })
+  ],
+  ['GroundMask: east must exceed west', () => new GroundMask(albedo, { ...painted, west: 2 })],
+  [
+    'GroundMask: north must be a finite number',
+    () => new GroundMask(albedo, { ...painted, north: NaN })
   ],
   ['terrainView: view must be one of levels, tiles, pages', () => terrainView(wrong('rocks'))],
   ['Terrain: camera must be a Camera or null', () => (terrain.camera = wrong({}))],

@@ -22,6 +22,8 @@ import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { GroundMask } from './maps/GroundMask'
+import type { GroundMaps } from './maps/GroundMaps'
 import { groundSurface } from './tsl/groundSurface'
 import { FOAM, foamCover, seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
 import { GroundMaterial } from './GroundMaterial'
@@ -49,6 +51,7 @@ const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
  * @param grain - As of `grainTexture`.
  * @param resolution - Cells along a tile's edge.
  * @param detail - As of `TileTree`.
+ * @param maps - Of a user's own, or null.
  */
 export function terrainMaterial(
   atmosphere: Atmosphere,
@@ -57,7 +60,9 @@ export function terrainMaterial(
   uniforms: TerrainUniforms,
   figure: ShaderFigure,
   resolution: number,
-  detail: number
+  detail: number,
+  maps: GroundMaps | null = null,
+  mask: GroundMask | null = null
 ): MeshStandardNodeMaterial {
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
@@ -125,9 +130,14 @@ export function terrainMaterial(
       climate: blend.y,
       up,
       pole,
-      cosSlope
+      cosSlope,
+      hollow: blend.w.oneMinus()
     },
-    seaLevel
+    seaLevel,
+    {
+      maps,
+      paint: mask === null ? null : relief => mask.sharesAt(offset, figure.isFlat, relief)
+    }
   )
   const depth = seaLevel.sub(ground.z).toConst('depth') as Float
   const { footprint, spread } = surface

@@ -1,17 +1,20 @@
 import { float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
-import { grainAt, type GrainPlace } from './grain'
+import type { GroundMaps } from '../maps/GroundMaps'
+import type { OfKinds } from '../maps/groundKinds'
+import { grainAt } from './grain'
+import {
+  groundRules,
+  paintedLayers,
+  sharesOf,
+  type GroundLayers,
+  type GroundPlace,
+  type GroundShares
+} from './groundRules'
+import type { MappedGround } from './mappedGround'
 
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
-
-/** Differences of height within a pixel, to its size on the ground, and at most [m]. */
-const SPREAD = 0.12
-const MOST_SPREAD = 450
-
-/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
-const DRY_SNOW = 500
-const SUNNY_SNOW = 350
 
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
 const ROCK = [0.19, 0.176, 0.158]
@@ -50,58 +53,30 @@ export interface GroundSurface {
   readonly occlusion: Float
 }
 
-/** A place of the ground, as pages have it. */
-export interface GroundPlace extends GrainPlace {
-  /** Height of the ground, that of the sea's floor under water [m]. */
-  readonly height: Float
-  /** Patchiness and climate, noise about 0. */
-  readonly patch: Float
-  readonly climate: Float
-  /** Unit vector to the north pole. */
-  readonly pole: Vec3
-  /** Cosine of the ground's slope. */
-  readonly cosSlope: Float
+/** What users have given of the ground's surface. */
+export interface OwnSurface {
+  readonly maps: GroundMaps | null
+  /** Shares of materials that a mask paints, with edges that a height about 0 frays. */
+  readonly paint: ((relief: Float) => OfKinds<Float>) | null
 }
 
 /**
- * Rock, scree, grass, forest, sand and snow, by height, slope, latitude and noise.
+ * Rock, scree, grass, forest, sand and snow, by height, slope, curvature, latitude and noise, or by a user's mask; made up, or of a user's maps.
  *
  * @param seaLevel - [m]
  */
-export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurface {
-  const { height, patch, climate, up, pole, cosSlope } = place
+export function groundSurface(
+  place: GroundPlace,
+  seaLevel: Float,
+  { maps, paint }: OwnSurface
+): GroundSurface {
+  const { patch, climate } = place
   const grain = grainAt(place)
   const { stone, blade, boulder, tuft, crown, brush } = grain
-  const northing = up.dot(pole).toConst() as Float
-  const sinLatitude = northing.abs().toConst('sinLatitude')
-  const overSea = height.sub(seaLevel).toConst('overSea')
-
-  // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
-  const square = sinLatitude.mul(sinLatitude).toConst('square')
-  // Ground that falls towards the equator has a normal nearer to it than up is.
-  const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign())
-  const snowLine = float(5200)
-    .sub(square.mul(square.mul(3600).add(2000)))
-    .add(climate.mul(DRY_SNOW))
-    .add(sunny.mul(SUNNY_SNOW))
-    .toConst('snowLine')
-  // A pixel that shows much ground shows its heights, too.
-  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
-  const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
-  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
-  const steepness = cosSlope
-    .oneMinus()
-    .add(patch.mul(0.05))
-    .add(relief.mul(0.03))
-    .toConst('steepness')
-
-  const dryness = smoothstep(0.12, 0.4, sinLatitude)
-    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
-    .mul(1.1)
-    .sub(0.35)
-    .add(climate.mul(1.4))
-    .clamp(0, 1)
-    .toConst('dryness')
+  const rules = groundRules(place, grain, seaLevel)
+  const { overSea, overTrees, sunny, relief, spread } = rules
+  const layers = paint === null ? rules.layers : paintedLayers(rules.layers, paint(relief))
+  const { snow, bare, inland, bareness, dryness, woods } = layers
   const tone = patch.mul(0.9).add(relief.mul(0.35)).toConst('tone')
   // Dark between stones, and between blades.
   const stony = stone.mul(0.45).add(1).toConst('stony')
@@ -124,52 +99,36 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     'shrubs'
   )
   const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.9))
-  const woods = smoothstep(-0.2, 0, patch.sub(dryness).add(tuft.mul(0.12)).add(crown.mul(0.3)))
-    .mul(smoothstep(-150, 50, overTrees).oneMinus())
-    .mul(smoothstep(15, 60, overSea))
-    .toConst('woods')
   const leaves = mix(
     color(FOREST),
     color(BROADLEAF),
     smoothstep(-0.5, 0.5, brush.mul(1.5).add(climate))
   )
   const floor = leaves.mul(light.mul(1.3).add(crown.mul(1.2)).add(1).max(0.3))
-  const green = mix(meadow, floor, woods.mul(tone.mul(0.2).add(0.85).clamp(0, 1)))
-  const soil = mix(green, color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony), dryness)
+  const forest = mix(meadow, floor, tone.mul(0.2).add(0.85).clamp(0, 1))
+  const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
-  // Stones come through grass where they are highest.
-  const bareness = smoothstep(
-    spread.add(50).negate(),
-    spread.add(450),
-    overTrees.add(relief.mul(260))
-  ).toConst('bareness')
-  const alpine = mix(soil, scree, bareness)
-  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
-  const sand = color(SAND).mul(stone.mul(0.14).add(1))
   // What high water left lies in strands, a metre above the sea.
   const tangle = blade.mul(0.7).add(boulder.mul(0.6)).toConst('tangle')
   const washed = overSea.add(boulder.mul(0.3)).add(patch.mul(0.5)).toConst()
   const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
   const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
-  const shore = mix(mix(sand, color(SEAWEED), seaweed), alpine, inland)
-  const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
-  const land = mix(shore, rock, bare)
-  const snow = smoothstep(
-    spread.add(150).negate(),
-    spread.add(250),
-    height.sub(snowLine).add(patch.mul(420)).sub(relief.mul(160))
-  )
-    .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
-    .toConst('snow')
+  const sand = mix(color(SAND).mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed)
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
-  const dry = mix(land, color(SNOW), snow).mul(wet.mul(0.45).add(0.55))
+  const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
+  const mapped = maps === null ? null : mappedAt(maps, place, sharesOf(layers), colors)
+  const made = mapped === null ? layered(layers, colors) : mapped.color
+  const dry = made.mul(wet.mul(0.45).add(0.55))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const bump = mix(float(0.05), stones, inland.max(bare))
-    .mul(snow.mul(-0.85).add(1))
-    .toConst('bump')
-  const rough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
+  const ownBump = mix(float(0.05), stones, inland.max(bare)).mul(snow.mul(-0.85).add(1))
+  const bump = (mapped === null ? ownBump : ownBump.mul(mapped.share.oneMinus())).toConst('bump')
+  const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
+  const rough =
+    mapped === null
+      ? ownRough
+      : mix(ownRough, mapped.roughness.mul(wet.mul(0.37).add(0.63)), mapped.share)
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
   const roughSquare = rough.mul(rough).toConst('roughSquare')
   const alpha = roughSquare.mul(roughSquare).add(
@@ -191,6 +150,10 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     .mul(bump)
     .add(blade.min(0).mul(0.5))
     .add(crown.min(0).mul(raised))
+  const occlusion = hollow.mul(0.9).add(1).max(0.3)
+  const slopes = grain
+    .gradient(bump, bump.mul(bareness.max(bare).mul(0.6)))
+    .add(grain.canopySlope.mul(raised))
   return {
     tangle,
     detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),
@@ -198,9 +161,35 @@ export function groundSurface(place: GroundPlace, seaLevel: Float): GroundSurfac
     spread,
     color: dry,
     roughness: alpha.sqrt().sqrt().min(1),
-    grain: grain
-      .gradient(bump, bump.mul(bareness.max(bare).mul(0.6)))
-      .add(grain.canopySlope.mul(raised)),
-    occlusion: hollow.mul(0.9).add(1).max(0.3)
+    grain: mapped === null ? slopes : slopes.add(mapped.slope.mul(mapped.share)),
+    occlusion: mapped === null ? occlusion : mix(occlusion, mapped.occlusion, mapped.share)
   }
+}
+
+/** Colours of materials that are made up. */
+type Colors = OfKinds<Vec3> & { readonly desert: Vec3 }
+
+/** Colour of the ground of materials that lie on each other. */
+function layered(layers: GroundLayers, colors: Colors): Vec3 {
+  const { snow, bare, inland, bareness, dryness, woods } = layers
+  const soil = mix(mix(colors.grass, colors.forest, woods), colors.desert, dryness)
+  const land = mix(colors.sand, mix(soil, colors.scree, bareness), inland)
+  return mix(mix(land, colors.rock, bare), colors.snow, snow)
+}
+
+/** What maps say of the ground, with the colours of materials that have none. */
+function mappedAt(
+  maps: GroundMaps,
+  place: GroundPlace,
+  shares: GroundShares,
+  colors: Colors
+): MappedGround {
+  const withDesert = { ...shares, sand: shares.sand.add(shares.desert) }
+  const mapped = maps.groundAt(place, withDesert)
+  const made = (Object.keys(shares) as (keyof GroundShares)[]).reduce<Vec3>((sum, kind) => {
+    const layer = maps.layers.find(other => other.kind === (kind === 'desert' ? 'sand' : kind))
+    const isMade = layer === undefined ? float(1) : float(1).sub(layer.state.x)
+    return sum.add(colors[kind].mul(shares[kind].mul(isMade)))
+  }, vec3(0))
+  return { ...mapped, color: made.add(mapped.color.mul(mapped.share)) }
 }

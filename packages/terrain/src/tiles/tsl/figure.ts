@@ -4,6 +4,7 @@ import { unitDifference } from './cubeSphere'
 
 /** Figure that ground lies on, in shaders. Twin: ../cpu/figure.ts */
 export interface ShaderFigure {
+  readonly isFlat: boolean
   /** Place above a point of the cube and a difference from it, relative to the place above the point [m]. */
   readonly difference: (cube: Vec3, delta: Vec3, radii: Vec3) => Vec3
   /** Up above both, relative to that above the point. */
@@ -16,6 +17,7 @@ export interface ShaderFigure {
 
 /** An ellipsoid. */
 export const ellipsoidInShader: ShaderFigure = {
+  isFlat: false,
   difference: (cube, delta, radii) => unitDifference(cube, delta).mul(radii),
   turnOfUp: (cube, delta, stretch) => unitDifference(cube.mul(stretch), delta.mul(stretch)),
   upOfCube: (cube, stretch) => cube.mul(stretch).normalize(),
@@ -27,6 +29,7 @@ export const ellipsoidInShader: ShaderFigure = {
 
 /** The plane of a flat world. */
 export const planeInShader: ShaderFigure = {
+  isFlat: true,
   difference: (_, delta, radii) => delta.mul(radii),
   turnOfUp: () => vec3(0),
   upOfCube: () => vec3(0, 1, 0),

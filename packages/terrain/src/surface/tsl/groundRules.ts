@@ -1,0 +1,172 @@
+import { float, smoothstep } from 'three/tsl'
+import type { Float, Vec3 } from '../../tsl-types'
+import type { OfKinds } from '../maps/groundKinds'
+import type { Grain, GrainPlace } from './grain'
+
+/** Differences of height within a pixel, to its size on the ground, and at most [m]. */
+const SPREAD = 0.12
+const MOST_SPREAD = 450
+
+/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
+const DRY_SNOW = 500
+const SUNNY_SNOW = 350
+
+/** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
+const HOLLOW_SNOW = 700
+const HOLLOW_SOIL = 0.15
+
+/** Share of the ground that is left to a layer below which it has none of it. */
+const NOTHING = 1e-5
+
+/** A place of the ground, as pages have it. */
+export interface GroundPlace extends GrainPlace {
+  /** Height of the ground, that of the sea's floor under water [m]. */
+  readonly height: Float
+  /** Patchiness and climate, noise about 0. */
+  readonly patch: Float
+  readonly climate: Float
+  /** Unit vector to the north pole. */
+  readonly pole: Vec3
+  /** Cosine of the ground's slope. */
+  readonly cosSlope: Float
+  /** Share of the sky that the ground about hides of what its slope leaves: more in hollows. */
+  readonly hollow: Float
+}
+
+/** What lies on what, each as a share of what those before it leave: snow, rock, no sand of the shore, scree, desert, woods; the rest is grass. */
+export interface GroundLayers {
+  readonly snow: Float
+  readonly bare: Float
+  readonly inland: Float
+  readonly bareness: Float
+  readonly dryness: Float
+  readonly woods: Float
+}
+
+/** Rules by which the ground consists of what it does. */
+export interface GroundRules {
+  readonly layers: GroundLayers
+  /** Height over the sea, and over the tree line [m]. */
+  readonly overSea: Float
+  readonly overTrees: Float
+  /** Slope towards the equator. */
+  readonly sunny: Float
+  /** Height of stones and crowns about 0. */
+  readonly relief: Float
+  /** Differences of height within a pixel [m]. */
+  readonly spread: Float
+}
+
+/**
+ * Layers by height, slope, curvature, latitude and noise.
+ *
+ * @param seaLevel - [m]
+ */
+export function groundRules(place: GroundPlace, grain: Grain, seaLevel: Float): GroundRules {
+  const { height, patch, climate, up, pole, cosSlope, hollow } = place
+  const { stone, boulder, tuft, crown } = grain
+  const northing = up.dot(pole).toConst() as Float
+  const sinLatitude = northing.abs().toConst('sinLatitude')
+  const overSea = height.sub(seaLevel).toConst('overSea') as Float
+
+  // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
+  const square = sinLatitude.mul(sinLatitude).toConst('square')
+  // Ground that falls towards the equator has a normal nearer to it than up is.
+  const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
+  const snowLine = float(5200)
+    .sub(square.mul(square.mul(3600).add(2000)))
+    .add(climate.mul(DRY_SNOW))
+    .add(sunny.mul(SUNNY_SNOW))
+    .toConst('snowLine')
+  // A pixel that shows much ground shows its heights, too.
+  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
+  const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
+  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
+  const steepness = cosSlope
+    .oneMinus()
+    .add(patch.mul(0.05))
+    .add(relief.mul(0.03))
+    .sub(hollow.mul(HOLLOW_SOIL))
+    .toConst('steepness')
+
+  const dryness = smoothstep(0.12, 0.4, sinLatitude)
+    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
+    .mul(1.1)
+    .sub(0.35)
+    .add(climate.mul(1.4))
+    .clamp(0, 1)
+    .toConst('dryness')
+  const woods = smoothstep(-0.2, 0, patch.sub(dryness).add(tuft.mul(0.12)).add(crown.mul(0.3)))
+    .mul(smoothstep(-150, 50, overTrees).oneMinus())
+    .mul(smoothstep(15, 60, overSea))
+    .toConst('woods')
+  // Stones come through grass where they are highest.
+  const bareness = smoothstep(
+    spread.add(50).negate(),
+    spread.add(450),
+    overTrees.add(relief.mul(260))
+  ).toConst('bareness')
+  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
+  const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
+  const snow = smoothstep(
+    spread.add(150).negate(),
+    spread.add(250),
+    height.sub(snowLine).add(patch.mul(420)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
+  )
+    .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
+    .toConst('snow')
+  const layers = { snow, bare, inland, bareness, dryness, woods }
+  return { layers, overSea, overTrees, sunny, relief, spread }
+}
+
+/** Shares of materials of the ground, and of desert, which is sand inland; all with it have a sum of 1. */
+export interface GroundShares extends OfKinds<Float> {
+  readonly desert: Float
+}
+
+/** Shares of materials, sand at the shore alone. */
+export function sharesOf(layers: GroundLayers): GroundShares {
+  const { snow, bare, inland, bareness, dryness, woods } = layers
+  let left: Float = float(1)
+  const part = (share: Float): Float => {
+    const taken = left.mul(share).toConst() as Float
+    left = left.sub(taken).toConst()
+    return taken
+  }
+  return {
+    snow: part(snow),
+    rock: part(bare),
+    sand: part(inland.oneMinus()),
+    scree: part(bareness),
+    desert: part(dryness),
+    forest: part(woods),
+    grass: left
+  }
+}
+
+/**
+ * Layers where a mask has painted some of the ground.
+ *
+ * @param painted - Shares of materials with a sum of 1 at most; the rest is as it was.
+ */
+export function paintedLayers(layers: GroundLayers, painted: OfKinds<Float>): GroundLayers {
+  const before = sharesOf(layers)
+  const rest = Object.values(painted)
+    .reduce((sum, share) => sum.sub(share), float(1) as Float)
+    .toConst() as Float
+  let left: Float = float(1)
+  const layer = (share: Float, paint: Float | null): Float => {
+    const taken = paint === null ? share.mul(rest) : share.mul(rest).add(paint)
+    const layered = taken.div(left.max(NOTHING)).clamp(0, 1).toConst() as Float
+    left = left.sub(taken).toConst()
+    return layered
+  }
+  return {
+    snow: layer(before.snow, painted.snow),
+    bare: layer(before.rock, painted.rock),
+    inland: layer(before.sand, painted.sand).oneMinus(),
+    bareness: layer(before.scree, painted.scree),
+    dryness: layer(before.desert, null),
+    woods: layer(before.forest, painted.forest)
+  }
+}
