@@ -10,7 +10,9 @@ import type { ExplorerState } from '../../stories/src/moving/Explorer'
 import { startStorybook, testLink } from './link'
 
 const viewport = { width: 160, height: 90 }
-const limitSeconds = 60
+/** Room for the buttons beside the fingers. */
+const touchViewport = { width: 240, height: 220 }
+const limitSeconds = 120
 /** Storybook's pages are compiled as they are asked for, and the valley is drawn in software. */
 const linkLimitSeconds = 500
 const stories = fileURLToPath(new URL('../../stories/src/plain.stories.ts', import.meta.url))
@@ -61,10 +63,103 @@ async function open(browser: Browser, url: string): Promise<Page> {
   return page
 }
 
-/** One finger draws the picture along, two move. All below what the page shows over the canvas. */
+/** Keys that fly while the camera looks north, and where they bring it. */
+const keys: readonly [key: string, way: string, of: (view: ExplorerState) => number][] = [
+  ['w', 'ahead', ({ z }) => -z],
+  ['s', 'back', ({ z }) => z],
+  ['a', 'to the left', ({ x }) => -x],
+  ['d', 'to the right', ({ x }) => x],
+  ['e', 'up', ({ y }) => y],
+  ['q', 'down', ({ y }) => -y]
+]
+
+async function fly(page: Page): Promise<void> {
+  for (const [key, way, along] of keys) {
+    const before = along(await look(page))
+    await page.keyboard.down(key)
+    const flown = await until(page, view => along(view) > before + 0.2)
+    await page.keyboard.up(key)
+    const meters = (along(flown) - before).toFixed(2)
+    report.pass(`${key.toUpperCase()} flies ${way}`, `${meters} m`)
+  }
+}
+
+/** The wheel sets the speed, whatever the height. */
+async function roll(page: Page): Promise<void> {
+  const speed = async (): Promise<number> => page.evaluate(() => window.welkinMoving.speed())
+  await page.keyboard.down('d')
+  await page.waitForTimeout(500)
+  const before = await speed()
+  await page.mouse.move(80, 60)
+  await page.mouse.wheel(0, -600)
+  await page.waitForTimeout(500)
+  const after = await speed()
+  await page.keyboard.up('d')
+  await page.mouse.wheel(0, 600)
+  const detail = `${before.toFixed(1)}, ${after.toFixed(1)} m/s`
+  report.check(after > 2.5 * before, 'the wheel makes it faster', detail)
+}
+
+/** A flight to another place is smooth: it starts and ends slowly, and no frame jumps. */
+async function travel(page: Page): Promise<void> {
+  const way = 60
+  const { x, y, z } = await look(page)
+  const views = await page.evaluate(([to, seconds]) => window.welkinMoving.flyTo(to, seconds), [
+    [x, y + 10, z - way],
+    3
+  ] as const)
+  const last = views.at(-1)!
+  const off = Math.hypot(last.x - x, last.y - y - 10, last.z - z + way)
+  report.check(off < 0.01, 'a flight arrives', `${off.toFixed(3)} m off`)
+  report.check(Math.abs(last.heading - 90) < 0.1, 'and looks there', `${last.heading.toFixed(1)}°`)
+  const steps = views.slice(1).map((view, i) => views[i].z - view.z)
+  const most = Math.max(...steps) / way
+  const back = Math.min(...steps)
+  report.check(
+    views.length > 10 && most < 0.2 && back > -1e-3,
+    'and is smooth on its way',
+    `${views.length} frames, the longest ${(100 * most).toFixed(1)} % of it`
+  )
+}
+
+/** Buttons for fingers: up, down, walk and jump. */
+async function touchButtons(
+  page: Page,
+  put: (type: 'touchStart' | 'touchEnd', ...fingers: Finger[]) => Promise<unknown>
+): Promise<void> {
+  const hold = async (label: string): Promise<void> => {
+    const box = await page.locator('.welkin-touch button', { hasText: label }).boundingBox()
+    if (box === null) throw new Error(`no button '${label}' is shown`)
+    await put('touchStart', [box.x + box.width / 2, box.y + box.height / 2])
+  }
+  const letGo = async (): Promise<unknown> => put('touchEnd')
+  const { y } = await look(page)
+  await hold('Up')
+  const risen = await until(page, view => view.y > y + 0.5)
+  await letGo()
+  report.pass('the button Up rises', `${(risen.y - y).toFixed(2)} m`)
+  const above = await look(page)
+  await hold('Down')
+  const sunk = await until(page, view => view.y < above.y - 0.3)
+  await letGo()
+  report.pass('the button Down sinks', `${(above.y - sunk.y).toFixed(2)} m`)
+  await hold('Walk')
+  await letGo()
+  await until(page, view => view.walking === 1 && Math.abs(view.y - 1.7) < 1e-6)
+  report.pass('the button Walk comes down to the ground')
+  await hold('Jump')
+  await until(page, view => view.y > 1.8)
+  await letGo()
+  await until(page, view => Math.abs(view.y - 1.7) < 1e-6)
+  report.pass('the button Jump jumps')
+}
+
+type Finger = readonly [x: number, y: number]
+
+/** One finger draws the picture along, two move, buttons do the rest. All below what the page shows over the canvas. */
 async function touch(page: Page): Promise<void> {
+  await page.setViewportSize(touchViewport)
   const devtools = await page.context().newCDPSession(page)
-  type Finger = readonly [x: number, y: number]
   const put = (
     type: 'touchStart' | 'touchMove' | 'touchEnd',
     ...fingers: Finger[]
@@ -87,21 +182,20 @@ async function touch(page: Page): Promise<void> {
   const moved = await until(page, view => far(view) > 0.2)
   await put('touchEnd')
   report.pass('two fingers move', `${far(moved).toFixed(2)} m`)
+  await touchButtons(page, put)
 }
 
 async function move(browser: Browser, origin: string): Promise<void> {
   const page = await open(browser, `${origin}/index.html`)
   const start = page.url()
-  const first = await look(page)
   const help = (await page.textContent('.welkin-help')) ?? ''
   report.check(help.includes('WASD'), 'the page says how one moves', help)
   await page.waitForTimeout(700)
   report.check(page.url() === start, 'the address is clean until one moves', page.url())
 
-  await page.keyboard.down('w')
-  const flown = await until(page, ({ z }) => z < first.z - 0.2)
-  await page.keyboard.up('w')
-  report.pass('W flies ahead', `${(first.z - flown.z).toFixed(2)} m`)
+  await fly(page)
+  await roll(page)
+  const flown = await look(page)
 
   await page.mouse.move(40, 45)
   await page.mouse.down()
@@ -122,7 +216,13 @@ async function move(browser: Browser, origin: string): Promise<void> {
   const last = await until(page, ({ y }) => Math.abs(y - 1.7) < 1e-6)
   report.pass('Space jumps', `and lands at ${last.y.toFixed(2)} m`)
 
+  await page.keyboard.press('f')
+  await until(page, view => view.walking === 0)
   await touch(page)
+  await page.setViewportSize(viewport)
+  await travel(page)
+  await page.keyboard.press('f')
+  await until(page, view => view.walking === 1)
   const rest = await atRest(page)
   const link = await addressAfter(page, start)
   report.check(link.includes('#view='), 'the address has the view', link)
@@ -130,8 +230,8 @@ async function move(browser: Browser, origin: string): Promise<void> {
 
   const again = await open(browser, link)
   const back = await look(again)
-  const keys = ['x', 'y', 'z', 'heading', 'pitch', 'walking'] as const
-  const worst = Math.max(...keys.map(key => Math.abs(back[key] - rest[key])))
+  const numbers = ['x', 'y', 'z', 'heading', 'pitch', 'walking'] as const
+  const worst = Math.max(...numbers.map(key => Math.abs(back[key] - rest[key])))
   report.check(worst < 0.011, 'the link brings the view back', `within ${worst.toFixed(3)}`)
   await again.close()
 }

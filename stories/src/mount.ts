@@ -1,6 +1,7 @@
 import type { Explorer } from './moving/Explorer'
 import { formatState, parseState } from './moving/ExplorerState'
 import { showHelp } from './moving/help'
+import { addTouchButtons } from './moving/touchButtons'
 import { keepInUrl } from './moving/urlState'
 import type { CreateScene, RendererArgs, SceneHandle } from './scene'
 
@@ -39,6 +40,10 @@ const STYLE = `
   .welkin-note progress { width: 140px; height: 6px; margin-right: 8px; accent-color: #8fc7ff }
   .welkin-help { position: absolute; right: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px; opacity: 0;
     background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity 1s }
+  .welkin-touch { position: absolute; right: 12px; top: 50%; display: grid; gap: 8px; transform: translateY(-50%) }
+  .welkin-touch[hidden] { display: none }
+  .welkin-touch button { width: 56px; height: 44px; border: 0; border-radius: 6px; background: rgb(5 7 10 / 55%);
+    color: inherit; font: inherit; touch-action: none; user-select: none }
   .welkin-code { position: absolute; left: 12px; top: 12px; max-width: calc(100% - 24px); border-radius: 6px;
     background: rgb(5 7 10 / 70%) }
   .welkin-code summary { padding: 6px 10px; cursor: pointer }
@@ -94,6 +99,7 @@ function start<Args extends RendererArgs>(
   element.innerHTML = `<style>${STYLE}</style><canvas></canvas>
     <div class="welkin-note"><progress max="1"></progress><span>Loading</span></div>
     <div class="welkin-help"></div>
+    <div class="welkin-touch" hidden></div>
     <details class="welkin-code"><summary>Code</summary><pre></pre></details>`
   element.querySelector('pre')!.textContent = code
   element.querySelector<HTMLElement>('.welkin-code')!.hidden = args.frame
@@ -153,6 +159,7 @@ function start<Args extends RendererArgs>(
     if (explorer !== undefined && !args.frame) {
       forgetView = keepView(explorer, isFirst)
       showHelp(element.querySelector<HTMLElement>('.welkin-help')!, explorer)
+      addTouchButtons(element.querySelector<HTMLElement>('.welkin-touch')!, canvas, explorer)
     }
     resize()
     observer.observe(element)

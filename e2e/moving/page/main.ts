@@ -1,6 +1,10 @@
+import { Vector3 } from 'three'
 import { modules } from 'virtual:modules'
 import type { mount } from '../../../stories/src/mount'
 import type { ExplorerState } from '../../../stories/src/moving/Explorer'
+
+/** Frames over which a speed is measured. */
+const FRAMES = 12
 
 /** A story, as Storybook shows it. */
 interface Story {
@@ -13,6 +17,10 @@ export interface MovingPage {
   show: (file: string, story: string) => Promise<void>
   /** Position and direction of the camera. */
   look: () => ExplorerState
+  /** Speed of the camera, over some frames [m/s]. */
+  speed: () => Promise<number>
+  /** Flies to a view: where the camera is in each frame until it arrives. */
+  flyTo: (position: readonly number[], seconds: number) => Promise<ExplorerState[]>
 }
 
 declare global {
@@ -35,7 +43,38 @@ const show: MovingPage['show'] = async (file, story) => {
   }
 }
 
-window.welkinMoving = {
-  show,
-  look: () => window.welkinScene!.explorer!.state
+const look = (): ExplorerState => window.welkinScene!.explorer!.state
+
+const nextFrame = async (): Promise<number> =>
+  new Promise(resolve => requestAnimationFrame(resolve))
+
+const speed: MovingPage['speed'] = async () => {
+  let [way, time] = [0, 0]
+  let [before, last] = [look(), await nextFrame()]
+  for (let i = 0; i < FRAMES; i++) {
+    const now = await nextFrame()
+    const view = look()
+    way += Math.hypot(view.x - before.x, view.y - before.y, view.z - before.z)
+    // As the explorer counts it.
+    time += Math.min((now - last) / 1000, 0.1)
+    before = view
+    last = now
+  }
+  return way / time
 }
+
+const flyTo: MovingPage['flyTo'] = async ([x, y, z], seconds) => {
+  const { explorer } = window.welkinScene!
+  const view = { position: new Vector3(x, y, z), direction: new Vector3(1, 0, 0) }
+  const arrival = explorer!.flyTo(view, seconds)
+  let isThere = false
+  void arrival.then(() => (isThere = true))
+  const views = [look()]
+  while (!isThere) {
+    await nextFrame()
+    views.push(look())
+  }
+  return views
+}
+
+window.welkinMoving = { show, look, speed, flyTo }

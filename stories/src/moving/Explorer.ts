@@ -119,6 +119,16 @@ export class Explorer {
     return used
   }
 
+  /** Holds a key down that moves, such as `KeyW`, as if it were pressed. */
+  press(code: string): void {
+    this.input.hold(code)
+  }
+
+  /** Lets a key go that {@link press} holds. */
+  release(code: string): void {
+    this.input.letGo(code)
+  }
+
   /** Called once per frame. */
   update(deltaSeconds: number): void {
     const seconds = Math.min(Math.max(deltaSeconds, 0), LONGEST_FRAME)

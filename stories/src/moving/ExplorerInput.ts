@@ -52,7 +52,7 @@ export class ExplorerInput {
     const view = page.defaultView ?? window
     const options = { signal }
     view.addEventListener('keydown', event => this.press(event), options)
-    view.addEventListener('keyup', event => this.keys.delete(event.code), options)
+    view.addEventListener('keyup', event => this.letGo(event.code), options)
     view.addEventListener('blur', () => this.release(), options)
     page.addEventListener('visibilitychange', () => this.release(), options)
     canvas.addEventListener('pointerdown', event => this.touch(event), options)
@@ -103,6 +103,18 @@ export class ExplorerInput {
     return toggled
   }
 
+  /** Holds a key down, by its place on the keyboard. */
+  hold(code: string, isRepeated = false): void {
+    this.isUsed = true
+    if (code === 'KeyF' && !isRepeated) this.isToggled = true
+    if (USED.has(code)) this.keys.add(code)
+  }
+
+  /** Lets a key go. */
+  letGo(code: string): void {
+    this.keys.delete(code)
+  }
+
   /** True if any key was pressed, the pointer pressed or the wheel turned since it was last asked for. */
   takeUse(): boolean {
     const used = this.isUsed
@@ -126,11 +138,8 @@ export class ExplorerInput {
     const element = target as Partial<Element> | null
     const ignored = code === 'Space' ? `${TYPED}, ${PRESSED}` : TYPED
     if (element?.closest?.(ignored)) return
-    this.isUsed = true
-    if (!USED.has(code)) return
     if (code === 'Space') event.preventDefault()
-    if (code === 'KeyF' && !repeat) this.isToggled = true
-    this.keys.add(code)
+    this.hold(code, repeat)
   }
 
   private touch({ pointerId, pointerType, button, clientX, clientY }: PointerEvent): void {

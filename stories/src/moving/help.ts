@@ -10,7 +10,9 @@ export function helpFor({ drags }: Explorer, isTouched: boolean): string {
   if (drags === 'walking') {
     return isTouched ? 'Fingers turn the globe' : `Drag and wheel move the globe · ${KEYS}`
   }
-  return isTouched ? 'One finger looks, two move' : `Drag looks · ${KEYS} · wheel sets the speed`
+  return isTouched
+    ? 'One finger looks, two move, buttons rise, walk and jump'
+    : `Drag looks · ${KEYS} · wheel sets the speed`
 }
 
 /** Shows how one moves, for some seconds. */
