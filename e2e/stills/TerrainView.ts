@@ -7,10 +7,11 @@ import {
   SunDirectionalLight,
   type AutoExposureNode
 } from '@welkin/atmosphere'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import { MountainHeights, Terrain, type GroundMaps } from '@welkin/terrain'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { cobbles } from './cobbles'
 import type { TerrainStill } from './scenes'
 import { readPicture } from './readPicture'
 
@@ -24,6 +25,7 @@ export class TerrainView {
   readonly #atmosphere: Atmosphere
   readonly #sun: SunDirectionalLight
   readonly #terrain: Terrain
+  readonly #maps: GroundMaps | null = null
   readonly #camera: PerspectiveCamera
   readonly #pipeline: RenderPipeline
   readonly #exposure: AutoExposureNode
@@ -38,7 +40,9 @@ export class TerrainView {
     const { longitude, latitude } = view
     atmosphere.place({ longitude, latitude })
     atmosphere.setSunAngles(view.sun.elevation, view.sun.azimuth)
-    const terrain = (this.#terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 })))
+    const terrain = (this.#terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), {
+      maps: view.cobbles ? (this.#maps = cobbles()) : null
+    }))
     terrain.castShadow = terrain.receiveShadow = true
     const camera = (this.#camera = new PerspectiveCamera(55, width / height, 0.1, 1e8))
     camera.near = Math.max(view.height / 20, 0.05)
@@ -99,6 +103,7 @@ export class TerrainView {
     this.#pipeline.dispose()
     this.#exposure.dispose()
     this.#terrain.dispose()
+    this.#maps?.dispose()
     this.#sun.dispose()
     this.#atmosphere.dispose()
     this.#target.dispose()

@@ -72,6 +72,8 @@ export interface TerrainStill {
     pitch: number
     /** Elevation and azimuth of the sun, clockwise from north [°]. */
     sun: { elevation: number; azimuth: number }
+    /** True to pave the grass with a user's maps. */
+    cobbles?: boolean
   }
 }
 
@@ -281,6 +283,7 @@ const terrains: TerrainStill[] = (
   [
     ['grass', 'a meadow: blades and tufts, no repetition', [0.494, 46.35, 1.7], [338, -8]],
     ['feet', "the same meadow before one's feet: detail to 1 cm", [0.494, 46.35, 1.7], [338, -50]],
+    ['cobbles', 'maps of a user in place of grass, with depth', [0.494, 46.35, 1.7], [338, -35]],
     ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
     ['snow', 'snow and rock about a summit', [0.438, 47.41, 1.7], [200, -8]],
     ['shore', 'sand, wet where the sea begins', [1.32, 46.19, 1.7], [350, -8]],
@@ -297,7 +300,8 @@ const terrains: TerrainStill[] = (
     height,
     heading,
     pitch,
-    sun: { elevation: 28, azimuth: heading + 100 }
+    sun: { elevation: 28, azimuth: heading + 100 },
+    cobbles: name === 'cobbles'
   }
 }))
 

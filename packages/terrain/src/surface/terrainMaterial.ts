@@ -16,7 +16,6 @@ import type { Texture } from 'three'
 import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
-import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
@@ -25,7 +24,7 @@ import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { GroundMask } from './maps/GroundMask'
 import type { GroundMaps } from './maps/GroundMaps'
 import { groundSurface } from './tsl/groundSurface'
-import { FOAM, foamCover, seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import { FOAM, FOAM_GONE, foamCover, seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
 import { GroundMaterial } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
@@ -67,10 +66,11 @@ export function terrainMaterial(
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
-  const { reference, radii, seaLevel, seaVariance, waveTime, pole } = uniforms
+  const { reference, seaLevel, seaVariance, waveTime, pole } = uniforms
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
+    up: handedOn<Vec3>('vec3', 'Up'),
     texels: handedOn<Vec2>('vec2', 'Texels'),
     pages: handedOn<Vec4>('vec4', 'Pages'),
     blend: handedOn<Vec4>('vec4', 'Blend')
@@ -78,6 +78,7 @@ export function terrainMaterial(
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
+    handed.up.assign(vertex.up)
     handed.texels.assign(vertex.texels)
     handed.pages.assign(vertex.pages)
     handed.blend.assign(vertex.blend)
@@ -106,8 +107,7 @@ export function terrainMaterial(
   // Gradient along the face's axes, height and patchiness.
   const ground = ofPages(atlas.surface.texture, 'ground')
   const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
-  const place = reference.mul(REFERENCE_STEP).add(offset)
-  const up = figure.upAt(place, radii).toConst('up') as Vec3
+  const up = handed.up.normalize().toConst('up') as Vec3
   const { first, second } = faceAxes(face)
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')
@@ -124,7 +124,6 @@ export function terrainMaterial(
       offset,
       normal,
       first,
-      second,
       height: ground.z,
       patch: ground.w,
       climate: blend.y,
@@ -136,7 +135,10 @@ export function terrainMaterial(
     seaLevel,
     {
       maps,
-      paint: mask === null ? null : relief => mask.sharesAt(offset, figure.isFlat, relief)
+      paint:
+        mask === null
+          ? null
+          : (layers, relief) => mask.layersAt(layers, offset, figure.isFlat, relief)
     }
   )
   const depth = seaLevel.sub(ground.z).toConst('depth') as Float
@@ -164,8 +166,10 @@ export function terrainMaterial(
       const cosViewer = litView.dot(positionViewDirection).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
-      const foam = foamCover(shore, surface.tangle, ground.w, waveTime)
-      color.assign(mix(color, vec3(FOAM), foam.mul(cover)))
+      If(footprint.lessThan(FOAM_GONE), () => {
+        const foam = foamCover(shore, surface.tangle, ground.w, waveTime)
+        color.assign(mix(color, vec3(FOAM), foam.mul(cover)))
+      })
     })
     return vec4(color, 1)
   })()

@@ -9,10 +9,10 @@ import type { Texture } from 'three'
 import { checkRange, FragmentPass, vector3Uniform, withDefaults } from '@welkin/atmosphere'
 import { checkOptions, checkPositive, fail } from '@welkin/geo'
 import type { Renderer } from 'three/webgpu'
-import type { Float } from '../../tsl-types'
 import type { GrainPlace } from '../tsl/grain'
+import type { GroundColors, GroundLayers } from '../tsl/groundRules'
 import { mappedGround, type MappedGround, type MappedLayer } from '../tsl/mappedGround'
-import { GROUND_KINDS, type GroundKind, type OfKinds } from './groundKinds'
+import { GROUND_KINDS, type GroundKind } from './groundKinds'
 import { colorLayer, reliefLayer, type MaterialMaps } from './packMaps'
 
 /** Options of `GroundMaps`. */
@@ -144,8 +144,8 @@ export class GroundMaps {
   }
 
   /** Nodes of the ground at a place, for a terrain's material; see `mappedGround`. */
-  groundAt(place: GrainPlace, shares: OfKinds<Float>): MappedGround {
-    return mappedGround(this, place, shares)
+  groundAt(place: GrainPlace, layers: GroundLayers, colors: GroundColors): MappedGround {
+    return mappedGround(this, place, layers, colors)
   }
 
   #draw(renderer: Renderer, maps: MaterialMaps, layer: number): void {

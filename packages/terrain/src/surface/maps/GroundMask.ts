@@ -4,8 +4,10 @@ import { checkChoice, checkFinite, checkOptions, fail } from '@welkin/geo'
 import { checkRange, vector3Uniform as vector } from '@welkin/atmosphere'
 import { isFlat, type Figure } from '../../tiles/cpu/figure'
 import type { Float, Vec3 } from '../../tsl-types'
+import type { GroundLayers } from '../tsl/groundRules'
+import { paintedLayers } from '../tsl/groundShares'
 import { maskShares } from '../tsl/maskShares'
-import { GROUND_KINDS, type GroundKind, type OfKinds } from './groundKinds'
+import { GROUND_KINDS, type GroundKind } from './groundKinds'
 
 /** Area of a mask, and what its channels paint. */
 export interface GroundMaskOptions {
@@ -123,8 +125,8 @@ export class GroundMask {
     uniforms.north.value.copy(north)
   }
 
-  /** Nodes of the shares that are painted, for a terrain's material; see `maskShares`. */
-  sharesAt(offset: Vec3, isFlat: boolean, relief: Float): OfKinds<Float> {
-    return maskShares(this, offset, isFlat, relief)
+  /** Nodes of the ground's layers with what is painted, for a terrain's material; see `maskShares`. */
+  layersAt(layers: GroundLayers, offset: Vec3, isFlat: boolean, relief: Float): GroundLayers {
+    return paintedLayers(layers, maskShares(this, offset, isFlat, relief))
   }
 }

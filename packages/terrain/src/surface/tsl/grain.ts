@@ -1,15 +1,19 @@
-import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/tsl'
+import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
-import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
+import { lineOfSight, STEPS_OF_SIGHT } from './lineOfSight'
 import { frameNear, pieceOf, tilingVertices, type TilingVertex } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
-const COARSE = { side: 17, gone: 2 }
-const FINE = { side: 2.1, gone: 0.3 }
+const COARSE = { side: 17, gone: 1.1 }
+const FINE = { side: 2.1, gone: 0.14 }
 
 /** Crowns and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
-const CANOPY = { side: 150, from: 0.22, to: 0.7, fades: 6, gone: 14 }
+const CANOPY = { side: 150, from: 0.22, to: 0.7, fades: 5, gone: 10 }
+
+/** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
+const LOST = 0.075
 
 /** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
@@ -24,12 +28,17 @@ export interface GrainPlace {
   /** As of `latticeNoise`. */
   readonly reference: Vec3
   readonly offset: Vec3
-  /** The face's axes. */
+  /** An axis of the face. */
   readonly first: Vec3
-  readonly second: Vec3
   /** Normal of the ground, and geodetic up. */
   readonly normal: Vec3
   readonly up: Vec3
+}
+
+/** Heights that the picture's 1 stands for, of stones and of blades [m]. */
+export interface GrainDepth {
+  readonly stone: Float
+  readonly blade: Float
 }
 
 /** Stones and blades of grass at a place. */
@@ -55,9 +64,13 @@ export interface Grain {
 type Variable = Vec4 & { addAssign(value: Vec4): void }
 type Slope = Vec3 & { assign(value: Vec3): void }
 
-/** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
-export function grainAt(place: GrainPlace): Grain {
-  const { grain, offset, first, second, normal } = place
+/**
+ * Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels.
+ *
+ * @param depth - Heights by which stones and blades near the feet hide what is behind them.
+ */
+export function grainAt(place: GrainPlace, depth: GrainDepth): Grain {
+  const { grain, offset, first, normal } = place
   // Derivatives are taken out of branches.
   const across = dFdx(offset).toConst() as Vec3
   const along = dFdy(offset).toConst() as Vec3
@@ -77,7 +90,7 @@ export function grainAt(place: GrainPlace): Grain {
     const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
     const crowns = vec4(0).toVar('crowns') as unknown as Variable
     const crownSlope = vec3(0).toVar('crownSlope') as unknown as Slope
-    const frame = { ...frameNear(normal, place.up, first, second), across, along }
+    const frame = { ...frameNear(normal, place.up, first), across, along }
     const inSpace = ({ x, y }: Vec4): Vec3 =>
       frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
     If(canopy.greaterThan(0), () => {
@@ -93,15 +106,27 @@ export function grainAt(place: GrainPlace): Grain {
     })
     If(far.greaterThan(0), () => {
       const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
-      const add = ({ away, random }: TilingVertex, share: Float): void => {
+      const moved = vec2(0).toVar('movedGrain') as unknown as Vec2 & { assign(value: Vec2): void }
+      const fineOf = ({ away, random }: TilingVertex): Vec4 =>
+        pieceOf(grain, frame, FINE.side, away, random.zx.add(moved))
+      const here = nearest()
+      const sight = lineOfSight(normal, frame, footprint)
+      If(sight.share.greaterThan(0), () => {
+        const reach = sight.slope.mul(sight.share.div(FINE.side)).toConst() as Vec2
+        for (let n = 0; n < STEPS_OF_SIGHT; n++) {
+          const heights = fineOf(here)
+          moved.assign(reach.mul(heights.z.mul(depth.stone).add(heights.w.mul(depth.blade))))
+        }
+      })
+      const add = (vertex: TilingVertex, share: Float): void => {
+        const { away, random } = vertex
         const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
         coarse.addAssign(boulders.mul(share.mul(far)))
         If(near.greaterThan(0), () => {
-          const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
-          fine.addAssign(stones.mul(share.mul(near)))
+          fine.addAssign(fineOf(vertex).mul(share.mul(near)))
         })
       }
-      add(nearest(), shares.x)
+      add(here, shares.x)
       If(shares.y.greaterThan(0), () => {
         add(next(), shares.y)
       })
@@ -126,6 +151,6 @@ export function grainAt(place: GrainPlace): Grain {
     crown: light.z,
     brush: light.w,
     footprint,
-    lost: footprint.div(FINE.gone / 4).min(1)
+    lost: footprint.div(LOST).min(1)
   }
 }

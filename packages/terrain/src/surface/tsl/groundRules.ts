@@ -1,7 +1,7 @@
 import { float, smoothstep } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { OfKinds } from '../maps/groundKinds'
-import type { Grain, GrainPlace } from './grain'
+import type { Grain, GrainDepth, GrainPlace } from './grain'
 
 /** Differences of height within a pixel, to its size on the ground, and at most [m]. */
 const SPREAD = 0.12
@@ -11,12 +11,13 @@ const MOST_SPREAD = 450
 const DRY_SNOW = 500
 const SUNNY_SNOW = 350
 
+/** Heights of stones and of blades that the picture's 1 stands for [m]. */
+const STONE_DEPTH = 0.05
+const BLADE_DEPTH = 0.045
+
 /** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
 const HOLLOW_SNOW = 700
 const HOLLOW_SOIL = 0.15
-
-/** Share of the ground that is left to a layer below which it has none of it. */
-const NOTHING = 1e-5
 
 /** A place of the ground, as pages have it. */
 export interface GroundPlace extends GrainPlace {
@@ -43,28 +44,32 @@ export interface GroundLayers {
   readonly woods: Float
 }
 
+/** Reflectances of materials that are made up, linear sRGB; desert is sand inland. */
+export type GroundColors = OfKinds<Vec3> & { readonly desert: Vec3 }
+
 /** Rules by which the ground consists of what it does. */
 export interface GroundRules {
   readonly layers: GroundLayers
-  /** Height over the sea, and over the tree line [m]. */
-  readonly overSea: Float
-  readonly overTrees: Float
-  /** Slope towards the equator. */
-  readonly sunny: Float
   /** Height of stones and crowns about 0. */
   readonly relief: Float
   /** Differences of height within a pixel [m]. */
   readonly spread: Float
 }
 
-/**
- * Layers by height, slope, curvature, latitude and noise.
- *
- * @param seaLevel - [m]
- */
-export function groundRules(place: GroundPlace, grain: Grain, seaLevel: Float): GroundRules {
-  const { height, patch, climate, up, pole, cosSlope, hollow } = place
-  const { stone, boulder, tuft, crown } = grain
+/** Climate of a place, for which no stone counts. */
+export interface GroundClimate {
+  /** Height over the sea, and over the snow line and the tree line [m]. */
+  readonly overSea: Float
+  readonly overSnow: Float
+  readonly overTrees: Float
+  /** Slope towards the equator. */
+  readonly sunny: Float
+  readonly dryness: Float
+}
+
+/** @param seaLevel - [m] */
+export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimate {
+  const { height, patch, climate, up, pole } = place
   const northing = up.dot(pole).toConst() as Float
   const sinLatitude = northing.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea') as Float
@@ -78,9 +83,45 @@ export function groundRules(place: GroundPlace, grain: Grain, seaLevel: Float): 
     .add(climate.mul(DRY_SNOW))
     .add(sunny.mul(SUNNY_SNOW))
     .toConst('snowLine')
+  const overSnow = height.sub(snowLine).toConst('overSnow') as Float
+  const overTrees = overSnow.add(1100).add(patch.mul(350)).toConst('overTrees') as Float
+  const dryness = smoothstep(0.12, 0.4, sinLatitude)
+    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
+    .mul(1.1)
+    .sub(0.35)
+    .add(climate.mul(1.4))
+    .clamp(0, 1)
+    .toConst('dryness') as Float
+  return { overSea, overSnow, overTrees, sunny, dryness }
+}
+
+/** Heights of stones and blades near the feet, by what lies there if no stone counts. */
+export function grainDepth(
+  { patch, cosSlope }: GroundPlace,
+  { overSea, overSnow, overTrees, dryness }: GroundClimate
+): GrainDepth {
+  const rock = smoothstep(0.13, 0.24, cosSlope.oneMinus().add(patch.mul(0.05)))
+  const scree = smoothstep(50, 450, overTrees)
+  const snow = smoothstep(-150, 250, overSnow.add(patch.mul(420)))
+  const inland = smoothstep(2, 9, overSea)
+  const stones = rock.max(scree.mul(0.85).add(dryness.mul(0.15)).mul(inland)).max(0.05)
+  const blades = rock.max(scree).max(dryness).max(snow).oneMinus().mul(inland)
+  return {
+    stone: stones.mul(snow.mul(-0.85).add(1)).mul(STONE_DEPTH),
+    blade: blades.mul(BLADE_DEPTH)
+  }
+}
+
+/** Layers by height, slope, curvature, latitude and noise. */
+export function groundRules(
+  place: GroundPlace,
+  grain: Grain,
+  { overSea, overSnow, overTrees, dryness }: GroundClimate
+): GroundRules {
+  const { patch, cosSlope, hollow } = place
+  const { stone, boulder, tuft, crown } = grain
   // A pixel that shows much ground shows its heights, too.
   const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
-  const overTrees = height.sub(snowLine).add(1100).add(patch.mul(350)).toConst('overTrees')
   const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
   const steepness = cosSlope
     .oneMinus()
@@ -89,13 +130,6 @@ export function groundRules(place: GroundPlace, grain: Grain, seaLevel: Float): 
     .sub(hollow.mul(HOLLOW_SOIL))
     .toConst('steepness')
 
-  const dryness = smoothstep(0.12, 0.4, sinLatitude)
-    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
-    .mul(1.1)
-    .sub(0.35)
-    .add(climate.mul(1.4))
-    .clamp(0, 1)
-    .toConst('dryness')
   const woods = smoothstep(-0.2, 0, patch.sub(dryness).add(tuft.mul(0.12)).add(crown.mul(0.3)))
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
     .mul(smoothstep(15, 60, overSea))
@@ -111,62 +145,10 @@ export function groundRules(place: GroundPlace, grain: Grain, seaLevel: Float): 
   const snow = smoothstep(
     spread.add(150).negate(),
     spread.add(250),
-    height.sub(snowLine).add(patch.mul(420)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
+    overSnow.add(patch.mul(420)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
   )
     .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
     .toConst('snow')
   const layers = { snow, bare, inland, bareness, dryness, woods }
-  return { layers, overSea, overTrees, sunny, relief, spread }
-}
-
-/** Shares of materials of the ground, and of desert, which is sand inland; all with it have a sum of 1. */
-export interface GroundShares extends OfKinds<Float> {
-  readonly desert: Float
-}
-
-/** Shares of materials, sand at the shore alone. */
-export function sharesOf(layers: GroundLayers): GroundShares {
-  const { snow, bare, inland, bareness, dryness, woods } = layers
-  let left: Float = float(1)
-  const part = (share: Float): Float => {
-    const taken = left.mul(share).toConst() as Float
-    left = left.sub(taken).toConst()
-    return taken
-  }
-  return {
-    snow: part(snow),
-    rock: part(bare),
-    sand: part(inland.oneMinus()),
-    scree: part(bareness),
-    desert: part(dryness),
-    forest: part(woods),
-    grass: left
-  }
-}
-
-/**
- * Layers where a mask has painted some of the ground.
- *
- * @param painted - Shares of materials with a sum of 1 at most; the rest is as it was.
- */
-export function paintedLayers(layers: GroundLayers, painted: OfKinds<Float>): GroundLayers {
-  const before = sharesOf(layers)
-  const rest = Object.values(painted)
-    .reduce((sum, share) => sum.sub(share), float(1) as Float)
-    .toConst() as Float
-  let left: Float = float(1)
-  const layer = (share: Float, paint: Float | null): Float => {
-    const taken = paint === null ? share.mul(rest) : share.mul(rest).add(paint)
-    const layered = taken.div(left.max(NOTHING)).clamp(0, 1).toConst() as Float
-    left = left.sub(taken).toConst()
-    return layered
-  }
-  return {
-    snow: layer(before.snow, painted.snow),
-    bare: layer(before.rock, painted.rock),
-    inland: layer(before.sand, painted.sand).oneMinus(),
-    bareness: layer(before.scree, painted.scree),
-    dryness: layer(before.desert, null),
-    woods: layer(before.forest, painted.forest)
-  }
+  return { layers, relief, spread }
 }

@@ -1,17 +1,15 @@
 import { float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
-import type { OfKinds } from '../maps/groundKinds'
 import { grainAt } from './grain'
 import {
+  grainDepth,
+  groundClimate,
   groundRules,
-  paintedLayers,
-  sharesOf,
+  type GroundColors,
   type GroundLayers,
-  type GroundPlace,
-  type GroundShares
+  type GroundPlace
 } from './groundRules'
-import type { MappedGround } from './mappedGround'
 
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
@@ -56,8 +54,8 @@ export interface GroundSurface {
 /** What users have given of the ground's surface. */
 export interface OwnSurface {
   readonly maps: GroundMaps | null
-  /** Shares of materials that a mask paints, with edges that a height about 0 frays. */
-  readonly paint: ((relief: Float) => OfKinds<Float>) | null
+  /** Layers where a mask has painted them, with edges that a height about 0 frays. */
+  readonly paint: ((layers: GroundLayers, relief: Float) => GroundLayers) | null
 }
 
 /**
@@ -71,11 +69,13 @@ export function groundSurface(
   { maps, paint }: OwnSurface
 ): GroundSurface {
   const { patch, climate } = place
-  const grain = grainAt(place)
+  const ground = groundClimate(place, seaLevel)
+  const { overSea, overTrees, sunny } = ground
+  const grain = grainAt(place, grainDepth(place, ground))
   const { stone, blade, boulder, tuft, crown, brush } = grain
-  const rules = groundRules(place, grain, seaLevel)
-  const { overSea, overTrees, sunny, relief, spread } = rules
-  const layers = paint === null ? rules.layers : paintedLayers(rules.layers, paint(relief))
+  const rules = groundRules(place, grain, ground)
+  const { relief, spread } = rules
+  const layers = paint === null ? rules.layers : paint(rules.layers, relief)
   const { snow, bare, inland, bareness, dryness, woods } = layers
   const tone = patch.mul(0.9).add(relief.mul(0.35)).toConst('tone')
   // Dark between stones, and between blades.
@@ -116,7 +116,7 @@ export function groundSurface(
   const sand = mix(color(SAND).mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed)
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
-  const mapped = maps === null ? null : mappedAt(maps, place, sharesOf(layers), colors)
+  const mapped = maps === null ? null : maps.groundAt(place, layers, colors)
   const made = mapped === null ? layered(layers, colors) : mapped.color
   const dry = made.mul(wet.mul(0.45).add(0.55))
 
@@ -166,30 +166,10 @@ export function groundSurface(
   }
 }
 
-/** Colours of materials that are made up. */
-type Colors = OfKinds<Vec3> & { readonly desert: Vec3 }
-
 /** Colour of the ground of materials that lie on each other. */
-function layered(layers: GroundLayers, colors: Colors): Vec3 {
+function layered(layers: GroundLayers, colors: GroundColors): Vec3 {
   const { snow, bare, inland, bareness, dryness, woods } = layers
   const soil = mix(mix(colors.grass, colors.forest, woods), colors.desert, dryness)
   const land = mix(colors.sand, mix(soil, colors.scree, bareness), inland)
   return mix(mix(land, colors.rock, bare), colors.snow, snow)
-}
-
-/** What maps say of the ground, with the colours of materials that have none. */
-function mappedAt(
-  maps: GroundMaps,
-  place: GroundPlace,
-  shares: GroundShares,
-  colors: Colors
-): MappedGround {
-  const withDesert = { ...shares, sand: shares.sand.add(shares.desert) }
-  const mapped = maps.groundAt(place, withDesert)
-  const made = (Object.keys(shares) as (keyof GroundShares)[]).reduce<Vec3>((sum, kind) => {
-    const layer = maps.layers.find(other => other.kind === (kind === 'desert' ? 'sand' : kind))
-    const isMade = layer === undefined ? float(1) : float(1).sub(layer.state.x)
-    return sum.add(colors[kind].mul(shares[kind].mul(isMade)))
-  }, vec3(0))
-  return { ...mapped, color: made.add(mapped.color.mul(mapped.share)) }
 }

@@ -7,11 +7,9 @@ import {
   int,
   mat4,
   mix,
-  positionViewDirection,
   smoothstep,
   step,
   texture,
-  transformNormalToView,
   vec2,
   vec3,
   vec4
@@ -22,6 +20,9 @@ import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
 import type { GroundKind, OfKinds } from '../maps/groundKinds'
 import type { GrainPlace } from './grain'
+import type { GroundColors, GroundLayers } from './groundRules'
+import { sharesOf, type GroundShares } from './groundShares'
+import { lineOfSight, STEPS_OF_SIGHT } from './lineOfSight'
 import { frameNear, tilingVertices, type TilingVertex } from './stochasticTiling'
 
 /** Cells of the lattice in 256 m that pieces of maps are moved by. */
@@ -33,12 +34,6 @@ const LEAST = 0.004
 /** Part of the weights' range in which one material gives way to the other, and share of heights in who shows. */
 const BLEND = 0.18
 const BY_HEIGHT = 0.5
-
-/** Footprints between which depth fades out [m], and least cosine to the viewer that it is found by. */
-const DEPTH = { from: 0.006, to: 0.02, grazing: 0.25 }
-
-/** Steps by which a ray finds the ground's depth. */
-const DEPTH_STEPS = 3
 
 /** Material that has maps. */
 export interface MappedLayer {
@@ -82,15 +77,32 @@ function heaviest(layers: readonly Vec4[]): [Vec4, Vec4] {
 }
 
 /**
- * The ground by a user's maps: the two heaviest materials of a pixel, each by two pieces of its maps that are moved at random, the higher in front.
+ * The ground by a user's maps, and by colours that are made up where it has none.
  *
- * @param weights - Shares of materials; their sum is 1.
+ * @param layers - What lies on what.
  */
 export function mappedGround(
   maps: MapsInShader,
   place: GrainPlace,
-  weights: OfKinds<Float>
+  layers: GroundLayers,
+  colors: GroundColors
 ): MappedGround {
+  const shares = sharesOf(layers)
+  const mapped = readMaps(maps, place, { ...shares, sand: shares.sand.add(shares.desert) })
+  const made = (Object.keys(shares) as (keyof GroundShares)[]).reduce<Vec3>((sum, kind) => {
+    const layer = maps.layers.find(other => other.kind === (kind === 'desert' ? 'sand' : kind))
+    const isMade = layer === undefined ? float(1) : float(1).sub(layer.state.x)
+    return sum.add(colors[kind].mul(shares[kind].mul(isMade)))
+  }, vec3(0))
+  return { ...mapped, color: made.add(mapped.color.mul(mapped.share)) }
+}
+
+/**
+ * What maps have: the two heaviest materials of a pixel, each by two pieces of its maps that are moved at random, the higher in front.
+ *
+ * @param weights - Shares of materials; their sum is 1.
+ */
+function readMaps(maps: MapsInShader, place: GrainPlace, weights: OfKinds<Float>): MappedGround {
   const across = dFdx(place.offset).toConst() as Vec3
   const along = dFdy(place.offset).toConst() as Vec3
   const layers = maps.layers.map(
@@ -106,7 +118,7 @@ export function mappedGround(
     const relief = vec4(0).toVar('mappedRelief') as unknown as Variable<Vec4>
     const slope = vec3(0).toVar('mappedSlope') as unknown as Variable<Vec3>
     If(share.greaterThan(LEAST), () => {
-      const { tangent, bitangent } = frameNear(place.normal, place.up, place.first, place.second)
+      const { tangent, bitangent } = frameNear(place.normal, place.up, place.first)
       const inFrame = (vector: Vec3): Vec2 => vec2(vector.dot(tangent), vector.dot(bitangent))
       const [dx, dy] = [inFrame(across).toConst(), inFrame(along).toConst()] as Vec2[]
       // Rows of what was drawn count from the other end on WebGL: places are turned by three, their derivatives are not.
@@ -122,14 +134,18 @@ export function mappedGround(
           .grad(dx.mul(layer.z).mul(turn), dy.mul(layer.z).mul(turn))
       const at = ({ away, random }: TilingVertex, layer: Vec4, moved: Vec2): Vec2 =>
         inFrame(away).add(moved).mul(layer.z).add(random.xy).toConst()
-      const depth = depthOf(place.normal, tangent, bitangent, across.length().max(along.length()))
+      const depth = lineOfSight(
+        place.normal,
+        { tangent, bitangent },
+        across.length().max(along.length())
+      )
       /** Both maps of a material, height in the relief's w. */
       const material = (layer: Vec4): [Vec4, Vec4] => {
         const sum = [vec4(0).toVar(), vec4(0).toVar()] as unknown as Variable<Vec4>[]
         const moved = vec2(0).toVar() as unknown as Variable<Vec2>
         If(depth.share.mul(layer.w).greaterThan(0), () => {
           const reach = depth.slope.mul(layer.w).mul(depth.share).toConst() as Vec2
-          for (let n = 0; n < DEPTH_STEPS; n++) {
+          for (let n = 0; n < STEPS_OF_SIGHT; n++) {
             const height = read('relief', layer, at(here, layer, moved)).w
             moved.assign(reach.mul(height.sub(0.5)))
           }
@@ -172,22 +188,5 @@ export function mappedGround(
     slope: relief.xyz,
     roughness: relief.w,
     occlusion: color.w
-  }
-}
-
-/** Way along the frame on which the line of sight rises by 1 m [m], and share of depth that is left at a footprint. */
-function depthOf(
-  normal: Vec3,
-  tangent: Vec3,
-  bitangent: Vec3,
-  footprint: Float
-): { slope: Vec2; share: Float } {
-  const inView = (vector: Vec3): Float =>
-    (transformNormalToView(vector) as unknown as Vec3).dot(positionViewDirection)
-  // Towards the viewer the line of sight rises: what stands up is met there.
-  const slope = vec2(inView(tangent), inView(bitangent)).div(inView(normal).max(DEPTH.grazing))
-  return {
-    slope: slope.toConst(),
-    share: smoothstep(DEPTH.from, DEPTH.to, footprint).oneMinus().toConst()
   }
 }

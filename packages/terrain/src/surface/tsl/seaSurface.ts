@@ -20,6 +20,9 @@ const PATH = 2.4
 const SHALLOW = 0.12
 const SHALLOW_SPREAD = 0.5
 
+/** Size of a pixel beyond which no wave is kept [m]. */
+const LONGEST_KEPT = Math.max(...SEA_WAVES.map(({ length }) => length))
+
 /** Reflectance of water at normal incidence, refractive index 1.34. */
 export const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
 
@@ -61,7 +64,8 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
   const cover = smoothstep(0, shallow, depth).toConst('cover')
   const waves = Fn(() => {
     const sum = vec4(0).toVar('waves') as unknown as Variable
-    If(cover.greaterThan(0), () => {
+    // From afar no wave is kept.
+    If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), () => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
       for (const { vector, direction, length, frequency } of SEA_WAVES) {
         const periods = offset
@@ -105,7 +109,7 @@ const FOAM_SWAY = 0.07
 
 /** Time in which it comes and goes [s], and size of a pixel at which there is none [m]. */
 const FOAM_PERIOD = 7
-const FOAM_GONE = 3
+export const FOAM_GONE = 3
 
 /**
  * Share of foam at the water's edge, in [0, 1].

@@ -46,7 +46,7 @@ export interface TilingVertices {
 }
 
 /** Part of the nearest vertex's weight that the next must exceed to count. */
-const LEAST = 0.3
+const LEAST = 0.55
 
 const sum = ({ x, y, z }: Vec3): Float => x.add(y).add(z)
 
@@ -155,18 +155,11 @@ const EIGHTHS = 1.2
  *
  * @param normal - Unit normal of the surface.
  * @param up - Geodetic up.
- * @param axis - Unit vector that is not along up, like `spare`.
+ * @param axis - Unit vector that is not along up, such as a face's.
  */
-export function frameNear(
-  normal: Vec3,
-  up: Vec3,
-  axis: Vec3,
-  spare: Vec3
-): { tangent: Vec3; bitangent: Vec3 } {
-  const isLevel = step(up.dot(axis).abs(), 0.9)
-  const guide = mix(spare, axis, isLevel).toConst() as Vec3
-  const east = guide
-    .sub(up.mul(guide.dot(up)))
+export function frameNear(normal: Vec3, up: Vec3, axis: Vec3): { tangent: Vec3; bitangent: Vec3 } {
+  const east = axis
+    .sub(up.mul(axis.dot(up)))
     .normalize()
     .toConst() as Vec3
   const north = up.cross(east).toConst() as Vec3

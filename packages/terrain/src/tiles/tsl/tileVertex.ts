@@ -22,6 +22,8 @@ export interface TileVertex {
   readonly position: Vec3
   /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m]. */
   readonly place: Vec3
+  /** Unit vector, geodetic up. */
+  readonly up: Vec3
   /** Texels from the first one of a page for pixels. */
   readonly texels: Vec2
   /** First texels of the tile's page (xy), and of its quarter of the parent's (zw). */
@@ -96,7 +98,7 @@ export function tileVertex(
   // Vertices of the triangle under the viewer are within three cells, morphed or not.
   const room = distance.sub(cell.mul(CLOSE)).max(0)
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
-  const up = figure.upOfCube(cube.add(delta), stretch).toConst('up')
+  const up = figure.upOfCube(cube.add(delta), stretch).toConst('up') as Vec3
   const tilt = figure.turnOfUp(cube, delta, stretch)
   const skirt = positionGeometry.z.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
@@ -106,6 +108,7 @@ export function tileVertex(
   return {
     position,
     place: tileOffset.xyz.add(subpoint),
+    up,
     texels: moved.mul(density),
     pages: vec4(
       firstTexel(own, columns, surfaceSide),
