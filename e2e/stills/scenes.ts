@@ -125,7 +125,8 @@ const optics: Still[] = [
     sun: { elevation: 38, azimuth: 210 },
     view: { azimuth: 30, pitch: -38 },
     fieldOfView: 26,
-    land: 'hills'
+    place: { longitude: 150, latitude: 30 },
+    land: 'planet'
   },
   {
     name: 'optics-cloudbow',
@@ -137,7 +138,8 @@ const optics: Still[] = [
     sun: { elevation: 45, azimuth: 210 },
     view: { azimuth: 30, pitch: -45 },
     fieldOfView: 90,
-    land: 'hills'
+    place: { longitude: 150, latitude: 30 },
+    land: 'planet'
   },
   {
     name: 'optics-fogbow',

@@ -20,6 +20,8 @@ interface View {
   readonly altitude: number
   /** Pitch of the camera, which looks north [°]. */
   readonly pitch: number
+  /** Vertical field of view [°]; by default 62. */
+  readonly lens?: number
   /** Azimuth of the sun: behind the camera or before it [°]. */
   readonly azimuth: 0 | 180
 }
@@ -27,10 +29,19 @@ interface View {
 /** Skies, and where the camera looks. */
 export const VIEWS = {
   glory: {
-    label: 'Glory on a deck',
-    clouds: 'stratocumulus',
+    label: 'Glory on a thin deck',
+    clouds: 'overcast',
     altitude: 2600,
-    pitch: -26,
+    pitch: -38,
+    lens: 26,
+    azimuth: 180
+  },
+  cloudbow: {
+    label: 'Cloudbow about a glory',
+    clouds: 'overcast',
+    altitude: 2600,
+    pitch: -45,
+    lens: 90,
     azimuth: 180
   },
   fogbow: { label: 'Fogbow', clouds: null, altitude: 30, pitch: 12, azimuth: 180 },
@@ -59,8 +70,8 @@ export async function createHalos(
 ): Promise<SceneHandle<HalosArgs>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
-  const view = VIEWS[args.view]
-  const camera = new PerspectiveCamera(62, 1, 1, 4e5)
+  const view: View = VIEWS[args.view]
+  const camera = new PerspectiveCamera(view.lens ?? 62, 1, 1, 4e5)
   camera.position.y = view.altitude
   camera.rotation.x = MathUtils.degToRad(view.pitch)
   camera.updateMatrixWorld()
@@ -90,7 +101,8 @@ export async function createHalos(
     atmosphere.add(args.view === 'rainbow' ? shower : mist)
     layers.at(0).coverage = 0
   }
-  if (view.clouds === 'stratocumulus') layers.at(0).coverage = 0.97
+  // The thinner a deck is, the more of its light is scattered once.
+  if (view.clouds === 'overcast') layers.at(0).density = 0.004
   if (view.clouds === 'cirrus') layers.at(0).set({ coverage: 0.9, density: 0.0015 })
   if (args.frame) {
     node.quality = STILL_QUALITY

@@ -60,10 +60,16 @@ export const Halo: Story = {
   tags: ['screenshot']
 }
 
-/** The sun behind an aeroplane: coloured rings on the clouds below, and a pale bow far about them. */
+/** The sun behind an aeroplane: coloured rings on a thin deck below, about the point where its shadow falls. */
 export const Glory: Story = {
   name: 'Glory from an aeroplane',
-  args: { view: 'glory', sun: 28, exposure: -0.5 }
+  args: { view: 'glory', sun: 38, dropletRadius: 8 }
+}
+
+/** A white bow of 40° about the glory, whole through a wide lens. */
+export const Cloudbow: Story = {
+  name: 'Cloudbow from an aeroplane',
+  args: { view: 'cloudbow', sun: 45, dropletRadius: 12 }
 }
 
 /** A light shower all about, the sun behind one's back: both bows, and the dark band between them. */

@@ -164,7 +164,7 @@ gpuTest('reads its light from a table in post effects as materials compute it', 
   await compareByPaths(t, atmosphere, mist)
 })
 
-/** What makes bows: angles from the point opposite the light inside of one, in it, and outside [°]. */
+/** Bows: angles from the point opposite the light inside of one, in it, and outside [°]. */
 const bows = [
   {
     name: 'droplets in sunlight',

@@ -50,10 +50,10 @@ const OVERCAST = { sun: 0.02, sky: 0.1 }
 /** Illuminance under an overcast: with the sun at the horizon, and what is added with it in the zenith [lx] (Krochmann & Seidl 1974). */
 const OVERCAST_ILLUMINANCE = [300, 21_000] as const
 /**
- * Luminance of clouds over a lit town [cd/m²], and its colour: some 10 times that of the clear sky there (Kyba et al. 2011, "Cloud coverage acts as
- * an amplifier for ecological light pollution", PLoS ONE 6, e17307), which is 2 to 3 mcd/m².
+ * Luminance of clouds over a city [cd/m²], and its colour: some 10 times that of the clear sky there (Kyba et al. 2011, "Cloud coverage acts as
+ * an amplifier for ecological light pollution", PLoS ONE 6, e17307), which is 8 mcd/m², 17.8 mag per square arcsecond.
  */
-const TOWN_GLOW = 0.03
+const TOWN_GLOW = 0.08
 const TOWN_COLOR = '#ffd9b0'
 /** Luminance of clouds over a town in snow [cd/m²]: Jechow & Hölker 2019, "Snowglow", J. Imaging 5(8), 69, who had 0.25 in a suburb. */
 const SNOW_GLOW = 0.25

@@ -19,11 +19,11 @@ import type { DeckFallNodes } from '../environment/tsl/decks'
 import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { fallColumnOf } from './cpu/fallColumn'
-import { DIFFRACTED, fallForm } from './fallForm'
+import { DIFFRACTED, fallFloor, fallForm } from './fallForm'
 import { fallenFrom, fallExtinction } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
 import { lightPrecipitation } from './tsl/lightPrecipitation'
-import { marchPrecipitation } from './tsl/marchPrecipitation'
+import { marchPrecipitation, type FallSpace } from './tsl/marchPrecipitation'
 
 /** Options of {@link PrecipitationShafts}. */
 export interface PrecipitationShaftsOptions {
@@ -67,6 +67,9 @@ export class PrecipitationShafts {
   )
   readonly #array = vec4Array(this.#values)
   readonly #ceiling = number(NOWHERE)
+  readonly #floor = number(NOWHERE)
+  readonly #firstLayer = number()
+  readonly #endLayer = number()
   readonly #above = {
     depth: number(),
     layered: number(),
@@ -91,7 +94,8 @@ export class PrecipitationShafts {
    * @returns Count of changes other than those of wind and camera.
    */
   update({ layers, depthScale }: CloudField, { up }: AtmosphereView): number {
-    let [ceiling, most] = [NOWHERE, 0]
+    let [ceiling, floor, most] = [NOWHERE, Infinity, 0]
+    let [firstLayer, endLayer] = [CloudLayers.maxLayers, 0]
     const state: number[] = []
     for (const [i, { parameters }] of [...layers].entries()) {
       const { baseAltitude, topAltitude, coverage, density, wind, shear } = parameters
@@ -112,6 +116,9 @@ export class PrecipitationShafts {
       state.push(...Object.values(all))
       if (rate === 0 || coverage === 0) continue
       ceiling = Math.max(ceiling, layerCeiling)
+      floor = Math.min(floor, fallFloor(baseAltitude, virgaDepth))
+      firstLayer = Math.min(firstLayer, i)
+      endLayer = i + 1
       if (rate <= most) continue
       most = rate
       const column = meanColumnOf(parameters, depthScale.value)
@@ -122,6 +129,9 @@ export class PrecipitationShafts {
       period.value = layerPeriods(parameters).weather
     }
     this.#ceiling.value = ceiling
+    this.#floor.value = Math.max(floor, NOWHERE)
+    this.#firstLayer.value = Math.min(firstLayer, endLayer)
+    this.#endLayer.value = endLayer
     if (state.some((value, i) => value !== this.#state[i])) this.#version++
     this.#state = state
     return this.#version + (this.drops?.version ?? 0)
@@ -204,8 +214,16 @@ export class PrecipitationShafts {
     const last = x.max(y).max(z.max(w))
     const end = clouds.transmittance.greaterThan(0).select(marched.y.exp2(), last).toConst()
     const ray = { direction, end, jitter }
-    const fallOf = (index: Int): FallNodes => this.fallOf(index)
-    const seen = marchPrecipitation(context, fallOf, this.#ceiling, ray, points)
+    const space: FallSpace = {
+      fallOf: index => this.fallOf(index),
+      layers: {
+        first: this.#firstLayer.toInt().toConst(),
+        last: this.#endLayer.toInt().toConst()
+      },
+      ceiling: this.#ceiling,
+      floor: this.#floor
+    }
+    const seen = marchPrecipitation(context, space, ray, points)
     const shares = points.shares.mul(seen.before).toConst() as Vec4
     const dimmed = { distances: points.distances, shares }
     const radiance = shadePoints(context, direction, dimmed).toVar() as Variable<Vec4>

@@ -46,3 +46,17 @@ export const extinctionForm = {
   snow: [0.885, 0.72],
   hail: 0.0081
 } as const
+
+/** Rate of the strongest streaks over that of their column [–]: what little is stronger is cut off where these have evaporated. */
+const STRONGEST = 3
+
+/**
+ * Altitude below which nothing falls from a layer, since even the strongest streaks have evaporated [m]; −∞ where nothing evaporates.
+ *
+ * @param baseAltitude - Base of the layer [m].
+ * @param virgaDepth - Depth in which rain of the mean rate evaporates; 0 for none [m].
+ */
+export function fallFloor(baseAltitude: number, virgaDepth: number): number {
+  if (virgaDepth === 0) return -Infinity
+  return baseAltitude - virgaDepth * ((fallForm.core + 1) * STRONGEST) ** fallForm.evaporation
+}

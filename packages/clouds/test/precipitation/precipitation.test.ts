@@ -5,7 +5,7 @@ import { float, vec4 } from 'three/tsl'
 import { describe, expect, it, test } from 'vitest'
 import { CloudLayer, cloudPreset, clouds, precipitationShafts } from '../../src'
 import { fallColumn, fallDepthOver } from '../../src/precipitation/cpu/fallColumn'
-import { DIFFRACTED, fallForm } from '../../src/precipitation/fallForm'
+import { DIFFRACTED, fallFloor, fallForm } from '../../src/precipitation/fallForm'
 import { CloudCover, CloudLayers } from '../../src'
 import { extinctionOf, lagOf, rateOf } from '../twins/precipitation'
 
@@ -77,6 +77,19 @@ describe('precipitation', () => {
     expect(lagOf(10, 0, 1000, 3000)).toBeCloseTo(whole / rainSpeed, 3)
     expect(lagOf(10, 0, 1000, -100)).toBeCloseTo(whole / snowSpeed, 3)
     expect(lagOf(10, 500, 1000, 3000)).toBeCloseTo(whole / 4 / rainSpeed, 3)
+  })
+
+  it('leaves nothing below its floor, of streaks three times as strong as the strongest column', () => {
+    expect(fallFloor(2000, 0)).toBe(-Infinity)
+    fc.assert(
+      fc.property(rates, fc.double({ min: 50, max: 5000, noNaN: true }), (rate, virgaDepth) => {
+        const depth = 3000 - fallFloor(3000, virgaDepth)
+        // Rates go with the square of the rank.
+        const rank = Math.sqrt(3)
+        expect(rateOf(rate, rank, 1.005 * depth, virgaDepth)).toBeLessThan(1e-6 * rate)
+        expect(rateOf(rate, rank, 0.98 * depth, virgaDepth)).toBeGreaterThan(0)
+      })
+    )
   })
 
   it('evaporates: that of the given rate within the depth, heavier rain later', () => {

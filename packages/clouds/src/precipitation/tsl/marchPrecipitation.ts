@@ -1,9 +1,9 @@
 import { Break, If, float, mix, vec2, vec4 } from 'three/tsl'
-import { forLayers, layerAt } from '../../density/tsl/layer'
+import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { SeenPoints } from '../../march/tsl/seenPoints'
 import type { CloudRay } from '../../march/tsl/march'
-import { crossings } from '../../march/tsl/layerBoundaries'
+import { crossings, FAR_AWAY } from '../../march/tsl/layerBoundaries'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { LEAST_TRANSMITTANCE, lightAt } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
@@ -61,17 +61,25 @@ export interface SeenPrecipitation {
   readonly lit: Vec2
 }
 
+/** Space in which something falls. */
+export interface FallSpace {
+  readonly fallOf: (index: Int) => FallNodes
+  /** Layers from which something falls, and perhaps others between. */
+  readonly layers: LayerRange
+  /** Altitudes above and below which nothing falls [m]. */
+  readonly ceiling: Float
+  readonly floor: Float
+}
+
 /**
  * Marches a ray through what falls from the clouds, in even steps from afar and growing ones from within. To be called inside of a shader
  * function.
  *
- * @param ceiling - Altitude above which nothing falls [m].
  * @param points - Clouds on the ray.
  */
 export function marchPrecipitation(
   context: ShadingContext,
-  fallOf: (index: Int) => FallNodes,
-  ceiling: Float,
+  { fallOf, layers, ceiling, floor }: FallSpace,
   { direction, end, jitter }: CloudRay,
   points: SeenPoints
 ): SeenPrecipitation {
@@ -79,9 +87,13 @@ export function marchPrecipitation(
   const { view } = field
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
   const shell = crossings(field, cosView, ceiling)
-  const from = shell.near.max(0).toConst() as Float
+  const under = crossings(field, cosView, floor)
+  const isBelow = view.height.lessThan(floor).toConst()
+  const from = shell.near.max(isBelow.select(under.far, 0)).toConst() as Float
+  const isLeaving = isBelow.not().and(under.near.greaterThan(0))
+  const last = shell.far.min(end).min(isLeaving.select(under.near, FAR_AWAY))
   const isNear = from.lessThan(FARTHEST).select(1, 0)
-  const span = shell.far.min(end).sub(from).min(LONGEST).mul(isNear).toConst() as Float
+  const span = last.sub(from).min(LONGEST).mul(isNear).toConst() as Float
   const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
   const count = span
     .div(SHORTEST)
@@ -111,7 +123,7 @@ export function marchPrecipitation(
       const sample: CloudSample = { offset, ...view.localCoordinates(offset), distance: blurred }
       /** Extinction, the same of flakes and stones, and of ranks. */
       const found = vec4(0).toVar() as Variable<Vec4>
-      forLayers(field, layer => {
+      const visit = (layer: Int): void => {
         const { rate, snow, hail, rank } = fallenFrom(
           field,
           weatherMap,
@@ -122,7 +134,8 @@ export function marchPrecipitation(
         const all = fallExtinction(rate, snow, hail).toConst()
         const drops = fallExtinction(rate, float(0), float(0)).mul(snow.oneMinus()).min(all)
         found.addAssign(vec4(all, all.sub(drops), all.mul(rank), 0))
-      })
+      }
+      forLayers(field, visit, layers)
       If(found.x.greaterThan(0), () => {
         const extinction = found.x.mul(1 - DIFFRACTED).toConst() as Float
         const depth = extinction.mul(length).toConst() as Float
