@@ -48,7 +48,9 @@ class CastShadow implements AirShadow, CloudCaster {
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
-    clouds.casters.add(this)
+    // Not by moonlight nor with a map of the world: each would be one texture too many.
+    const { atmosphere, field } = clouds
+    if (shafts.source === atmosphere.sun && field.worldMap === null) clouds.casters.add(this)
     clouds.needsUpdate = true
   }
 
@@ -72,9 +74,8 @@ class CastShadow implements AirShadow, CloudCaster {
   }
 
   litAt(ray: Pick<AirViewRay, 'direction' | 'jitter'>, distance: Float, isMoonlit: Bool): Float {
-    const { source } = this.#shafts
     const lit = float(1).toVar() as Float
-    If(source === this.#clouds.atmosphere.sun ? isMoonlit.not() : isMoonlit, () => {
+    If(isMoonlit.not(), () => {
       lit.assign(this.#shafts.litAt({ ...ray, receiver: this.#clouds }, distance))
     })
     return lit
@@ -133,7 +134,7 @@ class CastShadow implements AirShadow, CloudCaster {
  *
  * They are read from the clouds' shadow maps, up to 2,000 km above the ground; beyond them the mean cover of the layers says how much passes, or the
  * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
- * behind the clouds, and all else that casts into them shades the clouds, too: the light's shadow maps, and hills.
+ * behind the clouds, and all else that casts into those of the sun shades the clouds, too: the light's shadow maps, and hills.
  */
 export class CloudAirShadow implements AirOccluder {
   /** Shared, not owned. */
