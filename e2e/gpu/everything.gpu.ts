@@ -260,12 +260,12 @@ function checkTextures(t: GpuContext, shaders: readonly FragmentShader[]): void 
 }
 
 const situations = [
-  { name: 'by day on the ground', sun: 35, moon: 20, altitude: 2 },
-  { name: 'at dusk at 10 km', sun: -4, moon: 20, altitude: 10_000 },
-  { name: 'at night on the ground', sun: -30, moon: 40, altitude: 2 },
-  { name: 'in an eclipse on the ground', sun: 35, moon: null, altitude: 2 },
-  { name: 'by day in orbit', sun: 35, moon: 20, altitude: 400_000 },
-  { name: 'at night in orbit', sun: -60, moon: 60, altitude: 400_000 }
+  { name: 'by day on the ground', sun: 35, moon: 20, altitude: 2, isExtreme: true },
+  { name: 'at dusk at 10 km', sun: -4, moon: 20, altitude: 10_000, isExtreme: false },
+  { name: 'at night on the ground', sun: -30, moon: 40, altitude: 2, isExtreme: false },
+  { name: 'in an eclipse on the ground', sun: 35, moon: null, altitude: 2, isExtreme: true },
+  { name: 'by day in orbit', sun: 35, moon: 20, altitude: 400_000, isExtreme: false },
+  { name: 'at night in orbit', sun: -60, moon: 60, altitude: 400_000, isExtreme: true }
 ] as const
 
 gpuTest(
@@ -275,7 +275,10 @@ gpuTest(
     const shaders = watchFragmentShaders(renderer)
     const world = new World(renderer, true)
     await world.prepare()
-    for (const { name, sun, moon: moonAt, altitude } of situations) {
+    // Each takes half a minute in software: all of them on one backend, and its extremes on the other.
+    const isAll = t.backend === 'webgpu'
+    for (const { name, sun, moon: moonAt, altitude, isExtreme } of situations) {
+      if (!isAll && !isExtreme) continue
       world.setLights(sun, moonAt)
       world.look(altitude)
       const drawn = await world.draw(2)

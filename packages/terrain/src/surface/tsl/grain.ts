@@ -1,8 +1,7 @@
-import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
-import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
-import { lineOfSight, STEPS_OF_SIGHT } from './lineOfSight'
 import { frameNear, pieceOf, tilingVertices, type TilingVertex } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
@@ -35,12 +34,6 @@ export interface GrainPlace {
   readonly up: Vec3
 }
 
-/** Heights that the picture's 1 stands for, of stones and of blades [m]. */
-export interface GrainDepth {
-  readonly stone: Float
-  readonly blade: Float
-}
-
 /** Stones and blades of grass at a place. */
 export interface Grain {
   /** Gradient of stones, those of centimetres and of metres by a factor each, along the ground [–]. */
@@ -64,12 +57,8 @@ export interface Grain {
 type Variable = Vec4 & { addAssign(value: Vec4): void }
 type Slope = Vec3 & { assign(value: Vec3): void }
 
-/**
- * Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels.
- *
- * @param depth - Heights by which stones and blades near the feet hide what is behind them.
- */
-export function grainAt(place: GrainPlace, depth: GrainDepth): Grain {
+/** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
+export function grainAt(place: GrainPlace): Grain {
   const { grain, offset, first, normal } = place
   // Derivatives are taken out of branches.
   const across = dFdx(offset).toConst() as Vec3
@@ -106,18 +95,8 @@ export function grainAt(place: GrainPlace, depth: GrainDepth): Grain {
     })
     If(far.greaterThan(0), () => {
       const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
-      const moved = vec2(0).toVar('movedGrain') as unknown as Vec2 & { assign(value: Vec2): void }
       const fineOf = ({ away, random }: TilingVertex): Vec4 =>
-        pieceOf(grain, frame, FINE.side, away, random.zx.add(moved))
-      const here = nearest()
-      const sight = lineOfSight(normal, frame, footprint)
-      If(sight.share.greaterThan(0), () => {
-        const reach = sight.slope.mul(sight.share.div(FINE.side)).toConst() as Vec2
-        for (let n = 0; n < STEPS_OF_SIGHT; n++) {
-          const heights = fineOf(here)
-          moved.assign(reach.mul(heights.z.mul(depth.stone).add(heights.w.mul(depth.blade))))
-        }
-      })
+        pieceOf(grain, frame, FINE.side, away, random.zx)
       const add = (vertex: TilingVertex, share: Float): void => {
         const { away, random } = vertex
         const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
@@ -126,7 +105,7 @@ export function grainAt(place: GrainPlace, depth: GrainDepth): Grain {
           fine.addAssign(fineOf(vertex).mul(share.mul(near)))
         })
       }
-      add(here, shares.x)
+      add(nearest(), shares.x)
       If(shares.y.greaterThan(0), () => {
         add(next(), shares.y)
       })

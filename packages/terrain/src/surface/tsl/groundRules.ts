@@ -1,7 +1,7 @@
 import { float, smoothstep } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { OfKinds } from '../maps/groundKinds'
-import type { Grain, GrainDepth, GrainPlace } from './grain'
+import type { Grain, GrainPlace } from './grain'
 
 /** Differences of height within a pixel, to its size on the ground, and at most [m]. */
 const SPREAD = 0.12
@@ -10,10 +10,6 @@ const MOST_SPREAD = 450
 /** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
 const DRY_SNOW = 500
 const SUNNY_SNOW = 350
-
-/** Heights of stones and of blades that the picture's 1 stands for [m]. */
-const STONE_DEPTH = 0.05
-const BLADE_DEPTH = 0.045
 
 /** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
 const HOLLOW_SNOW = 700
@@ -93,23 +89,6 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
     .clamp(0, 1)
     .toConst('dryness') as Float
   return { overSea, overSnow, overTrees, sunny, dryness }
-}
-
-/** Heights of stones and blades near the feet, by what lies there if no stone counts. */
-export function grainDepth(
-  { patch, cosSlope }: GroundPlace,
-  { overSea, overSnow, overTrees, dryness }: GroundClimate
-): GrainDepth {
-  const rock = smoothstep(0.13, 0.24, cosSlope.oneMinus().add(patch.mul(0.05)))
-  const scree = smoothstep(50, 450, overTrees)
-  const snow = smoothstep(-150, 250, overSnow.add(patch.mul(420)))
-  const inland = smoothstep(2, 9, overSea)
-  const stones = rock.max(scree.mul(0.85).add(dryness.mul(0.15)).mul(inland)).max(0.05)
-  const blades = rock.max(scree).max(dryness).max(snow).oneMinus().mul(inland)
-  return {
-    stone: stones.mul(snow.mul(-0.85).add(1)).mul(STONE_DEPTH),
-    blade: blades.mul(BLADE_DEPTH)
-  }
 }
 
 /** Layers by height, slope, curvature, latitude and noise. */

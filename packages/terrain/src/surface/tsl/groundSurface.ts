@@ -3,7 +3,6 @@ import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
 import { grainAt } from './grain'
 import {
-  grainDepth,
   groundClimate,
   groundRules,
   type GroundColors,
@@ -71,7 +70,7 @@ export function groundSurface(
   const { patch, climate } = place
   const ground = groundClimate(place, seaLevel)
   const { overSea, overTrees, sunny } = ground
-  const grain = grainAt(place, grainDepth(place, ground))
+  const grain = grainAt(place)
   const { stone, blade, boulder, tuft, crown, brush } = grain
   const rules = groundRules(place, grain, ground)
   const { relief, spread } = rules
