@@ -1,7 +1,7 @@
 import { Mesh, PerspectiveCamera, PlaneGeometry, Scene } from 'three'
-import { float, positionWorld, vec3, vec4 } from 'three/tsl'
-import { NodeMaterial } from 'three/webgpu'
-import { lineOfSight } from '../../../packages/terrain/src/surface/tsl/lineOfSight'
+import { Fn, float, positionWorld, screenCoordinate, vec3, vec4 } from 'three/tsl'
+import { NodeMaterial, type Node } from 'three/webgpu'
+import { heightMet, lineOfSight } from '../../../packages/terrain/src/surface/tsl/lineOfSight'
 import { gpuTest } from '../harness/gpu-test'
 
 const SIZE = { width: 32, height: 16 }
@@ -44,6 +44,46 @@ gpuTest(
     t.note(`${count} pixels, within ${worst.toExponential(1)}`)
     if (count < 300) throw new Error(`only ${count} pixels`)
     if (!(worst < 1e-3)) throw new Error(`lines of sight differ by ${worst}`)
+  },
+  { backends: ['webgpu'] }
+)
+
+/** Ground as a plane along the line of sight: its height where that is at 0, and its slope against it. The last is far too steep for a fixed point. */
+const PLANES = [
+  [0.5, 0],
+  [0.2, 0.5],
+  [0.9, -2],
+  [1, -6]
+] as const
+
+gpuTest(
+  'a line of sight meets planes where it crosses them, however steep they are',
+  async t => {
+    const renderer = await t.createRenderer(SIZE)
+    const camera = new PerspectiveCamera()
+    const material = new NodeMaterial()
+    const column = screenCoordinate.x.floor()
+    const parameters = PLANES.map(([base, slope], i) =>
+      vec3(base, slope, 0).mul(column.equal(i).select(1, 0))
+    )
+    const plane = parameters.reduce((sum, each) => sum.add(each) as never)
+    const ground = new Mesh(new PlaneGeometry(4, 4), material)
+    ground.position.z = -1
+    material.fragmentNode = Fn(() => {
+      const met = heightMet(
+        height => height.mul(plane.y).add(plane.x).clamp(0, 1) as unknown as Node<'float'>
+      )
+      return vec4(met, 0, 0, 1)
+    })()
+    const found = await t.render(renderer, new Scene().add(ground), camera, SIZE)
+    PLANES.forEach(([base, slope], i) => {
+      const met = found.at(i, 8)[0]
+      const truth = base / (1 - slope)
+      // Where the plane is cut off at 0, it is a plane no longer between two steps.
+      const error = Math.abs(met - truth)
+      t.note(`${met.toFixed(4)} for ${truth.toFixed(4)}`)
+      if (!(error < 0.03)) throw new Error(`meets at ${met}, not at ${truth}`)
+    })
   },
   { backends: ['webgpu'] }
 )

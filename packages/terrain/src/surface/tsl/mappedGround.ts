@@ -22,7 +22,7 @@ import type { GroundKind, OfKinds } from '../maps/groundKinds'
 import type { GrainPlace } from './grain'
 import type { GroundColors, GroundLayers } from './groundRules'
 import { sharesOf, type GroundShares } from './groundShares'
-import { lineOfSight, STEPS_OF_SIGHT } from './lineOfSight'
+import { heightMet, lineOfSight } from './lineOfSight'
 import { frameNear, tilingVertices, type TilingVertex } from './stochasticTiling'
 
 /** Cells of the lattice in 256 m that pieces of maps are moved by. */
@@ -145,10 +145,9 @@ function readMaps(maps: MapsInShader, place: GrainPlace, weights: OfKinds<Float>
         const moved = vec2(0).toVar() as unknown as Variable<Vec2>
         If(depth.share.mul(layer.w).greaterThan(0), () => {
           const reach = depth.slope.mul(layer.w).mul(depth.share).toConst() as Vec2
-          for (let n = 0; n < STEPS_OF_SIGHT; n++) {
-            const height = read('relief', layer, at(here, layer, moved)).w
-            moved.assign(reach.mul(height.sub(0.5)))
-          }
+          const movedAt = (height: Float): Vec2 => reach.mul(height.sub(0.5))
+          const met = heightMet(height => read('relief', layer, at(here, layer, movedAt(height))).w)
+          moved.assign(movedAt(met))
         })
         const add = (vertex: TilingVertex, part: Float): void => {
           const where = at(vertex, layer, moved)
