@@ -70,9 +70,7 @@ gpuTest(
     const ground = new Mesh(new PlaneGeometry(4, 4), material)
     ground.position.z = -1
     material.fragmentNode = Fn(() => {
-      const met = heightMet(
-        height => height.mul(plane.y).add(plane.x).clamp(0, 1) as unknown as Node<'float'>
-      )
+      const met = heightMet(height => height.mul(plane.y).add(plane.x).clamp(0, 1))
       return vec4(met, 0, 0, 1)
     })()
     const found = await t.render(renderer, new Scene().add(ground), camera, SIZE)

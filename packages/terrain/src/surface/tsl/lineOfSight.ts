@@ -57,5 +57,5 @@ export function heightMet(heightAt: (height: Float) => Float): Float {
     met.assign(isFirst.select(back.add(height).min(1), met))
     before.assign(over)
   }
-  return met.max(0).toConst() as Float
+  return met.max(0).toConst()
 }
