@@ -1,6 +1,6 @@
 import { Mesh, PerspectiveCamera, PlaneGeometry, Scene } from 'three'
 import { Fn, float, positionWorld, screenCoordinate, vec3, vec4 } from 'three/tsl'
-import { NodeMaterial, type Node } from 'three/webgpu'
+import { NodeMaterial } from 'three/webgpu'
 import { heightMet, lineOfSight } from '../../../packages/terrain/src/surface/tsl/lineOfSight'
 import { gpuTest } from '../harness/gpu-test'
 
