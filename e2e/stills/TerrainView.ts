@@ -12,7 +12,7 @@ import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { cobbles } from './cobbles'
-import type { TerrainStill } from './scenes'
+import type { TerrainStill } from './terrains'
 import { readPicture } from './readPicture'
 
 /** Half width of the shadow map about the camera, and distance of the light [m]. */

@@ -38,15 +38,9 @@ const SHALLOW = 0.1
 
 /** Height of "no ceiling", above all ground [m]. */
 const NO_CEILING = 1e9
-
-const positionWorld = new Vector3()
-const positionECEF = new Vector3()
-const subpoint = new Vector3()
-const reference = new Vector3()
-const pole = new Vector3()
-const up = new Vector3()
+const vectors = Array.from({ length: 7 }, () => new Vector3())
+const [positionWorld, positionECEF, subpoint, reference, pole, up, scale] = vectors
 const quaternion = new Quaternion()
-const scale = new Vector3()
 const matrix = new Matrix4()
 const sample: HeightSample = { height: 0, gradient: new Vector3() }
 
@@ -95,12 +89,11 @@ export class Terrain extends SeaMesh {
     source: HeightSource | PageSource,
     options: TerrainOptions = {}
   ) {
-    const where = 'Terrain'
-    checkAtmosphere(where, atmosphere)
-    checkSource(where, source)
-    const all = withDefaults(where, DEFAULTS, options)
+    checkAtmosphere('Terrain', atmosphere)
+    checkSource('Terrain', source)
+    const all = withDefaults('Terrain', DEFAULTS, options)
     const { resolution, detail, pageMemory, imagery, maps, mask, ...settings } = all
-    checkFixed(where, all)
+    checkFixed('Terrain', all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
     const tiles = new PagedTiles(source, figure, resolution, detail, 1e6 * pageMemory, imagery)

@@ -25,7 +25,7 @@ export interface AirPoint {
 export interface AirViewRay extends Pick<AirPoint, 'view' | 'jitter'> {
   /** Unit length, in the mapped space. */
   readonly direction: Vec3
-  /** What takes the light on the ray, if that is not air: its own shadow does not count. */
+  /** Receiver of the light on the ray, if that is not air: its own shadow does not count. */
   readonly receiver?: object
 }
 

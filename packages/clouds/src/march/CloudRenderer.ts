@@ -32,7 +32,7 @@ export interface CloudScene extends ShadingContext {
   readonly viewRays: FrameInputs
   /** Rain and snow under the clouds. */
   readonly precipitation?: PrecipitationShafts
-  /** What shades the clouds besides themselves. */
+  /** Casters that shade the clouds besides themselves. */
   readonly casters: ReadonlySet<CloudCaster>
 }
 

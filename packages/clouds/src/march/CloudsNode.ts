@@ -15,6 +15,7 @@ import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { CloudRenderer, sizeOf } from './CloudRenderer'
 import { CloudShadowMap } from '../shadow/CloudShadowMap'
 import { FrameUniforms } from './FrameUniforms'
+import { depthAt } from './tsl/viewRay'
 import {
   cloudQualities,
   QualityUniforms,
@@ -22,7 +23,7 @@ import {
   type CloudQuality,
   type CloudQualityName
 } from './quality'
-import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
+import type { Vec4 } from '../tsl-types'
 
 /** Slices of its own noise that a node draws in a frame: all in about 20. */
 const NOISE_SLICES = 12
@@ -111,7 +112,7 @@ export class CloudsNode extends AtmosphereNode {
   >()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
-  /** What else casts into those of them that have the clouds' camera. */
+  /** Casters into those of them that have the clouds' camera. */
   readonly casters = new Set<CloudCaster>()
   #quality: CloudQuality = cloudQualities.high
 
@@ -164,12 +165,7 @@ export class CloudsNode extends AtmosphereNode {
       viewRays: {
         field: this.field,
         frame: this.#frame,
-        depthAt: at => {
-          const node = this.depthNode as unknown as LevelTexture<Vec2> & Vec4
-          const read =
-            typeof node.sample === 'function' ? (node.sample(at) as unknown as Vec4) : node
-          return read.r
-        }
+        depthAt: at => depthAt(this.depthNode, at)
       }
     })
   }

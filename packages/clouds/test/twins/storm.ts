@@ -34,7 +34,7 @@ function axisDistance(gap: Vector3, up: Vector3): number {
  *
  * @param place - Place in the lattice, in its periods.
  * @param up - Zenith in the lattice.
- * @param downwind - From a storm's tower to the middle of its anvil [cells].
+ * @param downwind - Displacement of a storm's anvil from its tower [cells].
  * @returns Displacements to the axes of the nearest anvil and of the nearest tower.
  */
 function stormGaps(

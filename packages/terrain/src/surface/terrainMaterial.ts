@@ -50,7 +50,7 @@ const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
  * @param grain - As of `grainTexture`.
  * @param resolution - Cells along a tile's edge.
  * @param detail - As of `TileTree`.
- * @param maps - Of a user's own, or null.
+ * @param maps - Maps of a user's own, or null.
  */
 export function terrainMaterial(
   atmosphere: Atmosphere,

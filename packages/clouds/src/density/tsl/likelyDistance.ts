@@ -38,7 +38,7 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
   strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)
 
 /**
- * Most that billows add to the strength of clear air, and what anvils add: they spread from column to
+ * Strength that billows add to clear air, in nearly all places, and what anvils add: they spread from column to
  * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
  * regions, as grain (*Cumulus*).
  */

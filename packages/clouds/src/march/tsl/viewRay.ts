@@ -7,11 +7,17 @@ import {
   logarithmicDepthToViewZ,
   vec3
 } from 'three/tsl'
-import type { NodeBuilder, Renderer } from 'three/webgpu'
+import type { Node, NodeBuilder, Renderer } from 'three/webgpu'
 import type { CloudField } from '../../density/CloudField'
 import type { FrameUniforms } from '../FrameUniforms'
-import type { Bool, Float, Mat3, Vec2, Vec3 } from '../../tsl-types'
+import type { Bool, Float, LevelTexture, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { FAR_AWAY, groundDistance } from './layerBoundaries'
+
+/** Depth of a node at a place of the picture: a texture's, or that of the pixel that is drawn. */
+export function depthAt(node: Node, at: Vec2): Float {
+  const depth = node as unknown as LevelTexture<Vec2> & Vec4
+  return typeof depth.sample === 'function' ? (depth.sample(at) as unknown as Vec4).r : depth.r
+}
 
 /** View ray through a pixel. */
 export interface PixelRay {

@@ -18,7 +18,7 @@ export interface ShadingFall extends FallingDecks {
 /** Samples of a ray of light through what falls. Fewer: bands in the shadows of shafts (*Rain and snow*). */
 const FALL_STEPS = 16
 
-/** What falls, on a stretch of a ray. */
+/** Precipitation on a stretch of a ray. */
 export function fallMoments(
   field: CloudField,
   falling: ShadingFall,

@@ -6,7 +6,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { loop, type Bool, type Float, type Int, type Vec3 } from '../../tsl-types'
 import type { LayerSegment } from './layerSegment'
 
-/** What a ray of light meets on a stretch. */
+/** Clouds that a ray of light meets on a stretch. */
 export interface StretchMoments {
   /** Optical depth, the same times place and times its square, not scaled. */
   readonly sums: Vec3

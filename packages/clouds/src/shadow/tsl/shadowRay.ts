@@ -97,7 +97,7 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
     const weighted = vec3(0).toVar() as Vec3
     /** Optical depths, of all and of layers that cast shadows. */
     const depths = vec2(0).toVar() as Vec2
-    /** Where the first cloud begins, from the light. */
+    /** Distance at which the first cloud begins, from the light. */
     const first = float(NO_CLOUDS).toVar()
     const add = ({ sums, entry }: StretchMoments, layer: LayerNodes): void => {
       first.assign(first.max(entry))

@@ -44,7 +44,7 @@ export class GroundMask {
   readonly east: number
   readonly south: number
   readonly north: number
-  /** What shaders find places by; see `placeOnMask`. */
+  /** Uniforms that shaders find places by; see `placeOnMask`. */
   readonly uniforms = {
     /** Unit vectors to the east, from the axis, and to the north at the middle; in a flat world those along the map. */
     east: vector(),

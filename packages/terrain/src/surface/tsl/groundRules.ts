@@ -30,7 +30,7 @@ export interface GroundPlace extends GrainPlace {
   readonly hollow: Float
 }
 
-/** What lies on what, each as a share of what those before it leave: snow, rock, no sand of the shore, scree, desert, woods; the rest is grass. */
+/** Layers on each other, each as a share of what those before it leave: snow, rock, no sand of the shore, scree, desert, woods; the rest is grass. */
 export interface GroundLayers {
   readonly snow: Float
   readonly bare: Float

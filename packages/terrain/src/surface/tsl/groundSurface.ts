@@ -50,7 +50,7 @@ export interface GroundSurface {
   readonly occlusion: Float
 }
 
-/** What users have given of the ground's surface. */
+/** Maps and mask of the ground's surface that users have given. */
 export interface OwnSurface {
   readonly maps: GroundMaps | null
   /** Layers where a mask has painted them, with edges that a height about 0 frays. */

@@ -48,7 +48,7 @@ export interface MapsInShader {
   readonly layers: readonly MappedLayer[]
 }
 
-/** What maps say of the ground at a place. */
+/** Ground at a place by its maps. */
 export interface MappedGround {
   /** Share of the ground that has maps. */
   readonly share: Float
@@ -79,7 +79,7 @@ function heaviest(layers: readonly Vec4[]): [Vec4, Vec4] {
 /**
  * The ground by a user's maps, and by colours that are made up where it has none.
  *
- * @param layers - What lies on what.
+ * @param layers - Layers on each other.
  */
 export function mappedGround(
   maps: MapsInShader,
@@ -98,7 +98,7 @@ export function mappedGround(
 }
 
 /**
- * What maps have: the two heaviest materials of a pixel, each by two pieces of its maps that are moved at random, the higher in front.
+ * Ground of maps: the two heaviest materials of a pixel, each by two pieces of its maps that are moved at random, the higher in front.
  *
  * @param weights - Shares of materials; their sum is 1.
  */

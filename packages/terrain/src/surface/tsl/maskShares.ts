@@ -12,7 +12,7 @@ export interface MaskInShader {
   >
 }
 
-/** By how much stones move the edges of what is painted. */
+/** Factor by which stones move the edges of what is painted. */
 const FRAYED = 2
 
 /**

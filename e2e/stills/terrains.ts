@@ -1,0 +1,46 @@
+/** A still of the made-up planet of `@welkin/terrain`. */
+export interface TerrainStill {
+  name: string
+  /** Features to look for. */
+  about: string
+  terrain: {
+    /** Place of the camera [°], and height above the ground [m]. */
+    longitude: number
+    latitude: number
+    height: number
+    /** Azimuth, clockwise from north, and pitch of the camera [°]. */
+    heading: number
+    pitch: number
+    /** Elevation and azimuth of the sun, clockwise from north [°]. */
+    sun: { elevation: number; azimuth: number }
+    /** True to pave the grass with a user's maps. */
+    cobbles?: boolean
+  }
+}
+
+/** The made-up planet: at one's feet, among its mountains, and from far above. */
+export const terrains: TerrainStill[] = (
+  [
+    ['grass', 'a meadow: blades and tufts, no repetition', [0.494, 46.35, 1.7], [338, -8]],
+    ['feet', "the same meadow before one's feet: detail to 1 cm", [0.494, 46.35, 1.7], [338, -50]],
+    ['cobbles', 'maps of a user in place of grass, with depth', [0.494, 46.35, 1.7], [338, -35]],
+    ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
+    ['snow', 'snow and rock about a summit', [0.438, 47.41, 1.7], [200, -8]],
+    ['shore', 'sand, wet where the sea begins', [1.32, 46.19, 1.7], [350, -8]],
+    ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
+    ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
+    ['400km', 'a mountainous coast from orbit: no net', [1, 44.5, 4e5], [0, -25]]
+  ] as const
+).map(([name, about, [longitude, latitude, height], [heading, pitch]]) => ({
+  name: `terrain-${name}`,
+  about,
+  terrain: {
+    longitude,
+    latitude,
+    height,
+    heading,
+    pitch,
+    sun: { elevation: 28, azimuth: heading + 100 },
+    cobbles: name === 'cobbles'
+  }
+}))
