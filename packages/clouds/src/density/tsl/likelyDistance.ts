@@ -7,7 +7,7 @@ import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
 import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
 import { stormNearby } from './storm'
-import type { KeptStorm } from './stormNearby'
+import { keepStorm, type KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
 import { cloudWeather, leanAt, stormRadiusIn } from './weather'
@@ -107,9 +107,8 @@ export function clearOfStorms(
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const around = unpackBackground(background)
   const zenith = zenithAt(field, subpoint)
-  const found = stormNearby(layer, subpoint, zenith, around.shift, stormRadiusIn(layer, around))
-  nearby.anvil.assign(found.anvil)
-  nearby.tower.assign(found.tower)
+  const radius = stormRadiusIn(layer, around)
+  keepStorm(nearby, stormNearby(layer, subpoint, zenith, around.shift, radius))
   const still = vec2(0) as Vec2
   const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
   const clear = smoothStormStrength(layer, weather, height)

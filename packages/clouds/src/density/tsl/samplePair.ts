@@ -1,4 +1,4 @@
-import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
+import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -16,6 +16,7 @@ import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
 import { ifStorm } from './storm'
+import { keptStorm } from './stormNearby'
 
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
@@ -72,7 +73,7 @@ export function samplePair(
       greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
       const background = backgroundAt(field, layer, middle, { map, index })
       const likely = float(0).toVar()
-      const storm = { anvil: vec3(0).toVar(), tower: vec3(0).toVar() }
+      const storm = keptStorm()
       ifStorm(
         layer,
         () => {

@@ -1,4 +1,4 @@
-import { If, float, int, vec2, vec3, vec4 } from 'three/tsl'
+import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { hasStorms } from '../kinds'
 import type { WeatherMap } from '../WeatherMap'
@@ -7,7 +7,7 @@ import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRang
 import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
 import { ifStorm, stormNearby } from './storm'
-import type { KeptStorm } from './stormNearby'
+import { keepStorm, keptStorm, type KeptStorm } from './stormNearby'
 import { leanAt, stormRadiusIn } from './weather'
 import { unpackBackground, weatherBackground, type PackedBackground } from './weatherBackground'
 
@@ -45,7 +45,7 @@ export interface WeatherCache {
 }
 
 /** The storms nearest to a sample of a layer of storms: all samples of its light share one search. */
-function keepStorm(
+function keepStormsAt(
   field: CloudField,
   layer: LayerNodes,
   background: PackedBackground,
@@ -57,9 +57,7 @@ function keepStorm(
   const around = unpackBackground(background)
   const radius = stormRadiusIn(layer, around)
   const place = subpoint.toConst() as Vec3
-  const found = stormNearby(layer, place, zenithAt(field, place), around.shift, radius)
-  kept.anvil.assign(found.anvil)
-  kept.tower.assign(found.tower)
+  keepStorm(kept, stormNearby(layer, place, zenithAt(field, place), around.shift, radius))
 }
 
 const nothing = (): void => undefined
@@ -75,17 +73,16 @@ export function weatherCacheAt(
   const densest = int(0).toVar() as Int
   const most = float(-1).toVar()
   const isAlone = field.layers.length === 1
-  const variables = (): KeptStorm => ({ anvil: vec3(0).toVar(), tower: vec3(0).toVar() })
-  const storm = hasStorms(field) === false ? undefined : variables()
+  const storm = hasStorms(field) === false ? undefined : keptStorm()
   forLayers(
     field,
     index => {
       const layer = layerAt(field, index)
       If(isWithin(layer, heightIn(layer, sample.altitude)), () => {
         const found = backgroundAt(field, layer, sample, { map, index })
-        const own = isAlone || storm === undefined ? storm : variables()
+        const own = isAlone || storm === undefined ? storm : keptStorm()
         if (own !== undefined) {
-          ifStorm(layer, () => keepStorm(field, layer, found, sample, own), nothing)
+          ifStorm(layer, () => keepStormsAt(field, layer, found, sample, own), nothing)
         }
         if (isAlone) {
           background.assign(found)
@@ -97,10 +94,7 @@ export function weatherCacheAt(
           most.assign(extinction)
           background.assign(found)
           densest.assign(index)
-          if (storm !== undefined && own !== undefined) {
-            storm.anvil.assign(own.anvil)
-            storm.tower.assign(own.tower)
-          }
+          if (storm !== undefined && own !== undefined) keepStorm(storm, own)
         })
       })
     },

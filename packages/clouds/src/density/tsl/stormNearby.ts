@@ -91,3 +91,12 @@ export type StormNearby = StormGaps
 
 /** Variables that hold it. */
 export type KeptStorm = { readonly [Key in keyof StormNearby]: Variable<Vec3> }
+
+/** Variables for the nearest storms. To be called inside of a shader function. */
+export const keptStorm = (): KeptStorm => ({ anvil: vec3(0).toVar(), tower: vec3(0).toVar() })
+
+/** Keeps the nearest storms. */
+export function keepStorm(kept: KeptStorm, { anvil, tower }: StormNearby): void {
+  kept.anvil.assign(anvil)
+  kept.tower.assign(tower)
+}

@@ -69,11 +69,14 @@ export function marchClouds(
   /** Distance of the first layer; 0 before. */
   const entry = float(0).toVar()
 
-  const isDone = (until: Float): Bool =>
-    position
-      .greaterThanEqual(until)
-      .or(seen.transmittance.lessThan(LEAST_TRANSMITTANCE))
-      .or(pairs.greaterThanEqual(quality.pairs))
+  const { length } = field.layers
+  const isNested = weatherMap !== undefined && length >= NESTED_FROM
+  const isDone = (until: Float): Bool => {
+    const isSeen = seen.transmittance.lessThan(LEAST_TRANSMITTANCE)
+    const isOver = position.greaterThanEqual(until).or(isSeen)
+    // One loop alone counts them itself.
+    return isNested ? isOver.or(pairs.greaterThanEqual(quality.pairs)) : isOver
+  }
   const enterSegment = (): void => {
     endStratum(seen)
     const boundary = nextLayerBoundary(field, cosView, position.mul(1 + 1e-6).add(0.01))
@@ -106,8 +109,6 @@ export function marchClouds(
     position.addAssign(advance(state, pair, quality, found, accept))
   }
 
-  const { length } = field.layers
-  const isNested = weatherMap !== undefined && length >= NESTED_FROM
   loop('cloudSegment', isNested ? CROSSINGS * length + 1 : quality.pairs, () => {
     If(isDone(end), () => {
       Break()

@@ -95,14 +95,12 @@ export function grainAt(place: GrainPlace): Grain {
     })
     If(far.greaterThan(0), () => {
       const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
-      const fineOf = ({ away, random }: TilingVertex): Vec4 =>
-        pieceOf(grain, frame, FINE.side, away, random.zx)
-      const add = (vertex: TilingVertex, share: Float): void => {
-        const { away, random } = vertex
+      const add = ({ away, random }: TilingVertex, share: Float): void => {
         const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
         coarse.addAssign(boulders.mul(share.mul(far)))
         If(near.greaterThan(0), () => {
-          fine.addAssign(fineOf(vertex).mul(share.mul(near)))
+          const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
+          fine.addAssign(stones.mul(share.mul(near)))
         })
       }
       add(nearest(), shares.x)

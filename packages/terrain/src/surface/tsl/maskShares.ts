@@ -1,5 +1,5 @@
 import type { Texture } from 'three'
-import { atan, step, texture, vec2, vec4 } from 'three/tsl'
+import { atan, float, step, texture, vec2, vec4 } from 'three/tsl'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { ofKinds, type GroundKind, type OfKinds } from '../maps/groundKinds'
 
@@ -70,7 +70,7 @@ export function maskShares(
   return ofKinds(kind =>
     mask.materials.reduce<Float>(
       (share, material, n) => (material === kind ? share.add(channels[n]) : share),
-      shares.x.mul(0)
+      float(0)
     )
   )
 }
