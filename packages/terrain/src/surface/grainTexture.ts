@@ -189,7 +189,6 @@ export function grainTexture(): DataTexture {
   texture.wrapS = texture.wrapT = RepeatWrapping
   texture.minFilter = LinearMipmapLinearFilter
   texture.magFilter = LinearFilter
-  texture.anisotropy = 2
   texture.generateMipmaps = true
   texture.needsUpdate = true
   return texture

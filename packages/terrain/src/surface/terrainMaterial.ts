@@ -17,6 +17,7 @@ import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
 import type { TerrainUniforms } from '../TerrainUniforms'
+import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
@@ -66,11 +67,10 @@ export function terrainMaterial(
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
-  const { reference, seaLevel, seaVariance, waveTime, pole } = uniforms
+  const { radii, reference, seaLevel, seaVariance, waveTime, pole } = uniforms
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
-    up: handedOn<Vec3>('vec3', 'Up'),
     texels: handedOn<Vec2>('vec2', 'Texels'),
     pages: handedOn<Vec4>('vec4', 'Pages'),
     blend: handedOn<Vec4>('vec4', 'Blend')
@@ -78,7 +78,6 @@ export function terrainMaterial(
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
-    handed.up.assign(vertex.up)
     handed.texels.assign(vertex.texels)
     handed.pages.assign(vertex.pages)
     handed.blend.assign(vertex.blend)
@@ -107,7 +106,8 @@ export function terrainMaterial(
   // Gradient along the face's axes, height and patchiness.
   const ground = ofPages(atlas.surface.texture, 'ground')
   const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
-  const up = handed.up.normalize().toConst('up') as Vec3
+  // Of the place itself: a varying less.
+  const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), radii).toConst('up') as Vec3
   const { first, second } = faceAxes(face)
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')

@@ -14,6 +14,9 @@ const CANOPY = { side: 150, from: 0.22, to: 0.7, fades: 5, gone: 10 }
 /** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
 const LOST = 0.075
 
+/** Least size of what a picture's level shows, to the longer side of a pixel. */
+const LEAST_SIZE = 0.6
+
 /** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
 const CANOPY_CELLS = 3
@@ -63,7 +66,10 @@ export function grainAt(place: GrainPlace): Grain {
   // Derivatives are taken out of branches.
   const across = dFdx(offset).toConst() as Vec3
   const along = dFdy(offset).toConst() as Vec3
-  const footprint = across.length().max(along.length()).toConst('footprint')
+  const [width, height] = [across.length().toConst(), along.length().toConst()] as Float[]
+  const footprint = width.max(height).toConst('footprint') as Float
+  // Between both sides of a pixel, nearer to the longer one where it is much longer: one look-up a picture, of little blur and little shimmer.
+  const size = width.mul(height).sqrt().max(footprint.mul(LEAST_SIZE))
   const share = ({ gone }: typeof FINE): Float =>
     float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
   const near = share(FINE)
@@ -79,7 +85,8 @@ export function grainAt(place: GrainPlace): Grain {
     const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
     const crowns = vec4(0).toVar('crowns') as unknown as Variable
     const crownSlope = vec3(0).toVar('crownSlope') as unknown as Slope
-    const frame = { ...frameNear(normal, place.up, first), across, along }
+    const logSize = size.max(1e-6).log2().toConst() as Float
+    const frame = { ...frameNear(normal, place.up, first), logSize }
     const inSpace = ({ x, y }: Vec4): Vec3 =>
       frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
     If(canopy.greaterThan(0), () => {

@@ -19,14 +19,13 @@ import type { Texture } from 'three'
 import { latticeGradient } from '../../noise/tsl/latticeNoise'
 import type { Float, UInt, UVec4, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
-/** Directions in which pictures are laid, and the change of a place from a pixel to the next. */
+/** Directions in which pictures are laid, and the level of detail that they are read at. */
 export interface TilingFrame {
   /** Orthonormal vectors along the surface. */
   readonly tangent: Vec3
   readonly bitangent: Vec3
-  /** Change of the offset from a pixel to the next, across and along [m]. */
-  readonly across: Vec3
-  readonly along: Vec3
+  /** Binary logarithm of the size of what a pixel shows [m]. */
+  readonly logSize: Float
 }
 
 /** Vertex of the lattice that counts at a place. */
@@ -132,12 +131,11 @@ export function pieceOf(
   away: Vec3,
   moved: Vec2
 ): Vec4 {
-  const [dx, dy] = [frame.across, frame.along].map(
-    change => alongFrame(frame, change).div(side) as Vec2
-  )
   const place = alongFrame(frame, away).div(side).add(moved)
-  const node = texture(picture, place) as unknown as { grad(dx: Vec2, dy: Vec2): Vec4 }
-  return node.grad(dx, dy).mul(2).sub(1)
+  const node = texture(picture, place) as unknown as { level(level: Float): Vec4 }
+  const { width } = picture.image as { width: number }
+  const level = frame.logSize.add(Math.log2(width / side)).max(0)
+  return node.level(level).mul(2).sub(1)
 }
 
 /** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */

@@ -22,8 +22,6 @@ export interface TileVertex {
   readonly position: Vec3
   /** Reference to the vertex's subpoint on the ellipsoid, ECEF axes [m]. */
   readonly place: Vec3
-  /** Unit vector, geodetic up. */
-  readonly up: Vec3
   /** Texels from the first one of a page for pixels. */
   readonly texels: Vec2
   /** First texels of the tile's page (xy), and of its quarter of the parent's (zw). */
@@ -108,7 +106,6 @@ export function tileVertex(
   return {
     position,
     place: tileOffset.xyz.add(subpoint),
-    up,
     texels: moved.mul(density),
     pages: vec4(
       firstTexel(own, columns, surfaceSide),
