@@ -34,8 +34,8 @@ gpuTest(
     for (const [height, pitch, heading, elevation] of [
       [2, -2, 180, 4],
       [1000, -12, 170, 35],
-      [9000, -20, 180, 10],
-      [4e5, -30, 0, 30]
+      [9000, -4, 180, 6],
+      [4e5, -25, 180, 5]
     ]) {
       atmosphere.setSunAngles(elevation, 180)
       camera.position.y = ground + height

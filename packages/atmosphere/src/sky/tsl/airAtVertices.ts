@@ -4,8 +4,11 @@ import { covered, coveredPosition } from '../../view/tsl/coveredPosition'
 import type { ViewNodes } from '../../view/ViewNodes'
 import { aerialPerspectiveTo, type AerialPerspective } from './aerialPerspective'
 
-/** Distance up to which the air of vertices is taken [m]. */
-const FAR = 3e4
+/**
+ * Distance up to which the air of vertices is taken, to the viewer's height, and its bounds [m]: near the horizon, where a triangle is
+ * seen along hundreds of kilometres, each pixel finds its own, and so it does where triangles are as large as the planet bends.
+ */
+const FAR = { height: 2.5, least: 2e5, most: 1e6 }
 
 /**
  * Clear air up to a fragment: of the vertices about it if it is near, as a material has it that gives this as its
@@ -23,10 +26,11 @@ export function airAtVertices(view: ViewNodes): AerialPerspective | null {
     n => covered(near.element(n)).toVar() as unknown as Vec3 & { assign(value: Vec3): void }
   )
   const position = coveredPosition()
-  If(view.toMapped(position).length().greaterThan(FAR), () => {
-    const far = aerialPerspectiveTo(view, position)
-    transmittance.assign(far.transmittance)
-    inScatter.assign(far.inScatter)
+  const far = view.height.mul(FAR.height).clamp(FAR.least, FAR.most)
+  If(view.toMapped(position).length().greaterThan(far), () => {
+    const own = aerialPerspectiveTo(view, position)
+    transmittance.assign(own.transmittance)
+    inScatter.assign(own.inScatter)
   })
   return { transmittance, inScatter }
 }
