@@ -202,7 +202,7 @@ export async function timeTerrain(
   device: HeadlessDevice,
   size: readonly [number, number],
   frames: number,
-  resolutions: readonly number[] = [12, 16, 24]
+  resolutions: readonly number[] = [12]
 ): Promise<TerrainCost[]> {
   const costs: TerrainCost[] = []
   for (const resolution of resolutions) {
