@@ -119,7 +119,10 @@ export function groundRules(
     spread.add(450),
     overTrees.add(relief.mul(260))
   ).toConst('bareness')
-  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief)).toConst('inland')
+  // A pixel as large as a beach is mostly of what lies behind it.
+  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief).add(spread)).toConst(
+    'inland'
+  )
   const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
   const snow = smoothstep(
     spread.add(150).negate(),
