@@ -11,7 +11,8 @@ import {
 } from 'three'
 import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
-import { fieldBorder, forestAt, groundHeight, isField, isOnRoad, VILLAGE } from './ground'
+import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
+import { VILLAGE } from './places'
 import { smoothNoise } from './noise'
 import { Trees, type Tree } from './Trees'
 
@@ -149,7 +150,7 @@ export function createGrove(count: number): Trees {
     return height > 1.2 && height < 45 ? shore + village + copse : 0
   })
   return new Trees(
-    [limetree(5, 2), limetree(5, 0), limetree(1, 0)],
+    [limetree(5, 2), limetree(5, 1), limetree(1, 1)],
     DISTANCES,
     hedges.concat(others)
   )
