@@ -18,6 +18,9 @@ import type { Node, Renderer, TextureNode } from 'three/webgpu'
 const REACH = 3
 const SAMPLES = 6
 
+/** Pictures for each that occlusion is found for: things keep theirs over a few. */
+const EVERY = 2
+
 /** Pixels along a side over those of the picture. */
 const COARSE = 0.5
 
@@ -27,7 +30,7 @@ const HIDDEN = 0.03
 type Vec4 = Node<'vec4'>
 
 /**
- * Ambient occlusion of the picture before, found from its depth by three's GTAO when it is drawn, and read by the next one at
+ * Ambient occlusion of a picture before, found from its depth by three's GTAO when it is drawn, and read by the next ones at
  * the place where each thing was: nothing is drawn twice.
  */
 export class LastOcclusion {
@@ -38,6 +41,7 @@ export class LastOcclusion {
   readonly #occlusion: ReturnType<typeof ao>
   readonly #toScreen = uniform(new Matrix4())
   readonly #texel = uniform(new Vector2())
+  #pictures = 0
 
   /** @param depth - That of the scene's pass, as the renderer writes it. */
   constructor(renderer: Renderer, depth: TextureNode, camera: PerspectiveCamera) {
@@ -58,8 +62,9 @@ export class LastOcclusion {
     this.#pass = new FragmentPass('Occlusion', vec4(smooth, viewZ.negate(), 0, 1))
   }
 
-  /** Keeps the occlusion of the picture that was just drawn, and its camera. */
+  /** Keeps the occlusion of every other picture once it was drawn, and its camera. */
   update(renderer: Renderer, camera: PerspectiveCamera): void {
+    if (this.#pictures++ % EVERY !== 0) return
     const { width, height } = this.#depth.value.image as { width: number; height: number }
     this.#target.setSize(Math.ceil(width * COARSE), Math.ceil(height * COARSE))
     this.#texel.value.set(1 / this.#target.width, 1 / this.#target.height)

@@ -4,7 +4,6 @@ import {
   attribute,
   normalView,
   positionGeometry,
-  positionView,
   positionViewDirection,
   sin,
   smoothstep,
@@ -34,9 +33,6 @@ const STEEP = 0.6
 const _place = new Vector3()
 const _direction = new Vector3()
 
-/** Distances between which gaps between leaves go, as they become smaller than pixels [m]. */
-const GAPS = [60, 420] as const
-
 /** Leaves and the gaps between them, of trees of either kind. */
 interface Foliage {
   /** Brightness, about 1. */
@@ -57,15 +53,10 @@ export function foliage(): Foliage {
   const brightness = smoothstep(-1.1, 1.1, coarse.mul(0.7).add(fine.mul(0.8)))
     .mul(0.7)
     .add(0.65)
-  const isNear = smoothstep(GAPS[1], GAPS[0], positionView.z.negate())
-  const density = coarse
-    .mul(0.5)
-    .add(fine.mul(isNear.mul(0.5)))
-    .add(1)
-    .mul(0.5)
+  const density = coarse.add(fine).mul(0.25).add(0.5)
   const facing = normalView.dot(positionViewDirection).abs()
   const [bark, green] = [attribute<'vec3'>('color', 'vec3').r, attribute<'vec3'>('color', 'vec3').g]
-  const hasLeaf = density.greaterThan(smoothstep(0.75, 0.05, facing).mul(isNear.mul(0.2).add(0.5)))
+  const hasLeaf = density.greaterThan(smoothstep(0.75, 0.05, facing).mul(0.68))
   return { brightness, isSolid: hasLeaf.or(bark.greaterThan(green)) }
 }
 
@@ -90,12 +81,16 @@ export class Trees extends Group {
     super()
     this.#trees = trees
     this.#distances = distances
-    const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     const { brightness, isSolid } = foliage()
-    material.colorNode = vec3(brightness)
-    material.maskNode = isSolid
-    this.levels = geometries.map(geometry => {
-      const mesh = new InstancedMesh(geometry, material, trees.length)
+    const [near, far] = [0, 1].map(() => {
+      const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
+      material.colorNode = vec3(brightness)
+      return material
+    })
+    // Gaps are smaller than pixels elsewhere.
+    near.maskNode = isSolid
+    this.levels = geometries.map((geometry, level) => {
+      const mesh = new InstancedMesh(geometry, level === 0 ? near : far, trees.length)
       mesh.setColorAt(0, new Color())
       mesh.castShadow = mesh.receiveShadow = true
       mesh.frustumCulled = false

@@ -150,7 +150,7 @@ export function createGrove(count: number): Trees {
     return height > 1.2 && height < 45 ? shore + village + copse : 0
   })
   return new Trees(
-    [limetree(5, 2), limetree(5, 1), limetree(1, 1)],
+    [limetree(5, 2), limetree(5, 0), limetree(1, 0)],
     DISTANCES,
     hedges.concat(others)
   )

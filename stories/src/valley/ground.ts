@@ -3,6 +3,8 @@ import type { SurfaceWater } from '@welkin/atmosphere'
 import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
+  dFdx,
+  dFdy,
   float,
   floor,
   Fn,
@@ -153,6 +155,9 @@ function roadAt(): Node<'float'> {
   return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
 }
 
+/** Distance within which the finest grain of the ground is drawn [m]. */
+const NEAR = 200
+
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
 function groundMaterial(
   { wetnessNode, snowCoverNode }: SurfaceWater,
@@ -171,17 +176,27 @@ function groundMaterial(
   }
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
   // above: with heights in it, slopes that go with them have streaks.
-  const noise = (period: number, from = picture): Node<'float'> => {
+  const turnedBy = (period: number): Node<'vec2'> => {
     const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-    const turned = vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
-    return texture(from, turned).r.sub(0.5).mul(2)
+    return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
   }
+  const noise = (period: number): Node<'float'> =>
+    texture(picture, turnedBy(period)).r.sub(0.5).mul(2)
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
   const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
   const patches = noise(390).mul(upTo(24_000)).toVar()
-  const grain = noise(11.3, grazed).mul(1.3).mul(upTo(900)).toVar()
+  const near = turnedBy(1.9).toVar()
+  const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
+  const grain = Fn(() => {
+    const sum = noise(11.3).mul(0.6).mul(upTo(900)).toVar()
+    If(distance.lessThan(NEAR), () => {
+      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
+      sum.addAssign(finest.mul(upTo(NEAR)))
+    })
+    return sum
+  })().toVar()
   const fine = grain
     .add(noise(71).mul(upTo(2500)))
     .add(patches)
