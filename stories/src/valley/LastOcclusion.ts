@@ -19,7 +19,7 @@ const REACH = 3
 const SAMPLES = 6
 
 /** Pictures for each that occlusion is found for: things keep theirs over a few. */
-const EVERY = 2
+const EVERY = 3
 
 /** Pixels along a side over those of the picture. */
 const COARSE = 0.5
