@@ -148,7 +148,7 @@ const valleys: ValleyStill[] = [
   {
     name: 'valley-day',
     about: 'village, forests in sun and shade of clouds, mountains in the lake',
-    valley: { view: 'village', hour: 9 }
+    valley: { view: 'village', hour: 8 }
   },
   {
     name: 'valley-noon',

@@ -1,7 +1,8 @@
 import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
 import { beforeAll, describe, expect, it } from 'vitest'
 import { createGrove } from '../src/valley/forest'
-import { fieldBorder, groundHeight, isOnRoad, VILLAGE } from '../src/valley/ground'
+import { fieldBorder, groundHeight, isOnRoad } from '../src/valley/ground'
+import { VILLAGE } from '../src/valley/places'
 
 const COUNT = 400
 

@@ -22,7 +22,7 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
   // Names as three r187 and `ValleyFinish` give them.
   const features = {
     AO: 'ambient occlusion',
-    Occluders: 'ambient occlusion',
+    Occlusion: 'ambient occlusion',
     'TRAA [ RTT ]': 'TRAA',
     TRAA: 'TRAA',
     'DoF [ RTT ]': 'depth of field',

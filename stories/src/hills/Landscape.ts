@@ -14,7 +14,7 @@ import {
 import { vec3 } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import { limetree, spruce } from '../valley/forest'
-import { mottled } from '../valley/Trees'
+import { foliage } from '../valley/Trees'
 import { hedgeDistance, soilMaterial, type Soil } from './soil'
 
 /** Half width of the hills [m]. */
@@ -114,7 +114,9 @@ function trees(): Group {
     vertexColors: true,
     side: DoubleSide
   })
-  material.colorNode = vec3(mottled())
+  const { brightness, isSolid } = foliage()
+  material.colorNode = vec3(brightness)
+  material.maskNode = isSolid
   const group = new Group()
   for (const [kind, geometry] of kinds.entries()) {
     const mesh = new InstancedMesh(geometry, material, TREES)

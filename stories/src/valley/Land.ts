@@ -4,6 +4,7 @@ import { disposeMeshes } from '../scene'
 import type { ValleyPrecipitation } from './falling'
 import { createForest, createGrove } from './forest'
 import { createGround } from './ground'
+import { Relief } from './relief'
 import type { StreetLamps } from './StreetLamps'
 import type { Trees } from './Trees'
 
@@ -13,6 +14,14 @@ const QUADS: Readonly<Record<CloudQualityName, number>> = {
   medium: 320,
   high: 640,
   ultra: 800
+}
+
+/** Texels along an edge of the map of slopes, by quality. */
+const RELIEF: Readonly<Record<CloudQualityName, number>> = {
+  low: 512,
+  medium: 2048,
+  high: 2048,
+  ultra: 2048
 }
 
 /** Trees that stand one by one, by quality. */
@@ -30,6 +39,7 @@ export class Land extends Group {
   #quality?: CloudQualityName
   #hasTrees = true
   #ground = new Group()
+  #relief?: Relief
   #trees: readonly Trees[] = []
 
   constructor(falling: ValleyPrecipitation, lamps: StreetLamps) {
@@ -45,7 +55,9 @@ export class Land extends Group {
     this.#quality = quality
     this.dispose()
     this.clear()
-    this.#ground = createGround(QUADS[quality], this.#falling.water, this.#lamps.reflected())
+    this.#relief = new Relief(RELIEF[quality])
+    const lamplight = this.#lamps.reflected()
+    this.#ground = createGround(QUADS[quality], this.#falling.water, this.#relief, lamplight)
     this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 12))]
     this.add(this.#ground, ...this.#trees)
     this.showTrees(this.#hasTrees)
@@ -69,5 +81,6 @@ export class Land extends Group {
   override dispose(): void {
     disposeMeshes(this.#ground.children as Mesh[])
     for (const each of this.#trees) each.dispose()
+    this.#relief?.dispose()
   }
 }

@@ -13,7 +13,8 @@ import { diffuseColor, float, Fn, If, positionWorld, texture, uniform, vec2, vec
 import { MeshBasicNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
-import { groundHeight, roadMiddle, VILLAGE } from './ground'
+import { groundHeight, roadMiddle } from './ground'
+import { VILLAGE } from './places'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** A light by its place on the map [m], and its luminous intensity [cd] and height above the ground [m]. */

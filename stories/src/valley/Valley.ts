@@ -25,7 +25,8 @@ import {
   type ValleyFeatures
 } from '../valleyFactors'
 import { CascadeTurns } from './CascadeTurns'
-import { groundHeight, LAKE, VILLAGE } from './ground'
+import { groundHeight } from './ground'
+import { LAKE, VILLAGE } from './places'
 import { createLake } from './lake'
 import { LakeMirror } from './LakeMirror'
 import { Land } from './Land'
@@ -152,7 +153,7 @@ export class Valley {
     scene.add(this.#water.mesh)
     this.#renderer = renderer
     this.pipeline = new RenderPipeline(renderer)
-    this.#finish = new ValleyFinish(this.pipeline, scene, camera, air)
+    this.#finish = new ValleyFinish(renderer, this.pipeline, camera, air)
     this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
     this.#setDay(state.hour)
     this.#dispose.push(
@@ -288,6 +289,7 @@ export class Valley {
     const { autoClear } = this.#renderer
     this.#renderer.autoClear = false // every pixel of the canvas is drawn: passes before it clear for themselves
     this.pipeline.render()
+    this.#finish.afterDrawn()
     this.#renderer.autoClear = autoClear
     this.#mirror.update(this.#renderer, this.camera)
   }

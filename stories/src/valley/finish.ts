@@ -1,11 +1,9 @@
 import { skyVelocity } from '@welkin/atmosphere'
 import { cloudVelocity } from '@welkin/clouds'
-import { DoubleSide } from 'three'
-import type { PerspectiveCamera, Scene } from 'three'
+import type { PerspectiveCamera } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
 import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
-import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
@@ -15,19 +13,16 @@ import {
   Fn,
   int,
   mrt,
-  normalView,
   output,
-  pass,
   rtt,
   screenSize,
-  screenUV,
   vec2,
   vec4,
   velocity
 } from 'three/tsl'
-import { NodeMaterial } from 'three/webgpu'
-import type { Node, PassNode, RenderPipeline } from 'three/webgpu'
+import type { Node, Renderer, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
+import { LastOcclusion } from './LastOcclusion'
 import { lensOn } from './lens'
 import { PictureNode } from './PictureNode'
 import { stillVelocity } from './stillVelocity'
@@ -54,11 +49,7 @@ export interface ValleyEffects {
 /** Strength of the glow around what is bright. */
 const GLOW = 0.02
 
-/** Reach of ambient occlusion [m], and its samples. */
-const OCCLUSION_REACH = 3
-const OCCLUSION_SAMPLES = 6
-
-/** Pixels along a side of ambient occlusion and of motion blur's velocities, over those of the picture. */
+/** Pixels along a side of motion blur's velocities over those of the picture. */
 const COARSE = 0.5
 
 /** Samples of motion blur where nothing moves, and where much does: one for two pixels in between. */
@@ -69,17 +60,23 @@ type Disposable = { dispose(): void }
 
 /** Post effects over the exposed picture, in the order of a camera: motion, lens, film. */
 export class ValleyFinish {
+  readonly #renderer: Renderer
   readonly #pipeline: RenderPipeline
-  readonly #scene: Scene
   readonly #camera: PerspectiveCamera
   readonly #air: ValleyAir
   /** Effects that are on, and what is to be freed with them. */
   #key = ''
   #used: Disposable[] = []
+  #occlusion?: LastOcclusion
 
-  constructor(pipeline: RenderPipeline, scene: Scene, camera: PerspectiveCamera, air: ValleyAir) {
+  constructor(
+    renderer: Renderer,
+    pipeline: RenderPipeline,
+    camera: PerspectiveCamera,
+    air: ValleyAir
+  ) {
+    this.#renderer = renderer
     this.#pipeline = pipeline
-    this.#scene = scene
     this.#camera = camera
     this.#air = air
     // The table has the colours of the display.
@@ -100,11 +97,20 @@ export class ValleyFinish {
     this.#pipeline.needsUpdate = true
   }
 
+  /** Keeps what the next picture has of the one that was just drawn. */
+  afterDrawn(): void {
+    this.#occlusion?.update(this.#renderer, this.#camera)
+  }
+
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
     const motion = effects.antialiasing === 'traa' ? this.#motion() : null
-    scenePass.contextNode = effects.occlusion ? this.#occlusion() : null
+    this.#occlusion = effects.occlusion
+      ? this.#keep(new LastOcclusion(this.#renderer, depth, this.#camera))
+      : undefined
+    scenePass.contextNode =
+      this.#occlusion === undefined ? null : builtinAOContext(this.#occlusion.sample())
     let picture: Node = exposure
     if (motion !== null) {
       const smooth = traa(this.#texture(picture, 'TRAA'), depth, motion, this.#camera)
@@ -157,24 +163,6 @@ export class ValleyFinish {
       const light = motionBlur(sharp, way, count)
       return light.mul(samples.div(samples.add(1)))
     })()
-  }
-
-  #occlusion(): PassNode['contextNode'] {
-    const before = this.#keep(pass(this.#scene, this.#camera, { samples: 0 }))
-    before.renderTarget.texture.name = 'Occluders'
-    before.setResolutionScale(COARSE)
-    // Without the light that things have at their vertices.
-    const material = this.#keep(new NodeMaterial())
-    material.side = DoubleSide
-    material.fragmentNode = vec4(normalView, 1)
-    before.overrideMaterial = material
-    const occlusion = this.#keep(
-      ao(before.getTextureNode('depth'), before.getTextureNode(), this.#camera)
-    )
-    occlusion.radius.value = OCCLUSION_REACH
-    occlusion.samples.value = OCCLUSION_SAMPLES
-    occlusion.resolutionScale = COARSE
-    return builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
   }
 
   /**

@@ -11,7 +11,8 @@ import {
 } from 'three'
 import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../random'
-import { fieldBorder, forestAt, groundHeight, isField, isOnRoad, VILLAGE } from './ground'
+import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
+import { VILLAGE } from './places'
 import { smoothNoise } from './noise'
 import { Trees, type Tree } from './Trees'
 

@@ -3,34 +3,34 @@ import type { SurfaceWater } from '@welkin/atmosphere'
 import { createNoiseTexture } from '../globe/detailNoise'
 import {
   attribute,
+  dFdx,
+  dFdy,
   float,
   floor,
   Fn,
   fract,
   If,
   mix,
-  normalWorld,
+  normalWorldGeometry,
   positionView,
   positionWorld,
   sin,
   smoothstep,
   texture,
+  transformNormalToView,
   vec2,
   vec3
 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { ridges, smoothNoise } from './noise'
+import { LAKE, VILLAGE } from './places'
+import type { Relief } from './relief'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** Half width of the land [m]. */
 const EXTENT = 45_000
 /** Radius of the planet, away from which the land bends [m]. */
 const RADIUS = 6_371_000
-
-/** Middle of the lake, its half axes and the height of its water [m]. */
-export const LAKE = { x: 150, z: -1750, halfWidth: 520, halfLength: 1500, height: 0 } as const
-/** Middle of the village [m]. */
-export const VILLAGE = { x: 420, z: 230 } as const
 
 /** Smooth step, which may fall: `from` is where it is 0. */
 const smooth = (from: number, to: number, t: number): number =>
@@ -155,37 +155,57 @@ function roadAt(): Node<'float'> {
   return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
 }
 
+/** Distance within which the finest grain of the ground is drawn [m]. */
+const NEAR = 200
+
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
 function groundMaterial(
   { wetnessNode, snowCoverNode }: SurfaceWater,
+  relief: Relief,
   lamplight: Node<'vec3'> | null
 ): VertexLitMaterial {
   const material = new VertexLitMaterial()
   const place = positionWorld.xz
   const picture = createNoiseTexture()
-  // Each of its many scales is blurred far away: there are coarser ones.
+  // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
+  const grazed = picture.clone()
   picture.anisotropy = 1
-  material.addEventListener('dispose', () => picture.dispose())
+  grazed.anisotropy = 8
+  for (const each of [picture, grazed]) {
+    material.addEventListener('dispose', () => each.dispose())
+  }
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
   // above: with heights in it, slopes that go with them have streaks.
-  const noise = (period: number): Node<'float'> => {
+  const turnedBy = (period: number): Node<'vec2'> => {
     const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-    const turned = vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
-    return texture(picture, turned).r.sub(0.5).mul(2)
+    return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
   }
+  const noise = (period: number): Node<'float'> =>
+    texture(picture, turnedBy(period)).r.sub(0.5).mul(2)
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
   const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
   const patches = noise(390).mul(upTo(24_000)).toVar()
-  const grain = noise(1.1).add(noise(6.7).mul(0.5)).toVar()
+  const near = turnedBy(1.9).toVar()
+  const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
+  const grain = Fn(() => {
+    const sum = noise(11.3).mul(0.6).mul(upTo(900)).toVar()
+    If(distance.lessThan(NEAR), () => {
+      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
+      sum.addAssign(finest.mul(upTo(NEAR)))
+    })
+    return sum
+  })().toVar()
   const fine = grain
     .add(noise(71).mul(upTo(2500)))
     .add(patches)
     .toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
-  const slope = normalWorld.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
+  const normal = relief.normal(normalWorldGeometry).toVar()
+  material.normalNode = transformNormalToView(normal)
+  const slope = normal.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
   const [forest, field] = [
     attribute<'vec2'>('cover', 'vec2').x,
     attribute<'vec2'>('cover', 'vec2').y
@@ -253,11 +273,13 @@ function tileOf(grid: BufferGeometry, quads: number, column: number, row: number
  *
  * @param quads - Quads along a side, a multiple of 64.
  * @param water - Rain and snow on it.
+ * @param relief - Its slopes between the grid's vertices.
  * @param lamplight - Light of lamps that it gives back.
  */
 export function createGround(
   quads: number,
   water: SurfaceWater,
+  relief: Relief,
   lamplight: Node<'vec3'> | null = null
 ): Group {
   const geometry = new PlaneGeometry(2, 2, quads, quads).rotateX(-Math.PI / 2)
@@ -274,7 +296,7 @@ export function createGround(
   geometry.setAttribute('cover', new BufferAttribute(cover, 2))
   geometry.computeVertexNormals()
   const ground = new Group()
-  const material = groundMaterial(water, lamplight)
+  const material = groundMaterial(water, relief, lamplight)
   const along = Math.max(quads / TILE, 1)
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))

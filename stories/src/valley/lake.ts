@@ -21,7 +21,8 @@ import {
 } from 'three/tsl'
 import type { MeshPhysicalNodeMaterial, Node } from 'three/webgpu'
 import { createWater, type Water } from '../environment/water'
-import { groundHeight, LAKE } from './ground'
+import { groundHeight } from './ground'
+import { LAKE } from './places'
 import { waterReflectance, type LakeMirror } from './LakeMirror'
 
 /** Directions and distances in which the skyline is looked for, and the nearest and farthest of these [m]. */

@@ -5,7 +5,7 @@ export const openingState = {
   weather: 'fair' as const,
   latitude: 46,
   date: Date.UTC(2026, 5, 1),
-  hour: 9,
+  hour: 8,
   dayLength: 1200,
   paused: false,
   quality: 'medium' as const,

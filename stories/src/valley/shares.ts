@@ -20,7 +20,7 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Welkin.Precipitation', 'light of rain and snow'],
   ['Welkin.', "air's tables"],
   ['Bloom', 'bloom'],
-  ['Occluders', 'ambient occlusion'],
+  ['Occlusion', 'ambient occlusion'],
   ['AO', 'ambient occlusion'],
   ['TRAA', 'TRAA'],
   ['DoF', 'depth of field'],

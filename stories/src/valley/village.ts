@@ -20,12 +20,16 @@ import {
   mix,
   normalGeometry,
   positionGeometry,
+  positionView,
+  smoothstep,
   step,
   uniform,
   vec3
 } from 'three/tsl'
+import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
-import { groundHeight, VILLAGE } from './ground'
+import { groundHeight } from './ground'
+import { VILLAGE } from './places'
 import type { StreetLamps } from './StreetLamps'
 import { setLit, VertexLitMaterial } from './VertexLitMaterial'
 
@@ -51,6 +55,20 @@ interface House {
   roof: number
 }
 
+/** Colours of plaster: lime, cream, ochre, rose and grey (hue, saturation, lightness). */
+const PLASTERS = [
+  [0.11, 0.12, 0.62],
+  [0.12, 0.3, 0.58],
+  [0.1, 0.42, 0.5],
+  [0.03, 0.25, 0.55],
+  [0.58, 0.05, 0.52]
+] as const
+
+function plasterOf(random: () => number): [number, number, number] {
+  const [hue, saturation, lightness] = PLASTERS[Math.floor(PLASTERS.length * random())]
+  return [hue, saturation, lightness * (0.78 + 0.2 * random())]
+}
+
 /** Houses in a spiral about a church. */
 function housesAbout(middle: Readonly<Record<'x' | 'z', number>>): House[] {
   const random = randomSequence(5)
@@ -64,7 +82,7 @@ function housesAbout(middle: Readonly<Record<'x' | 'z', number>>): House[] {
       depth: 9 + 5 * random(),
       height: 5 + 2 * random(),
       turn: 0.5 * Math.floor(4 * random()) + 0.2 * random(),
-      hsl: [0.09, 0.16 * random(), 0.42 + 0.22 * random()],
+      hsl: plasterOf(random),
       roof: 0.6 + 0.6 * random()
     }
   })
@@ -92,6 +110,58 @@ function roof(): BufferGeometry {
   geometry.setAttribute('position', new Float32BufferAttribute(faces.flat(), 3))
   geometry.computeVertexNormals()
   return geometry
+}
+
+/** Part of the houses whose upper floor is of timber. */
+const TIMBERED = 0.45
+
+/**
+ * Colour of a wall over that of its plaster, on the unit cube: stone at its foot, timber above in some houses, shade below the
+ * eaves, shutters beside the windows and a door under the ridge.
+ */
+function wallColor(
+  isWindow: Node<'float'>,
+  inCell: Node<'vec3'>,
+  along: Node<'float'>
+): Node<'vec3'> {
+  const { x, y } = positionGeometry
+  const house = float(instanceIndex)
+  const isTimber = step(hash(house.add(5)), TIMBERED).mul(step(0.5, y))
+  const isFar = smoothstep(60, 160, positionView.z.negate())
+  const boards = mix(
+    step(0.16, fract(y.mul(26)))
+      .mul(0.3)
+      .add(0.75),
+    float(1),
+    isFar
+  )
+  const timber = vec3(0.27, 0.2, 0.15).mul(boards)
+  const stone = vec3(0.5, 0.48, 0.46)
+  let color: Node<'vec3'> = mix(vec3(1), timber, isTimber)
+  color = mix(stone, color, smoothstep(0.09, 0.1, y))
+  const beside = along.sub(0.5).abs()
+  const isShutter = step(0.2, beside)
+    .mul(step(beside, 0.31))
+    .mul(step(0.35, inCell.y))
+    .mul(step(inCell.y, 0.8))
+  const paint = mix(vec3(0.1, 0.16, 0.1), vec3(0.2, 0.09, 0.05), step(0.5, hash(house.add(9))))
+  color = mix(color, paint, isShutter)
+  color = mix(color, vec3(0.06, 0.065, 0.075), isWindow)
+  const isDoor = step(x.abs(), 0.055).mul(step(y, 0.4)).mul(step(0.5, normalGeometry.z))
+  color = mix(color, vec3(0.16, 0.09, 0.05), isDoor)
+  return color.mul(smoothstep(1.03, 0.9, y).mul(0.55).add(0.45))
+}
+
+/** Colour of a roof: rows of tiles, some darker, as long as they are wider than pixels. */
+function tileColor(): Node<'vec3'> {
+  const row = positionGeometry.y.mul(16)
+  const tile = positionGeometry.z.mul(28).add(step(1, row.mod(2)).mul(0.5))
+  const isNear = smoothstep(220, 60, positionView.z.negate())
+  const aged = hash(
+    row.floor().mul(61).add(tile.floor()).add(float(instanceIndex).mul(17)).add(900)
+  )
+  const shade = step(0.14, fract(row)).mul(0.25).add(0.75).mul(aged.mul(0.35).add(0.8))
+  return vec3(0.105, 0.043, 0.029).mul(mix(float(0.87), shade, isNear))
 }
 
 /** A village whose lamps and windows light up at night. */
@@ -162,15 +232,18 @@ export function createVillage(
     .add(faint)
     .exp2()
   const shown = glow.mul(inRoom).mul(isPane.mul(0.8).add(0.2))
-  walls.colorNode = mix(vec3(1), vec3(0.12, 0.13, 0.15), isWindow)
+  walls.colorNode = wallColor(isWindow, inCell, along)
   const windows = mix(vec3(1, 0.27, 0.02), vec3(1, 0.44, 0.09), hue).mul(
     isWindow.mul(isLit).mul(shown).mul(luminance)
   )
   // Walls have about half of the light that the ground before them has.
   walls.emissiveNode = lamps === null ? windows : windows.add(lamps.reflected().mul(0.5))
-  const tiles = new VertexLitMaterial({ color: '#5b3a2e' })
+  const tiles = new VertexLitMaterial()
+  tiles.colorNode = tileColor()
+  const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
+  const chimneys = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), plaster, HOUSES)
   const matrix = new Matrix4()
   const turn = new Quaternion()
   const color = new Color()
@@ -186,12 +259,20 @@ export function createVillage(
       i,
       matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth))
     )
+    const ridge = new Vector3(0.12 * width, base + height + 1.2, 0.3 * depth)
+    chimneys.setMatrixAt(
+      i,
+      matrix.compose(
+        ridge.applyAxisAngle(UP, house.turn).add(new Vector3(x, 0, z)),
+        turn,
+        new Vector3(0.8, 2.8, 0.8)
+      )
+    )
     bodies.setColorAt(i, color.setHSL(...house.hsl))
     roofs.setColorAt(i, color.setScalar(house.roof))
   }
   const { x, z } = middle
   const base = heightAt(x, z) - 0.5
-  const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
   const spire = new Mesh(
     new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),
@@ -202,11 +283,11 @@ export function createVillage(
   const church = new Group().add(tower, spire, nave, naveRoof)
   church.position.set(x, base, z)
   const lights = lamps ?? churchLamp(x, base, z)
-  const object = new Group().add(bodies, roofs, church, lights)
-  for (const each of [bodies, roofs, ...church.children]) {
+  const object = new Group().add(bodies, roofs, chimneys, church, lights)
+  for (const each of [bodies, roofs, chimneys, ...church.children]) {
     each.castShadow = each.receiveShadow = true
   }
-  bodies.frustumCulled = roofs.frustumCulled = false
+  bodies.frustumCulled = roofs.frustumCulled = chimneys.frustumCulled = false
   return {
     object,
     light(share, luminanceScale) {
@@ -215,9 +296,11 @@ export function createVillage(
       lights.light(share, luminanceScale)
     },
     dispose() {
-      for (const mesh of [bodies, roofs, tower, spire, nave, naveRoof]) mesh.geometry.dispose()
+      for (const mesh of [bodies, roofs, chimneys, tower, spire, nave, naveRoof])
+        mesh.geometry.dispose()
       bodies.dispose()
       roofs.dispose()
+      chimneys.dispose()
       lights.dispose()
       for (const material of [walls, tiles, plaster]) material.dispose()
     }

@@ -1,0 +1,92 @@
+import { FragmentPass, tableTarget } from '@welkin/atmosphere'
+import { Matrix4, Vector2 } from 'three'
+import type { PerspectiveCamera } from 'three'
+import { ao } from 'three/addons/tsl/display/GTAONode.js'
+import {
+  Fn,
+  perspectiveDepthToViewZ,
+  positionWorld,
+  texture,
+  uniform,
+  uv,
+  vec2,
+  vec4
+} from 'three/tsl'
+import type { Node, Renderer, TextureNode } from 'three/webgpu'
+
+/** Reach of ambient occlusion [m], and its samples. */
+const REACH = 3
+const SAMPLES = 6
+
+/** Pictures for each that occlusion is found for: things keep theirs over a few. */
+const EVERY = 3
+
+/** Pixels along a side over those of the picture. */
+const COARSE = 0.5
+
+/** Difference of distances, over the distance, from which a place was hidden in the last frame. */
+const HIDDEN = 0.03
+
+type Vec4 = Node<'vec4'>
+
+/**
+ * Ambient occlusion of a picture before, found from its depth by three's GTAO when it is drawn, and read by the next ones at
+ * the place where each thing was: nothing is drawn twice.
+ */
+export class LastOcclusion {
+  readonly #depth: TextureNode
+  /** Share of the sky's light that comes in, and distance along the camera's axis [m]. */
+  readonly #target = tableTarget('Occlusion', 1, 1)
+  readonly #pass: FragmentPass
+  readonly #occlusion: ReturnType<typeof ao>
+  readonly #toScreen = uniform(new Matrix4())
+  readonly #texel = uniform(new Vector2())
+  #pictures = 0
+
+  /** @param depth - That of the scene's pass, as the renderer writes it. */
+  constructor(renderer: Renderer, depth: TextureNode, camera: PerspectiveCamera) {
+    // Things read it in the first frame.
+    renderer.initRenderTarget(this.#target)
+    this.#depth = texture(depth.value)
+    const occlusion = ao(this.#depth, null as never, camera)
+    occlusion.radius.value = REACH
+    occlusion.samples.value = SAMPLES
+    occlusion.resolutionScale = COARSE
+    this.#occlusion = occlusion
+    const [near, far] = [uniform(camera.near), uniform(camera.far)]
+    const read = (x: number, y: number): Node<'float'> =>
+      occlusion.getTextureNode().sample(uv().add(vec2(x, y).mul(this.#texel))).r
+    // The noise of its directions is five pixels wide: each of these has the mean of two by two.
+    const smooth = read(-1, -0.5).add(read(0.5, -1)).add(read(1, 0.5)).add(read(-0.5, 1)).mul(0.25)
+    const viewZ = perspectiveDepthToViewZ(this.#depth.sample(uv()).r, near, far)
+    this.#pass = new FragmentPass('Occlusion', vec4(smooth, viewZ.negate(), 0, 1))
+  }
+
+  /** Keeps the occlusion of every other picture once it was drawn, and its camera. */
+  update(renderer: Renderer, camera: PerspectiveCamera): void {
+    if (this.#pictures++ % EVERY !== 0) return
+    const { width, height } = this.#depth.value.image as { width: number; height: number }
+    this.#target.setSize(Math.ceil(width * COARSE), Math.ceil(height * COARSE))
+    this.#texel.value.set(1 / this.#target.width, 1 / this.#target.height)
+    this.#pass.render(renderer, this.#target)
+    this.#toScreen.value.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
+  }
+
+  /** Share of the sky's light that comes to a fragment. */
+  sample(): Node<'float'> {
+    return Fn(() => {
+      const clip = (this.#toScreen as unknown as Node<'mat4'>).mul(vec4(positionWorld, 1)).toConst()
+      const place = clip.xy.div(clip.w.max(1e-3)).mul(vec2(0.5, -0.5)).add(0.5)
+      const before = (texture(this.#target.texture, place) as unknown as Vec4).toConst()
+      const wasSeen = before.y.sub(clip.w).abs().lessThan(clip.w.mul(HIDDEN))
+      return wasSeen.select(before.x, 1)
+    })()
+  }
+
+  /** Frees what it draws with. */
+  dispose(): void {
+    this.#pass.dispose()
+    this.#target.dispose()
+    this.#occlusion.dispose()
+  }
+}
