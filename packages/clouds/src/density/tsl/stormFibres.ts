@@ -5,9 +5,16 @@ import type { Float, Vec3 } from '../../tsl-types'
 import { decoded } from './billows'
 import { iceAt } from './heightForm'
 import type { LayerNodes } from './layer'
-import type { CloudWeather } from './weather'
 
 // Fibres at the rims of anvils, which noise at a place cannot make: they are in coordinates of their storm.
+
+/** The anvil around a place: see `CloudWeather`. */
+export interface AnvilAround {
+  readonly stormDistance: Float
+  readonly stormRadius: Float
+  readonly fibrePlace: Vec3
+  readonly fibreZenith: Vec3
+}
 
 /**
  * Place in the noise that makes fibres, at the height of the layer's base [periods]. Twin: `stormAround` in
@@ -41,7 +48,7 @@ export function fibrePlace(axis: Vec3, fromTower: Vec3, zenith: Vec3, cell: Floa
 export function frayedDistance(
   field: CloudField,
   layer: LayerNodes,
-  { stormDistance, stormRadius, fibrePlace, fibreZenith }: CloudWeather,
+  { stormDistance, stormRadius, fibrePlace, fibreZenith }: AnvilAround,
   height: Float,
   level: Float
 ): Float {
