@@ -298,7 +298,8 @@ export const stills: readonly AnyStill[] = [
   },
   {
     name: '400km-storms',
-    about: 'storms from orbit: anvils with fibres, tops with their shadows, small cumulus about them',
+    about:
+      'storms from orbit: anvils with fibres, tops with their shadows, small cumulus about them',
     clouds: { preset: 'cumulonimbus' },
     altitude: 400_000,
     sun: { elevation: 25, azimuth: 100 },
