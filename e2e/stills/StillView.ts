@@ -44,6 +44,7 @@ import { pass, shadow } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { createNoiseTexture } from '../../stories/src/globe/detailNoise'
 import { createCity, type City } from '../../stories/src/globe/city'
+import { cloudReference, REFERENCE_SKIPPING } from '../bench/clouds'
 import { Landscape } from '../../stories/src/hills/Landscape'
 import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
 import type { Still } from './scenes'
@@ -205,6 +206,7 @@ export class StillView {
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))
       node.field.bake(renderer)
+      if (quality === cloudReference) node.field.skipping.value = REFERENCE_SKIPPING
       node.time = TIME
       if (still.lightning !== undefined) {
         this.#lightning = flashOf(node, still.lightning)

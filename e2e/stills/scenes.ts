@@ -297,6 +297,17 @@ export const stills: readonly AnyStill[] = [
     land: 'planet'
   },
   {
+    name: '400km-storms',
+    about:
+      'storms from orbit: anvils with fibres, tops with their shadows, small cumulus about them',
+    clouds: { preset: 'cumulonimbus' },
+    altitude: 400_000,
+    sun: { elevation: 25, azimuth: 100 },
+    view: { azimuth: 60, pitch: -32 },
+    fieldOfView: 35,
+    land: 'planet'
+  },
+  {
     name: '3000km',
     about: 'a fifth of the globe: clusters, bands, clear zones, no grain and no rows',
     clouds: { preset: 'mixed' },

@@ -122,6 +122,11 @@ export class CloudField {
    * where there is such a light. Clouds that are not seen one by one let the same through [–].
    */
   readonly depthScale = number(1)
+  /**
+   * Share of likely distances to clouds that a march passes over at once, in [0, 1]. Below 1 it also looks where the weather
+   * on large scales rules clouds out: for references, which must not share what they judge [–].
+   */
+  readonly skipping = number(1)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
   readonly values: Vector4[] = Array.from(
     { length: CloudLayers.maxLayers * LAYER_STRIDE },

@@ -166,5 +166,5 @@ export const columnForm = {
    */
   inside: 1.25,
   /** Factor of the same in storms, of which much is in the shade of their anvils [–]. Greater: storms are too bright from afar. */
-  insideStorms: 0.31
+  insideStorms: 0.18
 } as const

@@ -51,6 +51,22 @@ export const stormShape = {
   least: 0.2
 } as const
 
+/** Fibres of anvils: noise in coordinates about the tower, from which the ice streams outwards. */
+export const stormFibres = {
+  /** Periods of the shape's noise in a radian about the tower. More: narrower fibres. */
+  around: 2,
+  /** Length of a period outwards, and upwards [m]: fibres sink by the ratio of both as they go. Shorter outwards: heads, not fibres. */
+  outwards: 24_000,
+  upwards: 4000,
+  /** Weights of coarse and fine billows in them [–]. */
+  weights: [0.7, 0.7],
+  /** Displacement of the rim per unit of them, and at most, in radii of the anvil [–]. 0: a rim like a tower's; greater: loose rags. */
+  fray: 0.06,
+  mostFray: 0.12,
+  /** Distances from the anvil's axis within which rims are, in its radii [–]. */
+  rim: [0.4, 1.3]
+} as const
+
 /** Billows of storms, in units of strength per deviation of their noise: displacements outwards and inwards. */
 export const stormBillows = {
   /** Length that strength changes by 1 over [periods of the shape]. Smaller: hard edges. */
@@ -60,13 +76,13 @@ export const stormBillows = {
   fine: 0.8,
   detail: 0.3,
   /** Factor of all of them in ice [–]: anvils are smooth. */
-  inIce: 0.6,
+  inIce: 0.4,
   /** Softness of edges in ice: factor of their width less 1 [–]. */
-  softIce: 3,
+  softIce: 8,
   /** Strength below which billows add nothing to clear air; they fade towards it [–]. Greater: islands float beside storms. */
   reach: 10,
   /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
   offset: 0,
   /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
-  most: 10
+  most: 14
 } as const

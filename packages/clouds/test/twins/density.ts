@@ -31,7 +31,7 @@ import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE } from '../../src/noise/noiseSizes'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
-import { stormAround, stormStrength } from './storm'
+import { frayedDistance, stormAround, stormStrength, type StormThere } from './storm'
 import { cycloneAround, frontsAndBelts } from './weatherSystems'
 
 /** State of a field of clouds: what a `CloudField` tells its shaders. */
@@ -64,9 +64,7 @@ export interface CloudWeather {
   /** Displacement of noise along the axes of its lattices [m]. */
   readonly shift: Vector3
   /** The nearest storm, in layers of storms: distances from the axes of its anvil and tower, and its radius [m]. */
-  readonly storm:
-    | { readonly distance: number; readonly towerDistance: number; readonly radius: number }
-    | undefined
+  readonly storm: StormThere | undefined
 }
 
 const clamp = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high)
@@ -265,11 +263,7 @@ export function weatherAt(
     filteredCoverage: coverage > 0 ? clamp(0.5 + strengthForm.contrast * (chance - 0.5), 0, 1) : 0,
     unresolvedFraction: smoothstep(0.5, 4.5, level - coarseness),
     shift,
-    storm: storm && {
-      distance: storm.distance,
-      towerDistance: storm.towerDistance,
-      radius
-    }
+    storm: storm && { ...storm, radius }
   }
 }
 
@@ -374,8 +368,14 @@ export function sampleLayer(
   const share = clamp(1 + (inColumn - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
   const ofDetail =
     shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share
-  const parts = weather.storm
-    ? stormStrength(layer, weather.storm, coarse, fine, height)
+  const storm = weather.storm && {
+    ...weather.storm,
+    distance: frayedDistance(layer, weather.storm, height, place =>
+      decoded(noise.sample('shape', place, level))
+    )
+  }
+  const parts = storm
+    ? stormStrength(layer, storm, coarse, fine, height)
     : {
         body: inColumn,
         strength: inColumn + ofFine * share * fine * rough,

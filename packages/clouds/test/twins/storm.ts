@@ -1,7 +1,8 @@
 import { MathUtils, Vector3 } from 'three'
-import { stormBillows, stormPlaces, stormShape } from '../../src/density/stormForm'
+import { stormBillows, stormFibres, stormPlaces, stormShape } from '../../src/density/stormForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import {
+  iceAt,
   smoothStormStrength,
   stormEdge,
   stormNearness,
@@ -61,6 +62,16 @@ function stormGaps(
   return { anvil: nearest(gaps), tower: nearest(gaps.map(gap => gap.clone().sub(downwind))) }
 }
 
+/** A storm around a place: see `StormAround` of density/tsl/storm.ts. */
+export interface StormAround {
+  readonly distance: number
+  readonly towerDistance: number
+  readonly rank: number
+  /** Place in the noise that makes fibres, for the layer's base, and the zenith there [periods]. */
+  readonly fibrePlace: Vector3
+  readonly zenith: Vector3
+}
+
 /**
  * Float64 twin of `stormAround`: distances from the axes of the nearest anvil and of the nearest tower [m], and the
  * anvil's rank.
@@ -73,16 +84,53 @@ export function stormAround(
   up: Vector3,
   downwind = new Vector3(),
   radius = 0
-): { distance: number; towerDistance: number; rank: number } {
+): StormAround {
   const aside = downwind.clone().setLength(stormAside(layer, radius) / stormCell(layer))
   const { anvil, tower } = stormGaps(place, up, aside)
   const cells = axisDistance(anvil, up)
   const { scale, power } = stormPlaces
+  const towerDistance = axisDistance(tower, up) * stormCell(layer)
+  const axis = new Vector3(...place).multiplyScalar(stormPlaces.cells).add(anvil)
+  const outward = aside.clone().sub(anvil).projectOnPlane(up)
+  const fibrePlace = outward
+    .clone()
+    .setLength(stormFibres.around)
+    .add(axis)
+    .addScaledVector(up, (outward.length() * stormCell(layer)) / stormFibres.outwards)
   return {
     distance: cells * stormCell(layer),
-    towerDistance: axisDistance(tower, up) * stormCell(layer),
+    towerDistance,
+    fibrePlace,
+    zenith: up,
     rank: Math.exp(-(Math.max(cells / scale, 1e-4) ** power))
   }
+}
+
+/** A storm around a place, and the radius that it has there [m]. */
+export interface StormThere extends StormAround {
+  readonly radius: number
+}
+
+/**
+ * Float64 twin of `frayedDistance` [m].
+ *
+ * @param billowsAt - Coarse and fine billows at a place in their noise [periods], of unit deviation.
+ */
+export function frayedDistance(
+  layer: CloudLayerParameters,
+  { distance, radius, fibrePlace, zenith }: StormThere,
+  height: number,
+  billowsAt: (place: Vec3Array) => readonly number[]
+): number {
+  const { upwards, weights, fray, mostFray, rim } = stormFibres
+  const ice = iceAt(layer.anvil, height)
+  const inRadii = distance / Math.max(radius, 1)
+  if (ice === 0 || inRadii <= rim[0] || inRadii >= rim[1]) return distance
+  const rise = height * (layer.topAltitude - layer.baseAltitude)
+  const place = fibrePlace.clone().addScaledVector(zenith, rise / upwards)
+  const [coarse, fine] = billowsAt(place.toArray())
+  const fibres = weights[0] * coarse + weights[1] * fine
+  return distance - MathUtils.clamp(fray * fibres, -mostFray, mostFray) * ice * radius
 }
 
 /** Float64 twin of `stormStrength`. */

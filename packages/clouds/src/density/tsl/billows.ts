@@ -11,7 +11,7 @@ export const levelOf = (footprint: Float, texel: Float | number): Float =>
   log2(footprint.div(texel).max(1)).toConst()
 
 /** Noise of unit deviation from its encoded values. */
-const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst()
+export const decoded = (value: Vec4): Vec4 => value.sub(0.5).div(ENCODING_SCALE).toConst()
 
 /** Billows around a place, of unit deviation near by. */
 export interface Billows {

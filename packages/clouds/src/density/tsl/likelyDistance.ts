@@ -1,12 +1,12 @@
 import { float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { stormBillows } from '../stormForm'
+import { stormBillows, stormFibres } from '../stormForm'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
-import { neededStrength } from './heightForm'
+import { iceAt, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
 import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
-import { stormNearby } from './storm'
+import { ifStorm, stormNearby } from './storm'
 import { keepStorm, type KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
@@ -23,6 +23,12 @@ export const NOWHERE = 1e6
 const LIKELY = 0.012
 
 /**
+ * `LIKELY` in layers of storms. Their strength is a distance, but heads on heads are steeper by far. Greater: heads are
+ * missed, by whole rows of pixels as horizontal slits in towers (*Storm*).
+ */
+const LIKELY_OF_STORMS = 0.003
+
+/**
  * Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. Greater:
  * faster, and small clouds are missed here and there, as grain (*Cumulus*).
  */
@@ -34,8 +40,17 @@ export const CAUTION = 0.7
  *
  * @param strength - Strength of a `LayerSample`.
  */
-export const likelyDistance = (layer: LayerNodes, strength: Float): Float =>
-  strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)
+export const likelyDistance = (layer: LayerNodes, strength: Float): Float => {
+  const perStrength = float(LIKELY).toVar() as Float
+  ifStorm(
+    layer,
+    () => {
+      perStrength.assign(LIKELY_OF_STORMS)
+    },
+    () => undefined
+  )
+  return strength.negate().max(0).mul(perStrength).div(layer.perShapePeriod)
+}
 
 /**
  * Strength that billows add to clear air, in nearly all places, and what anvils add: they spread from column to
@@ -111,7 +126,9 @@ export function clearOfStorms(
   keepStorm(nearby, stormNearby(layer, subpoint, zenith, around.shift, radius))
   const still = vec2(0) as Vec2
   const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
-  const clear = smoothStormStrength(layer, weather, height)
+  const fray = radius.mul(iceAt(layer, height)).mul(stormFibres.mostFray)
+  const stormDistance = weather.stormDistance.sub(fray)
+  const clear = smoothStormStrength(layer, { ...weather, stormDistance }, height)
     .negate()
     .sub(stormBillows.most)
     .mul(stormBillows.unit)

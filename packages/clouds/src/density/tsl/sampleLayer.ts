@@ -68,7 +68,8 @@ function bodyAt(
   nearby?: StormNearby
 ): Body {
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
-  const shape = billows(field, layer, sample.offset, background.shift, resolution.shapeLevel)
+  const { shapeLevel } = resolution
+  const shape = billows(field, layer, sample.offset, background.shift, shapeLevel)
   const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
   const weather = cloudWeather(
     field,
@@ -85,7 +86,7 @@ function bodyAt(
   ifStorm(
     layer,
     () => {
-      const storm = stormStrength(layer, weather, shape, height)
+      const storm = stormStrength(field, layer, weather, shape, height, shapeLevel)
       body.assign(storm.body)
       strength.assign(storm.strength)
       detailStrength.assign(storm.detail)

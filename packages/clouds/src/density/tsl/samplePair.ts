@@ -77,11 +77,13 @@ export function samplePair(
       ifStorm(
         layer,
         () => {
-          likely.assign(clearOfStorms(field, layer, background, middle, length, storm))
+          const sure = clearOfStorms(field, layer, background, middle, length, storm)
+          likely.assign(sure.mul(field.skipping.floor()))
         },
         () => {
           const footprint = footprintOf(field, middle)
-          likely.assign(likelyDistanceByBackground(layer, background, height, footprint))
+          const bound = likelyDistanceByBackground(layer, background, height, footprint)
+          likely.assign(bound.mul(field.skipping.floor()))
         }
       )
       If(likely.lessThanEqual(0), () => {
@@ -90,7 +92,8 @@ export function samplePair(
           direction,
           storm
         })
-        likely.assign(likelyDistance(layer, first.strength.max(second.strength)))
+        const strongest = first.strength.max(second.strength)
+        likely.assign(likelyDistance(layer, strongest).mul(field.skipping))
         sum.addAssign(vec2(first.extinction, second.extinction))
       })
       if (!isAlone) {

@@ -1,9 +1,16 @@
 import { Fn, If, bool, float, mix, smoothstep } from 'three/tsl'
-import { noisePeriods } from '../../layers/layerUniforms'
 import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 import { stormPlaces, stormShape } from '../stormForm'
 import type { LayerNodes } from './layer'
-import { placeOf, squareFrom, stormGaps, type StormGaps, type StormNearby } from './stormNearby'
+import { fibrePlace } from './stormFibres'
+import {
+  cellLength,
+  placeOf,
+  squareFrom,
+  stormGaps,
+  type StormGaps,
+  type StormNearby
+} from './stormNearby'
 
 // Storms: layers of the weather of cumulonimbus alone. Noise cut at a threshold has no anatomy; a storm has a place, a
 // tower and an anvil, and its surface is a distance [m], so that billows stand out as far to all sides.
@@ -14,6 +21,9 @@ export interface StormAround {
   readonly distance: Float
   /** Distance from the axis of the nearest tower, which stands upwind of its anvil, measured alike [m]. */
   readonly towerDistance: Float
+  /** Place in the noise that makes fibres, less its part by height, and the zenith there [periods]. */
+  readonly fibrePlace: Vec3
+  readonly zenith: Vec3
   /** Rank of that distance among all places of the planet, in [0, 1]: 1 on the axis. */
   readonly rank: Float
 }
@@ -31,13 +41,6 @@ export function ifStorm(layer: LayerNodes, storm: () => void, other: () => void)
   else other()
 }
 
-/** Length of a cell [m]. */
-const cellLength = (layer: LayerNodes): Float =>
-  layer.perWeatherPeriod
-    .mul(stormPlaces.cells / noisePeriods.fields)
-    .reciprocal()
-    .toConst()
-
 /**
  * Distance of a storm's tower from the middle of its anvil, over the shear, which is not 0 [m]. Twin: `stormAside` in
  * test/twins/storm.ts
@@ -50,15 +53,14 @@ const asidePerShear = ({ anvil, thickness }: LayerNodes, shear: Float, radius: F
     .mul(smoothstep(...stormShape.anvilFrom, radius.div(thickness)))
     .mul(radius)
 
-/** A place among storms, in their lattice. */
+/** A place among storms, in their lattice [cells]. */
 interface PlaceAmongStorms {
-  /** The place [cells]. */
   readonly at: Vec3
   /** Zenith there. */
   readonly zenith: Vec3
-  /** Displacement from a storm's tower to the middle of its anvil, horizontal [cells]. */
+  /** Displacement from a storm's tower to the middle of its anvil, horizontal. */
   readonly downwind: Vec3
-  /** Displacements to the nearest storms [cells]; looked for when it is called. */
+  /** Displacements to the nearest storms; looked for when it is called. */
   readonly search: () => StormGaps
 }
 
@@ -123,26 +125,11 @@ export function stormAround(
   return {
     distance: cells.mul(length).toConst(),
     towerDistance: squareFrom(toTower, zenith).sqrt().mul(length).toConst(),
+    // From that anvil's own tower, not the nearest.
+    fibrePlace: fibrePlace(at.add(found.anvil), downwind.sub(found.anvil), zenith, length),
+    zenith,
     rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()
   }
-}
-
-/**
- * Radius of storms where a background of the weather is [m]: their rims have the rank that their coverage asks for.
- *
- * @param background - Part of the weather's sum.
- * @param quantile - ln(c / (1 − c)) / 1.702 of the coverage c.
- */
-export function stormRadius(layer: LayerNodes, background: Float, quantile: Float): Float {
-  const { scale, power, ranks } = stormPlaces
-  const rank = background.add(quantile).div(layer.weights.z).oneMinus().sub(0.5)
-  return rank
-    .clamp(...ranks)
-    .log()
-    .negate()
-    .pow(1 / power)
-    .mul(cellLength(layer).mul(scale))
-    .toConst()
 }
 
 /**

@@ -100,3 +100,28 @@ export function keepStorm(kept: KeptStorm, { anvil, tower }: StormNearby): void 
   kept.anvil.assign(anvil)
   kept.tower.assign(tower)
 }
+
+/** Length of a cell [m]. */
+export const cellLength = (layer: LayerNodes): Float =>
+  layer.perWeatherPeriod
+    .mul(stormPlaces.cells / noisePeriods.fields)
+    .reciprocal()
+    .toConst()
+
+/**
+ * Radius of storms where a background of the weather is [m]: their rims have the rank that their coverage asks for.
+ *
+ * @param background - Part of the weather's sum.
+ * @param quantile - ln(c / (1 − c)) / 1.702 of the coverage c.
+ */
+export function stormRadius(layer: LayerNodes, background: Float, quantile: Float): Float {
+  const { scale, power, ranks } = stormPlaces
+  const rank = background.add(quantile).div(layer.weights.z).oneMinus().sub(0.5)
+  return rank
+    .clamp(...ranks)
+    .log()
+    .negate()
+    .pow(1 / power)
+    .mul(cellLength(layer).mul(scale))
+    .toConst()
+}

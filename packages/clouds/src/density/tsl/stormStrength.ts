@@ -1,9 +1,11 @@
+import type { CloudField } from '../CloudField'
 import { stormBillows } from '../stormForm'
 import type { Float } from '../../tsl-types'
 import type { Billows } from './billows'
 import { iceAt } from './heightForm'
 import type { LayerNodes } from './layer'
 import { stormBody } from './storm'
+import { frayedDistance } from './stormFibres'
 import type { CloudWeather } from './weather'
 
 /** Strength of a storm at a place, as of `LayerSample`, in lengths of `stormBillows.unit`. */
@@ -32,17 +34,20 @@ export const smoothStormStrength = (
     .sub(layer.shapeAmount.mul(stormBillows.offset))
     .toConst()
 
-/** Strength of a storm: its surface with billows that stand out as far to all sides. Twin: test/twins/storm.ts */
+/** Strength of a storm: its surface with billows that stand out as far to all sides, and fibres at the anvil's rim. Twin: test/twins/storm.ts */
 export function stormStrength(
+  field: CloudField,
   layer: LayerNodes,
   weather: CloudWeather,
   billows: Billows,
-  height: Float
+  height: Float,
+  level: Float
 ): StormStrength {
   const { coarse, fine, detail, inIce, softIce, reach } = stormBillows
   const ice = iceAt(layer, height)
   const amount = ice.mix(1, inIce).mul(layer.shapeAmount).toConst() as Float
-  const smooth = smoothStormStrength(layer, weather, height)
+  const stormDistance = frayedDistance(field, layer, weather, height, level)
+  const smooth = smoothStormStrength(layer, { ...weather, stormDistance }, height)
   // Bulges of the surface, not clouds beside it.
   const near = smooth.div(reach).add(1).clamp(0, 1)
   const body = smooth.add(billows.coarse.mul(amount).mul(near).mul(coarse)).toConst() as Float

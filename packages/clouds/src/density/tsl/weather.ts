@@ -1,4 +1,4 @@
-import { float, vec2 } from 'three/tsl'
+import { float, vec2, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
@@ -6,8 +6,8 @@ import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, zenithAt, type CloudSample } from './sample'
-import { ifStorm, stormAround, stormRadius } from './storm'
-import type { StormNearby } from './stormNearby'
+import { ifStorm, stormAround } from './storm'
+import { stormRadius, type StormNearby } from './stormNearby'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
 /** The weather of a layer at a place. */
@@ -20,6 +20,9 @@ export interface CloudWeather {
   readonly stormDistance: Float
   readonly towerDistance: Float
   readonly stormRadius: Float
+  /** In layers of storms, `fibrePlace` and `zenith` of `StormAround`. */
+  readonly fibrePlace: Vec3
+  readonly fibreZenith: Vec3
 }
 
 /** ln(c / (1 − c)) / 1.702 of a coverage c: z of Φ(z) = c. */
@@ -73,6 +76,7 @@ export function cloudWeather(
   const stormDistance = float(0).toVar() as Float
   const towerDistance = float(0).toVar() as Float
   const radius = float(0).toVar() as Float
+  const [fibrePlace, fibreZenith] = [0, 1].map(() => vec3(0).toVar() as Vec3)
   ifStorm(
     layer,
     () => {
@@ -80,6 +84,8 @@ export function cloudWeather(
       const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, radius, nearby)
       stormDistance.assign(storm.distance)
       towerDistance.assign(storm.towerDistance)
+      fibrePlace.assign(storm.fibrePlace)
+      fibreZenith.assign(storm.zenith)
       single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
     },
     () => {
@@ -99,7 +105,9 @@ export function cloudWeather(
     filteredCoverage,
     stormDistance,
     towerDistance,
-    stormRadius: radius
+    stormRadius: radius,
+    fibrePlace,
+    fibreZenith
   }
 }
 

@@ -34,6 +34,12 @@ const LOOK_BACK = 1.6
  */
 const HIDDEN_GROWTH = 2
 
+/**
+ * Part of the likely distance by which steps through clear air are shorter by chance: or else rays side by side end up in step, and
+ * miss the same heads. 0: contours in towers (*Storm*); greater: slower.
+ */
+const SPREAD = 0.1
+
 /** State of the step policy. */
 export interface StepState {
   /** True among clouds: steps are parts of the mean free path. */
@@ -48,7 +54,7 @@ export interface StepState {
   /** Part of the next pair's length: the first of a row is cut short, by chance, so that no layers show. */
   readonly part: Variable<Float>
   /** Noise in [0, 1), the part to start rows with. */
-  readonly jitter: Float
+  readonly jitter: Variable<Float>
 }
 
 /** Two steps of the same length. */
@@ -67,7 +73,7 @@ export const stepState = (jitter: Float): StepState => ({
   likely: float(0).toVar(),
   before: float(0).toVar(),
   part: float(0).toVar(),
-  jitter
+  jitter: jitter.toVar()
 })
 
 /**
@@ -110,7 +116,7 @@ const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float
  * @param transmittance - Share of the light from there that reaches the camera, in [0, 1].
  */
 export function nextSteps(
-  { isFine, finest, longest, likely, part }: StepState,
+  { isFine, finest, longest, likely, part, jitter }: StepState,
   quality: QualityUniforms,
   position: Float,
   end: Float,
@@ -119,7 +125,8 @@ export function nextSteps(
   const growing = position.mul(quality.stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
   const least = fine.max(growing.mul(CLEAR_GROWTH)).min(longest).toConst() as Float
-  const clear = likely.mul(CAUTION).clamp(least, longest)
+  jitter.assign(jitter.add(0.618034).fract())
+  const clear = likely.mul(jitter.mul(SPREAD).add(CAUTION - SPREAD)).clamp(least, longest)
   const left = end.sub(position).mul(0.5)
   const hidden = transmittance.oneMinus().mul(HIDDEN_GROWTH).add(1)
   const whole = isFine.select(fine.mul(hidden).min(longest), clear) as Float
