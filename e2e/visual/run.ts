@@ -9,16 +9,31 @@ import { worldData } from '../../stories/vite/worldData.ts'
 import type { Backend } from '../harness/backend'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
+import { rankOf } from '../harness/longest'
 import { withLimit } from '../harness/limit'
 import { outputFolder, Report } from '../harness/report'
 import { replaceModules } from '../harness/replaceModules'
 import { serveStatic } from '../harness/serve'
+import { shadowSizePlugin } from '../harness/shadow-size'
 import { compare, isBlank } from './compare'
 
 const viewport = { width: 320, height: 180 }
 /** Longest that a picture may take: some 20 s alone, and several times that beside others on a busy machine. */
 const limitSeconds = 240
 const largestBaseline = 100_000
+/** Pictures that take the longest, which come first. */
+const longest = [
+  'valley-',
+  'rain-bow',
+  'stormnight-',
+  'clouds-',
+  'lightshafts-',
+  'realornot-',
+  'halos-',
+  'realheights-',
+  'terrain-range',
+  'day-'
+]
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -119,7 +134,10 @@ const files = Object.fromEntries(
 )
 const root = fileURLToPath(new URL('page', import.meta.url))
 const server = await serveStatic([
-  { path: '/', folder: await bundlePage(root, files, [replaceModules(), worldData()]) }
+  {
+    path: '/',
+    folder: await bundlePage(root, files, [replaceModules(), shadowSizePlugin(), worldData()])
+  }
 ])
 
 interface Shooting {
@@ -155,8 +173,11 @@ async function listPictures(): Promise<Shooting[][]> {
     const name = `${file}-${story}`.toLowerCase()
     return positionals.length === 0 || positionals.some(word => name.includes(word))
   })
+  const rank = ({ file, story }: { file: string; story: string }): number =>
+    rankOf(longest, `${file}-${story}`.toLowerCase())
   return backends.map(backend =>
     chosen
+      .toSorted((a, b) => rank(a) - rank(b))
       .filter(({ isWebGPUOnly }) => !isWebGPUOnly || backend === 'webgpu')
       .map(({ file, story }) => ({ file, story, backend }))
   )

@@ -3,6 +3,7 @@ import { ConsoleWatch } from '../../gpu/harness/console'
 import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
+import { setShadowSize } from '../../gpu/harness/shadow-size'
 
 /** Interface of a story's scene module, which Storybook and this page drive alike. */
 interface SceneView {
@@ -76,6 +77,7 @@ window.welkinVisual = {
   async shoot(file, story, backend) {
     await loadNoise()
     const create = await findCreate(file)
+    setShadowSize('pictures')
     const stories = await load(`${file}.stories`)
     const args = {
       ...(stories.default as Story).args,
