@@ -1,6 +1,7 @@
 import { modules } from 'virtual:modules'
 import { ConsoleWatch } from '../../gpu/harness/console'
 import type { Backend } from '../../harness/backend'
+import { filterCoarsely } from '../../gpu/harness/filter-samples'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 import { setShadowSize } from '../../gpu/harness/shadow-size'
@@ -56,6 +57,7 @@ async function findCreate(file: string): Promise<CreateScene> {
 }
 
 reuseTables(true)
+filterCoarsely(true)
 
 window.welkinVisual = {
   async list() {
