@@ -6,11 +6,13 @@ import { parseArgs } from 'node:util'
 import type { BrowserContext, Page } from 'playwright-core'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
+import { rankOf } from '../harness/longest'
 import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
 import type { Backend } from '../harness/backend'
 import { replaceModules } from '../harness/replaceModules'
+import { shadowSizePlugin } from '../harness/shadow-size'
 import { filterSamplesPlugin } from './filterSamples'
 import { recipesPlugin } from './recipes'
 import type { TestListing, TestOutcome } from './page/main'
@@ -22,12 +24,32 @@ const { values, positionals } = parseArgs({
 const backends = (values.backend?.split(',') ?? ['webgpu', 'webgl']) as Backend[]
 
 const folder = fileURLToPath(new URL('.', import.meta.url))
+/** Suites that take the longest, which come first. */
+const longest = [
+  'everything',
+  'clouds/temporal',
+  'clouds/random-views',
+  'combinations',
+  'clouds/shadow',
+  'terrain/terrain',
+  'clouds/lifecycle',
+  'clouds/world',
+  'atmosphere/lifecycle',
+  'clouds/cover',
+  'atmosphere/exposure',
+  'clouds/s',
+  'clouds/density',
+  'atmosphere/shafts',
+  'atmosphere/planets',
+  'clouds/traa'
+]
 /** Files by their path without ending, such as `clouds/density`. */
 const suites = readdirSync(folder, { recursive: true, encoding: 'utf8' })
   .filter(file => file.endsWith('.gpu.ts'))
   .map(file => file.replace('.gpu.ts', '').replaceAll('\\', '/'))
   .filter(suite => positionals.length === 0 || positionals.some(word => suite.includes(word)))
   .toSorted()
+  .toSorted((a, b) => rankOf(longest, a) - rankOf(longest, b))
 
 const report = new Report()
 
@@ -82,6 +104,7 @@ async function runSuite(
 const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${suite}.gpu.ts`)]))
 const bundle = await bundlePage(join(folder, 'page'), files, [
   replaceModules(),
+  shadowSizePlugin(),
   filterSamplesPlugin(),
   recipesPlugin()
 ])

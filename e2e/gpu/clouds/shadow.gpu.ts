@@ -31,8 +31,10 @@ import { cloudScene, offsets } from '../harness/cloud-scene'
 import { drawToFloat, random } from '../harness/atmosphere'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
+
+takeFineShadows()
 
 const size = { width: 48, height: 48 }
 /** Steps of the march towards the sun that shadows are compared with. */

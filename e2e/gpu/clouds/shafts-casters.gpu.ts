@@ -6,10 +6,12 @@ import { RenderPipeline } from 'three/webgpu'
 import { drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 import { addBox, stage, stageSize as size } from '../harness/shaft-stage'
+
+takeFineShadows()
 
 /** Sun in the north, soon after it has risen [°]; a deck and the camera over it [m]. */
 const SUN = 10

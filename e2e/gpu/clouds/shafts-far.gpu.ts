@@ -8,8 +8,10 @@ import { castsOnce, measuredLoss, unseenClouds } from '../harness/cloud-shafts'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { parameters, stage, stageSize as size } from '../harness/shaft-stage'
+
+takeFineShadows()
 
 const radians = Math.PI / 180
 

@@ -17,7 +17,7 @@ import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 import {
@@ -27,6 +27,8 @@ import {
   stageSize as size,
   type Stage
 } from '../harness/shaft-stage'
+
+takeFineShadows()
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180
 

@@ -14,6 +14,7 @@ import {
   proceduralStars,
   SkyLightProbe,
   Stars,
+  starsOverlay,
   SunDirectionalLight,
   sunFlare
 } from '@welkin/atmosphere'
@@ -48,6 +49,7 @@ export type Action = 'adds' | 'dims' | 'changes' | 'bends'
 /** Features that may be on together, and how each acts. */
 export const features = {
   stars: 'adds',
+  starsOverlay: 'adds',
   milkyWay: 'adds',
   airglow: 'adds',
   sunFlare: 'adds',
@@ -91,6 +93,7 @@ const fine: CloudQuality = {
 function skyLayers(luna: Moon) {
   return {
     stars: new Stars({ catalogue: proceduralStars({ count: 3000 }) }),
+    starsOverlay: new Stars({ catalogue: proceduralStars({ count: 3000 }), overlay: true }),
     milkyWay: milkyWay(),
     airglow: airglow(),
     sunFlare: sunFlare(),
@@ -117,6 +120,7 @@ export class FeatureStage {
   readonly #air: { plain: Node; shafts: Node }
   readonly #cloudLayers = new CloudLayers([{ ...fog, baseAltitude: 300, density: 1e-3 }])
   readonly #clouds
+  readonly #depth
   readonly #owned: { dispose(): void }[]
   #names: readonly FeatureName[] = []
   #compiled = ''
@@ -146,7 +150,7 @@ export class FeatureStage {
     camera.position.set(0, 40, 0)
     camera.updateMatrixWorld()
 
-    const depth = this.#pass.getTextureNode('depth')
+    const depth = (this.#depth = this.#pass.getTextureNode('depth'))
     const drawn = this.#pass.getTextureNode()
     const shafts = (this.#shafts = lightShafts(atmosphere, camera, sun))
     this.#air = {
@@ -173,6 +177,7 @@ export class FeatureStage {
     this.#names = names
     const { stars, milkyWay: galaxy, airglow: glow, sunFlare: flare } = this.#layers
     stars.intensity = 30 * on('stars')
+    this.#layers.starsOverlay.intensity = 30 * on('starsOverlay')
     galaxy.intensity = on('milkyWay')
     glow.intensity = on('airglow')
     flare.set({ innerStrength: 0.006 * on('sunFlare'), outerStrength: 0.004 * on('sunFlare') })
@@ -204,7 +209,12 @@ export class FeatureStage {
     }
     const air = names.includes('shafts') ? this.#air.shafts : this.#air.plain
     this.#clouds.colorNode = air
-    this.#pipeline.outputNode = names.includes('clouds') ? this.#clouds : air
+    const hasClouds = names.includes('clouds')
+    const picture = hasClouds ? this.#clouds : air
+    const dimming = hasClouds ? { transmittance: this.#clouds.transmittance } : {}
+    this.#pipeline.outputNode = names.includes('starsOverlay')
+      ? starsOverlay(picture, this.#depth, this.#camera, atmosphere, dimming)
+      : picture
     this.#pipeline.needsUpdate = true
   }
 

@@ -16,6 +16,16 @@ export interface GpuTest {
 /** Tests of the one suite that this page has loaded. */
 export const registeredTests: GpuTest[] = []
 
+let areShadowsFine = false
+
+/** True if the page's tests measure the clouds' shadows. */
+export const measuresShadows = (): boolean => areShadowsFine
+
+/** Has all tests of a file draw shadow maps of clouds as users have them, not a quarter as fine. */
+export function takeFineShadows(): void {
+  areShadowsFine = true
+}
+
 /**
  * Adds a test that runs in Chromium once per backend, in a page of its suite's own.
  * It fails on a thrown error and on any error or warning of three's in the console.

@@ -1,10 +1,11 @@
 import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
-import { registeredTests } from '../harness/gpu-test'
+import { measuresShadows, registeredTests } from '../harness/gpu-test'
 import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../harness/reuse-noise'
 import { filterCoarsely } from '../harness/filter-samples'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
+import { setShadowSize } from '../harness/shadow-size'
 
 export interface TestListing {
   name: string
@@ -47,6 +48,7 @@ window.welkinTests = {
     const isWhole = typeof bakes === 'boolean' ? bakes : bakes.includes(backend)
     reuseTables(!isWhole)
     filterCoarsely(!isWhole)
+    setShadowSize(measuresShadows() ? 'fine' : 'coarse')
     const { context, finish } = createContext(backend)
     const start = performance.now()
     const problems: string[] = []

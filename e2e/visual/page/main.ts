@@ -1,8 +1,10 @@
 import { modules } from 'virtual:modules'
 import { ConsoleWatch } from '../../gpu/harness/console'
 import type { Backend } from '../../harness/backend'
+import { filterCoarsely } from '../../gpu/harness/filter-samples'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
+import { setShadowSize } from '../../gpu/harness/shadow-size'
 
 /** Interface of a story's scene module, which Storybook and this page drive alike. */
 interface SceneView {
@@ -55,6 +57,7 @@ async function findCreate(file: string): Promise<CreateScene> {
 }
 
 reuseTables(true)
+filterCoarsely(true)
 
 window.welkinVisual = {
   async list() {
@@ -76,6 +79,7 @@ window.welkinVisual = {
   async shoot(file, story, backend) {
     await loadNoise()
     const create = await findCreate(file)
+    setShadowSize('pictures')
     const stories = await load(`${file}.stories`)
     const args = {
       ...(stories.default as Story).args,

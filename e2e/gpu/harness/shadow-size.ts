@@ -1,0 +1,12 @@
+declare global {
+  /** Set by the page's build, once clouds are loaded. */
+  var setCascadeSize: ((size: number) => void) | undefined
+}
+
+/** Texels along an edge of a cascade: as users have it, in pictures of stories, and where shadows are not measured. */
+const sizes = { fine: 256, pictures: 128, coarse: 64 }
+
+/** Makes shadow maps of clouds, from now on, with fewer texels than users', or with as many. */
+export function setShadowSize(size: keyof typeof sizes): void {
+  globalThis.setCascadeSize?.(sizes[size])
+}
