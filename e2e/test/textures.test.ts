@@ -1,5 +1,6 @@
 import {
   Atmosphere,
+  MoonDirectionalLight,
   SkyLightProbe,
   SunDirectionalLight,
   aerialPerspective,
@@ -23,6 +24,7 @@ import {
 } from '@welkin/atmosphere'
 import type { SkyLayer } from '@welkin/atmosphere'
 import {
+  cloudAirShadow,
   cloudPreset,
   clouds,
   cloudShadow,
@@ -220,6 +222,28 @@ it('features of the clouds sample as many textures as their README says', async 
     return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
   }, 'Welkin.CloudsShade')
   expect(rainy).toBe(14)
+  // Casters in sunlight and in moonlight, one with textures of its own, add none: they have a pass of their own, with room for others.
+  const passes = [
+    ['Welkin.CloudsShade', rainy],
+    ['Welkin.CloudsCast', 10]
+  ] as const
+  for (const [name, textures] of passes) {
+    const cast = await inPass(({ air, depth, camera, atmosphere, sun }) => {
+      const light = new DropletLightTable({ crystals: iceCrystals() })
+      const precipitation = precipitationShafts({ drops: raindrops() })
+      const options = { light, precipitation, worldMap: cloudWorldMap(picture()) }
+      const luna = moon()
+      atmosphere.add(luna)
+      const node = clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
+      for (const each of [sun, new MoonDirectionalLight(atmosphere, luna)]) {
+        each.castShadow = true
+        const hills = heightFieldShadow(picture(), new Matrix4())
+        lightShafts(atmosphere, camera, each).add(cloudAirShadow(node), hills)
+      }
+      return node
+    }, name)
+    expect([name, cast]).toEqual([name, textures])
+  }
   const dimmed = await inLit(world => {
     cloudSkyLight(world.sky, world.clouds())
   })

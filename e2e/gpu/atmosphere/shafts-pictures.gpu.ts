@@ -44,16 +44,58 @@ function turnTo({ camera }: Stage, angle: number): void {
 const encode = (light: number): number =>
   light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055
 
-/** Likeness of pictures as displays show them, where one pixel in fifty is white [dB]. */
-function likeness(a: Picture, b: Picture): number {
-  const colors = a.data.filter((_, i) => i % 4 < 3)
+/** Pictures as displays show them, in [0, 1], where one pixel in fifty of this one is white. */
+function display(picture: Picture): (value: number) => number {
+  const colors = picture.data.filter((_, i) => i % 4 < 3)
   const white = colors.toSorted()[Math.floor(0.98 * colors.length)]
-  const shown = (value: number): number => encode(Math.min(Math.max(value / white, 0), 1))
+  return value => encode(Math.min(Math.max(value / white, 0), 1))
+}
+
+/** Likeness of pictures as displays show them [dB]. */
+function likeness(a: Picture, b: Picture): number {
+  const shown = display(a)
+  const colors = a.width * a.height * 3
   let sum = 0
   a.data.forEach((value, i) => {
     if (i % 4 < 3) sum += (shown(value) - shown(b.data[i])) ** 2
   })
-  return -10 * Math.log10(sum / colors.length)
+  return -10 * Math.log10(sum / colors)
+}
+
+/** Greatest step of a smooth picture from pixel to pixel, in levels of a display of 256. */
+const SMOOTH = 1
+
+/** Part of the steps of smooth pictures that may be greater: at edges of shafts and silhouettes. */
+const STEEP = 0.002
+
+/**
+ * Steps between pixels side by side or above each other where the expected picture has none above `SMOOTH` around
+ * them, in levels of a display of 256: bands would be there. The greatest, and the part above one level.
+ */
+function bands(expected: Picture, picture: Picture): { greatest: number; part: number } {
+  const shown = display(expected)
+  const { width, height } = expected
+  const level = ({ data }: Picture, x: number, y: number, channel: number): number =>
+    255 * shown(data[4 * (y * width + x) + channel])
+  const steps: number[] = []
+  for (let i = 0; i < 3 * width * height; i++) {
+    const [channel, pixel] = [i % 3, Math.floor(i / 3)]
+    const [x, y] = [pixel % width, Math.floor(pixel / width)]
+    if (Math.min(x, y) < 1 || x > width - 3 || y > height - 3) continue
+    const around = Array.from({ length: 16 }, (_, k) =>
+      level(expected, x - 1 + (k % 4), y - 1 + (k >> 2), channel)
+    )
+    if (Math.max(...around) - Math.min(...around) > SMOOTH) continue
+    const here = level(picture, x, y, channel)
+    steps.push(Math.abs(level(picture, x + 1, y, channel) - here))
+    steps.push(Math.abs(level(picture, x, y + 1, channel) - here))
+  }
+  expectTrue(steps.length > 0.2 * 3 * width * height, `only ${steps.length} steps are smooth`)
+  const steep = steps.filter(step => step > 1).length
+  return {
+    greatest: steps.reduce((most, step) => Math.max(most, step), 0),
+    part: steep / steps.length
+  }
 }
 
 /** Shafts by the scene's materials: of a quality, or by all steps for each pixel. */
@@ -98,7 +140,11 @@ gpuTest(
         shafts.set({ quality })
         turnTo(set, angle)
         await set.draw()
-        const still = likeness(expected, await set.draw())
+        const picture = await set.draw()
+        const still = likeness(expected, picture)
+        const { greatest, part } = bands(expected, picture)
+        t.note(`${(1000 * part).toFixed(2)} ‰ of steps above a level, up to ${greatest.toFixed(1)}`)
+        expectTrue(part < STEEP, `${quality} shafts have bands`)
         for (const before of [3, 2, 1]) {
           turnTo(set, angle - before * TURN)
           await set.draw()
@@ -107,8 +153,11 @@ gpuTest(
         const turning = likeness(expected, await set.draw())
         t.note(`${quality}: ${still.toFixed(1)} dB, turning ${turning.toFixed(1)} dB`)
         expectTrue(Math.min(still, turning) >= goal, `${quality} shafts`)
-        const forward = likeness(expected, await byMaterials(renderer, set, quality))
-        t.note(`materials ${forward.toFixed(1)} dB`)
+        const drawn = await byMaterials(renderer, set, quality)
+        const forward = likeness(expected, drawn)
+        const steep = bands(expected, drawn).part
+        t.note(`materials ${forward.toFixed(1)} dB, ${(1000 * steep).toFixed(2)} ‰ steep`)
+        expectTrue(steep < STEEP, `${quality} shafts of materials have bands`)
         expectTrue(forward >= 48, `${quality} shafts of materials`)
       }
     }

@@ -37,6 +37,25 @@ gpuTest('leaves a scene without casters the same to the last bit', async t => {
   shafted.dispose()
 })
 
+gpuTest(
+  'has no shafts by night, where neither sun nor moon shines',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const pictures: Picture[] = []
+    for (const options of [{}, null]) {
+      // The moon is below the horizon, as the sun is.
+      const set = stage(renderer, -20, options, true)
+      addBox(set.scene, [0, 350, -300], [7000, 700, 2])
+      pictures.push(await set.draw())
+      if (options !== null) expectTrue(!set.shafts.isActive, 'shafts in no light')
+      set.dispose()
+    }
+    expectSame(pictures[0], pictures[1], 'with and without shafts')
+  },
+  // Decided on the CPU.
+  { backends: ['webgpu'] }
+)
+
 /** A ray of the stage's camera that looks at an angle above the horizon, in the north, where the sun is. */
 function northward(elevation: number, sunElevation: number, altitude: number): RayNumbers {
   const [view, sun] = [elevation, sunElevation].map(angle => (angle * Math.PI) / 180)

@@ -98,7 +98,8 @@ function streetMaterial(noise: DataTexture, scale: Node<'float'>): MeshStandardN
     CITY_EXTENT * 1.05,
     vec2(x, z).length().add(ragged)
   )
-  const material = new MeshStandardNodeMaterial({ transparent: true, depthWrite: false })
+  // It writes depth, transparent as it is: the air before it ends at the street.
+  const material = new MeshStandardNodeMaterial({ transparent: true })
   material.colorNode = mix(surface, color('#c9c7bd'), lines).mul(grain.mul(0.5).add(0.75))
   material.opacityNode = outside.oneMinus()
   material.roughnessNode = float(0.9)

@@ -1,23 +1,23 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
 import { FloatType, NearestFilter, UnsignedByteType, Vector2 } from 'three'
 import type { RenderTarget, Texture, Vector3 } from 'three'
-import { If, float, texture, uv, vec4 } from 'three/tsl'
+import { If, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from '../density/CloudField'
 import { compiledByKinds, kindsOf } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
-import type { CloudCaster, ShadingContext } from '../light/tsl/shadingContext'
-import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
-import { interleavedNoise } from '../temporal/tsl/noisePattern'
+import type { ShadingContext } from '../light/tsl/shadingContext'
 import { gatherCells } from '../temporal/tsl/cells'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
+import { CastLight, type CastScene } from './CastLight'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
+import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
 import { shadePoints } from './tsl/shadePoints'
 import { viewRayAt, viewRayEnd, type FrameInputs } from './tsl/viewRay'
-import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { LevelTexture, Vec2, Vec4 } from '../tsl-types'
 
 const _size = new Vector2()
 
@@ -28,28 +28,13 @@ export function sizeOf(renderer: Renderer): { width: number; height: number } {
 }
 
 /** Inputs of a camera's passes. */
-export interface CloudScene extends ShadingContext {
-  readonly viewRays: FrameInputs
-  /** Rain and snow under the clouds. */
-  readonly precipitation?: PrecipitationShafts
-  /** Casters that shade the clouds besides themselves. */
-  readonly casters: ReadonlySet<CloudCaster>
-}
+export interface CloudScene extends ShadingContext, CastScene {}
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
 function cloudTarget(name: string, isPacked = false): RenderTarget {
   const target = tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
   if (isPacked) target.textures[1].type = UnsignedByteType
   return target
-}
-
-/** Textures of the march: what rays see, not lit yet. */
-interface MarchedTargets {
-  /** Distances of `SeenPoints` [m], and their shares. */
-  readonly distances: LevelTexture<Vec2>
-  readonly shares: LevelTexture<Vec2>
-  /** log₂ of the clouds' distance, log₂ of the distance of what was drawn, transmittance, steps over 256. */
-  readonly ray: LevelTexture<Vec2>
 }
 
 /** Render target of {@link MarchedTargets}: distances of points are too fine for half floats. */
@@ -70,20 +55,11 @@ function texturesOf({ textures }: RenderTarget): Record<keyof CloudTargets, Chan
   return { light, distances }
 }
 
-/** Pixel of each block that is marched, of a picture with one texel for each block. */
-function marchedPixel({ viewRays }: CloudScene): { at: Vec2; noise: Float } {
-  const { frame } = viewRays
-  const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
-  const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
-  const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
-  return { at, noise: interleavedNoise(block, frame.noiseShift) }
-}
-
 /** Marches one pixel of each block: {@link MarchedTargets}. */
 function marchPixels(scene: CloudScene): Outputs {
   const { viewRays } = scene
   return outputs<[Vec4, Vec4, Vec4]>(3, ([distances, shares, ray]) => {
-    const { at, noise } = marchedPixel(scene)
+    const { at, noise } = marchedPixel(viewRays)
     const viewRay = viewRayAt(viewRays, at)
     const end = viewRayEnd(viewRays, at, viewRay)
     const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise })
@@ -94,41 +70,29 @@ function marchPixels(scene: CloudScene): Outputs {
   })
 }
 
-/** Part of the light that arrives on a view ray past all casters. */
-function castAlong(
-  { casters }: CloudScene,
-  direction: Vec3,
-  jitter: Float
-): ShadingContext['castAt'] {
-  if (casters.size === 0) return undefined
-  return (distance, isMoonlit) =>
-    [...casters].reduce(
-      (lit, caster) => lit.mul(caster.litAt({ direction, jitter }, distance, isMoonlit)),
-      float(1) as Float
-    )
-}
-
 /** Shades what was marched: light with the air in front of it, and its distances. */
-function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
+function shadePixels(scene: CloudScene, marched: MarchedTargets, cast: CastLight): Outputs {
   const { field, viewRays, precipitation } = scene
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
-    const { at, noise } = marchedPixel(scene)
+    const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
-    const ray = marched.ray.sample(here).level(0).toConst() as Vec4
+    const found = cast.read(here)
+    const { ray } = found
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
     // Rain may be where no cloud is.
     If(ray.z.lessThan(precipitation ? 2 : 1), () => {
+      const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
-        shares: marched.shares.sample(here).level(0).toConst() as Vec4
+        shares: found.shares,
+        lit: cast.litOn(found, direction, noise)
       }
-      const { direction, directionView } = viewRayAt(viewRays, at)
       const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
-      const context = { ...scene, castAt: castAlong(scene, direction, noise) }
-      const seen = precipitation?.among(context, direction, noise, ray, clouds, distances) ?? {
+      const rays = { direction, jitter: noise, marched: ray, litFall: found.litFall }
+      const seen = precipitation?.among(scene, rays, clouds, distances) ?? {
         ...clouds,
-        radiance: shadePoints(context, direction, points)
+        radiance: shadePoints(scene, direction, points)
       }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
@@ -137,7 +101,7 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
 
 /**
  * Render targets and passes of a camera's clouds. A frame takes five passes: the weather around the camera, the
- * march of one pixel of each block, its light, the statistics of the cells between marched pixels, and the upscale, which blends them
+ * march of one pixel of each block, its light (before it, with casters, {@link CastLight}), the statistics of the cells between marched pixels, and the upscale, which blends them
  * into the history of the frames before.
  */
 export class CloudRenderer {
@@ -151,8 +115,8 @@ export class CloudRenderer {
   readonly #field: CloudField
   /** Kinds of the layers for which the march was compiled, and casters for which its light was. */
   #kinds = ''
-  #castersVersion = ''
-  readonly #casters: ReadonlySet<CloudCaster>
+  #castVersion = ''
+  readonly #cast: CastLight
   readonly #march: FragmentPass
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
@@ -174,15 +138,15 @@ export class CloudRenderer {
     )
     this.#field = compiledByKinds(field)
     const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
-    this.#casters = inputs.casters
     this.viewRays = viewRays
     this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
-    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen))
+    this.#cast = new CastLight(scene, this.seen)
+    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen, this.#cast))
     for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
-      material.customProgramCacheKey = () => key() + kindsOf(field) + this.#castersVersion
+      material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version
     }
     const { marched: shaded } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
@@ -209,6 +173,7 @@ export class CloudRenderer {
     const across = Math.ceil(width / block)
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
+    this.#cast.setSize(across, down)
     this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
     frame.size.value.set(width, height)
@@ -224,6 +189,7 @@ export class CloudRenderer {
     this.#compile()
     this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
+    this.#cast.render(renderer)
     this.#shade.render(renderer, this.#shadedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
@@ -237,18 +203,18 @@ export class CloudRenderer {
   /** Has what has code for storms compiled anew where layers of storms come or go, and light where casters do. */
   #compile(): void {
     const kinds = kindsOf(this.#field)
-    const casters = Array.from(this.#casters, ({ version }) => version).join()
+    const { version } = this.#cast
     if (kinds !== this.#kinds) this.#march.material.needsUpdate = true
-    if (kinds !== this.#kinds || casters !== this.#castersVersion) {
+    if (kinds !== this.#kinds || version !== this.#castVersion)
       this.#shade.material.needsUpdate = true
-    }
     this.#kinds = kinds
-    this.#castersVersion = casters
+    this.#castVersion = version
   }
 
   /** Frees the render targets. */
   dispose(): void {
     this.#weatherMap.dispose()
+    this.#cast.dispose()
     for (const target of this.#targets) target.dispose()
     for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
       pass.dispose()

@@ -23,7 +23,8 @@ import { DIFFRACTED, fallFloor, fallForm } from './fallForm'
 import { fallenFrom, fallExtinction } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
 import { lightPrecipitation } from './tsl/lightPrecipitation'
-import { marchPrecipitation, type FallSpace } from './tsl/marchPrecipitation'
+import { distanceAt, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
+import { marchPrecipitation } from './tsl/marchPrecipitation'
 
 /** Options of {@link PrecipitationShafts}. */
 export interface PrecipitationShaftsOptions {
@@ -38,6 +39,9 @@ const STRIDE = 4
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
 const NOWHERE = -1000
+
+/** Places of a ray whose light says that of all that falls on it. */
+const PLACES = 4
 
 const _axis = new Vector3()
 
@@ -193,44 +197,74 @@ export class PrecipitationShafts {
   }
 
   /**
+   * Stretch of a ray on which something falls. To be called inside of a shader function.
+   *
+   * @param marched - Ray of the march: log₂ of its end, and transmittance, in y and z.
+   * @param distances - Distances of the clouds' points [m].
+   */
+  #stretchOn(field: CloudField, direction: Vec3, marched: Vec4, { x, y, z, w }: Vec4): FallStretch {
+    // Behind opaque clouds nothing is seen.
+    const last = x.max(y).max(z.max(w))
+    const end = marched.z.greaterThan(0).select(marched.y.exp2(), last).toConst() as Float
+    const space = { ceiling: this.#ceiling, floor: this.#floor }
+    return fallStretch(field, space, { direction, end })
+  }
+
+  /**
+   * Distances of four places of a ray on which something falls, whose light says that of all of it; 0 where nothing does [m].
+   * To be called inside of a shader function; arguments as for {@link among}.
+   */
+  placesOn(field: CloudField, direction: Vec3, marched: Vec4, distances: Vec4): Vec4 {
+    const stretch = this.#stretchOn(field, direction, marched, distances)
+    const parts = vec4(0, 1, 2, 3).add(0.5).div(PLACES) as Vec4
+    const isThere = stretch.span.greaterThan(1)
+    return distanceAt(stretch, parts).mul(isThere.select(1, 0)).toConst()
+  }
+
+  /** Part of the light that reaches a distance, between the places of {@link placesOn}. */
+  #litAt(stretch: FallStretch, litFall: Vec4, distance: Float): Float {
+    const place = partAt(stretch, distance)
+      .mul(PLACES)
+      .sub(0.5)
+      .clamp(0, PLACES - 1)
+    const weights = vec4(0, 1, 2, 3).sub(place).abs().min(1).oneMinus()
+    return litFall.dot(weights).toConst()
+  }
+
+  /**
    * Clouds on a ray with what falls before and behind them, and their light. To be called inside of a shader function.
    *
-   * @param jitter - Noise in [0, 1).
-   * @param marched - Ray of the march: log₂ of its end in y.
+   * @param ray - Its direction, noise in [0, 1), what was marched (log₂ of its end in y, transmittance in z), and parts of the
+   *   light that casters leave at {@link placesOn}, if there are any.
    * @param clouds - Clouds on the ray, not lit yet.
    * @param distances - Output of the pass, whose first component is the log₂ of the distance of what is seen.
    */
   among(
     context: ShadingContext,
-    direction: Vec3,
-    jitter: Float,
-    marched: Vec4,
+    ray: { direction: Vec3; jitter: Float; marched: Vec4; litFall?: Vec4 },
     clouds: SeenClouds,
     distances: Variable<Vec4>
   ): SeenClouds & LitRay {
     const { points } = clouds
-    // Behind opaque clouds nothing is seen.
-    const { x, y, z, w } = points.distances
-    const last = x.max(y).max(z.max(w))
-    const end = clouds.transmittance.greaterThan(0).select(marched.y.exp2(), last).toConst()
-    const ray = { direction, end, jitter }
-    const space: FallSpace = {
-      fallOf: index => this.fallOf(index),
+    const { direction, marched, litFall } = ray
+    const stretch = this.#stretchOn(context.field, direction, marched, points.distances)
+    const space = {
+      fallOf: (index: Int) => this.fallOf(index),
       layers: {
         first: this.#firstLayer.toInt().toConst(),
         last: this.#endLayer.toInt().toConst()
       },
-      ceiling: this.#ceiling,
-      floor: this.#floor
+      ceiling: this.#ceiling
     }
-    const seen = marchPrecipitation(context, space, ray, points)
+    const seen = marchPrecipitation(context, space, ray, stretch, points)
     const shares = points.shares.mul(seen.before).toConst() as Vec4
-    const dimmed = { distances: points.distances, shares }
+    const dimmed = { ...points, shares }
     const radiance = shadePoints(context, direction, dimmed).toVar() as Variable<Vec4>
     const distance = clouds.distance.toVar() as Variable<Float>
     const { weight } = seen
     If(weight.greaterThan(1e-4), () => {
-      const light = lightPrecipitation(context, this.drops, direction, seen, this.#above)
+      const lit = litFall && this.#litAt(stretch, litFall, seen.distance)
+      const light = lightPrecipitation(context, this.drops, direction, seen, this.#above, lit)
       radiance.addAssign(light)
       const ofClouds = shares.dot(vec4(1))
       distance.assign(mix(seen.distance, distance, ofClouds.div(ofClouds.add(weight))))

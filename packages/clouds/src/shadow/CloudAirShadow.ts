@@ -4,6 +4,7 @@ import type {
   AirViewRay,
   AirShadow,
   AtmosphereView,
+  LightSource,
   ScreenShadows,
   ShadowedShafts
 } from '@welkin/atmosphere'
@@ -17,7 +18,7 @@ import { decksAround } from '../environment/tsl/decks'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { CloudCaster } from '../light/tsl/shadingContext'
-import type { Bool, Float, Vec3, Vec4 } from '../tsl-types'
+import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
 import { CloudForeground } from './CloudForeground'
 import { DiffuseRatioTable } from './DiffuseRatioTable'
@@ -48,9 +49,7 @@ class CastShadow implements AirShadow, CloudCaster {
     if (shafts.camera !== clouds.camera) return
     this.#screen = shafts.upTo(clouds.depthNode, this.#foreground)
     clouds.screens.add(this.#screen)
-    // Not by moonlight nor with a map of the world: each would be one texture too many.
-    const { atmosphere, field } = clouds
-    if (shafts.source === atmosphere.sun && field.worldMap === null) clouds.casters.add(this)
+    clouds.casters.add(this)
     clouds.needsUpdate = true
   }
 
@@ -73,12 +72,12 @@ class CastShadow implements AirShadow, CloudCaster {
     return this.#shafts.version
   }
 
-  litAt(ray: Pick<AirViewRay, 'direction' | 'jitter'>, distance: Float, isMoonlit: Bool): Float {
-    const lit = float(1).toVar() as Float
-    If(isMoonlit.not(), () => {
-      lit.assign(this.#shafts.litAt({ ...ray, receiver: this.#clouds }, distance))
-    })
-    return lit
+  get source(): LightSource {
+    return this.#shafts.source
+  }
+
+  litAt(ray: Pick<AirViewRay, 'direction' | 'jitter'>, distance: Float): Float {
+    return this.#shafts.litAt({ ...ray, receiver: this.#clouds }, distance)
   }
 
   transmittance(ray: AirViewRay): (place: AirPoint) => Float {
@@ -134,7 +133,7 @@ class CastShadow implements AirShadow, CloudCaster {
  *
  * They are read from the clouds' shadow maps, up to 2,000 km above the ground; beyond them the mean cover of the layers says how much passes, or the
  * weather if there is a map of the world. Shafts of the clouds' camera are drawn by the clouds' node then, before and
- * behind the clouds, and all else that casts into those of the sun shades the clouds, too: the light's shadow maps, and hills.
+ * behind the clouds, and all else that casts into them shades the clouds, too: the light's shadow maps, and hills.
  */
 export class CloudAirShadow implements AirOccluder {
   /** Shared, not owned. */

@@ -49,7 +49,7 @@ export function lostInSlice(
     const { altitude, cosLight } = viewpoint
     const ray = enterAir(air, { altitude, cosView, cosLight, cosViewLight }, limits)
     const airAt = litRay(view, ray, limits, cosView, shadowedAir.denser())
-    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
+    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, () => polar, jitter)
     const mediaTo = (distance: Float): readonly ShadowedMedium[] =>
       shadowedAir.mediaOn({ ...shaftRay, view, distance })
     const media = mediaTo(to)

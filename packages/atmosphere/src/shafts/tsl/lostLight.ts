@@ -85,7 +85,7 @@ export function lostLight(
     const isSky = distance.greaterThanEqual(SKY_DISTANCE)
     const denser = shadowedAir.denser()
     const airAt = litRay(view, ray, limits, cosView, denser && isSky.select(1, denser))
-    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, polar, jitter)
+    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, () => polar, jitter)
     const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
     const media = shadowedAir.mediaOn({ ...shaftRay, view })
     const past = dimmedBy(media)

@@ -48,12 +48,16 @@ export interface Shadows {
   missingAt: ((distance: Float) => Vec4) | null
 }
 
-/** Shadows on a view ray. */
+/**
+ * Shadows on a view ray.
+ *
+ * @param polar - The ray in the sun-polar map, asked for where that is read.
+ */
 export function shadowsAlong(
   view: ViewUniforms,
   { map, frame, shadows, toWorld }: ShadowedAir,
   { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
-  polar: PolarRay,
+  polar: () => PolarRay,
   jitter: Float,
   readMap: typeof ditheredDark = darkPart
 ): Shadows {
@@ -72,7 +76,7 @@ export function shadowsAlong(
     darkAt(distance, isMapped) {
       const dark = float(0).toVar() as Float
       const addMap = (): void => {
-        dark.assign(readMap(map, frame, polar, distance, jitter))
+        dark.assign(readMap(map, frame, polar(), distance, jitter))
       }
       if (isMapped === true) addMap()
       else if (isMapped !== false) If(isMapped, addMap)
@@ -98,16 +102,13 @@ export function shadowAt(
   distance: Float
 ): { dark: Float; missing: Vec4 | null } {
   const { frame, maximumRho } = shadowedAir
-  const polar = polarRay(frame, ray.direction, ray.direction.dot(view.lightDirection).toConst())
-  const isMapped = distance.mul(polar.sinViewLight).lessThan(maximumRho)
-  const { darkAt, missingAt } = shadowsAlong(
-    view,
-    shadowedAir,
-    ray,
-    polar,
-    ray.jitter,
-    ditheredDark
-  )
+  const { direction, jitter } = ray
+  const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
+  const sinViewLight = cosViewLight.mul(cosViewLight).oneMinus().max(0).sqrt()
+  const isMapped = distance.mul(sinViewLight).lessThan(maximumRho) as Bool
+  // Many places are beyond the map.
+  const polar = (): PolarRay => polarRay(frame, direction, cosViewLight)
+  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter, ditheredDark)
   return { dark: darkAt(distance, isMapped), missing: missingAt?.(distance) ?? null }
 }
 

@@ -1,5 +1,5 @@
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
-import { If } from 'three/tsl'
+import { If, float } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
@@ -38,7 +38,7 @@ export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample)
 /** Source function of a place towards the viewpoint: the light that it scatters there. */
 export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudShares {
   const { light } = context
-  const { sample, direction, transmittance } = shaded
+  const { sample, direction, transmittance, lit: cast = float(1) } = shaded
   const source = lightAt(context, sample)
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewLight = direction.dot(source.direction).clamp(-1, 1).toConst() as Float
@@ -64,7 +64,6 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     layered,
     cosView
   })
-  const cast = context.castAt?.(sample.distance, source.isMoonlit) ?? 1
   return {
     direct: direct.mul(cast),
     sky: ambient.sky,

@@ -1,3 +1,4 @@
+import type { LightSource } from '@welkin/atmosphere'
 import type { CloudField } from '../../density/CloudField'
 import type { WeatherMap } from '../../density/WeatherMap'
 import type { CloudSample } from '../../density/tsl/sample'
@@ -16,8 +17,6 @@ export interface ShadingContext {
   readonly light: CloudLight
   readonly shadows: CloudShadows
   readonly quality: QualityUniforms
-  /** Part of the light that arrives at a distance on the view ray, past what casts shadows besides the clouds; left out, all. */
-  readonly castAt?: (distance: Float, isMoonlit: Bool) => Float
 }
 
 /** Place in the clouds that is to be shaded. */
@@ -28,6 +27,8 @@ export interface ShadedSample {
   readonly direction: Vec3
   /** Transmittance of the clouds between it and the camera, in [0, 1]. */
   readonly transmittance: Float
+  /** Part of the light that casters besides the clouds leave, in [0, 1]; left out, all. */
+  readonly lit?: Float
   /** The layers around it. */
   readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered'>
 }
@@ -43,16 +44,17 @@ export interface ShadingLight {
   readonly cosine: Float
 }
 
-/** Something besides the clouds that shades them. */
+/** Something besides the clouds that shades them, in one light. */
 export interface CloudCaster {
   /** Grows whenever its shader changes. */
   readonly version: number
+  /** The light: sun or moon. */
+  readonly source: LightSource
   /**
    * Part of the light that passes, in [0, 1].
    *
    * @param ray - View ray of the clouds' camera; noise in (0, 1).
    * @param distance - Distance from the camera [m].
-   * @param isMoonlit - True where the light is the moon's.
    */
-  litAt(ray: { direction: Vec3; jitter: Float }, distance: Float, isMoonlit: Bool): Float
+  litAt(ray: { direction: Vec3; jitter: Float }, distance: Float): Float
 }

@@ -32,6 +32,11 @@ export interface SeenPoints {
   readonly distances: Vec4
   /** Parts of the ray's light that come from what they stand for; 0 for none. Their sum is the opacity. */
   readonly shares: Vec4
+  /**
+   * Part of the light that casters besides the clouds leave to one of them, in [0, 1]: that with 1 in its component, at its distance.
+   * Left out, all.
+   */
+  readonly lit?: (own: Vec4, distance: Float) => Float
 }
 
 /** State of a ray's strata so far. */

@@ -28,7 +28,7 @@ export interface LitClouds extends MarchedClouds, LitRay {}
 export function shadePoints(
   context: ShadingContext,
   direction: Vec3,
-  { distances, shares }: SeenPoints
+  { distances, shares, lit }: SeenPoints
 ): Vec4 {
   const { field } = context
   const radiance = vec4(0).toVar() as Vec4
@@ -43,7 +43,14 @@ export function shadePoints(
       const layers = layersAt(field, sample.altitude)
       const weather = weatherCacheAt(field, sample, layers.range, context.weatherMap)
       const transmittance = seenBefore.add(share.mul(0.5)).oneMinus().toConst() as Float
-      const shaded = { sample, weather, direction, transmittance, layers }
+      const shaded = {
+        sample,
+        weather,
+        direction,
+        transmittance,
+        layers,
+        lit: lit?.(own, distance)
+      }
       const { direct, sky, ground, fine } = sourceAt(context, shaded)
       const shares = vec3(direct, sky, ground).mul(share).toConst()
       radiance.addAssign(shade(field, sample, shares, fine?.mul(share).toConst()))

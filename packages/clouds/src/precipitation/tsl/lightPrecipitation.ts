@@ -39,13 +39,15 @@ export interface CloudsAbove {
  * is that of a slab of the clouds above and of precipitation, of as many scatterings as turn light around: depths times (1 − g)/(1 − g′).
  *
  * @param drops - Phase function of raindrops; null for smooth lobes.
+ * @param cast - Part of the light that casters besides the clouds leave, in [0, 1].
  */
 export function lightPrecipitation(
   context: ShadingContext,
   drops: ScatteringPhase | null,
   direction: Vec3,
   seen: SeenPrecipitation,
-  { depth, layered, baseAltitude, period }: CloudsAbove
+  { depth, layered, baseAltitude, period }: CloudsAbove,
+  cast: Float = float(1)
 ): Vec4 {
   const { field, light } = context
   const { distance, weight, rank, depthToLight, ownDepth, lit } = seen
@@ -96,7 +98,6 @@ export function lightPrecipitation(
   const hidden = mix(fall.mul(fall).add(1).reciprocal(), 1, layered)
   const sky = mix(0.5, under.sky, hidden)
   const ground = mix(0.5, under.ground, hidden)
-  const cast = context.castAt?.(distance, source.isMoonlit) ?? 1
   const shares = vec3(often.max(0).mul(cast), sky, ground).mul(weight).toConst() as Vec3
   return shade(field, sample, shares, once.mul(cast))
 }

@@ -1,9 +1,8 @@
-import { Break, If, float, mix, vec2, vec4 } from 'three/tsl'
+import { Break, If, float, vec2, vec4 } from 'three/tsl'
 import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { SeenPoints } from '../../march/tsl/seenPoints'
 import type { CloudRay } from '../../march/tsl/march'
-import { crossings, FAR_AWAY } from '../../march/tsl/layerBoundaries'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { LEAST_TRANSMITTANCE, lightAt } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
@@ -19,6 +18,7 @@ import {
 import { DIFFRACTED } from '../fallForm'
 import { fallenFrom, fallExtinction } from './fall'
 import type { FallNodes } from './fallColumn'
+import { distanceAt, type FallStretch } from './fallStretch'
 
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
 const STEPS = 0.4
@@ -26,15 +26,6 @@ const STEPS = 0.4
 /** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
 const SHORTEST = 200
 const LEAST = 3
-
-/** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
-const LONGEST = 30_000
-
-/** Distance from which on nothing is marched [m]: shafts lie under their clouds then. */
-const FARTHEST = 150_000
-
-/** First steps over those of an even march [–], for rays that begin among shafts. */
-const FIRST = 0.12
 
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
 const BLUR = 0.1
@@ -66,9 +57,8 @@ export interface FallSpace {
   readonly fallOf: (index: Int) => FallNodes
   /** Layers from which something falls, and perhaps others between. */
   readonly layers: LayerRange
-  /** Altitudes above and below which nothing falls [m]. */
+  /** Altitude above which nothing falls [m]. */
   readonly ceiling: Float
-  readonly floor: Float
 }
 
 /**
@@ -79,31 +69,19 @@ export interface FallSpace {
  */
 export function marchPrecipitation(
   context: ShadingContext,
-  { fallOf, layers, ceiling, floor }: FallSpace,
-  { direction, end, jitter }: CloudRay,
+  { fallOf, layers, ceiling }: FallSpace,
+  { direction, jitter }: Omit<CloudRay, 'end'>,
+  stretch: FallStretch,
   points: SeenPoints
 ): SeenPrecipitation {
   const { field, weatherMap, light, shadows, quality } = context
   const { view } = field
-  const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
-  const shell = crossings(field, cosView, ceiling)
-  const under = crossings(field, cosView, floor)
-  const isBelow = view.height.lessThan(floor).toConst()
-  const from = shell.near.max(isBelow.select(under.far, 0)).toConst() as Float
-  const isLeaving = isBelow.not().and(under.near.greaterThan(0))
-  const last = shell.far.min(end).min(isLeaving.select(under.near, FAR_AWAY))
-  const isNear = from.lessThan(FARTHEST).select(1, 0)
-  const span = last.sub(from).min(LONGEST).mul(isNear).toConst() as Float
-  const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
+  const { span } = stretch
   const count = span
     .div(SHORTEST)
     .clamp(LEAST, quality.layerSteps.mul(STEPS))
     .ceil()
     .toConst() as Float
-  const edgeAt = (step: Float): Float => {
-    const part = step.div(count).toConst()
-    return from.add(span.mul(part).mul(part.mul(first.oneMinus()).add(first)))
-  }
   const transmittance = float(1).toVar() as Variable<Float>
   const before = vec4(1).toVar() as Variable<Vec4>
   /** Weight, and sums by it: distance, rank, logarithm of the depth to the light. */
@@ -115,8 +93,10 @@ export function marchPrecipitation(
       If(transmittance.lessThan(LEAST_TRANSMITTANCE), () => {
         Break()
       })
-      const start = edgeAt(float(index)).toConst() as Float
-      const length = edgeAt(float(index).add(1)).sub(start).toConst() as Float
+      const [start, next] = [float(index), float(index).add(1)].map(
+        step => distanceAt(stretch, step.div(count).toConst() as Float).toConst() as Float
+      )
+      const length = next.sub(start).toConst() as Float
       const at = start.add(length.mul(jitter)).toConst() as Float
       const offset = direction.mul(at).toConst() as Vec3
       const blurred = at.max(length.mul(BLUR).div(field.pixelAngle)).toConst() as Float

@@ -1,0 +1,58 @@
+import { mix } from 'three/tsl'
+import type { CloudField } from '../../density/CloudField'
+import { crossings, FAR_AWAY } from '../../march/tsl/layerBoundaries'
+import type { CloudRay } from '../../march/tsl/march'
+import type { Float, Vec4 } from '../../tsl-types'
+
+/** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
+const LONGEST = 30_000
+
+/** Distance from which on nothing is marched [m]: shafts lie under their clouds then. */
+const FARTHEST = 150_000
+
+/** First steps over those of an even march [–], for rays that begin among shafts. */
+const FIRST = 0.12
+
+/** Stretch of a ray on which something falls, and the length of its first steps over those of an even march. */
+export interface FallStretch {
+  readonly from: Float
+  readonly span: Float
+  readonly first: Float
+}
+
+/**
+ * Stretch of a ray that is marched; its span is 0 or less where nothing falls. To be called inside of a shader function.
+ *
+ * @param altitudes - Ceiling and floor: altitudes above and below which nothing falls [m].
+ */
+export function fallStretch(
+  field: CloudField,
+  { ceiling, floor }: { ceiling: Float; floor: Float },
+  { direction, end }: Pick<CloudRay, 'direction' | 'end'>
+): FallStretch {
+  const { view } = field
+  const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
+  const shell = crossings(field, cosView, ceiling)
+  const under = crossings(field, cosView, floor)
+  const isBelow = view.height.lessThan(floor).toConst()
+  const from = shell.near.max(isBelow.select(under.far, 0)).toConst() as Float
+  const isLeaving = isBelow.not().and(under.near.greaterThan(0))
+  const last = shell.far.min(end).min(isLeaving.select(under.near, FAR_AWAY))
+  const isNear = from.lessThan(FARTHEST).select(1, 0)
+  const span = last.sub(from).min(LONGEST).mul(isNear).toConst() as Float
+  const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
+  return { from, span, first }
+}
+
+/** Distance of a part of a stretch's steps, in [0, 1] [m]. */
+export const distanceAt = <T extends Float | Vec4>(
+  { from, span, first }: FallStretch,
+  part: T
+): T => part.mul(part.mul(first.oneMinus()).add(first)).mul(span).add(from) as T
+
+/** The inverse of {@link distanceAt}. */
+export function partAt({ from, span, first }: FallStretch, distance: Float): Float {
+  const even = distance.sub(from).div(span.max(1)).clamp().toConst() as Float
+  const root = first.mul(first).add(first.oneMinus().mul(even).mul(4)).sqrt()
+  return even.mul(2).div(first.add(root))
+}
