@@ -130,7 +130,9 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets): Outputs {
         ...clouds,
         radiance: shadePoints(context, direction, points)
       }
-      color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
+      If(seen.transmittance.lessThan(1), () => {
+        color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
+      })
     })
   })
 }
