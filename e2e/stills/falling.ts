@@ -5,10 +5,10 @@ export const falling = [
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
     clouds: { preset: 'shower' },
-    place: { longitude: 140.376, latitude: 36.952 },
+    place: { longitude: 140.376, latitude: 36.99 },
     altitude: 60,
     sun: { elevation: 30, azimuth: 280 },
-    view: { azimuth: 20, pitch: 8 },
+    view: { azimuth: 20, pitch: 10 },
     land: 'hills'
   },
   {

@@ -1,4 +1,4 @@
-import { AmbientLight, PerspectiveCamera, PointLight, Scene, Vector3 } from 'three'
+import { AmbientLight, MathUtils, PerspectiveCamera, PointLight, Scene, Vector3 } from 'three'
 import { texture } from 'three/tsl'
 import { Texture } from 'three'
 import fc from 'fast-check'
@@ -10,11 +10,12 @@ import {
   rainfall,
   snowfall
 } from '@welkin/atmosphere'
-import { drawnParticles } from '../../src/precipitation/cpu/drawnParticles'
+import { BOX_SIDE, drawnParticles } from '../../src/precipitation/cpu/drawnParticles'
 import { gustiness } from '../../src/precipitation/cpu/gustiness'
 import { numberBetween, raindropSizes, snowflakeSizes } from '../../src/precipitation/cpu/sizes'
 import { FallingLattice } from '../../src/precipitation/FallingLattice'
 import { rain, snow } from '../../src/precipitation/ParticleKind'
+import { EDGE_FADE, LENS, REACH_FADE } from '../../src/precipitation/tsl/particleVertex'
 import { classExtinction, flakeWidth } from '../twins/precipitation/meanDepth'
 import { throwsEach, wrong } from '../harness/wrong'
 
@@ -153,6 +154,53 @@ describe('FallingLattice', () => {
         for (const turns of now.toArray()) expect(turns - Math.round(turns)).toBeCloseTo(0, 6)
       }
     }
+  })
+
+  it('lets nothing in sight pop while the view turns', () => {
+    const camera = new PerspectiveCamera()
+    const lattice = new FallingLattice()
+    const atmosphere = new Atmosphere()
+    const [middle, drift, offset, forward] = Array.from({ length: 4 }, () => new Vector3())
+    const corner = (47 * Math.PI) / 180
+    let most = 0
+    for (const reach of [3, 16, 60]) {
+      const before = new Map<number, { offset: Vector3; fade: number }>()
+      for (let step = 0; step < 240; step++) {
+        camera.rotation.set(0.3 * Math.sin(step / 40), (step * Math.PI) / 720, 0, 'YXZ')
+        camera.updateMatrixWorld()
+        forward.copy(lattice.forward)
+        lattice.update(atmosphere, camera, 0, calm, 0)
+        lattice.box(reach, middle, drift)
+        for (let i = 0; i < 400; i++) {
+          const box = new Vector3((0.618 * i) % 1, (0.755 * i) % 1, (0.57 * i) % 1).add(drift)
+          for (const axis of ['x', 'y', 'z'] as const) box[axis] -= Math.floor(box[axis]) + 0.5
+          offset
+            .copy(box)
+            .multiplyScalar(BOX_SIDE * reach)
+            .add(middle)
+          const distance = offset.length()
+          const isNear = distance > LENS[1] && distance < reach
+          const isSeen = isNear && offset.angleTo(lattice.forward) < corner
+          const last = before.get(i)
+          if (!isSeen) before.delete(i)
+          else {
+            const side = 2 * Math.max(...box.toArray().map(Math.abs))
+            const fade =
+              (1 - MathUtils.smoothstep(side, EDGE_FADE, 1)) *
+              (1 - MathUtils.smoothstep(distance / reach, REACH_FADE, 1))
+            // What has been in sight was the same particle there, and what has not was none.
+            if (last) expect(offset.distanceTo(last.offset)).toBeLessThan(1e-6 * reach)
+            if (offset.angleTo(forward) < corner && step > 0) {
+              most = Math.max(most, Math.abs(fade - (last?.fade ?? 0)))
+            }
+            before.set(i, { offset: offset.clone(), fade })
+          }
+        }
+      }
+    }
+    // A quarter of a degree a frame.
+    expect(most).toBeGreaterThan(0)
+    expect(most).toBeLessThan(0.1)
   })
 
   it("follows the world's origin, the wind and the camera's speed", () => {

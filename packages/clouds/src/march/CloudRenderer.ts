@@ -94,7 +94,9 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets, cast: CastLight
         ...clouds,
         radiance: shadePoints(scene, direction, points)
       }
-      color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
+      If(seen.transmittance.lessThan(1), () => {
+        color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
+      })
     })
   })
 }

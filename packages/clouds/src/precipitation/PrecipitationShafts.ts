@@ -22,9 +22,9 @@ import { fallColumnOf } from './cpu/fallColumn'
 import { DIFFRACTED, fallFloor, fallForm } from './fallForm'
 import { fallenFrom, fallExtinction } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
-import { lightPrecipitation } from './tsl/lightPrecipitation'
 import { distanceAt, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
-import { marchPrecipitation } from './tsl/marchPrecipitation'
+import { CLOUD_RADIUS, lightPrecipitation } from './tsl/lightPrecipitation'
+import { LEAST_SEEN, marchPrecipitation } from './tsl/marchPrecipitation'
 
 /** Options of {@link PrecipitationShafts}. */
 export interface PrecipitationShaftsOptions {
@@ -36,6 +36,9 @@ export interface PrecipitationShaftsOptions {
 
 /** Vectors that a layer takes in the uniforms. */
 const STRIDE = 4
+
+/** Way of level light through what falls from a deck [m]. */
+const DECK_WIDTH = 1500
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
 const NOWHERE = -1000
@@ -72,6 +75,7 @@ export class PrecipitationShafts {
   readonly #array = vec4Array(this.#values)
   readonly #ceiling = number(NOWHERE)
   readonly #floor = number(NOWHERE)
+  readonly #width = number()
   readonly #firstLayer = number()
   readonly #endLayer = number()
   readonly #above = {
@@ -131,6 +135,7 @@ export class PrecipitationShafts {
       layered.value = MathUtils.smoothstep(coverage, ...GROWING_TOGETHER)
       base.value = baseAltitude
       period.value = layerPeriods(parameters).weather
+      this.#width.value = MathUtils.lerp(period.value * CLOUD_RADIUS, DECK_WIDTH, layered.value)
     }
     this.#ceiling.value = ceiling
     this.#floor.value = Math.max(floor, NOWHERE)
@@ -254,15 +259,18 @@ export class PrecipitationShafts {
         first: this.#firstLayer.toInt().toConst(),
         last: this.#endLayer.toInt().toConst()
       },
-      ceiling: this.#ceiling
+      ceiling: this.#ceiling,
+      width: this.#width
     }
-    const seen = marchPrecipitation(context, space, ray, stretch, points)
-    const shares = points.shares.mul(seen.before).toConst() as Vec4
-    const dimmed = { ...points, shares }
-    const radiance = shadePoints(context, direction, dimmed).toVar() as Variable<Vec4>
+    // Clouds first: what would have to be kept through their shading makes it slower by a fifth.
+    const radiance = shadePoints(context, direction, points).toVar() as Variable<Vec4>
     const distance = clouds.distance.toVar() as Variable<Float>
+    const seen = marchPrecipitation(context, space, ray, stretch, points)
     const { weight } = seen
-    If(weight.greaterThan(1e-4), () => {
+    const shares = points.shares.mul(seen.before).toConst() as Vec4
+    const ofAll = points.shares.dot(vec4(1)).max(1e-6)
+    radiance.mulAssign(shares.dot(vec4(1)).div(ofAll))
+    If(weight.greaterThan(LEAST_SEEN), () => {
       const lit = litFall && this.#litAt(stretch, litFall, seen.distance)
       const light = lightPrecipitation(context, this.drops, direction, seen, this.#above, lit)
       radiance.addAssign(light)
@@ -271,7 +279,7 @@ export class PrecipitationShafts {
     })
     distances.assign(vec4(encodeDistance(distance), marched.y, 0, marched.w))
     const transmittance = clouds.transmittance.mul(seen.transmittance).toConst() as Float
-    return { points: dimmed, radiance, transmittance, distance }
+    return { points: { distances: points.distances, shares }, radiance, transmittance, distance }
   }
 }
 

@@ -27,11 +27,11 @@ import { streakShape } from './particleShape'
 import type { ParticleVaryings } from './particleFragment'
 
 /** Distances over which particles in front of the lens fade [m]. */
-const LENS = [0.12, 0.35] as const
+export const LENS = [0.12, 0.35] as const
 /** Half width of the filter of edges [pixels]: lines are as smooth as they need, and cover few pixels. */
 const FOOTPRINT = 0.75
 /** Share of its box's half side, and of a class's reach, from which particles fade. */
-const EDGE_FADE = 0.9
+export const EDGE_FADE = 0.9
 export const REACH_FADE = 0.7
 
 /** Numbers of a particle, the same at all times: even in [0, 1). */

@@ -18,8 +18,8 @@ const LOBES = [0.88, -0.1, 0.93] as const
 /** Greatest phase function [1/sr]: sharper is only what diffraction makes, which counts as not scattered. */
 const GREATEST = 12
 
-/** Radius of clouds that hide the sky over what falls from them, over the period of their weather. */
-const CLOUD_RADIUS = 0.15
+/** Radius of clouds over what falls from them, over the period of their weather: they hide its sky, and it is as wide. */
+export const CLOUD_RADIUS = 0.15
 
 /** Clouds above what is seen. */
 export interface CloudsAbove {

@@ -30,8 +30,8 @@ const LEAST = 3
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
 const BLUR = 0.1
 
-/** Longest way of light through what falls, in which it counts as even [m]. */
-const LIT_WIDTH = 1500
+/** Part of the picture's light below which what falls is not lit. */
+export const LEAST_SEEN = 1e-4
 
 /** Precipitation on a ray. Depths count without what is only diffracted. */
 export interface SeenPrecipitation {
@@ -59,6 +59,8 @@ export interface FallSpace {
   readonly layers: LayerRange
   /** Altitude above which nothing falls [m]. */
   readonly ceiling: Float
+  /** Way of level light through what falls [m]. */
+  readonly width: Float
 }
 
 /**
@@ -69,7 +71,7 @@ export interface FallSpace {
  */
 export function marchPrecipitation(
   context: ShadingContext,
-  { fallOf, layers, ceiling }: FallSpace,
+  { fallOf, layers, ceiling, width }: FallSpace,
   { direction, jitter }: Omit<CloudRay, 'end'>,
   stretch: FallStretch,
   points: SeenPoints
@@ -128,23 +130,27 @@ export function marchPrecipitation(
           .clamp(0, 1)
         const unhidden = points.shares.dot(isBefore).oneMinus().max(0)
         const seen = transmittance.mul(unhidden).mul(through.oneMinus()).toConst() as Float
-        const toLight = lightAt(context, sample)
-        const { toLight: depthToLight, inMap } = sampleShadows(shadows, offset)
-        const mapped = inMap.mul(toLight.isMapped).toConst() as Float
-        const clouds = depthToLight.mul(mapped).mul(light.depthScale).toConst() as Float
-        const slant = toLight.cosine.max(0.05).reciprocal()
-        const own = ceiling.sub(sample.altitude).mul(slant).min(LIT_WIDTH).mul(extinction)
-        // The map has what falls, too.
-        const lit = clouds
-          .add(own.mul(mapped.oneMinus()))
-          .negate()
-          .exp()
-          .mul(seen)
-          .toConst() as Float
-        const flakes = found.y.div(found.x).toConst() as Float
-        const ofClouds = clouds.sub(own.mul(mapped)).max(0)
-        sums.addAssign(vec4(1, at, found.z.div(found.x), ofClouds.add(1).log()).mul(seen))
-        lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
+        If(seen.greaterThan(LEAST_SEEN), () => {
+          const toLight = lightAt(context, sample)
+          const { toLight: depthToLight, inMap } = sampleShadows(shadows, offset)
+          const mapped = inMap.mul(toLight.isMapped).toConst() as Float
+          const clouds = depthToLight.mul(mapped).mul(light.depthScale).toConst() as Float
+          const slant = toLight.cosine.max(0.05).reciprocal()
+          // Out of the shaft's top, or of its side.
+          const aside = width.div(toLight.cosine.mul(toLight.cosine).oneMinus().max(1e-4).sqrt())
+          const own = ceiling.sub(sample.altitude).mul(slant).min(aside).mul(extinction)
+          // The map has what falls, too.
+          const lit = clouds
+            .add(own.mul(mapped.oneMinus()))
+            .negate()
+            .exp()
+            .mul(seen)
+            .toConst() as Float
+          const flakes = found.y.div(found.x).toConst() as Float
+          const ofClouds = clouds.sub(own.mul(mapped)).max(0)
+          sums.addAssign(vec4(1, at, found.z.div(found.x), ofClouds.add(1).log()).mul(seen))
+          lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
+        })
         const ahead = points.distances.sub(start).clamp(0, length)
         before.mulAssign(ahead.mul(extinction).negate().exp())
         transmittance.mulAssign(through)
