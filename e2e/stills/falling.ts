@@ -29,13 +29,13 @@ export const falling = [
       preset: 'altocumulus',
       layer: {
         topAltitude: 4600,
-        coverage: 0.35,
+        coverage: 0.25,
         weatherScale: 0.5,
         shapeScale: 0.7,
-        precipitation: { rate: 6, share: 0.6, virgaDepth: 500, freezingLevel: 0 }
+        precipitation: { rate: 4, share: 0.9, virgaDepth: 1500, freezingLevel: 0 }
       }
     },
-    place: { longitude: 139.17, latitude: 35.33 },
+    place: { longitude: 20, latitude: 45 },
     altitude: 60,
     sun: { elevation: 3, azimuth: 350 },
     view: { azimuth: 30, pitch: 24 },

@@ -101,9 +101,7 @@ gpuTest(
       const background = weatherBackground(field, layer, subpoint, sample, footprint)
       const nodes = medium.fallOf(index)
       const truth = fallColumn(field, layer, nodes, background, subpoint, footprint).x.max(0)
-      const columnOf = (packed: typeof background): typeof background =>
-        fallColumn(field, layer, nodes, packed, subpoint, footprint)
-      const mapped = map.fallAt(layer, subpoint, columnOf)!.x.max(0)
+      const mapped = map.fallAt(index, subpoint)!.x.max(0)
       return vec4(mapped.sub(truth).abs(), truth, 0, 0)
     })
     const [error, rank] = [0, 1].map(component =>

@@ -8,7 +8,6 @@ import { fallColumn, type FallNodes } from '../precipitation/tsl/fallColumn'
 import type { CloudField } from './CloudField'
 import { layerAt, type LayerNodes } from './tsl/layer'
 import { zenithAt } from './tsl/sample'
-import { ifStorm } from './tsl/storm'
 import {
   weatherBackground,
   weatherSystems,
@@ -243,42 +242,19 @@ export class WeatherMap {
   }
 
   /**
-   * The column from which precipitation of a layer falls. To be called inside of a shader function.
+   * The column from which precipitation of a layer falls: `fallColumn`. To be called inside of a shader function.
    *
-   * That of storms is mapped. Other clouds may be narrower than the map's texels there: their column is looked up, with the background from the
-   * map, as far as that goes.
-   *
-   * @param columnOf - `fallColumn` of a layer without storms, by the background.
    * @returns Undefined if the map has none.
    */
-  fallAt(
-    layer: LayerNodes,
-    subpoint: Vec3,
-    columnOf: (background: PackedBackground) => Vec4
-  ): Vec4 | undefined {
+  fallAt(index: Int, subpoint: Vec3): Vec4 | undefined {
     if (this.#fallOf === undefined) return undefined
-    const { index } = layer
     const [x, y] = this.#axes
-    const tiles = vec2(2, this.#field.layers.length)
     const flat = vec2(subpoint.dot(x), subpoint.dot(y)).toConst() as Vec2
     const distance = flat.length().toConst() as Float
-    const position = flat.div(distance.add(EVEN)).toConst() as Vec2
-    const sampleTile = (perPosition: number, column: number): Vec4 => {
-      const inTile = position.mul(perPosition).add(0.5)
-      return this.#map
-        .sample(inTile.add(vec2(column, float(index))).div(tiles))
-        .level(0)
-        .toConst()
-    }
+    const inTile = flat.div(distance.add(EVEN)).mul(FALL_PER_POSITION).add(0.5)
+    const at = inTile.add(vec2(1, float(index))).div(vec2(2, this.#field.layers.length))
     const isIn = distance.lessThan(FALL_DISTANCE).select(1, 0)
-    const found = sampleTile(FALL_PER_POSITION, 1).mul(isIn).toVar() as Variable<Vec4>
-    const lookUp = (): void => {
-      If(distance.lessThan(MAXIMUM_DISTANCE), () => {
-        found.assign(columnOf(sampleTile(PER_POSITION, 0)))
-      })
-    }
-    ifStorm(layer, () => {}, lookUp)
-    return found
+    return this.#map.sample(at).level(0).mul(isIn).toConst()
   }
 
   /** Weather of whole regions at a displacement in the plane, from the map of it [m]. */

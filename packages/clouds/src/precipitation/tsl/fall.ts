@@ -4,10 +4,9 @@ import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { subpointOffset, type CloudSample } from '../../density/tsl/sample'
 import { backgroundAt } from '../../density/tsl/sampler'
-import type { PackedBackground } from '../../density/tsl/weatherBackground'
 import type { WeatherMap } from '../../density/WeatherMap'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
-import { layout, type Float, type Variable, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
 import { extinctionForm, fallForm } from '../fallForm'
 import { fallColumn, type FallNodes } from './fallColumn'
 
@@ -112,11 +111,9 @@ export function fallenFrom(
     const above: CloudSample = { offset, altitude, up, distance }
     const subpoint = subpointOffset(field, above).toConst() as Vec3
     const footprint = distance.mul(field.pixelAngle).toConst() as Float
-    const columnOf = (kind: LayerNodes, background: PackedBackground): Vec4 =>
-      fallColumn(field, kind, nodes, background, subpoint, footprint)
     const column =
-      map?.fallAt(layer, subpoint, found => columnOf({ ...layer, hasStorms: false }, found)) ??
-      columnOf(layer, backgroundAt(field, layer, above))
+      map?.fallAt(layer.index, subpoint) ??
+      fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
     rank.assign(column.x.max(0))
     If(rank.greaterThan(0), () => {
       const atBase = offset.add(up.mul(baseAltitude.sub(altitude))).toConst() as Vec3
