@@ -54,7 +54,7 @@ function combinations(backend: Backend): Combination[] {
   const all = [...randomSets(), ...overlaid.map(name => ({ names: inOrder(name), hour: hours[2] }))]
   if (backend === 'webgpu') return all
   const clear = all.filter(({ names }) => !names.includes('clouds'))
-  return [...clear.slice(0, COUNT_ON_WEBGL), ...clear.slice(1 - overlaid.length)]
+  return [...clear.slice(0, COUNT_ON_WEBGL), ...clear.slice(-overlaid.length)]
 }
 
 function randomSets(): Combination[] {

@@ -190,6 +190,10 @@ async function listPictures(): Promise<Shooting[][]> {
   const cases = await withContext(async context =>
     (await openPage(context)).evaluate(() => window.welkinVisual.list())
   )
+  const names = new Set(cases.map(({ file, story }) => `${file}-${story}`.toLowerCase()))
+  for (const name of webgpuOnly) {
+    if (!names.has(name)) throw new Error(`there is no picture '${name}' to take on WebGPU alone`)
+  }
   const chosen = cases.filter(({ file, story }) => {
     const name = `${file}-${story}`.toLowerCase()
     return positionals.length === 0 || positionals.some(word => name.includes(word))

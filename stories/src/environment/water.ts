@@ -16,7 +16,10 @@ import { randomSequence } from '../random'
 
 const WAVES = 18
 /** Longest and shortest wave [m]. */
-const LENGTHS = [3.2, 0.12] as const
+const LENGTHS = [6, 0.2] as const
+/** Direction of the wind in x and z, and greatest angle by which waves stray from it [rad]. Wider: they cross as a honeycomb. */
+const WIND = 1.2
+const SPREAD = 1
 const GRAVITY = 9.81
 /** Wave vectors by which ripples stray from straight lines, so that they form no lattice, and how far [rad/m, m]. */
 const STRAY = [
@@ -49,7 +52,7 @@ export function createWater(radius: number): Water {
   const steepness = uniform(1)
   const waves = Array.from({ length: WAVES }, (_, i) => {
     const length = LENGTHS[0] * (LENGTHS[1] / LENGTHS[0]) ** (i / (WAVES - 1))
-    const angle = (random() + random() - 1) * 1.9
+    const angle = WIND + (random() + random() - 1) * SPREAD
     const k = (2 * Math.PI) / length
     return { k, x: Math.cos(angle) * k, z: Math.sin(angle) * k, phase: random() * 2 * Math.PI }
   })

@@ -6,6 +6,8 @@ import {
   Fn,
   perspectiveDepthToViewZ,
   positionWorld,
+  reference,
+  renderGroup,
   texture,
   uniform,
   uv,
@@ -30,7 +32,7 @@ const HIDDEN = 0.03
 type Vec4 = Node<'vec4'>
 
 /**
- * Ambient occlusion of a picture before, found from its depth by three's GTAO when it is drawn, and read by the next ones at
+ * Ambient occlusion of one of the three pictures before, found from its depth by three's GTAO once it is drawn, and read by the next ones at
  * the place where each thing was: nothing is drawn twice.
  */
 export class LastOcclusion {
@@ -39,7 +41,7 @@ export class LastOcclusion {
   readonly #target = tableTarget('Occlusion', 1, 1)
   readonly #pass: FragmentPass
   readonly #occlusion: ReturnType<typeof ao>
-  readonly #toScreen = uniform(new Matrix4())
+  readonly #toScreen = uniform(new Matrix4()).setGroup(renderGroup)
   readonly #texel = uniform(new Vector2())
   #pictures = 0
 
@@ -53,16 +55,20 @@ export class LastOcclusion {
     occlusion.samples.value = SAMPLES
     occlusion.resolutionScale = COARSE
     this.#occlusion = occlusion
-    const [near, far] = [uniform(camera.near), uniform(camera.far)]
+    const [near, far] = ['near', 'far'].map(name => reference(name, 'float', camera))
     const read = (x: number, y: number): Node<'float'> =>
       occlusion.getTextureNode().sample(uv().add(vec2(x, y).mul(this.#texel))).r
     // The noise of its directions is five pixels wide: each of these has the mean of two by two.
-    const smooth = read(-1, -0.5).add(read(0.5, -1)).add(read(1, 0.5)).add(read(-0.5, 1)).mul(0.25)
+    const smooth = read(-1.5, -0.5)
+      .add(read(0.5, -1.5))
+      .add(read(1.5, 0.5))
+      .add(read(-0.5, 1.5))
+      .mul(0.25)
     const viewZ = perspectiveDepthToViewZ(this.#depth.sample(uv()).r, near, far)
     this.#pass = new FragmentPass('Occlusion', vec4(smooth, viewZ.negate(), 0, 1))
   }
 
-  /** Keeps the occlusion of every other picture once it was drawn, and its camera. */
+  /** Keeps the occlusion of every third picture once it was drawn, and its camera. */
   update(renderer: Renderer, camera: PerspectiveCamera): void {
     if (this.#pictures++ % EVERY !== 0) return
     const { width, height } = this.#depth.value.image as { width: number; height: number }

@@ -26,10 +26,10 @@ export function smoothNoise(x: number, y: number): number {
 }
 
 /** Mean height of a ridge of unit height. */
-const MEAN_RIDGE = 0.6
+export const MEAN_RIDGE = 0.6
 
 /** Height over which mountains are rounded off, so that none is cut flat. */
-const ROUNDED = 0.72
+export const ROUNDED = 0.72
 
 /**
  * Mountains of unit width, in [0, 1]: ridges whose finer ones stand on the coarser.

@@ -23,6 +23,7 @@ import {
   vec3
 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
+import { MEAN_RIDGE, ROUNDED } from './noise'
 import { LAKE } from './places'
 
 type Float = Node<'float'>
@@ -88,13 +89,19 @@ const ridges = /*#__PURE__*/ Fn(([place, finest]: [Vec2, Float]) => {
     const crease = noise.mul(1.4).abs().oneMinus()
     const ridge = crease.mul(crease).toConst()
     const isShown = finest.mul(scale).reciprocal().sub(1).clamp()
-    sum.addAssign(amplitude.mul(weight).mul(mix(float(0.6), ridge, isShown)))
+    sum.addAssign(amplitude.mul(weight).mul(mix(float(MEAN_RIDGE), ridge, isShown)))
     weight.assign(ridge.mul(weight).mul(1.6).clamp())
     amplitude.mulAssign(0.5)
     scale.mulAssign(2.03)
   })
-  const above = max(sum.sub(0.72), 0).div(0.28)
-  return sum.min(0.72).add(above.negate().exp().oneMinus().mul(0.28))
+  const above = max(sum.sub(ROUNDED), 0).div(1 - ROUNDED)
+  return sum.min(ROUNDED).add(
+    above
+      .negate()
+      .exp()
+      .oneMinus()
+      .mul(1 - ROUNDED)
+  )
 }).setLayout({
   name: 'valleyRidges',
   type: 'float',

@@ -241,6 +241,7 @@ export function createVillage(
   const tiles = new VertexLitMaterial()
   tiles.colorNode = tileColor()
   const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
+  const slates = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
   const chimneys = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), plaster, HOUSES)
@@ -276,10 +277,13 @@ export function createVillage(
   const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
   const spire = new Mesh(
     new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),
-    tiles
+    slates
   )
   const nave = new Mesh(new BoxGeometry(11, 9, 22).translate(0, 4.5, 14), plaster)
-  const naveRoof = new Mesh(roof().scale(11, 6, 22).translate(0, 9, 14), tiles)
+  // Its tiles are counted on the unit roof, as those of houses.
+  const naveRoof = new Mesh(roof(), tiles)
+  naveRoof.scale.set(11, 6, 22)
+  naveRoof.position.set(0, 9, 14)
   const church = new Group().add(tower, spire, nave, naveRoof)
   church.position.set(x, base, z)
   const lights = lamps ?? churchLamp(x, base, z)
@@ -302,7 +306,7 @@ export function createVillage(
       roofs.dispose()
       chimneys.dispose()
       lights.dispose()
-      for (const material of [walls, tiles, plaster]) material.dispose()
+      for (const material of [walls, tiles, slates, plaster]) material.dispose()
     }
   }
 }

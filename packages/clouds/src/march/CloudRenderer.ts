@@ -103,7 +103,7 @@ function shadePixels(scene: CloudScene, marched: MarchedTargets, cast: CastLight
 
 /**
  * Render targets and passes of a camera's clouds. A frame takes five passes: the weather around the camera, the
- * march of one pixel of each block, its light (before it, with casters, {@link CastLight}), the statistics of the cells between marched pixels, and the upscale, which blends them
+ * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}), the statistics of the cells between marched pixels, and the upscale, which blends them
  * into the history of the frames before.
  */
 export class CloudRenderer {

@@ -43,7 +43,7 @@ const DECK_WIDTH = 1500
 /** Altitude below all that is drawn, where nothing falls [m]. */
 const NOWHERE = -1000
 
-/** Places of a ray whose light says that of all that falls on it. */
+/** Places of a ray between which the light is found that casters leave to what falls, at its mean distance. */
 const PLACES = 4
 
 const _axis = new Vector3()
@@ -262,7 +262,7 @@ export class PrecipitationShafts {
       ceiling: this.#ceiling,
       width: this.#width
     }
-    // Clouds first: what would have to be kept through their shading makes it slower by a fifth.
+    // Clouds first: what would have to be kept through their shading makes it slower.
     const radiance = shadePoints(context, direction, points).toVar() as Variable<Vec4>
     const distance = clouds.distance.toVar() as Variable<Float>
     const seen = marchPrecipitation(context, space, ray, stretch, points)

@@ -5,7 +5,7 @@ import type { ViewNodes } from '../../view/ViewNodes'
 import { aerialPerspectiveTo, type AerialPerspective } from './aerialPerspective'
 
 /**
- * Distance up to which the air of vertices is taken, to the viewer's height, and its bounds [m]: near the horizon, where a triangle is
+ * Distance up to which the air of vertices is taken, over the viewer's height [–], and its bounds [m]: near the horizon, where a triangle is
  * seen along hundreds of kilometres, each pixel finds its own, and so it does where triangles are as large as the planet bends.
  */
 const FAR = { height: 2.5, least: 2e5, most: 1e6 }

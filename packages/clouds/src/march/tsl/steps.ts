@@ -53,7 +53,7 @@ export interface StepState {
   readonly before: Variable<Float>
   /** Part of the next pair's length: the first of a row is cut short, by chance, so that no layers show. */
   readonly part: Variable<Float>
-  /** Noise in [0, 1), the part to start rows with. */
+  /** Noise in [0, 1), another for each pair: the part to start rows with, and by which steps in clear air are cut short. */
   readonly jitter: Variable<Float>
 }
 
