@@ -6,9 +6,11 @@ import { RenderPipeline } from 'three/webgpu'
 import { latticeRotations } from '../../../packages/clouds/src/density/lattice'
 import { drawToFloat } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../harness/sky-plane'
+
+takeFineShadows()
 
 const canvas = { width: 192, height: 160 }
 /** Edge of the straightened picture [pixels]. */
