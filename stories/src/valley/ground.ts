@@ -62,6 +62,10 @@ function spacingAt(distance: number): number {
   return (EXTENT * (0.045 + 2.865 * line * line)) / LINES
 }
 
+/** Width of the finest ridges that the grid of the middle quality has at a place [m]. */
+export const finestAt = (x: number, z: number): number =>
+  FINEST * spacingAt(Math.max(Math.abs(x), Math.abs(z)))
+
 /** Height of the land above the water of the lake, on a plane [m]: a valley between mountains. */
 function flatHeight(x: number, z: number): number {
   const across = Math.abs(x - valleyAt(z))
@@ -71,8 +75,8 @@ function flatHeight(x: number, z: number): number {
   const rise = MathUtils.clamp((wall - width) / 3400, 0, 1)
   const knolls = 14 * smoothNoise(x / 260, z / 260) + 3 * smoothNoise(x / 55, z / 55)
   const floor = 7 + 0.012 * Math.max(wall - 250, 0) + knolls * smooth(120, 700, wall)
-  const finest = FINEST * spacingAt(Math.max(Math.abs(x), Math.abs(z)))
-  const height = floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200, finest / 5200))
+  const height =
+    floor + rise ** 1.25 * (260 + 2150 * ridges(x / 5200, z / 5200, finestAt(x, z) / 5200))
   const basin = smooth(1.25, 0.8, lakeDistance(x, z))
   return height + (-14 - height) * basin * smooth(150, 50, height)
 }

@@ -112,7 +112,7 @@ const ridges = /*#__PURE__*/ Fn(([place, finest]: [Vec2, Float]) => {
 })
 
 /** Height of the land on a plane [m]: twin of `flatHeight` in ground.ts. */
-const flatHeight = /*#__PURE__*/ Fn(([place, finest]: [Vec2, Float]) => {
+export const flatHeight = /*#__PURE__*/ Fn(([place, finest]: [Vec2, Float]) => {
   const { x, y: z } = place
   const valley = sin(z.div(3100).add(0.4))
     .mul(500)

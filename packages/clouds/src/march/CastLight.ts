@@ -94,7 +94,10 @@ export class CastLight {
 
   /** Draws the pass, if there is one; the march goes first. */
   render(renderer: Renderer): void {
-    if (!this.#hasPass) return
+    if (!this.#hasPass) {
+      if (this.#pass !== undefined) this.dispose()
+      return
+    }
     const version = this.#casters
     if (this.#pass === undefined || version !== this.#version) {
       this.#pass?.dispose()
@@ -172,9 +175,10 @@ export class CastLight {
     return (_, distance) => this.#litAt(direction, distance, jitter)
   }
 
-  /** Frees its textures. */
+  /** Frees its textures; it may be drawn again. */
   dispose(): void {
     this.#target.dispose()
     this.#pass?.dispose()
+    this.#pass = undefined
   }
 }
