@@ -50,21 +50,6 @@ if (values.update && backends[0] !== 'webgpu') {
   throw new Error('--update needs webgpu first: its pictures are what webgl is held to')
 }
 
-/**
- * Pictures that are taken on WebGPU alone, besides those of stories with the tag `webgpu-only`: what their shaders do on WebGL
- * is measured by GPU tests there, and drawn by other pictures.
- */
-const webgpuOnly = new Set([
-  // Lightning is measured on both backends, and the shower of rain-bow has storms.
-  'stormnight-ground',
-  // Cumulus over ground are in clouds-cumulus.
-  'realornot-ground',
-  // Heights that are loaded are measured on both; ground is in flatworld-hills, terrain-globe and valley-day.
-  'realheights-village',
-  // Phase functions of droplets and crystals are measured on both, and drawn by the scene with everything.
-  'halos-halo'
-])
-
 const storiesFolder = fileURLToPath(new URL('../../stories/src', import.meta.url))
 const baselineFolder = fileURLToPath(new URL('baselines', import.meta.url))
 const failuresFolder = join(outputFolder, 'visual')
@@ -190,10 +175,6 @@ async function listPictures(): Promise<Shooting[][]> {
   const cases = await withContext(async context =>
     (await openPage(context)).evaluate(() => window.welkinVisual.list())
   )
-  const names = new Set(cases.map(({ file, story }) => `${file}-${story}`.toLowerCase()))
-  for (const name of webgpuOnly) {
-    if (!names.has(name)) throw new Error(`there is no picture '${name}' to take on WebGPU alone`)
-  }
   const chosen = cases.filter(({ file, story }) => {
     const name = `${file}-${story}`.toLowerCase()
     return positionals.length === 0 || positionals.some(word => name.includes(word))
@@ -203,11 +184,7 @@ async function listPictures(): Promise<Shooting[][]> {
   return backends.map(backend =>
     chosen
       .toSorted((a, b) => rank(a) - rank(b))
-      .filter(
-        ({ file, story, isWebGPUOnly }) =>
-          backend === 'webgpu' ||
-          !(isWebGPUOnly || webgpuOnly.has(`${file}-${story}`.toLowerCase()))
-      )
+      .filter(({ isWebGPUOnly }) => backend === 'webgpu' || !isWebGPUOnly)
       .map(({ file, story }) => ({ file, story, backend }))
   )
 }

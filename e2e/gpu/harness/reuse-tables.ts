@@ -79,9 +79,7 @@ export class DiffuseLightTable extends BakedTable {
     const kept = isReusing ? localStorage.getItem(key) : null
     if (kept === null) {
       yield* super.bake(renderer)
-      // Of parameters that changed meanwhile, it has parts of both.
-      const isOfOne = key === keyOf(renderer, this.#uniforms)
-      if (isReusing && isOfOne) waitFor(keep(renderer, this.region, key))
+      if (isReusing) waitFor(keep(renderer, this.region, key))
       return
     }
     for (let step = 0; step < BAKE_STEPS; step++) yield

@@ -21,6 +21,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, Renderer, TextureNode } from 'three/webgpu'
+import { screenPlace } from './screenPlace'
 
 /** Places along a mirrored ray at which the picture is asked, and the distances of the first and the last [m]. */
 const STEPS = 26
@@ -88,7 +89,7 @@ export class LakeMirror {
       /** Place on the screen, and distance along the camera's axis. */
       const at = (far: Node<'float'>): Node<'vec3'> => {
         const clip = from.add(along.mul(far)).toConst()
-        return vec3(this.#toUV(clip), clip.w).toConst()
+        return vec3(screenPlace(clip), clip.w).toConst()
       }
       const depthAt = (place: Vec2): Node<'float'> => this.#read(place).a
       const hit = vec3(0).toVar()
@@ -121,7 +122,7 @@ export class LakeMirror {
       })
       If(isHit.equal(0), () => {
         // Where nothing was met, the sky: it is as far as the ray goes.
-        hit.assign(vec3(this.#toUV(along), along.w))
+        hit.assign(vec3(screenPlace(along), along.w))
         isHit.assign(smoothstep(0.9 * SKY_DEPTH, SKY_DEPTH, depthAt(hit.xy)))
       })
       // Ripples lead a little beyond the picture: there its edges go on.
@@ -144,12 +145,6 @@ export class LakeMirror {
   dispose(): void {
     this.#target.dispose()
     this.#pass.dispose()
-  }
-
-  /** Place on the screen of a point in clip space, from the top left. */
-  #toUV(clip: Vec4): Vec2 {
-    const place = clip.xy.div(max(clip.w, 1e-3))
-    return vec2(place.x, place.y.negate()).mul(0.5).add(0.5)
   }
 }
 

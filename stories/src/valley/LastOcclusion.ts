@@ -15,6 +15,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Node, Renderer, TextureNode } from 'three/webgpu'
+import { screenPlace } from './screenPlace'
 
 /** Reach of ambient occlusion [m], and its samples. */
 const REACH = 3
@@ -82,8 +83,7 @@ export class LastOcclusion {
   sample(): Node<'float'> {
     return Fn(() => {
       const clip = (this.#toScreen as unknown as Node<'mat4'>).mul(vec4(positionWorld, 1)).toConst()
-      const place = clip.xy.div(clip.w.max(1e-3)).mul(vec2(0.5, -0.5)).add(0.5)
-      const before = (texture(this.#target.texture, place) as unknown as Vec4).toConst()
+      const before = (texture(this.#target.texture, screenPlace(clip)) as unknown as Vec4).toConst()
       const wasSeen = before.y.sub(clip.w).abs().lessThan(clip.w.mul(HIDDEN))
       return wasSeen.select(before.x, 1)
     })()

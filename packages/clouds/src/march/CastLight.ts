@@ -6,15 +6,12 @@ import type { Renderer } from 'three/webgpu'
 import { componentAt } from '../density/tsl/componentAt'
 import { isNight } from '../light/tsl/night'
 import type { CloudCaster } from '../light/tsl/shadingContext'
-import type { SeenPoints } from './tsl/seenPoints'
+import { POINTS, type SeenPoints } from './tsl/seenPoints'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { FARTHEST } from '../temporal/tsl/packing'
 import { loop, type Float, type LevelTexture, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
-
-/** Places of a ray whose light is kept, of clouds and of what falls: one in each component. */
-const PLACES = 4
 
 /** Factors that bring a marched ray's log₂ distances, transmittance and steps into [0, 1]. */
 const RAY_SCALE = [1 / FARTHEST, 1 / FARTHEST, 1, 1] as const
@@ -120,9 +117,9 @@ export class CastLight {
       const fall = precipitation?.placesOn(viewRays.field, direction, ray, distances)
       const lit = vec4(1).toVar() as Vec4
       const litFall = vec4(1).toVar() as Vec4
-      loop('castPlace', count * PLACES, index => {
-        const isFall = index.greaterThanEqual(int(PLACES)).toConst()
-        const own = componentAt(float(index).mod(PLACES))
+      loop('castPlace', count * POINTS, index => {
+        const isFall = index.greaterThanEqual(int(POINTS)).toConst()
+        const own = componentAt(float(index).mod(POINTS))
         const distance = isFall.select(fall?.dot(own) ?? 0, distances.dot(own)).toConst() as Float
         If(isFall.select(distance, shares.dot(own)).greaterThan(0), () => {
           const dark = own.mul(this.#litAt(direction, distance, noise).oneMinus()).toConst() as Vec4

@@ -11,7 +11,7 @@ import { layerPeriods } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import type { SeenClouds } from '../march/tsl/seenPoints'
+import { POINTS, type SeenClouds } from '../march/tsl/seenPoints'
 import { shadePoints, type LitRay } from '../march/tsl/shadePoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
 import { encodeDistance } from '../temporal/tsl/packing'
@@ -42,9 +42,6 @@ const DECK_WIDTH = 1500
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
 const NOWHERE = -1000
-
-/** Places of a ray between which the light is found that casters leave to what falls, at its mean distance. */
-const PLACES = 4
 
 const _axis = new Vector3()
 
@@ -216,12 +213,12 @@ export class PrecipitationShafts {
   }
 
   /**
-   * Distances of four places of a ray on which something falls, whose light says that of all of it; 0 where nothing does [m].
-   * To be called inside of a shader function; arguments as for {@link among}.
+   * Distances of as many places of a ray on which something falls as clouds have points; 0 where nothing does [m]. The light that
+   * casters leave is found between them, at the mean distance of what falls. To be called inside of a shader function; arguments as for {@link among}.
    */
   placesOn(field: CloudField, direction: Vec3, marched: Vec4, distances: Vec4): Vec4 {
     const stretch = this.#stretchOn(field, direction, marched, distances)
-    const parts = vec4(0, 1, 2, 3).add(0.5).div(PLACES) as Vec4
+    const parts = vec4(0, 1, 2, 3).add(0.5).div(POINTS) as Vec4
     const isThere = stretch.span.greaterThan(1)
     return distanceAt(stretch, parts).mul(isThere.select(1, 0)).toConst()
   }
@@ -229,9 +226,9 @@ export class PrecipitationShafts {
   /** Part of the light that reaches a distance, between the places of {@link placesOn}. */
   #litAt(stretch: FallStretch, litFall: Vec4, distance: Float): Float {
     const place = partAt(stretch, distance)
-      .mul(PLACES)
+      .mul(POINTS)
       .sub(0.5)
-      .clamp(0, PLACES - 1)
+      .clamp(0, POINTS - 1)
     const weights = vec4(0, 1, 2, 3).sub(place).abs().min(1).oneMinus()
     return litFall.dot(weights).toConst()
   }

@@ -6,7 +6,7 @@ import { iceAt, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
 import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
-import { ifStorm, stormNearby } from './storm'
+import { isStorm, stormNearby } from './storm'
 import { keepStorm, type KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
@@ -41,14 +41,7 @@ export const CAUTION = 0.7
  * @param strength - Strength of a `LayerSample`.
  */
 export const likelyDistance = (layer: LayerNodes, strength: Float): Float => {
-  const perStrength = float(LIKELY).toVar() as Float
-  ifStorm(
-    layer,
-    () => {
-      perStrength.assign(LIKELY_OF_STORMS)
-    },
-    () => undefined
-  )
+  const perStrength = isStorm(layer).select(LIKELY_OF_STORMS, LIKELY)
   return strength.negate().max(0).mul(perStrength).div(layer.perShapePeriod)
 }
 

@@ -77,15 +77,14 @@ export function samplePair(
       ifStorm(
         layer,
         () => {
-          const sure = clearOfStorms(field, layer, background, middle, length, storm)
-          likely.assign(sure.mul(field.skipping.floor()))
+          likely.assign(clearOfStorms(field, layer, background, middle, length, storm))
         },
         () => {
           const footprint = footprintOf(field, middle)
-          const bound = likelyDistanceByBackground(layer, background, height, footprint)
-          likely.assign(bound.mul(field.skipping.floor()))
+          likely.assign(likelyDistanceByBackground(layer, background, height, footprint))
         }
       )
+      likely.mulAssign(field.skipping.floor())
       If(likely.lessThanEqual(0), () => {
         const [first, second] = sampleLayerAt(field, layer, background, middle, places, {
           detail: true,

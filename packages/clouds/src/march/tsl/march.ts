@@ -7,7 +7,7 @@ import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
-import { advance, enterSteps, nextSteps, SPREAD, stepState } from './steps'
+import { advance, enterSteps, nextSteps, stepState } from './steps'
 
 /**
  * Number of layers from which a ray has a loop in a loop: rays side by side then wait for each other at each boundary, and
@@ -61,7 +61,7 @@ export function marchClouds(
     return { offset, ...view.localCoordinates(offset), distance: at }
   }
   const seen = seenState()
-  const state = stepState(jitter, hasStorms(field) === false ? 0 : SPREAD)
+  const state = stepState(jitter, hasStorms(field) !== false)
   const segment = segmentState()
   const clear = vec4(0).toVar() as ClearLayers
   /** Pairs of samples so far, of all segments. */

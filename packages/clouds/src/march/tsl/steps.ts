@@ -38,7 +38,7 @@ const HIDDEN_GROWTH = 2
  * Part of the likely distance by which steps through clear air are shorter by chance: or else rays side by side end up in step, and
  * miss the same heads. 0: contours in towers (*Storm*); greater: slower, and pictures of small clouds do not come to rest.
  */
-export const SPREAD = 0.1
+const SPREAD = 0.1
 
 /** State of the step policy. */
 export interface StepState {
@@ -55,8 +55,8 @@ export interface StepState {
   readonly part: Variable<Float>
   /** Noise in [0, 1), another for each pair: the part to start rows with, and by which steps in clear air are cut short. */
   readonly jitter: Variable<Float>
-  /** Greatest part of the likely distance by which they are: {@link SPREAD}, or 0. */
-  readonly spread: number
+  /** True where they are. */
+  readonly isVaried: boolean
 }
 
 /** Two steps of the same length. */
@@ -70,9 +70,9 @@ export interface StepPair {
 /**
  * Steps before the first segment.
  *
- * @param spread - {@link SPREAD} where there are storms, else 0.
+ * @param isVaried - True for steps through clear air of lengths by chance: see {@link SPREAD}.
  */
-export const stepState = (jitter: Float, spread: number): StepState => ({
+export const stepState = (jitter: Float, isVaried: boolean): StepState => ({
   isFine: bool(false).toVar(),
   finest: float(0).toVar(),
   longest: float(0).toVar(),
@@ -80,7 +80,7 @@ export const stepState = (jitter: Float, spread: number): StepState => ({
   before: float(0).toVar(),
   part: float(0).toVar(),
   jitter: jitter.toVar(),
-  spread
+  isVaried
 })
 
 /**
@@ -123,7 +123,7 @@ const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float
  * @param transmittance - Share of the light from there that reaches the camera, in [0, 1].
  */
 export function nextSteps(
-  { isFine, finest, longest, likely, part, jitter, spread }: StepState,
+  { isFine, finest, longest, likely, part, jitter, isVaried }: StepState,
   quality: QualityUniforms,
   position: Float,
   end: Float,
@@ -132,8 +132,8 @@ export function nextSteps(
   const growing = position.mul(quality.stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
   const least = fine.max(growing.mul(CLEAR_GROWTH)).min(longest).toConst() as Float
-  if (spread > 0) jitter.assign(jitter.add(0.618034).fract())
-  const caution = spread > 0 ? jitter.mul(spread).add(CAUTION - spread) : CAUTION
+  if (isVaried) jitter.assign(jitter.add(0.618034).fract())
+  const caution = isVaried ? jitter.mul(SPREAD).add(CAUTION - SPREAD) : CAUTION
   const clear = likely.mul(caution).clamp(least, longest)
   const left = end.sub(position).mul(0.5)
   const hidden = transmittance.oneMinus().mul(HIDDEN_GROWTH).add(1)
