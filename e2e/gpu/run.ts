@@ -53,21 +53,22 @@ const suites = readdirSync(folder, { recursive: true, encoding: 'utf8' })
 
 const report = new Report()
 
-async function openPage(context: BrowserContext, origin: string): Promise<Page> {
+async function openPage(context: BrowserContext): Promise<Page> {
   const page = await context.newPage()
   page.on('pageerror', error => console.log(`      page error: ${error.stack ?? error.message}`))
-  await page.goto(`${origin}/index.html`)
+  await page.goto(`${server.origin}/index.html`)
   await page.waitForFunction(() => 'welkinTests' in window)
   return page
 }
 
+/** Runs a suite's tests in a page. @returns That page, or a fresh one if it had to be closed. */
 async function runSuite(
   context: BrowserContext,
-  origin: string,
+  startPage: Page,
   suite: string,
   backend: Backend
-): Promise<void> {
-  let page = await openPage(context, origin)
+): Promise<Page> {
+  let page = startPage
   const list = (): Promise<TestListing[]> =>
     page.evaluate(([s, b]) => window.welkinTests.list(s, b), [suite, backend] as const)
   let tests: TestListing[]
@@ -76,13 +77,14 @@ async function runSuite(
   } catch (error) {
     report.fail(`${suite} [${backend}] loads`, String(error))
     await page.close()
-    return
+    return openPage(context)
   }
   for (const { name, timeoutSeconds } of tests) {
     if (values.test !== undefined && !name.includes(values.test)) continue
     const label = `${suite} [${backend}] ${name}`
     try {
-      const run: Promise<TestOutcome> = page.evaluate(([n, b]) => window.welkinTests.run(n, b), [
+      const run: Promise<TestOutcome> = page.evaluate(([s, n, b]) => window.welkinTests.run(s, n, b), [
+        suite,
         name,
         backend
       ] as const)
@@ -94,11 +96,11 @@ async function runSuite(
       report.fail(label, String(error))
       // The page hangs or has crashed: the rest of the suite gets a fresh one.
       await page.close()
-      page = await openPage(context, origin)
+      page = await openPage(context)
       await withLimit(list(), 60)
     }
   }
-  await page.close()
+  return page
 }
 
 const files = Object.fromEntries(suites.map(suite => [suite, join(folder, `${suite}.gpu.ts`)]))
@@ -114,19 +116,20 @@ const seconds: [suite: string, seconds: number][] = []
 const queues = backends.map(backend => suites.map(suite => ({ suite, backend })))
 
 /**
- * Runs the suites of a backend in a browser, and then the last ones of the other backend: its pages share
- * the tables that they bake, which are of one backend. A software renderer draws pictures as small as the
+ * Runs the suites of a backend in a page, and then the last ones of the other backend: they share tables
+ * that they bake and shaders that they compile, which are of one backend. A software renderer draws pictures as small as the
  * tests' on one core, so that two browsers take little longer than one.
  */
 async function work(own: number): Promise<void> {
   const browser = await launchChromium()
   const context = await browser.newContext()
+  let page = await openPage(context)
   const next = () => queues[own].shift() ?? queues.find(queue => queue.length > 0)?.pop()
   try {
     for (let job = next(); job !== undefined; job = next()) {
       const { suite, backend } = job
       const start = performance.now()
-      await runSuite(context, server.origin, suite, backend)
+      page = await runSuite(context, page, suite, backend)
       seconds.push([`${suite} [${backend}]`, (performance.now() - start) / 1000])
     }
   } finally {

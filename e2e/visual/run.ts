@@ -106,7 +106,13 @@ function judge(name: string, backend: Backend, actual: PNG, detail: string): voi
   report.pass(label, `${detail}, ${comparison.detail}${getsOwn ? ', own baseline written' : ''}`)
 }
 
-async function shoot(page: Page, file: string, story: string, backend: Backend): Promise<void> {
+/** Takes a picture. @returns False if its page may draw no more. */
+async function shoot(
+  page: Page,
+  file: string,
+  story: string,
+  backend: Backend
+): Promise<boolean> {
   const name = `${file}-${story}`.toLowerCase()
   try {
     const shot = await withLimit(
@@ -119,12 +125,14 @@ async function shoot(page: Page, file: string, story: string, backend: Backend):
     )
     if (shot.messages.length > 0) {
       report.fail(`${name} [${backend}]`, shot.messages.join('\n'))
-      return
+      return true
     }
     const png = PNG.sync.read(Buffer.from(shot.url.split(',')[1], 'base64'))
     judge(name, backend, png, `${(shot.milliseconds / 1000).toFixed(1)} s`)
+    return true
   } catch (error) {
     report.fail(`${name} [${backend}]`, String(error))
+    return false
   }
 }
 
@@ -160,7 +168,7 @@ async function openPage(context: BrowserContext): Promise<Page> {
   return page
 }
 
-/** Runs in a browser of its own, whose pages share what they store: baked tables. */
+/** Runs in a browser of its own. */
 async function withContext<T>(use: (context: BrowserContext) => Promise<T>): Promise<T> {
   const browser = await launchChromium()
   try {
@@ -197,10 +205,11 @@ try {
   const work = async (own: number): Promise<void> =>
     withContext(async context => {
       const next = () => queues[own].shift() ?? queues.find(queue => queue.length > 0)?.pop()
+      let page = await openPage(context)
       for (let job = next(); job !== undefined; job = next()) {
-        const page = await openPage(context)
-        await shoot(page, job.file, job.story, job.backend)
+        if (await shoot(page, job.file, job.story, job.backend)) continue
         await page.close()
+        page = await openPage(context)
       }
     })
   await Promise.all(Array.from({ length: workers }, (_, own) => work(own)))

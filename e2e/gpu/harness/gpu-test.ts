@@ -13,21 +13,34 @@ export interface GpuTest {
   bakes: boolean | readonly Backend[]
 }
 
-/** Tests of the one suite that this page has loaded. */
-export const registeredTests: GpuTest[] = []
+/** Tests of a file. */
+export interface GpuSuite {
+  tests: GpuTest[]
+  /** True if they measure the clouds' shadows. */
+  areShadowsFine: boolean
+}
 
-let areShadowsFine = false
+const _suites = new Map<string, GpuSuite>()
+let current: GpuSuite = { tests: [], areShadowsFine: false }
 
-/** True if the page's tests measure the clouds' shadows. */
-export const measuresShadows = (): boolean => areShadowsFine
+/** Tests that a file registers when it is loaded, which it is once in a page. */
+export async function loadSuite(name: string, load: () => Promise<unknown>): Promise<GpuSuite> {
+  const loaded = _suites.get(name)
+  if (loaded) return loaded
+  const suite: GpuSuite = { tests: [], areShadowsFine: false }
+  current = suite
+  await load()
+  _suites.set(name, suite)
+  return suite
+}
 
 /** Has all tests of a file draw shadow maps of clouds as users have them, not a quarter as fine. */
 export function takeFineShadows(): void {
-  areShadowsFine = true
+  current.areShadowsFine = true
 }
 
 /**
- * Adds a test that runs in Chromium once per backend, in a page of its suite's own.
+ * Adds a test that runs in Chromium once per backend, in a page where others have run.
  * It fails on a thrown error and on any error or warning of three's in the console.
  *
  * @param name - Sentence that holds; unique in its file.
@@ -37,10 +50,10 @@ export function gpuTest(
   body: GpuTest['body'],
   options: Partial<Pick<GpuTest, 'backends' | 'timeoutSeconds' | 'bakes'>> = {}
 ): void {
-  if (registeredTests.some(test => test.name === name)) {
+  if (current.tests.some(test => test.name === name)) {
     throw new Error(`gpuTest: two tests are named '${name}'`)
   }
-  registeredTests.push({
+  current.tests.push({
     backends: ['webgpu', 'webgl'],
     timeoutSeconds: 180,
     bakes: false,

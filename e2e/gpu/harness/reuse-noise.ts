@@ -75,9 +75,11 @@ async function keep(renderer: Renderer, volume: RenderTarget3D, key: string): Pr
 export async function loadNoise(): Promise<void> {
   const store = await caches.open(STORE)
   for (const { url } of await store.keys()) {
+    const key = new URL(url).pathname.slice(1)
+    if (_kept.has(key)) continue
     const response = await store.match(url)
     const texels = await response?.arrayBuffer()
-    if (texels) _kept.set(new URL(url).pathname.slice(1), new Uint8Array(texels))
+    if (texels) _kept.set(key, new Uint8Array(texels))
   }
 }
 

@@ -1,10 +1,11 @@
 import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
-import { measuresShadows, registeredTests } from '../harness/gpu-test'
+import { loadSuite, type GpuSuite } from '../harness/gpu-test'
 import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../harness/reuse-noise'
 import { filterCoarsely } from '../harness/filter-samples'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
+import { freeResources, shareDevice } from '../../harness/shareDevice'
 import { setShadowSize } from '../harness/shadow-size'
 
 export interface TestListing {
@@ -21,7 +22,7 @@ export interface TestOutcome {
 
 export interface TestPage {
   list: (suite: string, backend: Backend) => Promise<TestListing[]>
-  run: (name: string, backend: Backend) => Promise<TestOutcome>
+  run: (suite: string, name: string, backend: Backend) => Promise<TestOutcome>
 }
 
 declare global {
@@ -30,25 +31,32 @@ declare global {
   }
 }
 
+shareDevice()
+
+async function load(suite: string): Promise<GpuSuite> {
+  const module = modules[suite]
+  if (module === undefined) throw new Error(`no suite named ${suite}`)
+  return loadSuite(suite, module)
+}
+
 window.welkinTests = {
   async list(suite, backend) {
-    const load = modules[suite]
-    if (load === undefined) throw new Error(`no suite named ${suite}`)
-    await load()
+    const { tests } = await load(suite)
     await loadNoise()
-    return registeredTests
+    return tests
       .filter(test => test.backends.includes(backend))
       .map(({ name, timeoutSeconds }) => ({ name, timeoutSeconds }))
   },
 
-  async run(name, backend) {
-    const test = registeredTests.find(candidate => candidate.name === name)
+  async run(suite, name, backend) {
+    const { tests, areShadowsFine } = await load(suite)
+    const test = tests.find(candidate => candidate.name === name)
     if (test === undefined) throw new Error(`no test named ${name}`)
     const { bakes } = test
     const isWhole = typeof bakes === 'boolean' ? bakes : bakes.includes(backend)
     reuseTables(!isWhole)
     filterCoarsely(!isWhole)
-    setShadowSize(measuresShadows() ? 'fine' : 'coarse')
+    setShadowSize(areShadowsFine ? 'fine' : 'coarse')
     const { context, finish } = createContext(backend)
     const start = performance.now()
     const problems: string[] = []
@@ -59,6 +67,7 @@ window.welkinTests = {
     }
     await keepTables()
     const { messages, notes } = await finish()
+    await freeResources()
     problems.push(...messages)
     const milliseconds = performance.now() - start
     return problems.length === 0

@@ -4,6 +4,7 @@ import type { Backend } from '../../harness/backend'
 import { filterCoarsely } from '../../gpu/harness/filter-samples'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
+import { freeResources, shareDevice } from '../../harness/shareDevice'
 import { setShadowSize } from '../../gpu/harness/shadow-size'
 
 /** Interface of a story's scene module, which Storybook and this page drive alike. */
@@ -56,6 +57,7 @@ async function findCreate(file: string): Promise<CreateScene> {
   return found[1] as CreateScene
 }
 
+shareDevice()
 reuseTables(true)
 filterCoarsely(true)
 
@@ -106,6 +108,7 @@ window.welkinVisual = {
     const messages = watch.stop()
     view.dispose()
     canvas.remove()
+    await freeResources()
     return { url, messages, milliseconds }
   }
 }
