@@ -67,16 +67,22 @@ function spacingAt(distance: number): number {
   return ((EXTENT * 2) / QUADS) * (0.08 + 2.76 * t * t)
 }
 
+/** Quads over which crests are round. Less: where they cross the grid askew they are teeth, too. */
+const ROUND = 1.2
+
 /** Height of the hills: ridged noise of seven octaves that the grid can hold, nearly level within 1.5 km of the middle [m]. */
 function hillHeight(x: number, z: number): number {
-  const finest = PERIOD_QUADS * spacingAt(Math.max(Math.abs(x), Math.abs(z)))
+  const spacing = spacingAt(Math.max(Math.abs(x), Math.abs(z)))
   let sum = 0
   for (let octave = 0; octave < 7; octave++) {
     const scale = 2.1 ** octave / 9000
-    const part = Math.min(Math.max(2 / (scale * finest) - 1, 0), 1)
+    const part = Math.min(Math.max(2 / (scale * PERIOD_QUADS * spacing) - 1, 0), 1)
     if (part === 0) break
     const noise = valueNoise(x * scale + 17 * octave, z * scale - 9 * octave)
-    sum += part * 0.45 ** octave * (1 - Math.abs(2 * noise - 1)) ** 2
+    sum +=
+      part *
+      0.45 ** octave *
+      Math.max(1 - Math.hypot(2 * noise - 1, 3 * ROUND * scale * spacing), 0) ** 2
   }
   const rise = Math.min(Math.max((Math.hypot(x, z) - 1500) / 6000, 0), 1)
   return 900 * rise * sum - 2 + swell(x, z) * (1 - rise)

@@ -129,8 +129,8 @@ export function groundMaterial(
     const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
     return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
   }
-  const noise = (period: number): Node<'float'> =>
-    texture(picture, turnedBy(period)).r.sub(0.5).mul(2)
+  const noiseAt = (at: Node<'vec2'>): Node<'float'> => texture(picture, at).r.sub(0.5).mul(2)
+  const noise = (period: number): Node<'float'> => noiseAt(turnedBy(period))
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
@@ -138,8 +138,10 @@ export function groundMaterial(
   const patches = noise(390).mul(upTo(24_000)).toVar()
   const near = turnedBy(1.9).toVar()
   const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
+  // Its cells are seen near by: bent, they are no squares.
+  const bent = turnedBy(11.3).add(sin(turnedBy(0.9).yx).mul(0.05))
   const grain = Fn(() => {
-    const sum = noise(11.3).mul(0.6).mul(upTo(900)).toVar()
+    const sum = noiseAt(bent).mul(0.6).mul(upTo(900)).toVar()
     If(distance.lessThan(NEAR), () => {
       const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
       sum.addAssign(finest.mul(upTo(NEAR)))
