@@ -17,6 +17,7 @@ import {
 } from '@welkin/atmosphere'
 import {
   ConeGeometry,
+  Group,
   MathUtils,
   Mesh,
   MeshStandardMaterial,
@@ -59,9 +60,8 @@ export const nights: readonly ExposureScene[] = [
   { name: 'starry night', sun: newMoon, albedo: 0.2, ...low, azimuth: 150, pitch: 18 }
 ]
 
-function plainAndHills(albedo: number): Mesh[] {
-  const material = new MeshStandardMaterial({ roughness: 1 })
-  material.color.setScalar(albedo)
+/** A plain and hills on it, of one material. */
+function plainAndHills(material: MeshStandardMaterial): Group {
   // Some software clips two large triangles away.
   const plain = new Mesh(new PlaneGeometry(60_000, 60_000, 64, 64).rotateX(-Math.PI / 2), material)
   const hills = Array.from({ length: 24 }, (_, i) => {
@@ -69,50 +69,61 @@ function plainAndHills(albedo: number): Mesh[] {
     hill.position.setFromSphericalCoords(5000 + 900 * (i % 3), Math.PI / 2, (i * Math.PI) / 12)
     return hill
   })
-  return [plain, ...hills]
+  return new Group().add(plain, ...hills)
 }
 
-/** A scene as an application draws it, with an exposure that meters it. */
+/** Scenes as an application draws them, with an exposure that meters them: days, or nights, share their shaders. */
 export class ExposureStage {
   readonly atmosphere = new Atmosphere({ parameters: standardEarthParameters() })
   readonly exposure: AutoExposureNode
   readonly #renderer: WebGPURenderer
   readonly #pipeline: RenderPipeline
+  readonly #camera: PerspectiveCamera
+  readonly #material = new MeshStandardMaterial({ roughness: 1 })
+  readonly #land = plainAndHills(this.#material)
 
-  constructor(renderer: WebGPURenderer, { sun, altitude, azimuth, pitch, albedo }: ExposureScene) {
+  /** @param hasNight - True for a sky with moon and stars, false for one with the sun's flare. */
+  constructor(renderer: WebGPURenderer, hasNight: boolean) {
     const { atmosphere } = this
     this.#renderer = renderer
     const { width, height } = renderer.domElement
-    const far = albedo === undefined ? 2e7 : 1e5
-    const camera = new PerspectiveCamera(55, width / height, far / 1e5, far)
-    camera.position.y = altitude
-    camera.rotation.order = 'YXZ'
-    camera.rotation.x = MathUtils.degToRad(pitch)
-    camera.rotation.y = -MathUtils.degToRad(azimuth)
-    camera.updateMatrixWorld()
-
+    this.#camera = new PerspectiveCamera(55, width / height)
     atmosphere.place({ longitude: 139.77, latitude: 35.68 })
     atmosphere.add(planetGround())
     const scene = new Scene()
-    scene.add(new SunDirectionalLight(atmosphere), new SkyLightProbe(atmosphere))
-    if (sun instanceof Date) {
-      atmosphere.date = sun
+    scene.add(new SunDirectionalLight(atmosphere), new SkyLightProbe(atmosphere), this.#land)
+    if (hasNight) {
       const luna = moon()
       atmosphere.add(milkyWay(), stars(), luna, airglow())
       scene.add(new MoonDirectionalLight(atmosphere, luna), new NightLightProbe(atmosphere))
       scene.add(new SkyLightProbe(atmosphere, luna.source))
     } else {
-      atmosphere.setSunAngles(sun, 0)
       atmosphere.add(sunFlare())
     }
-    if (albedo !== undefined) scene.add(...plainAndHills(albedo))
-
-    const scenePass = pass(scene, camera, { samples: 0 })
+    const scenePass = pass(scene, this.#camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
-    const color = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
+    const color = aerialPerspective(scenePass.getTextureNode(), depth, this.#camera, atmosphere)
     this.exposure = autoExposure(color, atmosphere)
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputNode = this.exposure
+  }
+
+  /** Has a scene drawn from now on: nothing is compiled anew. */
+  show({ sun, altitude, azimuth, pitch, albedo }: ExposureScene): void {
+    const { atmosphere } = this
+    const camera = this.#camera
+    camera.far = albedo === undefined ? 2e7 : 1e5
+    camera.near = camera.far / 1e5
+    camera.updateProjectionMatrix()
+    camera.position.y = altitude
+    camera.rotation.order = 'YXZ'
+    camera.rotation.x = MathUtils.degToRad(pitch)
+    camera.rotation.y = -MathUtils.degToRad(azimuth)
+    camera.updateMatrixWorld()
+    if (sun instanceof Date) atmosphere.date = sun
+    else atmosphere.setSunAngles(sun, 0)
+    this.#land.visible = albedo !== undefined
+    this.#material.color.setScalar(albedo ?? 0)
   }
 
   /** Draws frames, and adapts to each at once. */

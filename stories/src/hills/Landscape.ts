@@ -11,10 +11,9 @@ import {
   Quaternion,
   Vector3
 } from 'three'
-import { vec3 } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
-import { limetree, spruce } from '../valley/forest'
-import { foliage } from '../valley/Trees'
+import { setFoliage } from '../valley/leaves'
+import { branchedSpruce, leafyTree } from '../valley/treeShapes'
 import { hedgeDistance, soilMaterial, type Soil } from './soil'
 
 /** Half width of the hills [m]. */
@@ -55,13 +54,35 @@ function swell(x: number, z: number): number {
   return 13 * fade(part) * (noise - 0.55)
 }
 
-/** Height of the hills: ridged noise of seven octaves, nearly level within 1.5 km of the middle [m]. */
+/** Quads that a period of the noise needs at least. Fewer: crests are teeth, which comb the light (*Ridge at sunrise*). */
+const PERIOD_QUADS = 3.5
+
+/** Distance of grid lines from the middle, for lines of even numbers in [−1, 1] [m]. */
+const stretch = (t: number): number => EXTENT * (0.08 * t + 0.92 * t ** 3)
+
+/** Width of quads at a distance from the middle [m]. */
+function spacingAt(distance: number): number {
+  let t = Math.cbrt(distance / EXTENT)
+  for (let i = 0; i < 3; i++) t -= (stretch(t) - distance) / (EXTENT * (0.08 + 2.76 * t * t))
+  return ((EXTENT * 2) / QUADS) * (0.08 + 2.76 * t * t)
+}
+
+/** Quads over which crests are round. Less: where they cross the grid askew they are teeth, too. */
+const ROUND = 1.2
+
+/** Height of the hills: ridged noise of seven octaves that the grid can hold, nearly level within 1.5 km of the middle [m]. */
 function hillHeight(x: number, z: number): number {
+  const spacing = spacingAt(Math.max(Math.abs(x), Math.abs(z)))
   let sum = 0
   for (let octave = 0; octave < 7; octave++) {
     const scale = 2.1 ** octave / 9000
+    const part = Math.min(Math.max(2 / (scale * PERIOD_QUADS * spacing) - 1, 0), 1)
+    if (part === 0) break
     const noise = valueNoise(x * scale + 17 * octave, z * scale - 9 * octave)
-    sum += 0.45 ** octave * (1 - Math.abs(2 * noise - 1)) ** 2
+    sum +=
+      part *
+      0.45 ** octave *
+      Math.max(1 - Math.hypot(2 * noise - 1, 3 * ROUND * scale * spacing), 0) ** 2
   }
   const rise = Math.min(Math.max((Math.hypot(x, z) - 1500) / 6000, 0), 1)
   return 900 * rise * sum - 2 + swell(x, z) * (1 - rise)
@@ -72,7 +93,6 @@ function hills(radius: number, soil: Soil): Mesh {
   const geometry = new PlaneGeometry(2, 2, QUADS, QUADS).rotateX(-Math.PI / 2)
   const positions = geometry.attributes.position as BufferAttribute
   const heights = new Float32Array(positions.count)
-  const stretch = (t: number): number => EXTENT * (0.08 * t + 0.92 * t ** 3)
   for (let i = 0; i < positions.count; i++) {
     const x = stretch(positions.getX(i))
     const z = stretch(positions.getZ(i))
@@ -108,15 +128,13 @@ function treePlace(seed: number, kind: number): Vector3 | null {
 
 /** Broad-leaved trees and spruces, 4 to 10 m high. */
 function trees(): Group {
-  const kinds = [limetree(5, 1), spruce(5, 8)]
+  const kinds = [leafyTree('lime', 8), branchedSpruce(8, 5)]
   const material = new MeshStandardNodeMaterial({
     roughness: 1,
     vertexColors: true,
     side: DoubleSide
   })
-  const { brightness, isSolid } = foliage()
-  material.colorNode = vec3(brightness)
-  material.maskNode = isSolid
+  setFoliage(material)
   const group = new Group()
   for (const [kind, geometry] of kinds.entries()) {
     const mesh = new InstancedMesh(geometry, material, TREES)

@@ -2,7 +2,7 @@ import type { CloudQualityName } from '@welkin/clouds'
 import { Group, type Mesh, type PerspectiveCamera } from 'three'
 import { disposeMeshes } from '../scene'
 import type { ValleyPrecipitation } from './falling'
-import { createForest, createGrove } from './forest'
+import { createBirches, createForest, createGrove } from './forest'
 import { createGround } from './ground'
 import { Relief } from './relief'
 import type { StreetLamps } from './StreetLamps'
@@ -58,7 +58,12 @@ export class Land extends Group {
     this.#relief = new Relief(RELIEF[quality])
     const lamplight = this.#lamps.reflected()
     this.#ground = createGround(QUADS[quality], this.#falling.water, this.#relief, lamplight)
-    this.#trees = [createForest(TREES[quality]), createGrove(Math.round(TREES[quality] / 12))]
+    const trees = TREES[quality]
+    this.#trees = [
+      createForest(trees),
+      createGrove(Math.round(trees / 16)),
+      createBirches(Math.round(trees / 48))
+    ]
     this.add(this.#ground, ...this.#trees)
     this.showTrees(this.#hasTrees)
   }

@@ -22,7 +22,7 @@ const REACH = 3
 const SAMPLES = 6
 
 /** Pictures for each that occlusion is found for: things keep theirs over a few. */
-const EVERY = 3
+const EVERY = 4
 
 /** Pixels along a side over those of the picture. */
 const COARSE = 0.5
@@ -33,7 +33,7 @@ const HIDDEN = 0.03
 type Vec4 = Node<'vec4'>
 
 /**
- * Ambient occlusion of one of the three pictures before, found from its depth by three's GTAO once it is drawn, and read by the next ones at
+ * Ambient occlusion of one of the four pictures before, found from its depth by three's GTAO once it is drawn, and read by the next ones at
  * the place where each thing was: nothing is drawn twice.
  */
 export class LastOcclusion {
@@ -69,7 +69,7 @@ export class LastOcclusion {
     this.#pass = new FragmentPass('Occlusion', vec4(smooth, viewZ.negate(), 0, 1))
   }
 
-  /** Keeps the occlusion of every third picture once it was drawn, and its camera. */
+  /** Keeps the occlusion of every fourth picture once it was drawn, and its camera. */
   update(renderer: Renderer, camera: PerspectiveCamera): void {
     if (this.#pictures++ % EVERY !== 0) return
     const { width, height } = this.#depth.value.image as { width: number; height: number }

@@ -1,16 +1,7 @@
 import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
 import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
-import {
-  attribute,
-  normalView,
-  positionGeometry,
-  positionViewDirection,
-  sin,
-  smoothstep,
-  vec3
-} from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
+import { setFoliage } from './leaves'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** A tree: its place and size, and its brightness over that of its kind. */
@@ -33,33 +24,6 @@ const STEEP = 0.6
 const _place = new Vector3()
 const _direction = new Vector3()
 
-/** Leaves and the gaps between them, of trees of either kind. */
-interface Foliage {
-  /** Brightness, about 1. */
-  readonly brightness: Node<'float'>
-  /** False in gaps between leaves, which are many where one looks along the leaves of a crown: at its edge. */
-  readonly isSolid: Node<'bool'>
-}
-
-/** Foliage as noise in space; bark, of which vertices are redder than green, has no gaps. */
-export function foliage(): Foliage {
-  // Waves that bend each other: products of straight ones show as a net.
-  const bend = (by: Node<'vec3'>, scale: number, strength: number): Node<'vec3'> =>
-    positionGeometry.mul(scale).add(sin(by).mul(strength)).toConst()
-  const branches = bend(positionGeometry.zxy.mul(2.3), 3.1, 1.9)
-  const leaves = bend(branches.yzx.mul(1.7), 11, 2.4)
-  const coarse = sin(branches.x).mul(sin(branches.y.add(branches.z)))
-  const fine = sin(leaves.x.add(leaves.y)).mul(sin(leaves.z.sub(leaves.y.mul(0.6))))
-  const brightness = smoothstep(-1.1, 1.1, coarse.mul(0.7).add(fine.mul(0.8)))
-    .mul(0.7)
-    .add(0.65)
-  const density = coarse.add(fine).mul(0.25).add(0.5)
-  const facing = normalView.dot(positionViewDirection).abs()
-  const [bark, green] = [attribute<'vec3'>('color', 'vec3').r, attribute<'vec3'>('color', 'vec3').g]
-  const hasLeaf = density.greaterThan(smoothstep(0.75, 0.05, facing).mul(0.68))
-  return { brightness, isSolid: hasLeaf.or(bark.greaterThan(green)) }
-}
-
 /** Trees of a kind, drawn with fewer triangles the farther they are from the camera. */
 export class Trees extends Group {
   readonly #trees: readonly Tree[]
@@ -72,25 +36,23 @@ export class Trees extends Group {
   /**
    * @param geometries - Finest to coarsest, with vertex colours.
    * @param distances - Distances from which each but the first is drawn [m].
+   * @param leafy - Number of geometries that have leaves with gaps, see {@link setFoliage}.
    */
   constructor(
     geometries: readonly BufferGeometry[],
     distances: readonly number[],
-    trees: readonly Tree[]
+    trees: readonly Tree[],
+    leafy: number
   ) {
     super()
     this.#trees = trees
     this.#distances = distances
-    const { brightness, isSolid } = foliage()
-    const [near, far] = [0, 1].map(() => {
-      const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
-      material.colorNode = vec3(brightness)
-      return material
-    })
+    const near = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
+    setFoliage(near)
     // Gaps are smaller than pixels elsewhere.
-    near.maskNode = isSolid
+    const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     this.levels = geometries.map((geometry, level) => {
-      const mesh = new InstancedMesh(geometry, level === 0 ? near : far, trees.length)
+      const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())
       mesh.castShadow = mesh.receiveShadow = true
       mesh.frustumCulled = false

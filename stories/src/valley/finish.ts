@@ -50,7 +50,7 @@ export interface ValleyEffects {
 const GLOW = 0.02
 
 /** Pixels along a side of motion blur's velocities over those of the picture. */
-const COARSE = 0.5
+const COARSE = 0.25
 
 /** Samples of motion blur where nothing moves, and where much does: one for two pixels in between. */
 const FEWEST_SAMPLES = 3
@@ -123,9 +123,13 @@ export class ValleyFinish {
       picture = this.#keep(dof(sharp, scenePass.getViewZNode(), lens[0], lens[1], lens[2]))
     }
     if (effects.motionBlur) {
-      picture = this.#blurred(picture, motion ?? this.#motionOfCamera())
+      // Unless an effect has drawn it anew, the picture that is metered is blurred, and then exposed.
+      const blurred =
+        picture === exposure
+          ? exposure.exposed(this.#blurred(this.#air.picture, motion ?? this.#motionOfCamera()))
+          : this.#blurred(this.#drawn(picture, 'MotionBlur'), motion ?? this.#motionOfCamera())
       // Bloom reads it, too.
-      if (effects.bloom) picture = this.#drawn(picture, 'MotionBlur')
+      picture = effects.bloom ? this.#drawn(blurred, 'MotionBlur') : blurred
     }
     if (effects.bloom) {
       const halo = this.#keep(bloom(picture as never, GLOW, 0.7, 0))
@@ -152,8 +156,7 @@ export class ValleyFinish {
   }
 
   /** A picture as a shutter that is open all of a frame takes it; where little moves, few samples do. */
-  #blurred(picture: Node, motion: Node): Node {
-    const sharp = this.#drawn(picture, 'MotionBlur')
+  #blurred(sharp: PictureNode, motion: Node): Node {
     return Fn(() => {
       const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
       const pixels = way.mul(screenSize).length()

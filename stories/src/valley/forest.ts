@@ -1,19 +1,9 @@
-import {
-  type BufferGeometry,
-  Color,
-  ConeGeometry,
-  CylinderGeometry,
-  Float32BufferAttribute,
-  IcosahedronGeometry,
-  Matrix4,
-  Quaternion,
-  Vector3
-} from 'three'
-import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js'
+import { Color, Matrix4, Quaternion, Vector3 } from 'three'
 import { randomSequence } from '../random'
 import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
 import { VILLAGE } from './places'
 import { smoothNoise } from './noise'
+import { branchedSpruce, distantTree, leafyTree, spruce } from './treeShapes'
 import { Trees, type Tree } from './Trees'
 
 /** Distance from the village within which trees stand one by one [m]. */
@@ -25,117 +15,13 @@ const DISTANCES = [130, 420] as const
 /** Number of the border between fields that is nearest to the village. */
 const VILLAGE_BORDER = 6
 
-/** Colours of needles, leaves and bark, linear sRGB. */
-const NEEDLES = [0.03, 0.048, 0.02] as const
-const LEAVES = [0.042, 0.07, 0.019] as const
-const BARK = [0.06, 0.045, 0.032] as const
-
-/**
- * Paints a part of a tree, darker where leaves shade each other: below.
- *
- * @param shade - Brightness at its foot over that at its top.
- */
-function painted(
-  geometry: BufferGeometry,
-  [r, g, b]: readonly [number, number, number],
-  shade = 1
-): BufferGeometry {
-  geometry.computeBoundingBox()
-  const { min, max } = geometry.boundingBox!
-  const { position } = geometry.attributes
-  const colors = Array.from({ length: position.count }, (_, i) => {
-    const height = (position.getY(i) - min.y) / (max.y - min.y)
-    const brightness = shade + (1 - shade) * height
-    return [r * brightness, g * brightness, b * brightness]
-  }).flat()
-  geometry.deleteAttribute('uv')
-  return geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
-}
-
-/**
- * A spruce, 10 m high.
- *
- * @param tiers - Tiers of branches about the trunk.
- * @param sides - Sides of a tier.
- */
-export function spruce(tiers: number, sides: number): BufferGeometry {
-  const height = 9 / (tiers + 0.6)
-  const cones = Array.from({ length: tiers }, (_, i) =>
-    painted(
-      new ConeGeometry(2.4 * (1 - i / (tiers + 0.4)), 1.8 * height, sides, 1, true)
-        .translate(0, 0.9 + 0.9 * height + (i * (8.2 - height)) / tiers, 0)
-        .rotateY(i),
-      NEEDLES,
-      0.55
-    )
-  )
-  if (tiers === 1) return cones[0]
-  const trunk = painted(new CylinderGeometry(0.12, 0.2, 2, 5, 1, true).translate(0, 0.8, 0), BARK)
-  return mergeGeometries([...cones, trunk])
-}
-
-/**
- * A crown with an uneven outline, lit like a ball.
- *
- * @param detail - Times that its faces are divided.
- */
-function leafy(x: number, y: number, z: number, size: number, detail: number): BufferGeometry {
-  const crown = new IcosahedronGeometry(size, detail)
-  const { position, normal } = crown.attributes
-  const [vertex, leaf] = [new Vector3(), new Vector3()]
-  const middle = new Vector3(x, y, z).sub(new Vector3(0, 4.8, 0))
-  for (let i = 0; i < position.count; i++) {
-    vertex.fromBufferAttribute(position, i)
-    // Faces share places, not vertices.
-    const [a, b, c] = vertex
-      .clone()
-      .multiplyScalar(7 / size)
-      .round()
-    const bump = Math.abs(Math.sin(12.9 * a + 78.2 * b + 37.7 * c + 10 * size) * 43_758.5) % 1
-    vertex.multiplyScalar(0.72 + 0.46 * bump)
-    position.setXYZ(i, vertex.x, vertex.y, vertex.z)
-    // Half of the crown, half of the whole tree, with leaves turned this way and that.
-    vertex.normalize().addScaledVector(middle, 0.25).normalize()
-    vertex.addScaledVector(
-      leaf.set(Math.sin(40 * bump), Math.sin(71 * bump), Math.sin(97 * bump)),
-      0.3
-    )
-    vertex.normalize()
-    normal.setXYZ(i, vertex.x, vertex.y, vertex.z)
-  }
-  // All that a vertex has follows from its place: faces share them.
-  return mergeVertices(painted(crown.translate(x, y, z), LEAVES, 0.6))
-}
-
-/**
- * A broad-leaved tree, 9 m high.
- *
- * @param crowns - Balls of leaves, in [1, 5].
- * @param detail - Times that their faces are divided.
- */
-export function limetree(crowns: number, detail: number): BufferGeometry {
-  const balls =
-    crowns === 1
-      ? [leafy(0, 5.4, 0, 3.3, detail)]
-      : [
-          [0, 5.6, 0, 2.6],
-          [1.5, 4.6, 0.6, 1.9],
-          [-1.3, 4.9, 0.9, 1.8],
-          [0.2, 4.4, -1.5, 1.9],
-          [0.1, 7.3, 0.2, 1.7]
-        ]
-          .slice(0, crowns)
-          .map(([x, y, z, size]) => leafy(x, y, z, size, detail))
-  const trunk = new CylinderGeometry(0.2, 0.32, 3.4, 5, 1, true)
-  return mergeGeometries([...balls, painted(trunk.translate(0, 1.6, 0), BARK)])
-}
-
 /** Spruces on the slopes. */
 export const createForest = (count: number): Trees =>
   new Trees(
-    [spruce(5, 8), spruce(3, 5), spruce(1, 4)],
+    [branchedSpruce(9, 6), spruce(5, 8), spruce(1, 4)],
     DISTANCES,
-    plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0))
+    plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0)),
+    1
   )
 
 /** Broad-leaved trees about the village, along the shore, in hedges and copses. */
@@ -150,11 +36,25 @@ export function createGrove(count: number): Trees {
     return height > 1.2 && height < 45 ? shore + village + copse : 0
   })
   return new Trees(
-    [limetree(5, 2), limetree(5, 0), limetree(1, 0)],
+    [leafyTree('lime', 11), leafyTree('lime', 3), distantTree('lime', 2)],
     DISTANCES,
-    hedges.concat(others)
+    hedges.concat(others),
+    2
   )
 }
+
+/** Birches among them. */
+export const createBirches = (count: number): Trees =>
+  new Trees(
+    [leafyTree('birch', 10), leafyTree('birch', 3), distantTree('birch', 2)],
+    DISTANCES,
+    plant(count, 37, (x, z, height) => {
+      const copse = smoothNoise(x / 60 + 40, z / 60) > 0.36 ? 0.2 : 0.004
+      const shore = height > 1.2 && height < 4 ? 0.2 : 0
+      return height > 1.2 && height < 120 ? shore + copse : 0
+    }),
+    2
+  )
 
 /** Trees in rows between fields, from the village outwards; rows have gaps. */
 function hedgesNear(count: number): Tree[] {

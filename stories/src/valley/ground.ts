@@ -1,36 +1,13 @@
 import { BufferAttribute, BufferGeometry, Group, MathUtils, Mesh, PlaneGeometry } from 'three'
 import type { SurfaceWater } from '@welkin/atmosphere'
-import { createNoiseTexture } from '../globe/detailNoise'
-import {
-  attribute,
-  dFdx,
-  dFdy,
-  float,
-  floor,
-  Fn,
-  fract,
-  If,
-  mix,
-  normalWorldGeometry,
-  positionView,
-  positionWorld,
-  sin,
-  smoothstep,
-  texture,
-  transformNormalToView,
-  vec2,
-  vec3
-} from 'three/tsl'
 import type { Node } from 'three/webgpu'
+import { FARMED, groundMaterial, HALF_ROAD, RADIUS, STRIP } from './groundMaterial'
 import { ridges, smoothNoise } from './noise'
 import { LAKE, VILLAGE } from './places'
 import type { Relief } from './relief'
-import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** Half width of the land [m]. */
 const EXTENT = 45_000
-/** Radius of the planet, away from which the land bends [m]. */
-const RADIUS = 6_371_000
 
 /** Smooth step, which may fall: `from` is where it is 0. */
 const smooth = (from: number, to: number, t: number): number =>
@@ -101,45 +78,6 @@ export function forestAt(x: number, z: number): number {
   return share * smooth(32, 18, slope)
 }
 
-/** Colours of fields, linear sRGB: hay, ripe and young corn, earth. */
-const CROPS = [
-  [0.145, 0.145, 0.053],
-  [0.185, 0.165, 0.07],
-  [0.075, 0.115, 0.032],
-  [0.13, 0.115, 0.068]
-] as const
-
-/** Width of a strip of fields [m]. */
-const STRIP = 70
-
-/** Height up to which land is farmed [m]. */
-const FARMED = 40
-
-/** Depth by which the snow line comes down while snow lies everywhere [m]. */
-const FALLEN_SNOW = 2300
-
-/** Half width of the road from the village to the lake [m]. */
-const HALF_ROAD = 2.2
-
-/** Fields in strips, with their furrows; grass in some. */
-function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
-  const { x, z } = positionWorld
-  const across = x
-    .div(STRIP)
-    .add(sin(z.div(300)).mul(0.3))
-    .toConst()
-  const strip = floor(across).toConst()
-  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
-  const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
-  let color = grass
-  for (const [i, crop] of CROPS.entries()) {
-    color = chance.greaterThan(0.4 + 0.15 * i).select(vec3(...crop), color)
-  }
-  // Furrows along the strips, until they are as fine as pixels.
-  const furrows = sin(across.mul((2 * Math.PI * STRIP) / 2.6)).mul(smoothstep(170, 40, distance))
-  return color.mul(furrows.mul(0.08).add(1))
-}
-
 /** Middle of the road that leads through the village to the lake, at a place along the valley [m]. */
 export const roadMiddle = (z: number): number =>
   14 * Math.sin(z / 95) + 38 * Math.sin(z / 310) + VILLAGE.x - 44
@@ -147,105 +85,6 @@ export const roadMiddle = (z: number): number =>
 /** True on that road, or beside it within some distance [m]. */
 export const isOnRoad = (x: number, z: number, aside = 0): boolean =>
   z > -300 && Math.abs(x - roadMiddle(z)) < HALF_ROAD + aside
-
-/** 1 on that road. Twin of the middle: {@link roadMiddle}. */
-function roadAt(): Node<'float'> {
-  const { x, z } = positionWorld
-  const middle = sin(z.div(95))
-    .mul(14)
-    .add(sin(z.div(310)).mul(38))
-    .add(VILLAGE.x - 44)
-  const isSouth = smoothstep(-300, -285, z)
-  return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
-}
-
-/** Distance within which the finest grain of the ground is drawn [m]. */
-const NEAR = 200
-
-/** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
-function groundMaterial(
-  { wetnessNode, snowCoverNode }: SurfaceWater,
-  relief: Relief,
-  lamplight: Node<'vec3'> | null
-): VertexLitMaterial {
-  const material = new VertexLitMaterial()
-  const place = positionWorld.xz
-  const picture = createNoiseTexture()
-  // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
-  const grazed = picture.clone()
-  picture.anisotropy = 1
-  grazed.anisotropy = 8
-  for (const each of [picture, grazed]) {
-    material.addEventListener('dispose', () => each.dispose())
-  }
-  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
-  // above: with heights in it, slopes that go with them have streaks.
-  const turnedBy = (period: number): Node<'vec2'> => {
-    const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-    return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
-  }
-  const noise = (period: number): Node<'float'> =>
-    texture(picture, turnedBy(period)).r.sub(0.5).mul(2)
-  // A period that is a few pixels wide would show as a net.
-  const distance = positionView.z.negate()
-  const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
-  const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
-  const patches = noise(390).mul(upTo(24_000)).toVar()
-  const near = turnedBy(1.9).toVar()
-  const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
-  const grain = Fn(() => {
-    const sum = noise(11.3).mul(0.6).mul(upTo(900)).toVar()
-    If(distance.lessThan(NEAR), () => {
-      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
-      sum.addAssign(finest.mul(upTo(NEAR)))
-    })
-    return sum
-  })().toVar()
-  const fine = grain
-    .add(noise(71).mul(upTo(2500)))
-    .add(patches)
-    .toVar()
-  const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
-  const rough = broad.mul(0.5).add(patches).toVar()
-  const normal = relief.normal(normalWorldGeometry).toVar()
-  material.normalNode = transformNormalToView(normal)
-  const slope = normal.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
-  const [forest, field] = [
-    attribute<'vec2'>('cover', 'vec2').x,
-    attribute<'vec2'>('cover', 'vec2').y
-  ]
-  const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
-  const meadow = mix(vec3(0.05, 0.09, 0.02), vec3(0.14, 0.135, 0.05), dry).toVar()
-  const farmed = Fn(() => {
-    const ground = meadow.toVar()
-    If(height.lessThan(FARMED), () => {
-      const tilled = mix(meadow, crops(meadow, distance), field)
-      ground.assign(mix(tilled, vec3(0.24, 0.21, 0.17), roadAt()))
-    })
-    return ground
-  })()
-  const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
-  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
-  const alpine = mix(
-    vec3(0.095, 0.1, 0.045),
-    rock,
-    smoothstep(1050, 1700, height.add(broad.mul(150)))
-  )
-  const bright = float(0.95).add(fine.mul(0.3)).add(grain.mul(0.12))
-  let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
-  color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
-  color = mix(color, trees, forest)
-  color = mix(color.mul(bright), rock.mul(bright), smoothstep(0.27, 0.42, slope))
-  // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
-  color = color.div(mix(vec3(1), color.oneMinus().mul(1.777).add(color), wetnessNode))
-  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
-  const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
-  const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
-  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
-  material.colorNode = color
-  material.emissiveNode = lamplight
-  return material
-}
 
 /** Quads along a side of a tile, which is drawn if it is in sight. */
 const TILE = 64

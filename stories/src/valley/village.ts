@@ -1,9 +1,7 @@
 import {
   BoxGeometry,
-  BufferGeometry,
   Color,
   ConeGeometry,
-  Float32BufferAttribute,
   Group,
   InstancedMesh,
   Matrix4,
@@ -30,6 +28,7 @@ import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { groundHeight } from './ground'
 import { VILLAGE } from './places'
+import { roof, roofColor } from './roof'
 import type { StreetLamps } from './StreetLamps'
 import { setLit, VertexLitMaterial } from './VertexLitMaterial'
 
@@ -95,29 +94,12 @@ export const doors = (): { x: number; z: number }[] =>
     z: z + (depth / 2 + 1.2) * Math.cos(turn)
   }))
 
-/** A gabled roof over the unit square, of unit height. */
-function roof(): BufferGeometry {
-  const [a, b, c, d, e, f] = [
-    [-0.56, 0, -0.56],
-    [0.56, 0, -0.56],
-    [0.56, 0, 0.56],
-    [-0.56, 0, 0.56],
-    [0, 1, -0.56],
-    [0, 1, 0.56]
-  ]
-  const faces = [a, d, f, a, f, e, b, e, f, b, f, c, d, c, f, a, e, b]
-  const geometry = new BufferGeometry()
-  geometry.setAttribute('position', new Float32BufferAttribute(faces.flat(), 3))
-  geometry.computeVertexNormals()
-  return geometry
-}
-
 /** Part of the houses whose upper floor is of timber. */
 const TIMBERED = 0.45
 
 /**
  * Colour of a wall over that of its plaster, on the unit cube: stone at its foot, timber above in some houses, shade below the
- * eaves, shutters beside the windows and a door under the ridge.
+ * eaves, frames and shutters about the windows and a door under the ridge.
  */
 function wallColor(
   isWindow: Node<'float'>,
@@ -140,28 +122,23 @@ function wallColor(
   let color: Node<'vec3'> = mix(vec3(1), timber, isTimber)
   color = mix(stone, color, smoothstep(0.09, 0.1, y))
   const beside = along.sub(0.5).abs()
-  const isShutter = step(0.2, beside)
-    .mul(step(beside, 0.31))
-    .mul(step(0.35, inCell.y))
-    .mul(step(inCell.y, 0.8))
+  const isShutter = step(0.24, beside)
+    .mul(step(beside, 0.34))
+    .mul(step(0.33, inCell.y))
+    .mul(step(inCell.y, 0.82))
+  const isFrame = step(beside, 0.235).mul(step(0.31, inCell.y)).mul(step(inCell.y, 0.83))
   const paint = mix(vec3(0.1, 0.16, 0.1), vec3(0.2, 0.09, 0.05), step(0.5, hash(house.add(9))))
-  color = mix(color, paint, isShutter)
-  color = mix(color, vec3(0.06, 0.065, 0.075), isWindow)
+  const isWall = step(normalGeometry.y.abs(), 0.5)
+  color = mix(color, paint, isShutter.mul(isWall))
+  color = mix(color, vec3(0.75, 0.73, 0.7), isFrame.mul(isWall))
+  // Panes mirror the sky, more of it above; bars cross them.
+  const isBar = step(beside, 0.014).max(step(inCell.y.sub(0.62).abs(), 0.014))
+  const pane = mix(vec3(0.03, 0.035, 0.045), vec3(0.13, 0.16, 0.2), smoothstep(0.35, 0.8, inCell.y))
+  const glass = mix(pane, vec3(0.6), isBar.mul(isFar.oneMinus()))
+  color = mix(color, glass, isWindow)
   const isDoor = step(x.abs(), 0.055).mul(step(y, 0.4)).mul(step(0.5, normalGeometry.z))
   color = mix(color, vec3(0.16, 0.09, 0.05), isDoor)
   return color.mul(smoothstep(1.03, 0.9, y).mul(0.55).add(0.45))
-}
-
-/** Colour of a roof: rows of tiles, some darker, as long as they are wider than pixels. */
-function tileColor(): Node<'vec3'> {
-  const row = positionGeometry.y.mul(16)
-  const tile = positionGeometry.z.mul(28).add(step(1, row.mod(2)).mul(0.5))
-  const isNear = smoothstep(220, 60, positionView.z.negate())
-  const aged = hash(
-    row.floor().mul(61).add(tile.floor()).add(float(instanceIndex).mul(17)).add(900)
-  )
-  const shade = step(0.14, fract(row)).mul(0.25).add(0.75).mul(aged.mul(0.35).add(0.8))
-  return vec3(0.105, 0.043, 0.029).mul(mix(float(0.87), shade, isNear))
 }
 
 /** A village whose lamps and windows light up at night. */
@@ -236,10 +213,12 @@ export function createVillage(
   const windows = mix(vec3(1, 0.27, 0.02), vec3(1, 0.44, 0.09), hue).mul(
     isWindow.mul(isLit).mul(shown).mul(luminance)
   )
-  // Walls have about half of the light that the ground before them has.
-  walls.emissiveNode = lamps === null ? windows : windows.add(lamps.reflected().mul(0.5))
+  // Walls below the lamps have about half of the light that the ground before them has, most of it beside the door.
+  const facing = mix(float(0.12), float(0.5), step(0.5, normalGeometry.z))
+  const lamplight = smoothstep(0.6, 0.12, positionGeometry.y).mul(0.9).add(0.1).mul(facing)
+  walls.emissiveNode = lamps === null ? windows : windows.add(lamps.reflected().mul(lamplight))
   const tiles = new VertexLitMaterial()
-  tiles.colorNode = tileColor()
+  tiles.colorNode = roofColor()
   const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const slates = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)

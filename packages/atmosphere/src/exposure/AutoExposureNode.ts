@@ -7,6 +7,7 @@ import { checkRange } from '../check'
 import { checkAtmosphere } from '../view/ViewNodes'
 import { adaptedScale, exposedScale } from './cpu/exposedScale'
 import { cellWeights, meteredLogLuminance, meterForm } from './cpu/meteredLuminance'
+import { ExposedNode } from './ExposedNode'
 import { ExposureMeter, type MeterReading } from './ExposureMeter'
 import { purkinjeShift } from './tsl/purkinjeShift'
 import type { Vec4 } from '../tsl-types'
@@ -293,8 +294,22 @@ export class AutoExposureNode extends Node<'vec4'> {
   }
 
   override setup(): Node {
-    const picture = this.#picture as unknown as Vec4
-    return vec4(purkinjeShift(picture.rgb, this.#sight), picture.a)
+    return this.seen(this.#picture)
+  }
+
+  /** A colour as eyes see it that are adapted to the picture. To be called inside of a shader function. */
+  seen(color: Vec4): Vec4 {
+    return vec4(purkinjeShift(color.rgb, this.#sight), color.a)
+  }
+
+  /**
+   * Another picture than the metered one, exposed as that: for what is made of it by a post effect that reads its texture, such
+   * as motion blur, which needs no texture of the exposed picture then. Something must draw the metered picture.
+   *
+   * @param colorNode - Linear, in the unit of the atmosphere's nodes.
+   */
+  exposed(colorNode: Node): Node<'vec4'> {
+    return new ExposedNode(this, colorNode)
   }
 
   /** Frees its textures. It can be used again. */

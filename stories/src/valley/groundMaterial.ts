@@ -1,0 +1,200 @@
+import type { SurfaceWater } from '@welkin/atmosphere'
+import {
+  attribute,
+  dFdx,
+  dFdy,
+  float,
+  floor,
+  Fn,
+  fract,
+  If,
+  mix,
+  normalWorldGeometry,
+  positionView,
+  positionWorld,
+  sin,
+  smoothstep,
+  texture,
+  transformNormalToView,
+  vec2,
+  vec3
+} from 'three/tsl'
+import type { Node } from 'three/webgpu'
+import { createNoiseTexture } from '../globe/detailNoise'
+import { VILLAGE } from './places'
+import type { Relief } from './relief'
+import { VertexLitMaterial } from './VertexLitMaterial'
+
+/** Radius of the planet, away from which the land bends [m]. */
+export const RADIUS = 6_371_000
+
+/** Colours of fields, linear sRGB: hay, ripe and young corn, earth. */
+const CROPS = [
+  [0.145, 0.145, 0.053],
+  [0.185, 0.165, 0.07],
+  [0.075, 0.115, 0.032],
+  [0.13, 0.115, 0.068]
+] as const
+
+/** Width of a strip of fields [m]. */
+export const STRIP = 70
+
+/** Distance between two furrows, and between the tracks of a farmer's wheels [m]. */
+const FURROW = 2.6
+const LANE = 17.5
+
+/** Height up to which land is farmed [m]. */
+export const FARMED = 40
+
+/** Depth by which the snow line comes down while snow lies everywhere [m]. */
+const FALLEN_SNOW = 2300
+
+/** Half width of the road from the village to the lake [m]. */
+export const HALF_ROAD = 2.2
+
+/** Fields in strips, with their furrows; grass in some. */
+function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
+  const { x, z } = positionWorld
+  const across = x
+    .div(STRIP)
+    .add(sin(z.div(300)).mul(0.3))
+    .toConst()
+  const strip = floor(across).toConst()
+  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
+  const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
+  let color = grass
+  for (const [i, crop] of CROPS.entries()) {
+    color = chance.greaterThan(0.4 + 0.15 * i).select(vec3(...crop), color)
+  }
+  // Furrows along the strips, until they are as fine as pixels; wheels leave their tracks in corn.
+  const furrows = sin(across.mul((2 * Math.PI * STRIP) / FURROW)).mul(smoothstep(170, 40, distance))
+  const aside = fract(across.mul(STRIP / LANE))
+    .sub(0.5)
+    .abs()
+    .mul(LANE)
+  const track = smoothstep(0.5, 0.2, aside.sub(0.9).abs()).mul(smoothstep(700, 250, distance))
+  const isCorn = chance.greaterThan(0.4).select(1, 0)
+  return color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
+}
+
+/** 1 on that road. Twin of the middle: `roadMiddle` of the ground. */
+function roadAt(): Node<'float'> {
+  const { x, z } = positionWorld
+  const middle = sin(z.div(95))
+    .mul(14)
+    .add(sin(z.div(310)).mul(38))
+    .add(VILLAGE.x - 44)
+  const isSouth = smoothstep(-300, -285, z)
+  return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
+}
+
+/** Distance within which the finest grain of the ground is drawn [m]. */
+const NEAR = 200
+
+/** Height of grass and stones over the noise that they follow [m], and distance within which they shade themselves [m]. */
+const GRASS = 0.1
+const SHADED = 140
+
+/** Normal of ground with grain on it, by differences between pixels (Mikkelsen 2010, "Bump mapping unparametrized surfaces"). */
+function grainNormal(normal: Node<'vec3'>, height: Node<'float'>): Node<'vec3'> {
+  const [right, down] = [dFdx(positionWorld).toConst(), dFdy(positionWorld).toConst()]
+  const [first, second] = [down.cross(normal).toConst(), normal.cross(right).toConst()]
+  const area = right.dot(first).toConst()
+  const slope = first
+    .mul(dFdx(height))
+    .add(second.mul(dFdy(height)))
+    .mul(area.sign())
+  return normal.mul(area.abs()).sub(slope).normalize()
+}
+
+/** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
+export function groundMaterial(
+  { wetnessNode, snowCoverNode }: SurfaceWater,
+  relief: Relief,
+  lamplight: Node<'vec3'> | null
+): VertexLitMaterial {
+  const material = new VertexLitMaterial()
+  const place = positionWorld.xz
+  const picture = createNoiseTexture()
+  // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
+  const grazed = picture.clone()
+  picture.anisotropy = 1
+  grazed.anisotropy = 8
+  for (const each of [picture, grazed]) {
+    material.addEventListener('dispose', () => each.dispose())
+  }
+  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
+  // above: with heights in it, slopes that go with them have streaks.
+  const turnedBy = (period: number): Node<'vec2'> => {
+    const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
+    return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
+  }
+  const noiseAt = (at: Node<'vec2'>): Node<'float'> => texture(picture, at).r.sub(0.5).mul(2)
+  const noise = (period: number): Node<'float'> => noiseAt(turnedBy(period))
+  // A period that is a few pixels wide would show as a net.
+  const distance = positionView.z.negate()
+  const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
+  const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
+  const patches = noise(390).mul(upTo(24_000)).toVar()
+  const near = turnedBy(1.9).toVar()
+  const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
+  // Its cells are seen near by: bent, they are no squares.
+  const bent = turnedBy(11.3).add(sin(turnedBy(0.9).yx).mul(0.05))
+  const grain = Fn(() => {
+    const sum = noiseAt(bent).mul(0.6).mul(upTo(900)).toVar()
+    If(distance.lessThan(NEAR), () => {
+      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
+      sum.addAssign(finest.mul(upTo(NEAR)))
+    })
+    return sum
+  })().toVar()
+  const clumps = noise(71).mul(upTo(2500)).toVar()
+  const fine = grain.add(clumps).add(patches).toVar()
+  const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
+  const rough = broad.mul(0.5).add(patches).toVar()
+  const broadNormal = relief.normal(normalWorldGeometry).toConst()
+  const normal = grainNormal(broadNormal, grain.mul(GRASS).mul(upTo(SHADED))).toVar()
+  material.normalNode = transformNormalToView(normal)
+  const slope = broadNormal.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
+  const [forest, field] = [
+    attribute<'vec2'>('cover', 'vec2').x,
+    attribute<'vec2'>('cover', 'vec2').y
+  ]
+  const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
+  const meadow = mix(vec3(0.05, 0.09, 0.02), vec3(0.14, 0.135, 0.05), dry).toVar()
+  const farmed = Fn(() => {
+    const ground = meadow.toVar()
+    If(height.lessThan(FARMED), () => {
+      const tilled = mix(meadow, crops(meadow, distance), field)
+      ground.assign(mix(tilled, vec3(0.24, 0.21, 0.17), roadAt()))
+    })
+    return ground
+  })()
+  const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
+  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
+  const alpine = mix(
+    vec3(0.095, 0.1, 0.045),
+    rock,
+    smoothstep(1050, 1700, height.add(broad.mul(150)))
+  )
+  // Tufts stand in the light, gaps between them are dark.
+  const tuft = smoothstep(-0.4, 0.45, grain)
+    .sub(0.5)
+    .mul(upTo(900).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
+    .toVar()
+  const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
+  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.42)))
+  let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
+  color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
+  color = mix(color, trees, forest)
+  color = mix(color.mul(bright), rock.mul(bright), smoothstep(0.27, 0.42, slope))
+  // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
+  color = color.div(mix(vec3(1), color.oneMinus().mul(1.777).add(color), wetnessNode))
+  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
+  const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
+  const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
+  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
+  material.colorNode = color
+  material.emissiveNode = lamplight
+  return material
+}

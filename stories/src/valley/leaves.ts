@@ -1,0 +1,121 @@
+import {
+  DataTexture,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  RGFormat,
+  UnsignedByteType
+} from 'three'
+import {
+  attribute,
+  normalViewGeometry,
+  positionView,
+  smoothstep,
+  texture,
+  uv,
+  vec3
+} from 'three/tsl'
+import type { NodeMaterial } from 'three/webgpu'
+import { randomSequence } from '../random'
+
+/** Texels along an edge of each of the two halves of the picture. */
+const SIZE = 128
+
+/** Leaves of a spray, and needles along a twig and its side twigs. */
+const LEAVES = 90
+const SIDE_TWIGS = 32
+
+/** Coverage of leaves from which a place is solid, near and far: far away pictures are means, of which gaps take most. */
+const SOLID = [0.5, 0.34] as const
+const FAR = 160
+
+type Bytes = Uint8Array
+
+/** Paints an ellipse: brightness, and full coverage. */
+function ellipse(
+  bytes: Bytes,
+  left: number,
+  [x, y]: readonly [number, number],
+  [length, width]: readonly [number, number],
+  angle: number,
+  brightness: number
+): void {
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)]
+  const reach = Math.ceil(Math.max(length, width))
+  for (let j = Math.floor(y) - reach; j <= y + reach; j++) {
+    for (let i = Math.floor(x) - reach; i <= x + reach; i++) {
+      if (i < 0 || j < 0 || i >= SIZE || j >= SIZE) continue
+      const [dx, dy] = [i + 0.5 - x, j + 0.5 - y]
+      const along = (dx * cos + dy * sin) / length
+      const across = (dy * cos - dx * sin) / width
+      if (along * along + across * across > 1) continue
+      const texel = 2 * (j * 2 * SIZE + left + i)
+      // The rib of a leaf is darker on one side.
+      bytes[texel] = 255 * Math.min(brightness * (across > 0 ? 1 : 0.86), 1)
+      bytes[texel + 1] = 255
+    }
+  }
+}
+
+/** Left: a spray of leaves. Right: a twig with needles, its tip above. Brightness in red, coverage in green. */
+function createLeafTexture(): DataTexture {
+  const random = randomSequence(41)
+  const bytes = new Uint8Array(2 * 2 * SIZE * SIZE).fill(150)
+  for (let i = 1; i < bytes.length; i += 2) bytes[i] = 0
+  for (let i = 0; i < LEAVES; i++) {
+    const [angle, radius] = [2 * Math.PI * random(), 0.45 * Math.sqrt(random())]
+    // Fewer towards the edge: sprays have no outline of their own.
+    if (random() < 1.6 * radius - 0.25) continue
+    const place = [0.5 + radius * Math.cos(angle), 0.5 + radius * Math.sin(angle)] as const
+    const size = SIZE * (0.045 + 0.035 * random())
+    const brightness = 0.42 + 0.5 * (i / LEAVES) + 0.12 * random()
+    const at = [SIZE * place[0], SIZE * place[1]] as const
+    ellipse(bytes, 0, at, [size, 0.55 * size], angle + 1.6 * random(), brightness)
+  }
+  ellipse(bytes, SIZE, [SIZE / 2, SIZE / 2], [SIZE / 2, 0.02 * SIZE], Math.PI / 2, 0.35)
+  for (let i = 0; i < SIDE_TWIGS; i++) {
+    const [up, side] = [(Math.floor(i / 2) + 0.6 * random()) / (SIDE_TWIGS / 2), i % 2 ? 1 : -1]
+    // Broadest a third of the way up.
+    const length = 0.46 * (up < 0.3 ? 0.5 + up / 0.6 : 1.43 * (1 - up)) * (0.75 + 0.35 * random())
+    const angle = Math.PI / 2 - side * (1.05 - 0.35 * up)
+    for (let t = 0; t < 1; t += 0.09) {
+      const x = 0.5 + t * length * Math.cos(angle)
+      const y = 0.03 + 0.94 * up + t * length * Math.sin(angle)
+      const tuft = SIZE * 0.06 * (1 - 0.5 * t)
+      const brightness = 0.5 + 0.4 * t + 0.15 * random()
+      ellipse(
+        bytes,
+        SIZE,
+        [SIZE * x, SIZE * y],
+        [tuft, 0.5 * tuft],
+        angle + random() - 0.5,
+        brightness
+      )
+    }
+  }
+  const picture = new DataTexture(bytes, 2 * SIZE, SIZE, RGFormat, UnsignedByteType)
+  picture.magFilter = LinearFilter
+  picture.minFilter = LinearMipmapLinearFilter
+  picture.generateMipmaps = true
+  picture.needsUpdate = true
+  return picture
+}
+
+/**
+ * Gives a material of trees their leaves and needles, by texture coordinates: bark, of which vertices are redder than green, has
+ * none. Leaves are lit by the normals of their vertices from both sides.
+ */
+export function setFoliage(material: NodeMaterial): void {
+  const picture = createLeafTexture()
+  material.addEventListener('dispose', () => picture.dispose())
+  const leaf = texture(picture, uv()).toConst()
+  const color = attribute<'vec3'>('color', 'vec3')
+  const isBark = color.r.greaterThan(color.g)
+  const distance = positionView.z.negate()
+  const [near, far] = SOLID
+  const solid = smoothstep(FAR / 8, FAR, distance)
+    .mul(far - near)
+    .add(near)
+  material.maskNode = leaf.g.greaterThan(solid).or(isBark)
+  material.colorNode = vec3(isBark.select(1, leaf.r.mul(1.25).add(0.22)))
+  material.normalNode = normalViewGeometry
+}
