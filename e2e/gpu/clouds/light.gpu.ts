@@ -55,6 +55,8 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
             depthThrough: input.y,
             depthAcross: input.y.mul(1.3),
             depthToCamera: float(0.3),
+            viewChord: [float(0.3), input.x.mul(0.4)],
+            verticalChord: [input.y.mul(0.2), input.x],
             layered: float(layered),
             cosLight: float(cosLight),
             cosView: input.z,
@@ -68,6 +70,8 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
           depthThrough,
           depthAcross: 1.3 * depthThrough,
           depthToCamera: 0.3,
+          viewChord: [0.3, 0.4 * depthToLight],
+          verticalChord: [0.2 * depthThrough, depthToLight],
           layered,
           cosLight: cosLight,
           cosView,
@@ -176,6 +180,8 @@ gpuTest('gives no NaN at the ends of its domain', async t => {
           depthThrough: input.y,
           depthAcross: input.y,
           depthToCamera: input.x,
+          viewChord: [input.x, input.y],
+          verticalChord: [input.y, input.x],
           cosLight: float(cosLight),
           cosViewLight: input.w
         })

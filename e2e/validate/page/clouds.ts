@@ -83,6 +83,7 @@ function sphereRadiance(light: CloudLight, input: Vec4): Float {
       depthThrough: chord.mul(2),
       depthAcross: radius.mul(2),
       depthToCamera,
+      viewChord: [depthToCamera, half.mul(2).sub(depthToCamera)],
       layered: float(0),
       // There is no up.
       cosLight: float(1),

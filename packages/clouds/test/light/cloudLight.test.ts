@@ -131,6 +131,19 @@ describe('lateral leak', () => {
       expect(error / total).toBeLessThan(0.12)
     }
   })
+
+  it('is a sphere’s where all chords are as deep, and takes more where the cloud is open to other sides', () => {
+    const sphere = { ...isolated, depthToLight: 2, depthThrough: 5, depthAcross: 7 }
+    const leak = (view: [number, number], vertical: [number, number]): number =>
+      lateralLeak({ ...sphere, viewChord: view, verticalChord: vertical }, 0.7)
+    const whole = lateralLeak(sphere, 0.7)
+    expect(leak([2, 3], [1.5, 4])).toBeCloseTo(whole, 12)
+    // Rays end before they know of more.
+    expect(leak([4, 9], [1.5, 4])).toBeGreaterThanOrEqual(whole)
+    expect(leak([2, 0.1], [1.5, 4])).toBeLessThan(0.8 * whole)
+    expect(leak([2, 3], [1.5, 0.1])).toBeLessThan(0.9 * whole)
+    expect(leak([2, 3], [9, 4])).toBeGreaterThan(1.05 * whole)
+  })
 })
 
 describe('cloudSource', () => {

@@ -14,6 +14,9 @@ export interface CloudSourceSample {
   depthAcross: number
   /** Depth from the viewpoint to the sample, in the cloud. */
   depthToCamera: number
+  /** Depths to both ends of the cloud on the view ray and along the vertical; left out, a sphere's. */
+  viewChord?: readonly [number, number]
+  verticalChord?: readonly [number, number]
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
   /** The light against the local up. */
@@ -33,7 +36,7 @@ const clamp = (x: number, low: number, high: number): number => Math.min(Math.ma
  * @param oneMinusAsymmetry - 1 − g′, with g′ = χ′₁ the asymmetry of the delta-scaled phase function.
  */
 export function lateralLeak(
-  { depthToLight, depthThrough, depthAcross }: CloudSourceSample,
+  { depthToLight, depthThrough, depthAcross, viewChord, verticalChord }: CloudSourceSample,
   oneMinusAsymmetry: number
 ): number {
   const part = clamp(depthToLight / Math.max(depthThrough, 1e-4), 0, 1)
@@ -50,7 +53,21 @@ export function lateralLeak(
     fit.partDepth * part * depth +
     fit.partChord * part * chord +
     fit.depthChord * depth * chord
-  return Math.exp(exponent)
+  /** Share that escapes along a chord, by the geometric mean of the depths to its ends, in transport depths. */
+  const escape = (mean: number): number => Math.exp(-fit.chordDepth * oneMinusAsymmetry * mean)
+  const own = Math.sqrt(depthToLight * Math.max(depthThrough - depthToLight, 0))
+  let openness = 0
+  if (viewChord) {
+    const [front, behind] = viewChord
+    const seen = Math.sqrt(front * Math.max(fit.seenDepth - front, 0))
+    const found = Math.min(Math.sqrt(front * behind), seen)
+    openness += fit.view * (escape(found) - escape(Math.min(own, seen)))
+  }
+  if (verticalChord) {
+    const [above, below] = verticalChord
+    openness += fit.vertical * (escape(Math.sqrt(above * below)) - escape(own))
+  }
+  return Math.exp(exponent - openness)
 }
 
 /**

@@ -1,3 +1,4 @@
+import { float } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import type { Float } from '../../tsl-types'
@@ -12,14 +13,39 @@ export interface LeakNodes {
   depthAcross: Float
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: Float
+  /** Chord of the cloud on the view ray, to the camera and behind; left out, a sphere's. */
+  viewChord?: Chord
+  /** Its chord along the vertical; left out, a sphere's. */
+  verticalChord?: Chord
 }
 
+/** Depths from the sample to both ends of a straight line through its cloud. */
+export type Chord = readonly [Float, Float]
+
 /**
- * Lateral leak: share of a slab's multiply scattered light that an isolated cloud, a sphere, keeps. Twin:
+ * Lateral leak: share of a slab's multiply scattered light that an isolated cloud keeps: a sphere's, less where the
+ * cloud is open along other lines than the light's. The product of the depths to both ends of a chord is
+ * the same for all chords through a place of a sphere (intersecting chords theorem): chords with less leak more. Twin:
  * test/twins/cloudLight.ts
  */
 export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
-  const { depthToLight, depthThrough, depthAcross, layered } = sample
+  const { depthToLight, depthThrough, depthAcross, layered, viewChord, verticalChord } = sample
+  /** Share of the light that escapes along a chord, by the product of the depths to its ends. */
+  const escape = (product: Float): Float =>
+    product.max(0).sqrt().mul(light.oneMinusAsymmetry).mul(-fit.chordDepth).exp().toConst()
+  const own = depthToLight.mul(depthThrough.sub(depthToLight)).toConst() as Float
+  let openness: Float = float(0)
+  if (viewChord) {
+    const [front, behind] = viewChord
+    // More than rays see is not known.
+    const seen = front.mul(front.negate().add(fit.seenDepth).max(0)).toConst() as Float
+    const open = escape(front.mul(behind).min(seen)).sub(escape(own.min(seen)))
+    openness = openness.add(open.mul(fit.view))
+  }
+  if (verticalChord) {
+    const open = escape(verticalChord[0].mul(verticalChord[1])).sub(escape(own))
+    openness = openness.add(open.mul(fit.vertical))
+  }
   const part = depthToLight.div(depthThrough.max(1e-4)).clamp().toConst()
   const depth = light.oneMinusAsymmetry
     .mul(depthAcross.min(fit.largestDiameter))
@@ -35,6 +61,7 @@ export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
     .add(byDepth.mul(depth))
     .add(chord.mul(fit.chord2).add(fit.chord).mul(chord))
     .add(fit.constant)
+    .sub(openness)
     .mul(layered.oneMinus())
     .exp()
 }

@@ -3,6 +3,7 @@ import { If, float } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
 import { localDepths } from './localDepths'
 import { isNight, nightShare } from './night'
@@ -38,7 +39,7 @@ export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample)
 /** Source function of a place towards the viewpoint: the light that it scatters there. */
 export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudShares {
   const { light } = context
-  const { sample, direction, transmittance, lit: cast = float(1) } = shaded
+  const { sample, direction, transmittance, past, lit: cast = float(1) } = shaded
   const source = lightAt(context, sample)
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewLight = direction.dot(source.direction).clamp(-1, 1).toConst() as Float
@@ -46,21 +47,28 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const scale = light.depthScale
   const layered = shaded.layers.layered.toConst() as Float
   const depthThrough = depths.through.mul(scale).toConst() as Float
+  const seen = transmittance.max(LEAST_TRANSMITTANCE).toConst() as Float
+  const depthToCamera = seen.log().negate().toConst() as Float
+  const depthBehind = seen.div(past.max(LEAST_TRANSMITTANCE)).log().max(0).toConst() as Float
+  const depthAbove = depths.above.mul(scale).toConst() as Float
+  const depthBelow = depths.below.mul(scale).toConst() as Float
   const lit = {
     depthToLight: depths.toLight.mul(scale).toConst() as Float,
     depthThrough,
-    depthAcross: depthThrough,
-    depthToCamera: transmittance.max(LEAST_TRANSMITTANCE).log().negate().toConst() as Float,
+    depthAcross: depthThrough.mul(fit.diameterPerChord),
+    depthToCamera,
     layered,
     cosLight: source.cosine,
     cosView,
-    cosViewLight
+    cosViewLight,
+    viewChord: [depthToCamera, depthBehind] as const,
+    verticalChord: [depthAbove, depthBelow] as const
   }
   const direct = cloudSource(light, lit)
   const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
   const ambient = cloudAmbientShares(light, {
-    depthAbove: depths.above.mul(scale),
-    depthBelow: depths.below.mul(scale),
+    depthAbove,
+    depthBelow,
     layered,
     cosView
   })

@@ -40,6 +40,12 @@ const ABOVE = 0.35
  */
 const WIDEST = 1.5
 
+/**
+ * Mean extinction below a place of an isolated cloud, as a part of its own; twice as much in decks. Faces lean
+ * over air: 0.35 is what single clouds of a large-eddy simulation have.
+ */
+const BELOW = 0.35
+
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
   /** Depth from the sample to the light. */
@@ -114,5 +120,6 @@ export function localDepths(
     .max(depthToLight)
     .toConst() as Float
   const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))
-  return { toLight: depthToLight, through, above, below: fall.mul(found.x).mul(0.7) }
+  const below = fall.mul(found.x).mul(layered.add(1).mul(BELOW))
+  return { toLight: depthToLight, through, above, below }
 }

@@ -27,6 +27,8 @@ export interface ShadedSample {
   readonly direction: Vec3
   /** Transmittance of the clouds between it and the camera, in [0, 1]. */
   readonly transmittance: Float
+  /** Transmittance between the camera and the far side of the cloud that it is in, in [0, 1]. */
+  readonly past: Float
   /** Part of the light that casters besides the clouds leave, in [0, 1]; left out, all. */
   readonly lit?: Float
   /** The layers around it. */

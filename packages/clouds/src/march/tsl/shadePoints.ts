@@ -1,4 +1,4 @@
-import { If, float, vec3, vec4 } from 'three/tsl'
+import { If, float, step, vec3, vec4 } from 'three/tsl'
 import { componentAt } from '../../density/tsl/componentAt'
 import { weatherCacheAt } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
@@ -43,17 +43,24 @@ export function shadePoints(
       const layers = layersAt(field, sample.altitude)
       const weather = weatherCacheAt(field, sample, layers.range, context.weatherMap)
       const transmittance = seenBefore.add(share.mul(0.5)).oneMinus().toConst() as Float
+      // Clouds as wide as their layer is thick end there: what is farther is another one.
+      const end = distance.add(layers.top.sub(layers.base))
+      const past = shares
+        .dot(step(distances, vec4(end)))
+        .oneMinus()
+        .toConst() as Float
       const shaded = {
         sample,
         weather,
         direction,
         transmittance,
+        past,
         layers,
         lit: lit?.(own, distance)
       }
       const { direct, sky, ground, fine } = sourceAt(context, shaded)
-      const shares = vec3(direct, sky, ground).mul(share).toConst()
-      radiance.addAssign(shade(field, sample, shares, fine?.mul(share).toConst()))
+      const scattered = vec3(direct, sky, ground).mul(share).toConst()
+      radiance.addAssign(shade(field, sample, scattered, fine?.mul(share).toConst()))
       seenBefore.addAssign(share)
     })
   })
