@@ -61,11 +61,12 @@ export const VIEWS = {
   virga: {
     label: 'Virga',
     clouds: 'altocumulus',
-    coverage: 0.6,
-    azimuth: 340,
-    heading: 0,
-    pitch: 14,
-    place: home
+    coverage: 0.25,
+    layer: { topAltitude: 4600, weatherScale: 0.5, shapeScale: 0.7 },
+    azimuth: 350,
+    heading: 30,
+    pitch: 24,
+    place: { longitude: 20, latitude: 45 }
   },
   snow: {
     label: 'Snow shower',
