@@ -43,12 +43,13 @@ export const falling = [
   },
   {
     name: 'snow-shower',
-    about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
-    clouds: { preset: 'snowShower' },
-    place: { longitude: 139.05, latitude: 35.23 },
+    about:
+      'within snow that trails far behind its clouds: grey in their shadow, a gap with sunlit cloud',
+    clouds: { preset: 'snowShower', coverage: 0.35 },
+    place: { longitude: 20, latitude: 45 },
     altitude: 60,
-    sun: { elevation: 18, azimuth: 290 },
-    view: { azimuth: 20, pitch: 8 },
+    sun: { elevation: 18, azimuth: 210 },
+    view: { azimuth: 290, pitch: 8 },
     land: 'snow'
   }
 ] as const
