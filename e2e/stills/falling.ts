@@ -43,13 +43,12 @@ export const falling = [
   },
   {
     name: 'snow-shower',
-    about:
-      'within snow that trails far behind its clouds: grey in their shadow, a gap with sunlit cloud',
-    clouds: { preset: 'snowShower', coverage: 0.35 },
+    about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
+    clouds: { preset: 'snowShower', coverage: 0.1 },
     place: { longitude: 20, latitude: 45 },
     altitude: 60,
-    sun: { elevation: 18, azimuth: 210 },
-    view: { azimuth: 290, pitch: 8 },
+    sun: { elevation: 18, azimuth: 280 },
+    view: { azimuth: 20, pitch: 9 },
     land: 'snow'
   }
 ] as const

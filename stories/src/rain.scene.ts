@@ -71,11 +71,11 @@ export const VIEWS = {
   snow: {
     label: 'Snow shower',
     clouds: 'snowShower',
-    coverage: 0.4,
-    azimuth: 270,
-    heading: 0,
-    pitch: 10,
-    place: home
+    coverage: 0.1,
+    azimuth: 280,
+    heading: 20,
+    pitch: 9,
+    place: { longitude: 20, latitude: 45 }
   }
 } as const satisfies Record<string, View>
 
