@@ -44,11 +44,11 @@ export const falling = [
   {
     name: 'snow-shower',
     about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
-    clouds: { preset: 'snowShower' },
-    place: { longitude: 139.05, latitude: 35.23 },
+    clouds: { preset: 'snowShower', coverage: 0.1 },
+    place: { longitude: 20, latitude: 45 },
     altitude: 60,
-    sun: { elevation: 18, azimuth: 290 },
-    view: { azimuth: 20, pitch: 8 },
+    sun: { elevation: 18, azimuth: 280 },
+    view: { azimuth: 20, pitch: 9 },
     land: 'snow'
   }
 ] as const

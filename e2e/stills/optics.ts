@@ -3,13 +3,17 @@ export const optics = [
   {
     name: 'optics-glory',
     about:
-      'from an aeroplane over a thin deck, the sun behind: coloured rings of 1 to 4° about the middle, the shadow point',
-    clouds: { preset: 'overcast', layer: { density: 0.003 } },
+      'from an aeroplane over an even, bright deck, the sun behind: coloured rings of 1 to 4° about the middle, the shadow point',
+    clouds: {
+      preset: 'overcast',
+      layer: { density: 0.005, shapeAmount: 0.25, edgeSoftness: 0.6 }
+    },
     dropletRadius: 8,
     altitude: 2600,
     sun: { elevation: 38, azimuth: 210 },
     view: { azimuth: 30, pitch: -38 },
-    fieldOfView: 26,
+    fieldOfView: 18,
+    compensation: 0.6,
     place: { longitude: 150, latitude: 30 },
     land: 'planet'
   },

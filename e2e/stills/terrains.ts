@@ -29,7 +29,8 @@ export const terrains: TerrainStill[] = (
     ['shore', 'sand, wet where the sea begins', [1.32, 46.19, 1.7], [350, -8]],
     ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
     ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
-    ['400km', 'a mountainous coast from orbit: no net', [1, 44.5, 4e5], [0, -25]]
+    ['400km', 'a mountainous coast from orbit: woods, steppe, no net', [1, 44.5, 4e5], [0, -25]],
+    ['glint', 'the sun in the sea from orbit: wide, with calm patches', [1, 44.5, 4e5], [315, -30]]
   ] as const
 ).map(([name, about, [longitude, latitude, height], [heading, pitch]]) => ({
   name: `terrain-${name}`,
@@ -40,7 +41,7 @@ export const terrains: TerrainStill[] = (
     height,
     heading,
     pitch,
-    sun: { elevation: 28, azimuth: heading + 100 },
+    sun: { elevation: 28, azimuth: heading + (name === 'glint' ? 10 : 100) },
     cobbles: name === 'cobbles'
   }
 }))

@@ -29,11 +29,11 @@ interface View {
 /** Skies, and where the camera looks. */
 export const VIEWS = {
   glory: {
-    label: 'Glory on a thin deck',
+    label: 'Glory on an even deck',
     clouds: 'overcast',
     altitude: 2600,
     pitch: -38,
-    lens: 26,
+    lens: 18,
     azimuth: 180
   },
   cloudbow: {
@@ -101,8 +101,10 @@ export async function createHalos(
     atmosphere.add(args.view === 'rainbow' ? shower : mist)
     layers.at(0).coverage = 0
   }
-  // The thinner a deck is, the more of its light is scattered once.
-  if (view.clouds === 'overcast') layers.at(0).density = 0.004
+  // The thinner a deck is, the more of its light is scattered once; the evener it is, the rounder are its rings.
+  if (view.clouds === 'overcast') {
+    layers.at(0).set({ density: 0.005, shapeAmount: 0.25, edgeSoftness: 0.6 })
+  }
   if (view.clouds === 'cirrus') layers.at(0).set({ coverage: 0.9, density: 0.0015 })
   if (args.frame) {
     node.quality = STILL_QUALITY

@@ -6,7 +6,7 @@ import {
   cloudSkyLight,
   precipitationShafts
 } from '@welkin/clouds'
-import type { CloudPresetName } from '@welkin/clouds'
+import type { CloudLayerParameters, CloudPresetName } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
 import { Air } from './air'
@@ -24,6 +24,8 @@ interface View {
   readonly clouds: CloudPresetName
   /** Share of the sky that the first layer covers. */
   readonly coverage: number
+  /** Other parameters of that layer, where the preset's are not meant. */
+  readonly layer?: Partial<CloudLayerParameters>
   /** Azimuth of the sun, clockwise from north [°]. */
   readonly azimuth: number
   /** Azimuth that the camera looks to, clockwise from north [°]. */
@@ -59,20 +61,21 @@ export const VIEWS = {
   virga: {
     label: 'Virga',
     clouds: 'altocumulus',
-    coverage: 0.6,
-    azimuth: 340,
-    heading: 0,
-    pitch: 14,
-    place: home
+    coverage: 0.25,
+    layer: { topAltitude: 4600, weatherScale: 0.5, shapeScale: 0.7 },
+    azimuth: 350,
+    heading: 30,
+    pitch: 24,
+    place: { longitude: 20, latitude: 45 }
   },
   snow: {
     label: 'Snow shower',
     clouds: 'snowShower',
-    coverage: 0.4,
-    azimuth: 270,
-    heading: 0,
-    pitch: 10,
-    place: home
+    coverage: 0.1,
+    azimuth: 280,
+    heading: 20,
+    pitch: 9,
+    place: { longitude: 20, latitude: 45 }
   }
 } as const satisfies Record<string, View>
 
@@ -96,7 +99,7 @@ export async function createRain(
 ): Promise<SceneHandle<RainArgs>> {
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
-  const view = VIEWS[args.view]
+  const view: View = VIEWS[args.view]
   const camera = new PerspectiveCamera(62, 1, 1, 4e5)
   camera.position.y = 60
   const { pitch, heading } = view
@@ -124,7 +127,7 @@ export async function createRain(
   // #endregion
   Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
   cloudSkyLight(sky, node)
-  layer.coverage = view.coverage
+  layer.set({ ...view.layer, coverage: view.coverage })
   if (args.frame) {
     node.quality = STILL_QUALITY
     node.field.bake(renderer)

@@ -80,7 +80,6 @@ export class Street {
   readonly pipeline: RenderPipeline
   readonly #sun: SunDirectionalLight
   readonly #sky: SkyLightProbe
-  readonly #renderer: WebGPURenderer
   readonly #houses: Houses
   readonly #mirror = new StreetMirror()
   readonly #shelter: PrecipitationShelter
@@ -96,7 +95,6 @@ export class Street {
   #weather: StreetWeather = { rain: 0, snow: 0, wind: 0, elevation: 25, shutter: 1 / 60 }
 
   constructor(renderer: WebGPURenderer, time: number | null) {
-    this.#renderer = renderer
     const { atmosphere, camera, scene } = this
     atmosphere.add(this.#fog)
     const sun = (this.#sun = new SunDirectionalLight(atmosphere, 80))
@@ -189,7 +187,6 @@ export class Street {
   render(): void {
     this.#lightClouds()
     this.#houses.light(this.#isNight ? 1 : 0.15, this.atmosphere.luminanceScale)
-    this.#mirror.render(this.#renderer, this.scene, this.camera)
     this.pipeline.render()
   }
 

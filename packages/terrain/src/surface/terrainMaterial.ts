@@ -25,7 +25,15 @@ import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { GroundMask } from './maps/GroundMask'
 import type { GroundMaps } from './maps/GroundMaps'
 import { groundSurface } from './tsl/groundSurface'
-import { FOAM, FOAM_GONE, foamCover, seaSurface, waterColor, waterFresnel } from './tsl/seaSurface'
+import {
+  FOAM,
+  FOAM_GONE,
+  foamCover,
+  seaSurface,
+  waterColor,
+  waterFresnel,
+  windyVariance
+} from './tsl/seaSurface'
 import { GroundMaterial } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
@@ -144,7 +152,7 @@ export function terrainMaterial(
   const depth = seaLevel.sub(ground.z).toConst('depth') as Float
   const { footprint, spread } = surface
   const shore = { offset, depth, up, footprint, spread }
-  const sea = seaSurface(shore, seaVariance, waveTime)
+  const sea = seaSurface(shore, windyVariance(seaVariance, blend.y), waveTime)
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)

@@ -24,7 +24,7 @@ import { distanceAt, type FallStretch } from './fallStretch'
 const STEPS = 0.4
 
 /** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
-const SHORTEST = 200
+const SHORTEST = 1200
 const LEAST = 3
 
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */

@@ -3,5 +3,5 @@ import type { Octaves } from '../../noise/cpu/fractalSum'
 /** Patches of one material and another: from 4 km to 64 m. */
 export const PATCHES: Octaves = { count: 7, inverse: 2 ** -12, gain: 0.7, seed: 211 }
 
-/** Dry and wet country: from 1,050 km to 262 km. */
-export const CLIMATE: Octaves = { count: 3, inverse: 2 ** -20, gain: 0.5, seed: 401 }
+/** Dry and wet country: from 1,050 km to 16 km. */
+export const CLIMATE: Octaves = { count: 7, inverse: 2 ** -20, gain: 0.6, seed: 401 }

@@ -7,6 +7,13 @@ import type { Grain, GrainPlace } from './grain'
 const SPREAD = 0.12
 const MOST_SPREAD = 450
 
+/** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
+const DRY_WOODS = 0.9
+
+/** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
+const PATCH_DEVIATION = 0.35
+const PATCHES_GONE = 4000
+
 /** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
 const DRY_SNOW = 500
 const SUNNY_SNOW = 350
@@ -97,7 +104,7 @@ export function groundRules(
   grain: Grain,
   { overSea, overSnow, overTrees, dryness }: GroundClimate
 ): GroundRules {
-  const { patch, cosSlope, hollow } = place
+  const { patch, climate, cosSlope, hollow } = place
   const { stone, boulder, tuft, crown } = grain
   // A pixel that shows much ground shows its heights, too.
   const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
@@ -109,9 +116,16 @@ export function groundRules(
     .sub(hollow.mul(HOLLOW_SOIL))
     .toConst('steepness')
 
-  const woods = smoothstep(-0.2, 0, patch.sub(dryness).add(tuft.mul(0.12)).add(crown.mul(0.3)))
+  const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
+  const moisture = patch.sub(dryness).sub(climate.mul(DRY_WOODS)).toConst()
+  const woods = smoothstep(
+    lost.add(0.2).negate(),
+    lost,
+    moisture.add(tuft.mul(0.12)).add(crown.mul(0.3))
+  )
     .mul(smoothstep(-150, 50, overTrees).oneMinus())
-    .mul(smoothstep(15, 60, overSea))
+    // As with beaches: a pixel that shows much ground shows what lies behind the shore.
+    .mul(smoothstep(15, 60, overSea.add(spread)))
     .toConst('woods')
   // Stones come through grass where they are highest.
   const bareness = smoothstep(

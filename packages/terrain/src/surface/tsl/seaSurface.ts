@@ -36,6 +36,21 @@ export interface SeaSurface {
   readonly variance: Float
 }
 
+/** Change of the slopes' variance by the climate's noise [–]. 0: the sun's glint from orbit is without streaks of wind (*Terrain*). */
+const WINDY = 0.9
+
+/** Least variance of slopes over its mean: that of nearly calm water in light wind. */
+const CALMEST = 0.25
+
+/**
+ * Variance of the sea's slopes at a place: wind differs over hundreds of kilometres, by the same noise as the climate of land.
+ *
+ * @param seaVariance - Variance in the mean wind.
+ * @param climate - Noise about 0.
+ */
+export const windyVariance = (seaVariance: Float, climate: Float): Float =>
+  seaVariance.mul(climate.mul(WINDY).add(1).max(CALMEST)).toConst('windyVariance')
+
 /** A place of the sea. */
 export interface SeaPlace {
   /** As of `latticeNoise`. */
