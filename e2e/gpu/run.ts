@@ -83,11 +83,10 @@ async function runSuite(
     if (values.test !== undefined && !name.includes(values.test)) continue
     const label = `${suite} [${backend}] ${name}`
     try {
-      const run: Promise<TestOutcome> = page.evaluate(([s, n, b]) => window.welkinTests.run(s, n, b), [
-        suite,
-        name,
-        backend
-      ] as const)
+      const run: Promise<TestOutcome> = page.evaluate(
+        ([s, n, b]) => window.welkinTests.run(s, n, b),
+        [suite, name, backend] as const
+      )
       const { error, milliseconds, notes } = await withLimit(run, timeoutSeconds)
       const detail = [`${(milliseconds / 1000).toFixed(1)} s`, ...notes].join(', ')
       if (error === undefined) report.pass(label, detail)

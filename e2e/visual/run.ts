@@ -107,12 +107,7 @@ function judge(name: string, backend: Backend, actual: PNG, detail: string): voi
 }
 
 /** Takes a picture. @returns False if its page may draw no more. */
-async function shoot(
-  page: Page,
-  file: string,
-  story: string,
-  backend: Backend
-): Promise<boolean> {
+async function shoot(page: Page, file: string, story: string, backend: Backend): Promise<boolean> {
   const name = `${file}-${story}`.toLowerCase()
   try {
     const shot = await withLimit(
