@@ -180,4 +180,19 @@ describe('cloudAmbient', () => {
       })
     )
   })
+  it('lights tops more than bases from the sky, thick clouds from above more than from below', () => {
+    const share = (depthAbove: number, depthBelow: number, cosView: number): number =>
+      cloudAmbient(table, { depthAbove, depthBelow, layered: 0, cosView }).sky
+    expect(share(0, 20, 0)).toBeGreaterThan(share(10, 10, 0) + 0.1)
+    expect(share(10, 10, 0)).toBeGreaterThan(share(20, 0, 0) + 0.1)
+    expect(share(10, 10, -1)).toBeGreaterThan(share(10, 10, 1) + 0.05)
+    // A wisp scatters forwards.
+    expect(share(0, 0, 1)).toBeGreaterThan(share(0, 0, -1) + 0.1)
+  })
+
+  it('has the upside-down cloud’s ground for a sky', () => {
+    const sample = { depthAbove: 1, depthBelow: 4, layered: 0, cosView: 0.3 }
+    const turned = { depthAbove: 4, depthBelow: 1, layered: 0, cosView: -0.3 }
+    expect(cloudAmbient(table, turned).ground).toBeCloseTo(cloudAmbient(table, sample).sky, 12)
+  })
 })

@@ -1,5 +1,6 @@
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
 import { lateralLeakFit as fit } from '../../src/light/cpu/lateralLeak'
+import { skyShareFit } from '../../src/light/cpu/skyShare'
 import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
 import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
 import { aureolePhase, cloudPhase } from './cloudPhase'
@@ -17,6 +18,7 @@ export interface CloudSourceSample {
   /** Depths to both ends of the cloud on the view ray and along the vertical; left out, a sphere's. */
   viewChord?: readonly [number, number]
   verticalChord?: readonly [number, number]
+  resolved?: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
   /** The light against the local up. */
@@ -35,10 +37,8 @@ const clamp = (x: number, low: number, high: number): number => Math.min(Math.ma
  *
  * @param oneMinusAsymmetry - 1 − g′, with g′ = χ′₁ the asymmetry of the delta-scaled phase function.
  */
-export function lateralLeak(
-  { depthToLight, depthThrough, depthAcross, viewChord, verticalChord }: CloudSourceSample,
-  oneMinusAsymmetry: number
-): number {
+export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number): number {
+  const { depthToLight, depthThrough, depthAcross, viewChord, verticalChord, resolved = 1 } = sample
   const part = clamp(depthToLight / Math.max(depthThrough, 1e-4), 0, 1)
   const depth = Math.log(1 + oneMinusAsymmetry * Math.min(depthAcross, fit.largestDiameter))
   const chord = clamp(depthThrough / Math.max(depthAcross, 1e-4), 0, 1)
@@ -67,7 +67,7 @@ export function lateralLeak(
     const [above, below] = verticalChord
     openness += fit.vertical * (escape(Math.sqrt(above * below)) - escape(own))
   }
-  return Math.exp(exponent - openness)
+  return Math.exp(exponent - openness * resolved)
 }
 
 /**
@@ -139,5 +139,13 @@ export function cloudAmbient(
     const [s00, s10, s20] = sampleSkySource(table, depth, above + below)
     return Math.max(s00 + s10 * cos + (s20 * (3 * cos ** 2 - 1)) / 2, 0)
   }
-  return { sky: share(above, cosView), ground: share(below, -cosView) }
+  const slab = { sky: share(above, cosView), ground: share(below, -cosView) }
+  const [open, shut] = [depthAbove, depthBelow].map(x =>
+    Math.exp(-skyShareFit.decay * Math.max(x, 0))
+  )
+  const { tops, slope, thinSlope } = skyShareFit
+  const isolated = 0.5 + tops * (open - shut) + cosView * (slope + thinSlope * (open + shut))
+  const both = slab.sky + slab.ground
+  const sky = layered * slab.sky + (1 - layered) * both * isolated
+  return { sky, ground: both - sky }
 }

@@ -31,5 +31,13 @@ export const lateralLeakFit = {
   /** Scaled depth at which rays end, −ln of `LEAST_TRANSMITTANCE`. */
   seenDepth: 4.605,
   /** Diameter over the mean chord of a sphere. */
-  diameterPerChord: 1.5
+  diameterPerChord: 1.5,
+  /**
+   * Diameter over chord of clouds that are not resolved one by one, whose depths are of their mean extinction: under a
+   * level light, its change to the zenith; and weight of their chords along view ray and vertical. By these they are within 20 %
+   * as bright as resolved ones (e2e/gpu/clouds/far).
+   */
+  unresolvedDiameter: 1.35,
+  unresolvedDiameterHigh: -0.21,
+  unresolvedChords: 0.4
 } as const

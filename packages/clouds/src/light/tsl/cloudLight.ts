@@ -1,5 +1,6 @@
-import { Fn, float, vec2 } from 'three/tsl'
+import { Fn, float, mix, vec2 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
+import { skyShareFit as fit } from '../cpu/skyShare'
 import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
@@ -67,9 +68,8 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
 }
 
 /**
- * Thickness of the slab that sky and ground light like an isolated cloud, as a part of that cloud's: light
- * enters it from its sides, too. That is within 0.035 of the sky's radiance (root mean square) of Monte-Carlo solutions of
- * spheres of scaled optical diameters from 0.6 to 40.
+ * Thickness of the slab that absorbs as much of the light of sky and ground as an isolated cloud, as a part of that
+ * cloud's: light enters it from its sides, too.
  */
 export const ISOLATED_DEPTH = 0.2
 
@@ -83,6 +83,8 @@ export interface CloudAmbientNodes {
   layered: Float
   /** The view ray against the local up. */
   cosView: Float
+  /** 1 where clouds are resolved one by one, 0 where not, whose mean depths are a slab's; left out, 1. */
+  resolved?: Float
 }
 
 /**
@@ -91,7 +93,7 @@ export interface CloudAmbientNodes {
  */
 export function cloudAmbientShares(
   light: CloudLight,
-  { depthAbove, depthBelow, layered, cosView }: CloudAmbientNodes
+  { depthAbove, depthBelow, layered, cosView, resolved = float(1) }: CloudAmbientNodes
 ): { sky: Float; ground: Float } {
   const openness = layered
     .mul(1 - ISOLATED_DEPTH)
@@ -104,9 +106,13 @@ export function cloudAmbientShares(
     legendreSeries(readLayer(light, coordinates, float(2 * slabTableForm.lightAngles)), cosine)
       .max(0)
       .toConst()
-  return {
-    sky: at(uv, cosView),
-    // The same slab seen from below.
-    ground: at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
-  }
+  const sky = at(uv, cosView)
+  // The same slab seen from below.
+  const ground = at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
+  const [open, shut] = [depthAbove, depthBelow].map(depth => depth.max(0).mul(-fit.decay).exp())
+  const slope = open.add(shut).mul(fit.thinSlope).add(fit.slope)
+  const share = open.sub(shut).mul(fit.tops).add(slope.mul(cosView)).add(0.5)
+  const both = sky.add(ground).toConst()
+  const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(resolved)).toConst()
+  return { sky: skyShare, ground: both.sub(skyShare).toConst() }
 }

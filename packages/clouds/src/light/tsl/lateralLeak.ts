@@ -17,6 +17,8 @@ export interface LeakNodes {
   viewChord?: Chord
   /** Its chord along the vertical; left out, a sphere's. */
   verticalChord?: Chord
+  /** Weight of both: 0 where clouds are not resolved, whose mean extinction knows no sides; left out, 1. */
+  resolved?: Float
 }
 
 /** Depths from the sample to both ends of a straight line through its cloud. */
@@ -29,7 +31,8 @@ export type Chord = readonly [Float, Float]
  * test/twins/cloudLight.ts
  */
 export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
-  const { depthToLight, depthThrough, depthAcross, layered, viewChord, verticalChord } = sample
+  const { depthToLight, depthThrough, depthAcross, layered } = sample
+  const { viewChord, verticalChord, resolved = float(1) } = sample
   /** Share of the light that escapes along a chord, by the product of the depths to its ends. */
   const escape = (product: Float): Float =>
     product.max(0).sqrt().mul(light.oneMinusAsymmetry).mul(-fit.chordDepth).exp().toConst()
@@ -61,7 +64,7 @@ export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
     .add(byDepth.mul(depth))
     .add(chord.mul(fit.chord2).add(fit.chord).mul(chord))
     .add(fit.constant)
-    .sub(openness)
+    .sub(openness.mul(resolved))
     .mul(layered.oneMinus())
     .exp()
 }

@@ -1,7 +1,7 @@
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
-import { If, float } from 'three/tsl'
+import { If, float, mix } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
-import type { CloudSample } from '../../density/tsl/sample'
+import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
@@ -52,17 +52,24 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const depthBehind = seen.div(past.max(LEAST_TRANSMITTANCE)).log().max(0).toConst() as Float
   const depthAbove = depths.above.mul(scale).toConst() as Float
   const depthBelow = depths.below.mul(scale).toConst() as Float
+  const { top, base } = shaded.layers
+  // Clouds are about as wide as their layer is thick.
+  const width = footprintOf(context.field, sample).div(top.sub(base).max(1))
+  const resolved = width.oneMinus().clamp().toConst() as Float
+  const height = source.cosine.abs()
+  const unresolved = height.mul(fit.unresolvedDiameterHigh).add(fit.unresolvedDiameter)
   const lit = {
     depthToLight: depths.toLight.mul(scale).toConst() as Float,
     depthThrough,
-    depthAcross: depthThrough.mul(fit.diameterPerChord),
+    depthAcross: depthThrough.mul(mix(unresolved, fit.diameterPerChord, resolved)),
     depthToCamera,
     layered,
     cosLight: source.cosine,
     cosView,
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
-    verticalChord: [depthAbove, depthBelow] as const
+    verticalChord: [depthAbove, depthBelow] as const,
+    resolved: mix(fit.unresolvedChords, 1, resolved) as Float
   }
   const direct = cloudSource(light, lit)
   const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
@@ -70,7 +77,8 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     depthAbove,
     depthBelow,
     layered,
-    cosView
+    cosView,
+    resolved
   })
   return {
     direct: direct.mul(cast),
