@@ -4,7 +4,7 @@
  * and samples in each slice of a ray; no rays where each fragment marches.
  */
 export const qualities = {
-  low: { rows: 384, spacing: 10, groups: 2, samples: 2, inFog: 12, rays: 128, looks: 2 },
+  low: { rows: 384, spacing: 10, groups: 2, samples: 3, inFog: 12, rays: 128, looks: 2 },
   medium: { rows: 960, spacing: 6, groups: 3, samples: 3, inFog: 14, rays: 144, looks: 3 },
   high: { rows: 1024, spacing: 3, groups: 4, samples: 4, inFog: 16, rays: 144, looks: 4 },
   reference: { rows: 2048, spacing: 1, groups: 64, samples: 8, inFog: 512, rays: 0, looks: 0 }
