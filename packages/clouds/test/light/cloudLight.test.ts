@@ -180,6 +180,7 @@ describe('cloudAmbient', () => {
       })
     )
   })
+
   it('lights tops more than bases from the sky, thick clouds from above more than from below', () => {
     const share = (depthAbove: number, depthBelow: number, cosView: number): number =>
       cloudAmbient(table, { depthAbove, depthBelow, layered: 0, cosView }).sky
