@@ -3,28 +3,38 @@ import type { ExtinctionGrid } from './form/grid'
 import type { CloudFieldRequest } from './page/cloud-field'
 import { withPages } from './pages'
 
-/** Fields that the GPU draws, on regular grids: one page answers all requests. */
+/** Levels that the page draws at a time. */
+const LEVELS = 4
+
+/**
+ * Fields that the GPU draws, on regular grids: one page answers all requests.
+ *
+ * @param take - Takes each grid; no further one is drawn after it has returned true.
+ */
 export async function drawCloudFields(
   requests: readonly CloudFieldRequest[],
-  take: (grid: ExtinctionGrid, index: number) => void
+  take: (grid: ExtinctionGrid, index: number) => boolean | void
 ): Promise<void> {
   await withPages('welkinOpenCloudField', async open => {
+    const page = await open()
     for (const [index, request] of requests.entries()) {
-      const page = await open()
       const { nx, ny, nz, z0 } = await page.evaluate(
         asked => window.welkinOpenCloudField(asked),
         request
       )
       const data = new Float32Array(nx * ny * nz)
-      for (let level = 0; level < nz; level++) {
-        const text = await page.evaluate(n => window.welkinCloudFieldLevel(n), level)
-        const bytes = Uint8Array.from(Buffer.from(text, 'base64'))
-        data.set(new Float32Array(bytes.buffer), level * nx * ny)
+      for (let first = 0; first < nz; first += LEVELS) {
+        const text = await page.evaluate(n => window.welkinCloudFieldLevels(n), first)
+        const levels = new Float32Array(Uint8Array.from(Buffer.from(text, 'base64')).buffer)
+        for (let level = 0; level < Math.min(LEVELS, nz - first); level++) {
+          const start = (first + level) * nx * ny
+          for (let i = 0; i < nx * ny; i++) data[start + i] = levels[i * LEVELS + level]
+        }
       }
-      await page.evaluate(() => window.welkinCloseCloudField())
-      await page.close()
-      take({ nx, ny, nz, dx: request.cell, dz: request.cell, z0, data }, index)
+      const grid = { nx, ny, nz, dx: request.cell, dz: request.cell, z0, data }
+      if (take(grid, index) === true) break
     }
+    await page.evaluate(() => window.welkinCloseCloudField())
   })
 }
 

@@ -87,6 +87,10 @@ function commandLine(): string[] {
     const at = words.indexOf(option)
     if (at >= 0 && (words[at + 1] ?? '--').startsWith('--')) words.splice(at + 1, 0, '')
   }
+  // A negative number looks like an option.
+  for (let at = words.length - 1; at > 0; at--) {
+    if (/^-[\d.]/.test(words[at])) words.splice(at - 1, 2, `${words[at - 1]}=${words[at]}`)
+  }
   return words
 }
 

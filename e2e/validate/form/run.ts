@@ -4,7 +4,7 @@ import { drawCloudFields } from '../cloud-field'
 import { quantile } from '../score'
 import { formFigures, type FormFigures } from './figures'
 
-/** Places whose clouds are judged: apart, at several latitudes, and in pairs where there are neither few nor many. */
+/** Places whose clouds may be judged: apart, at several latitudes, and in pairs where there are neither few nor many. */
 const PLACES = [
   [139.77, 35.68],
   [-60, 14],
@@ -22,8 +22,9 @@ const PLACES = [
 const SIZE = 6000
 const CELL = 20
 
-/** Cover that a window must have to count. */
+/** Cover that a window must have to count, and how many such windows are judged. */
 const COVER = [0.1, 0.35] as const
+const WINDOWS = 5
 
 /** A figure's name, how it is read, and where a field that passes for a simulated one must lie. */
 const rows: [string, (figures: FormFigures) => number, number, number][] = [
@@ -66,19 +67,23 @@ export async function validateForm(
   backend: Backend,
   coverage?: number
 ): Promise<FormResult> {
-  const found: FormFigures[] = []
+  const covers: number[] = []
+  const judged: FormFigures[] = []
   const about = { backend, preset, size: SIZE, cell: CELL, coverage }
   const requests = PLACES.map(([longitude, latitude]) =>
     Object.assign({ longitude, latitude }, about)
   )
   await drawCloudFields(requests, grid => {
-    if (grid.data.some(value => value > 0)) found.push(formFigures(grid))
+    if (grid.data.every(value => value === 0)) return false
+    const figures = formFigures(grid)
+    covers.push(figures.cover)
+    if (figures.cover >= COVER[0] && figures.cover <= COVER[1]) judged.push(figures)
+    return judged.length === WINDOWS
   })
-  const judged = found.filter(({ cover }) => cover >= COVER[0] && cover <= COVER[1])
   if (judged.length === 0) {
-    const covers = found.map(({ cover }) => cover.toFixed(2)).join(', ')
+    const list = covers.map(cover => cover.toFixed(2)).join(', ')
     throw new Error(
-      `--form: no window of ${preset} has a cover from ${COVER.join(' to ')}, but ${covers}: give --coverage`
+      `--form: no window of ${preset} has a cover from ${COVER.join(' to ')}, but ${list}: give --coverage`
     )
   }
   return {
