@@ -148,7 +148,7 @@ class World {
     )
     const depth = this.#pass.getTextureNode('depth')
     const light = (this.#sun = new SunDirectionalLight(atmosphere, 200))
-    const shafts = (this.shafts = lightShafts(atmosphere, camera, light))
+    const shafts = (this.shafts = lightShafts(atmosphere, camera, light, { quality: 'low' }))
     const drawn = this.#pass.getTextureNode()
     const air = aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('mixed', 4)
@@ -163,7 +163,7 @@ class World {
     this.#clouds.time = 0
     shafts.add(cloudAirShadow(this.#clouds))
     this.#cloudEnvironment = cloudEnvironment(this.#clouds, { size: 16, quality: coarse })
-    this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 256 })
+    this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 64 })
     this.scene.environmentNode = this.#environment
     this.#addLights()
     this.#addThings(isMapped ? [] : this.pictures.slice(3))

@@ -48,7 +48,7 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   pitch: number
 }
 
-const STILL = { quality: STILL_QUALITY, frames: 6 }
+const STILL = { quality: STILL_QUALITY, frames: 4 }
 
 const qualityOf = ({ frame, quality }: CloudsArgs): CloudQuality | CloudQualityName =>
   frame ? STILL.quality : quality

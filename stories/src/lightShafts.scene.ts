@@ -48,7 +48,7 @@ export interface LightShaftsArgs extends RendererArgs {
 const TIME = 300
 
 /** Frames after which a still has settled. */
-const FRAMES = 5
+const FRAMES = 4
 
 /** Hills or a city about the camera, if a view has any, in a Y-up frame on the ground. */
 function landOf(

@@ -17,7 +17,7 @@ import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
 
 /** Frames after which a still has settled. */
-const FRAMES = 6
+const FRAMES = 4
 
 interface View {
   readonly label: string

@@ -52,7 +52,7 @@ export const VIEWS = {
 } as const satisfies Record<string, Place>
 
 /** Frames of a still, in which coarse marches converge. */
-const STILL_FRAMES = 6
+const STILL_FRAMES = 4
 
 /** One sky, whose left part is simulated and whose right part is a preset, under the same sun. */
 export async function createRealOrNot(

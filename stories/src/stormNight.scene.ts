@@ -9,7 +9,7 @@ import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
 
 /** Frames after which a still has settled. */
-const FRAMES = 8
+const FRAMES = 5
 
 /** Distance of the flash of a still [m]. */
 const DISTANCE = 17_500

@@ -16,7 +16,7 @@ export interface ValleyArgs extends RendererArgs, Omit<ValleyState, 'quality' | 
 }
 
 /** A still marches every pixel of the clouds in every frame, coarsely. */
-const STILL = { quality: STILL_QUALITY, frames: 3 }
+const STILL = { quality: STILL_QUALITY, frames: 2 }
 
 /** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100
