@@ -1,4 +1,4 @@
-import { float, int, smoothstep, vec4 } from 'three/tsl'
+import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
@@ -29,22 +29,29 @@ const LOW_LIGHT_STEPS = 2
 const FEWEST_STEPS = 2
 
 /**
- * Height at which the cloud above is probed, as a part of the way to the top. Higher: towers count as
- * shallow, too bright from the sky (*Storm*).
+ * Distances at which the cloud above and below is probed, as parts of the way to the layer's top and base, and their
+ * width, as a part of the layer's thickness: in isolated clouds. Narrower: probes meet holes and bumps
+ * that tell nothing of the cloud. Decks are probed above only, at `DECK_ABOVE`.
  */
-const ABOVE = 0.35
+const VERTICAL = 0.15
+const VERTICAL_WIDTH = 0.09
+const DECK_ABOVE = 0.35
+
+/**
+ * Mean extinction of an isolated cloud to its layer's top or base: parts of that near the place and of the probed one; and of a deck. From single
+ * clouds of a large-eddy simulation, as is the weight of the shadow map's depths, which grows with the light's height.
+ */
+const ISOLATED_MEAN = [0.03, 0.35] as const
+const DECK_MEAN = [0.175, 0.5] as const
+const DECK_BELOW = 0.7
+const MAPPED = 0.8
+const MAPPED_POWER = 3
 
 /**
  * Widest isolated clouds, over their layer's thickness: low light crosses no more of one where no shadow map is [–].
  * Greater: far clouds are dark at sunset (*World clouds*).
  */
 const WIDEST = 1.5
-
-/**
- * Mean extinction below a place of an isolated cloud, as a part of its own; twice as much in decks. Faces lean
- * over air: 0.35 is what single clouds of a large-eddy simulation have.
- */
-const BELOW = 0.35
 
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
@@ -76,31 +83,35 @@ export function localDepths(
     .max(lowness.mul(LOW_LIGHT_PROBED))
     .min(toTop)
     .toConst() as Float
-  /** Extinction at the sample, optical depth towards the light, extinction above. */
+  /** Extinction near the sample, optical depth towards the light, extinction above and below. */
   const found = vec4(0).toVar() as Vec4
+  const isolated = layered.oneMinus().toConst() as Float
+  const part = mix(VERTICAL, DECK_ABOVE, layered).toConst() as Float
+  // What is narrower than that is left out, as from afar.
+  const width = rise.add(fall).mul(isolated).mul(VERTICAL_WIDTH)
+  const afar = sample.distance.max(width.div(field.pixelAngle.max(1e-6))).toConst() as Float
   const asked = float(quality.lightSteps).add(lowness.mul(LOW_LIGHT_STEPS).ceil())
   // Steps shorter than a pixel see nothing more.
   const seen = probed.div(footprintOf(field, sample).max(1e-3)).ceil().max(FEWEST_STEPS)
   const count = asked.min(seen).toInt().toConst() as Int
-  // The density function is inlined once for both directions: shaders stay short.
-  loop('probe', count.add(int(1)), index => {
-    const isUpwards = index.equal(count).toConst()
+  // The density function is inlined once for all directions: shaders stay short.
+  loop('probe', count.add(int(2)), index => {
+    const isAside = index.greaterThanEqual(count).toConst()
+    const isAbove = index.equal(count).toConst()
     // Steps grow from the sample on: (i/n)² of the way.
     const from = float(index).div(float(count)).toConst() as Float
     const to = float(index).add(1).div(float(count)).toConst() as Float
     const [start, end] = [from.mul(from).mul(probed), to.mul(to).mul(probed)]
-    const middle = isUpwards.select(rise.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
-    const direction = isUpwards.select(sample.up, toLight) as Vec3
-    const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
+    const height = isAbove.select(rise, fall.negate()).mul(part)
+    const step = toLight.mul(start.add(end).mul(0.5))
+    const offset = sample.offset.add(isAside.select(sample.up.mul(height), step)).toConst() as Vec3
     const { altitude, up } = field.view.localCoordinates(offset)
-    const { distance } = sample
+    const distance = isAside.select(afar, sample.distance).toConst() as Float
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
-    found.addAssign(
-      isUpwards.select(
-        vec4(0, 0, extinction, 0),
-        vec4(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
-      )
-    )
+    const isFirst = index.equal(int(0))
+    const along = vec4(isFirst.select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+    const aside = isAbove.select(vec4(0, 0, extinction, 0), vec4(0, 0, 0, extinction))
+    found.addAssign(isAside.select(aside, along))
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
   const far = sampleShadows(shadows, beyond)
@@ -119,7 +130,22 @@ export function localDepths(
     .add(depthToLight.add(behind).mul(unmapped))
     .max(depthToLight)
     .toConst() as Float
-  const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))
-  const below = fall.mul(found.x).mul(layered.add(1).mul(BELOW))
-  return { toLight: depthToLight, through, above, below }
+  const near = found.x.mul(mix(ISOLATED_MEAN[0], DECK_MEAN[0], layered)).toConst()
+  const probedPart = mix(ISOLATED_MEAN[1], DECK_MEAN[1], layered)
+  const guessedAbove = rise.mul(found.z.mul(probedPart).add(near))
+  const isolatedBelow = found.w.mul(ISOLATED_MEAN[1]).add(near)
+  const guessedBelow = fall.mul(mix(isolatedBelow, found.x.mul(DECK_BELOW), layered))
+  // The shadow map knows the whole depths; the higher the light, the more are they the vertical's.
+  const known = cosLight.abs().pow(MAPPED_POWER).mul(MAPPED).mul(unmapped.oneMinus()).mul(isolated)
+  const lit = depthToLight.mul(cosLight.abs()).toConst() as Float
+  const shaded = through.sub(depthToLight).mul(cosLight.abs()).toConst() as Float
+  const isHigh = cosLight.greaterThan(0)
+  const combined = (guess: Float, mapped: Float): Float =>
+    mapped.mul(known).add(guess).div(known.add(1)).toConst()
+  return {
+    toLight: depthToLight,
+    through,
+    above: combined(guessedAbove, isHigh.select(lit, shaded)),
+    below: combined(guessedBelow, isHigh.select(shaded, lit))
+  }
 }
