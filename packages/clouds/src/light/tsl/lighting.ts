@@ -5,6 +5,7 @@ import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
+import type { Chord } from './lateralLeak'
 import { localDepths } from './localDepths'
 import { isNight, nightShare } from './night'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
@@ -68,7 +69,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
-    verticalChord: [depthAbove, depthBelow] as const,
+    verticalChord: [depths.chord[0].mul(scale), depths.chord[1].mul(scale)] as Chord,
     resolved: mix(fit.unresolvedChords, 1, resolved) as Float
   }
   const direct = cloudSource(light, lit)

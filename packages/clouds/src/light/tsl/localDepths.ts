@@ -3,6 +3,7 @@ import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
+import type { Chord } from './lateralLeak'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
 
 /** Cosine of the lowest light whose rays grow longer with its height. */
@@ -59,8 +60,11 @@ export interface LocalDepths {
   toLight: Float
   /** Optical depth of all clouds on the ray of light through the sample. */
   through: Float
+  /** Depths to the top and to the base, which share the light of sky and ground. */
   above: Float
   below: Float
+  /** Chord of the cloud along the vertical: deeper in isolated clouds, as `lateralLeakFit` knows it. */
+  chord: Chord
 }
 
 /**
@@ -130,22 +134,23 @@ export function localDepths(
     .add(depthToLight.add(behind).mul(unmapped))
     .max(depthToLight)
     .toConst() as Float
-  const near = found.x.mul(mix(ISOLATED_MEAN[0], DECK_MEAN[0], layered)).toConst()
-  const probedPart = mix(ISOLATED_MEAN[1], DECK_MEAN[1], layered)
-  const guessedAbove = rise.mul(found.z.mul(probedPart).add(near))
-  const isolatedBelow = found.w.mul(ISOLATED_MEAN[1]).add(near)
-  const guessedBelow = fall.mul(mix(isolatedBelow, found.x.mul(DECK_BELOW), layered))
+  const deckAbove = rise.mul(found.x.mul(DECK_MEAN[0]).add(found.z.mul(DECK_MEAN[1]))).toConst()
+  const deckBelow = fall.mul(found.x).mul(DECK_BELOW).toConst() as Float
+  const [near, probedPart] = ISOLATED_MEAN
+  const ownAbove = rise.mul(found.x.mul(near).add(found.z.mul(probedPart)))
+  const ownBelow = fall.mul(found.x.mul(near).add(found.w.mul(probedPart)))
   // The shadow map knows the whole depths; the higher the light, the more are they the vertical's.
-  const known = cosLight.abs().pow(MAPPED_POWER).mul(MAPPED).mul(unmapped.oneMinus()).mul(isolated)
+  const known = cosLight.abs().pow(MAPPED_POWER).mul(MAPPED).mul(unmapped.oneMinus()).toConst()
   const lit = depthToLight.mul(cosLight.abs()).toConst() as Float
   const shaded = through.sub(depthToLight).mul(cosLight.abs()).toConst() as Float
   const isHigh = cosLight.greaterThan(0)
-  const combined = (guess: Float, mapped: Float): Float =>
-    mapped.mul(known).add(guess).div(known.add(1)).toConst()
+  const combined = (deck: Float, own: Float, mapped: Float): Float =>
+    mix(mapped.mul(known).add(own).div(known.add(1)), deck, layered).toConst()
   return {
     toLight: depthToLight,
     through,
-    above: combined(guessedAbove, isHigh.select(lit, shaded)),
-    below: combined(guessedBelow, isHigh.select(shaded, lit))
+    above: combined(deckAbove, ownAbove, isHigh.select(lit, shaded)),
+    below: combined(deckBelow, ownBelow, isHigh.select(shaded, lit)),
+    chord: [deckAbove, deckBelow.mul(layered.add(1).div(2)).toConst() as Float]
   }
 }
