@@ -111,7 +111,12 @@ export function cloudAmbientShares(
   const ground = at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
   const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
   const slope = high.add(low).mul(-fit.decay).exp().mul(fit.thinSlope).add(fit.slope)
-  const logit = low.add(fit.face).div(high.add(fit.face)).log().mul(fit.power).add(slope.mul(cosView))
+  const logit = low
+    .add(fit.face)
+    .div(high.add(fit.face))
+    .log()
+    .mul(fit.power)
+    .add(slope.mul(cosView))
   const share = logit.negate().exp().add(1).reciprocal()
   const both = sky.add(ground).toConst()
   const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(resolved)).toConst()

@@ -65,6 +65,8 @@ export interface LocalDepths {
   below: Float
   /** Chord of the cloud along the vertical: deeper in isolated clouds, as `lateralLeakFit` knows it. */
   chord: Chord
+  /** 1 where clouds are resolved one by one, 0 where not. */
+  resolved: Float
 }
 
 /**
@@ -90,7 +92,13 @@ export function localDepths(
   /** Extinction near the sample, optical depth towards the light, extinction above and below. */
   const found = vec4(0).toVar() as Vec4
   const isolated = layered.oneMinus().toConst() as Float
-  const part = mix(VERTICAL, DECK_ABOVE, layered).toConst() as Float
+  // Clouds are about as wide as their layer is thick.
+  const resolved = footprintOf(field, sample)
+    .div(top.sub(base).max(1))
+    .oneMinus()
+    .clamp()
+    .toConst() as Float
+  const part = mix(DECK_ABOVE, VERTICAL, isolated.mul(resolved)).toConst() as Float
   // What is narrower than that is left out, as from afar.
   const width = rise.add(fall).mul(isolated).mul(VERTICAL_WIDTH)
   const afar = sample.distance.max(width.div(field.pixelAngle.max(1e-6))).toConst() as Float
@@ -147,6 +155,7 @@ export function localDepths(
   const combined = (deck: Float, own: Float, mapped: Float): Float =>
     mix(mapped.mul(known).add(own).div(known.add(1)), deck, layered).toConst()
   return {
+    resolved,
     toLight: depthToLight,
     through,
     above: combined(deckAbove, ownAbove, isHigh.select(lit, shaded)),
