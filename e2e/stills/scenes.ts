@@ -48,7 +48,7 @@ export interface Still {
   /** Exposure over what is metered [EV]. */
   compensation?: number
   /** Hills and trees about the camera, the same under snow, towers and streets, or the bare planet. */
-  land: 'hills' | 'snow' | 'city' | 'planet'
+  land: 'hills' | 'snow' | 'ridge' | 'city' | 'planet'
 }
 
 /** A still of the story *Valley, all day*: a view, and what differs from how the story opens. */

@@ -28,6 +28,9 @@ const SIDE_TWIGS = 32
 const SOLID = [0.5, 0.34] as const
 const FAR = 160
 
+/** Blue of vertices in the shade of a crown over their green, at most. */
+const SHADED = 0.12
+
 type Bytes = Uint8Array
 
 /** Paints an ellipse: brightness, and full coverage. */
@@ -101,15 +104,15 @@ function createLeafTexture(): DataTexture {
 }
 
 /**
- * Gives a material of trees their leaves and needles, by texture coordinates: bark, of which vertices are redder than green, has
- * none. Leaves are lit by the normals of their vertices from both sides.
+ * Gives a material of trees their leaves and needles, by texture coordinates: bark, of which vertices are redder than green, and
+ * leaves in the shade, which are less blue than {@link SHADED}, have none. Leaves are lit by the normals of their vertices from both sides.
  */
 export function setFoliage(material: NodeMaterial): void {
   const picture = createLeafTexture()
   material.addEventListener('dispose', () => picture.dispose())
   const leaf = texture(picture, uv()).toConst()
   const color = attribute<'vec3'>('color', 'vec3')
-  const isBark = color.r.greaterThan(color.g)
+  const isBark = color.r.greaterThan(color.g).or(color.b.lessThan(color.g.mul(SHADED)))
   const distance = positionView.z.negate()
   const [near, far] = SOLID
   const solid = smoothstep(FAR / 8, FAR, distance)

@@ -18,8 +18,8 @@ const NEEDLES = [0.03, 0.048, 0.02] as const
 const LEAVES = [0.054, 0.088, 0.023] as const
 const BARK = [0.06, 0.045, 0.032] as const
 
-/** Twigs in the shade of a crown: redder than green, as bark is, so that they have no gaps. */
-const SHADE = [0.0125, 0.0124, 0.005] as const
+/** Leaves in the shade of a crown: with next to no blue, by which they have no gaps. */
+const SHADE = [0.021, 0.034, 0.002] as const
 
 /** Golden angle, by which branches turn about a trunk [rad]. */
 const GOLDEN = 2.4

@@ -65,7 +65,7 @@ const PLASTERS = [
 
 function plasterOf(random: () => number): [number, number, number] {
   const [hue, saturation, lightness] = PLASTERS[Math.floor(PLASTERS.length * random())]
-  return [hue, saturation, lightness * (0.78 + 0.2 * random())]
+  return [hue, saturation, lightness * (0.7 + 0.2 * random())]
 }
 
 /** Houses in a spiral about a church. */
