@@ -28,13 +28,13 @@ import { VertexLitMaterial } from './VertexLitMaterial'
 /** Radius of the planet, away from which the land bends [m]. */
 export const RADIUS = 6_371_000
 
-/** Colours of fields, linear sRGB: hay, ripe and young corn, clover, earth. */
+/** Colours of fields, linear sRGB: hay, young corn, earth, clover, ripe corn. */
 const CROPS = [
   [0.135, 0.155, 0.046],
-  [0.25, 0.195, 0.07],
   [0.06, 0.122, 0.027],
+  [0.12, 0.096, 0.06],
   [0.105, 0.14, 0.04],
-  [0.12, 0.096, 0.06]
+  [0.25, 0.192, 0.066]
 ] as const
 
 /** Width of a strip of fields [m]. */
@@ -101,6 +101,9 @@ const CROWNS = 5
 const CRAGS = 7
 const CRAGGED = 14_000
 
+/** Height of two beds of rock, a hard and a soft one [m]. */
+const BED = 36
+
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
 
@@ -157,7 +160,7 @@ export function groundMaterial(
     })
     return sum
   })().toVar()
-  const clumps = noise(71).mul(upTo(2500)).toVar()
+  const clumps = noise(71).mul(upTo(3500)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
@@ -189,7 +192,21 @@ export function groundMaterial(
     return ground
   })()
   const trees = mix(vec3(0.01, 0.019, 0.008), vec3(0.036, 0.052, 0.019), fine.add(0.45).clamp())
-  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
+  // Beds of rock, a little uneven.
+  const beds = sin(
+    height
+      .mul((2 * Math.PI) / BED)
+      .add(patches.mul(2.5))
+      .add(broad.mul(5))
+  )
+    .mul(
+      sin(height.mul((2 * Math.PI) / (3.3 * BED)).add(broad.mul(9)))
+        .mul(0.5)
+        .add(0.6)
+    )
+    .mul(upTo(12_000))
+  const face = fine.mul(0.8).add(beds.mul(0.28)).add(0.5).clamp()
+  const rock = mix(vec3(0.105, 0.1, 0.092), vec3(0.265, 0.25, 0.225), face)
   const alpine = mix(
     vec3(0.095, 0.1, 0.045),
     rock,
