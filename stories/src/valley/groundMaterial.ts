@@ -1,6 +1,7 @@
 import type { SurfaceWater } from '@welkin/atmosphere'
 import {
   attribute,
+  cameraPosition,
   dFdx,
   dFdy,
   float,
@@ -50,6 +51,9 @@ export const FARMED = 40
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
 
+/** Share of the snow that one does not see in woods. */
+const WOODED_SNOW = 0.55
+
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
 
@@ -98,7 +102,7 @@ const SHADED = 140
 
 /** Height of crowns and rocks over the noise that they follow [m], and distance within which they shade themselves [m]. */
 const CROWNS = 5
-const CRAGS = 7
+const CRAGS = 5
 const CRAGGED = 14_000
 
 /** Height of two beds of rock, a hard and a soft one [m]. */
@@ -175,9 +179,16 @@ export function groundMaterial(
   const rocky = smoothstep(0.27, 0.42, slope).toVar()
   const crags = clumps.mul(0.35).add(patches).mul(CRAGS).mul(rocky)
   const crowns = clumps.mul(0.6).add(patches).mul(CROWNS).mul(forest)
+  // Seen along the ground, differences between pixels are those of noise.
+  const facing = smoothstep(
+    0.1,
+    0.45,
+    broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
+  )
   const relieved = crags
     .add(crowns)
     .mul(upTo(CRAGGED))
+    .mul(facing)
     .add(grain.mul(GRASS).mul(upTo(SHADED)))
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
@@ -228,7 +239,9 @@ export function groundMaterial(
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
-  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
+  // Crowns keep it off the ground, and hide it.
+  const open = forest.mul(WOODED_SNOW).oneMinus()
+  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)).mul(open))
   material.colorNode = color
   material.emissiveNode = lamplight
   return material
