@@ -47,6 +47,7 @@ import { createCity, type City } from '../../stories/src/globe/city'
 import { cloudReference, REFERENCE_SKIPPING } from '../bench/clouds'
 import { Landscape } from '../../stories/src/hills/Landscape'
 import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
+import { Ridge } from '../../stories/src/shafts/Ridge'
 import type { Still } from './scenes'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
 import { readPicture } from './readPicture'
@@ -129,7 +130,7 @@ export class StillView {
   readonly #pipeline: RenderPipeline
   readonly #atmosphere: Atmosphere
   readonly #sun: SunDirectionalLight
-  readonly #landscape: Landscape | undefined
+  readonly #landscape: Landscape | Ridge | undefined
   readonly #city: City | undefined
   readonly #shafts: LightShafts | undefined
   readonly #clouds: CloudsNode | undefined
@@ -166,7 +167,8 @@ export class StillView {
       const isMars = still.planet === 'mars'
       const soil = isMars ? redDust : still.land === 'snow' ? snow : meadow
       const radius = atmosphere.parameters.bottomRadius
-      this.#landscape = new Landscape(radius, soil, !isMars)
+      this.#landscape =
+        still.land === 'ridge' ? new Ridge(radius) : new Landscape(radius, soil, !isMars)
       scene.add(this.#landscape)
     }
 

@@ -48,7 +48,7 @@ export interface Still {
   /** Exposure over what is metered [EV]. */
   compensation?: number
   /** Hills and trees about the camera, the same under snow, towers and streets, or the bare planet. */
-  land: 'hills' | 'snow' | 'city' | 'planet'
+  land: 'hills' | 'snow' | 'ridge' | 'city' | 'planet'
 }
 
 /** A still of the story *Valley, all day*: a view, and what differs from how the story opens. */
@@ -158,7 +158,7 @@ const valleys: ValleyStill[] = [
   {
     name: 'valley-evening',
     about: 'low sun among broken clouds',
-    valley: { view: 'shore', hour: 19.2, weather: 'broken' }
+    valley: { view: 'shore', hour: 18.7, weather: 'broken' }
   },
   {
     name: 'valley-night',

@@ -27,6 +27,7 @@ import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { castLandShadow, LIGHT_DISTANCE } from './shafts/landShadow'
+import { Ridge } from './shafts/Ridge'
 import { shaftViews, type ShaftView } from './shafts/views'
 import { storyHandle } from './storyHandle'
 
@@ -50,14 +51,15 @@ const TIME = 300
 /** Frames after which a still has settled. */
 const FRAMES = 4
 
-/** Hills or a city about the camera, if a view has any, in a Y-up frame on the ground. */
+/** Hills, a ridge or a city about the camera, if a view has any, in a Y-up frame on the ground. */
 function landOf(
   { land }: ShaftView,
   { parameters }: Atmosphere
 ): { object: Object3D; dispose: () => void } | undefined {
   if (land === 'planet') return undefined
-  if (land === 'hills') {
-    const object = new Landscape(parameters.bottomRadius, meadow, true)
+  if (land === 'hills' || land === 'ridge') {
+    const radius = parameters.bottomRadius
+    const object = land === 'ridge' ? new Ridge(radius) : new Landscape(radius, meadow, true)
     return { object, dispose: () => object.dispose() }
   }
   const city = createCity(createNoiseTexture())

@@ -54,7 +54,7 @@ function swell(x: number, z: number): number {
   return 13 * fade(part) * (noise - 0.55)
 }
 
-/** Quads that a period of the noise needs at least. Fewer: crests are teeth, which comb the light (*Ridge at sunrise*). */
+/** Quads that a period of the noise needs at least. Fewer: crests are teeth, which comb light shafts of a low sun. */
 const PERIOD_QUADS = 3.5
 
 /** Distance of grid lines from the middle, for lines of even numbers in [−1, 1] [m]. */

@@ -3,20 +3,24 @@ import type { MoonDirectionalLight, SunDirectionalLight } from '@welkin/atmosphe
 /** Distance of a light from its target: its shadows begin there [m]. */
 export const LIGHT_DISTANCE = 20_000
 
-/** Half widths of the shadow maps of hills, and of a city [m]. */
+/** Half widths of the shadow maps of hills, of a city and of a ridge [m]. */
 const SHADOW_EXTENT = 6000
-const CITY_SHADOW_EXTENT = 1500
+const EXTENTS: Readonly<Record<string, number>> = { city: 1500, ridge: 1200 }
+
+/** Bias along normals over that width: of a ridge's trees less, which are thin. */
+const BIAS = 1 / 300
+const RIDGE_BIAS = 1 / 2400
 
 /** Gives a light shadows of the land. @returns The light. */
 export function castLandShadow<L extends SunDirectionalLight | MoonDirectionalLight>(
   light: L,
   land: string | undefined
 ): L {
-  const extent = land === 'city' ? CITY_SHADOW_EXTENT : SHADOW_EXTENT
+  const extent = EXTENTS[land ?? ''] ?? SHADOW_EXTENT
   light.castShadow = true
   light.distance = LIGHT_DISTANCE
   light.shadow.mapSize.setScalar(4096)
-  light.shadow.normalBias = extent / 300
+  light.shadow.normalBias = extent * (land === 'ridge' ? RIDGE_BIAS : BIAS)
   const { camera } = light.shadow
   camera.left = camera.bottom = -extent
   camera.right = camera.top = extent

@@ -19,8 +19,8 @@ export interface ShaftView {
   readonly isMoonlit?: true
   /** Azimuth, clockwise from north, and pitch of the camera [°]. */
   readonly view: { readonly azimuth: number; readonly pitch: number }
-  /** Hills and trees, towers and streets, or the bare planet. */
-  readonly land: 'hills' | 'city' | 'planet'
+  /** Hills and trees, a ridge with spruces before which one stands, towers and streets, or the bare planet. */
+  readonly land: 'hills' | 'ridge' | 'city' | 'planet'
 }
 
 /** Views of the story *Light shafts*, which the stills of the same names draw at full size. */
@@ -40,13 +40,13 @@ export const shaftViews = {
   ridge: {
     label: 'Ridge at sunrise',
     about:
-      'the sun has risen over a ridge, 9° up: its rays and the shadow of the ridge fan out from there in the valley fog',
+      'the sun between spruces on a ridge, 8° up: rays between their shadows fan out from there in the valley fog',
     fog: { density: 0.004, falloff: 70 },
     turbidity: 3,
-    light: { elevation: 9, azimuth: 150 },
-    view: { azimuth: 164, pitch: -3 },
-    altitude: 420,
-    land: 'hills'
+    light: { elevation: 8.6, azimuth: 152 },
+    view: { azimuth: 161, pitch: 6.5 },
+    altitude: 12,
+    land: 'ridge'
   },
   towers: {
     label: 'Towers in haze',

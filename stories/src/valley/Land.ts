@@ -59,10 +59,11 @@ export class Land extends Group {
     const lamplight = this.#lamps.reflected()
     this.#ground = createGround(QUADS[quality], this.#falling.water, this.#relief, lamplight)
     const trees = TREES[quality]
+    const { snowCoverNode } = this.#falling.water
     this.#trees = [
-      createForest(trees),
-      createGrove(Math.round(trees / 16)),
-      createBirches(Math.round(trees / 48))
+      createForest(trees, snowCoverNode),
+      createGrove(Math.round(trees / 16), snowCoverNode),
+      createBirches(Math.round(trees / 48), snowCoverNode)
     ]
     this.add(this.#ground, ...this.#trees)
     this.showTrees(this.#hasTrees)

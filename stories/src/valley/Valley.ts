@@ -99,12 +99,17 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #falling = new ValleyPrecipitation()
   readonly #style = airStyle()
-  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 12, density: 0 })
+  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 20, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
   readonly #land = new Land(this.#falling, this.#lamps)
-  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps)
+  readonly #village = createVillage(
+    groundHeight,
+    VILLAGE,
+    this.#lamps,
+    this.#falling.water.snowCoverNode
+  )
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node

@@ -11,11 +11,13 @@ import {
   builtinAOContext,
   float,
   Fn,
+  If,
   int,
   mrt,
   output,
   rtt,
   screenSize,
+  uv,
   vec2,
   vec4,
   velocity
@@ -52,7 +54,10 @@ const GLOW = 0.02
 /** Pixels along a side of motion blur's velocities over those of the picture. */
 const COARSE = 0.25
 
-/** Samples of motion blur where nothing moves, and where much does: one for two pixels in between. */
+/** Motion from which a picture is blurred [pixels]. */
+const MOVING = 0.7
+
+/** Samples of motion blur where little moves, and where much does: one for two pixels in between. */
 const FEWEST_SAMPLES = 3
 const MOST_SAMPLES = 12
 
@@ -159,12 +164,15 @@ export class ValleyFinish {
   #blurred(sharp: PictureNode, motion: Node): Node {
     return Fn(() => {
       const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
-      const pixels = way.mul(screenSize).length()
+      const pixels = way.mul(screenSize).length().toConst()
       const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
       const samples = float(count)
-      // Three divides the sum of one more.
-      const light = motionBlur(sharp, way, count)
-      return light.mul(samples.div(samples.add(1)))
+      const light = (sharp.sample(uv()) as Node<'vec4'>).toVar()
+      If(pixels.greaterThan(MOVING), () => {
+        // Three divides the sum of one more.
+        light.assign(motionBlur(sharp, way, count).mul(samples.div(samples.add(1))))
+      })
+      return light
     })()
   }
 

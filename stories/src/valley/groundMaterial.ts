@@ -1,6 +1,7 @@
 import type { SurfaceWater } from '@welkin/atmosphere'
 import {
   attribute,
+  cameraPosition,
   dFdx,
   dFdy,
   float,
@@ -28,12 +29,13 @@ import { VertexLitMaterial } from './VertexLitMaterial'
 /** Radius of the planet, away from which the land bends [m]. */
 export const RADIUS = 6_371_000
 
-/** Colours of fields, linear sRGB: hay, ripe and young corn, earth. */
+/** Colours of fields, linear sRGB: hay, young corn, earth, clover, ripe corn. */
 const CROPS = [
-  [0.145, 0.145, 0.053],
-  [0.185, 0.165, 0.07],
-  [0.075, 0.115, 0.032],
-  [0.13, 0.115, 0.068]
+  [0.135, 0.155, 0.046],
+  [0.06, 0.122, 0.027],
+  [0.12, 0.096, 0.06],
+  [0.105, 0.14, 0.04],
+  [0.25, 0.192, 0.066]
 ] as const
 
 /** Width of a strip of fields [m]. */
@@ -48,6 +50,9 @@ export const FARMED = 40
 
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
+
+/** Share of the snow that one does not see in woods. */
+const WOODED_SNOW = 0.55
 
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
@@ -64,7 +69,7 @@ function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
   const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
   let color = grass
   for (const [i, crop] of CROPS.entries()) {
-    color = chance.greaterThan(0.4 + 0.15 * i).select(vec3(...crop), color)
+    color = chance.greaterThan(0.4 + 0.13 * i).select(vec3(...crop), color)
   }
   // Furrows along the strips, until they are as fine as pixels; wheels leave their tracks in corn.
   const furrows = sin(across.mul((2 * Math.PI * STRIP) / FURROW)).mul(smoothstep(170, 40, distance))
@@ -94,6 +99,17 @@ const NEAR = 200
 /** Height of grass and stones over the noise that they follow [m], and distance within which they shade themselves [m]. */
 const GRASS = 0.1
 const SHADED = 140
+
+/** Height of crowns and rocks over the noise that they follow [m], and distance within which they shade themselves [m]. */
+const CROWNS = 5
+const CRAGS = 5
+const CRAGGED = 14_000
+
+/** Height of two beds of rock, a hard and a soft one [m]. */
+const BED = 36
+
+/** Width of the edge of a wood, in its share of the ground. */
+const EDGE = 0.16
 
 /** Normal of ground with grain on it, by differences between pixels (Mikkelsen 2010, "Bump mapping unparametrized surfaces"). */
 function grainNormal(normal: Node<'vec3'>, height: Node<'float'>): Node<'vec3'> {
@@ -148,18 +164,34 @@ export function groundMaterial(
     })
     return sum
   })().toVar()
-  const clumps = noise(71).mul(upTo(2500)).toVar()
+  const clumps = noise(71).mul(upTo(3500)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
   const broadNormal = relief.normal(normalWorldGeometry).toConst()
-  const normal = grainNormal(broadNormal, grain.mul(GRASS).mul(upTo(SHADED))).toVar()
-  material.normalNode = transformNormalToView(normal)
   const slope = broadNormal.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
-  const [forest, field] = [
-    attribute<'vec2'>('cover', 'vec2').x,
-    attribute<'vec2'>('cover', 'vec2').y
-  ]
+  const cover = attribute<'vec2'>('cover', 'vec2')
+  const field = cover.y
+  // Woods have edges: between the grid's vertices noise tells where they are.
+  const uneven = patches.mul(0.42).add(clumps.mul(0.12)).add(broad.mul(0.1))
+  const wooded = cover.x.add(uneven.mul(smoothstep(0, 0.25, cover.x)))
+  const forest = smoothstep(0.42 - EDGE, 0.42 + EDGE, wooded).toVar()
+  const rocky = smoothstep(0.27, 0.42, slope).toVar()
+  const crags = clumps.mul(0.35).add(patches).mul(CRAGS).mul(rocky)
+  const crowns = clumps.mul(0.6).add(patches).mul(CROWNS).mul(forest)
+  // Seen along the ground, differences between pixels are those of noise.
+  const facing = smoothstep(
+    0.1,
+    0.45,
+    broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
+  )
+  const relieved = crags
+    .add(crowns)
+    .mul(upTo(CRAGGED))
+    .mul(facing)
+    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+  const normal = grainNormal(broadNormal, relieved).toVar()
+  material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
   const meadow = mix(vec3(0.05, 0.09, 0.02), vec3(0.14, 0.135, 0.05), dry).toVar()
   const farmed = Fn(() => {
@@ -170,8 +202,22 @@ export function groundMaterial(
     })
     return ground
   })()
-  const trees = mix(vec3(0.012, 0.022, 0.009), vec3(0.026, 0.04, 0.016), fine.add(0.5).clamp())
-  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
+  const trees = mix(vec3(0.01, 0.019, 0.008), vec3(0.036, 0.052, 0.019), fine.add(0.45).clamp())
+  // Beds of rock, a little uneven.
+  const beds = sin(
+    height
+      .mul((2 * Math.PI) / BED)
+      .add(patches.mul(2.5))
+      .add(broad.mul(5))
+  )
+    .mul(
+      sin(height.mul((2 * Math.PI) / (3.3 * BED)).add(broad.mul(9)))
+        .mul(0.5)
+        .add(0.6)
+    )
+    .mul(upTo(12_000))
+  const face = fine.mul(0.8).add(beds.mul(0.28)).add(0.5).clamp()
+  const rock = mix(vec3(0.105, 0.1, 0.092), vec3(0.265, 0.25, 0.225), face)
   const alpine = mix(
     vec3(0.095, 0.1, 0.045),
     rock,
@@ -187,13 +233,15 @@ export function groundMaterial(
   let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)
-  color = mix(color.mul(bright), rock.mul(bright), smoothstep(0.27, 0.42, slope))
+  color = mix(color.mul(bright), rock.mul(bright), rocky)
   // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
   color = color.div(mix(vec3(1), color.oneMinus().mul(1.777).add(color), wetnessNode))
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
-  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
+  // Crowns keep it off the ground, and hide it.
+  const open = forest.mul(WOODED_SNOW).oneMinus()
+  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)).mul(open))
   material.colorNode = color
   material.emissiveNode = lamplight
   return material

@@ -18,8 +18,8 @@ const NEEDLES = [0.03, 0.048, 0.02] as const
 const LEAVES = [0.054, 0.088, 0.023] as const
 const BARK = [0.06, 0.045, 0.032] as const
 
-/** Twigs in the shade of a crown: redder than green, as bark is, so that they have no gaps. */
-const SHADE = [0.0125, 0.0124, 0.005] as const
+/** Leaves in the shade of a crown: with next to no blue, by which they have no gaps. */
+const SHADE = [0.021, 0.034, 0.002] as const
 
 /** Golden angle, by which branches turn about a trunk [rad]. */
 const GOLDEN = 2.4
@@ -39,6 +39,23 @@ function painted(geometry: BufferGeometry, [r, g, b]: Color, shade = 1): BufferG
     return [r * brightness, g * brightness, b * brightness]
   }).flat()
   return geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
+}
+
+/** A closed or open body without two vertices at a place, lit as round about its axis; without texture coordinates. @param size - Its radius. */
+function mergedCorners(body: BufferGeometry, size: number): BufferGeometry {
+  body.deleteAttribute('uv')
+  body.deleteAttribute('normal')
+  const merged = mergeVertices(body)
+  const { position } = merged.attributes
+  const [normals, normal] = [new Float32Array(3 * position.count), new Vector3()]
+  for (let i = 0; i < position.count; i++) {
+    normal
+      .fromBufferAttribute(position, i)
+      .setY(0.35 * size)
+      .normalize()
+      .toArray(normals, 3 * i)
+  }
+  return merged.setAttribute('normal', new Float32BufferAttribute(normals, 3))
 }
 
 /** A ball of few faces, lit as round. */
@@ -135,7 +152,14 @@ export function spruce(tiers: number, sides: number): BufferGeometry {
     cone.translate(0, 0.9 + 0.9 * height + (i * (8.2 - height)) / tiers, 0)
     return painted(cone.rotateY(i), NEEDLES, 0.55)
   })
-  return tiers === 1 ? cones[0] : mergeGeometries(cones)
+  return mergeGeometries(cones)
+}
+
+/** A spruce of the distance, 10 m high: a cone of as few vertices as there are corners. @param sides - Its sides. */
+export function distantSpruce(sides: number): BufferGeometry {
+  const height = 9 / 1.6
+  const cone = mergedCorners(new ConeGeometry(2, 1.8 * height, sides, 1, true), 2)
+  return painted(cone.translate(0, 0.9 + 0.9 * height, 0), NEEDLES, 0.55)
 }
 
 /** Shape of the crown of a broad-leaved tree. */
