@@ -25,7 +25,7 @@ export const VIEWS = {
   },
   shore: {
     label: 'Shore, 30 m',
-    longitude: 1.32,
+    longitude: 2.1411,
     latitude: 46.19,
     height: 30,
     heading: 350,
@@ -33,8 +33,8 @@ export const VIEWS = {
   },
   summit: {
     label: 'Summit, 2 m',
-    longitude: 0.438,
-    latitude: 47.41,
+    longitude: 0.428,
+    latitude: 47.372,
     height: 2,
     heading: 200,
     pitch: -5

@@ -8,7 +8,10 @@ const SPREAD = 0.12
 const MOST_SPREAD = 450
 
 /** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
-const DRY_WOODS = 0.9
+const DRY_WOODS = 1.6
+
+/** Heights of stones above which they stand in grass: a fiftieth of the ground, more where patches are bare [–]. */
+const STONES = { from: 0.62, to: 0.72 }
 
 /** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
 const PATCH_DEVIATION = 0.35
@@ -132,7 +135,9 @@ export function groundRules(
     spread.add(50).negate(),
     spread.add(450),
     overTrees.add(relief.mul(260))
-  ).toConst('bareness')
+  )
+    .max(smoothstep(STONES.from, STONES.to, boulder.add(patch.mul(0.15))))
+    .toConst('bareness')
   // A pixel as large as a beach is mostly of what lies behind it.
   const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief).add(spread)).toConst(
     'inland'

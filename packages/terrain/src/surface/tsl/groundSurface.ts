@@ -10,6 +10,9 @@ import {
   type GroundPlace
 } from './groundRules'
 
+/** Dry grass per climate: steppe is straw, wet country green. Less: land from orbit is of one colour (*Terrain*). */
+const DRY_GRASS = 1.5
+
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
 
@@ -20,9 +23,9 @@ const SCREE = [0.238, 0.228, 0.21]
 const SAND = [0.4, 0.32, 0.215]
 const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
-const GRASS = [0.064, 0.086, 0.03]
+const GRASS = [0.058, 0.096, 0.027]
 const SOIL = [0.052, 0.04, 0.027]
-const STRAW = [0.2, 0.172, 0.078]
+const STRAW = [0.235, 0.195, 0.092]
 const HEATH = [0.062, 0.05, 0.031]
 const FOREST = [0.017, 0.028, 0.012]
 const BROADLEAF = [0.033, 0.045, 0.015]
@@ -83,16 +86,17 @@ export function groundSurface(
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
   const spots = boulder.mul(0.8).add(tuft.mul(0.5)).add(brush.mul(0.9)).toConst('spots')
-  const straw = smoothstep(-0.45, 0.7, patch.mul(0.9).add(spots).add(sunny.mul(0.5)))
-    .mul(0.6)
-    .add(smoothstep(-900, 200, overTrees).mul(0.25))
-    .max(smoothstep(0.36, 0.6, blade).mul(0.9))
+  const parched = patch.mul(0.6).add(spots).add(sunny.mul(0.5)).add(climate.mul(DRY_GRASS))
+  const straw = smoothstep(-0.3, 0.8, parched)
+    .mul(0.75)
+    .add(smoothstep(-900, 200, overTrees).mul(0.2))
+    .max(smoothstep(0.36, 0.6, blade).mul(0.8))
   // Heather and dwarf shrubs lie in patches, more of them towards the tree line.
   const high = smoothstep(-900, 100, overTrees).toConst('high')
-  const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.3)).sub(0.15))
+  const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.4)).sub(0.4))
   const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.8))
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
-  const grassland = mix(blades, color(SOIL), smoothstep(0.1, 0.32, blade.negate()).mul(0.85))
+  const grassland = mix(blades, color(SOIL), smoothstep(0.14, 0.3, blade.negate()).mul(0.7))
   // Shrubs stand in it, more of them towards the woods.
   const shrubs = smoothstep(0.22, 0.42, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
     'shrubs'
