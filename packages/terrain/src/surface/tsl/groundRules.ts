@@ -8,10 +8,13 @@ const SPREAD = 0.12
 const MOST_SPREAD = 450
 
 /** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
-const DRY_WOODS = 1.6
+const DRY_WOODS = 1.4
 
 /** Heights of stones above which they stand in grass: a fiftieth of the ground, more where patches are bare [–]. */
 const STONES = { from: 0.62, to: 0.72 }
+
+/** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
+const OPEN = 0.15
 
 /** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
 const PATCH_DEVIATION = 0.35
@@ -120,7 +123,7 @@ export function groundRules(
     .toConst('steepness')
 
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
-  const moisture = patch.sub(dryness).sub(climate.mul(DRY_WOODS)).toConst()
+  const moisture = patch.sub(dryness).sub(climate.mul(DRY_WOODS)).sub(OPEN).toConst()
   const woods = smoothstep(
     lost.add(0.2).negate(),
     lost,
