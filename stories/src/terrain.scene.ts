@@ -12,6 +12,7 @@ import {
 } from './scene'
 import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
+import { Vegetation } from './terrain/vegetation/Vegetation'
 import type { GroundView } from './terrain/viewAlong'
 
 export const VIEWS = {
@@ -82,6 +83,8 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
   /** Wind over the sea [m/s]. */
   windSpeed: number
   shadows: boolean
+  /** Grass, flowers and trees about the viewer. */
+  vegetation: boolean
 }
 
 /** Way of the tour, and the time that it takes [s]. */
@@ -119,12 +122,22 @@ export async function createTerrain(
   let color: keyof typeof COLORS = 'ground'
 
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
+  let plants: Vegetation | null = null
+  const setPlants = (isThere: boolean): void => {
+    if (isThere === (plants !== null)) return
+    if (plants !== null) {
+      scene.remove(plants)
+      plants.dispose()
+      plants = null
+    } else scene.add((plants = new Vegetation(renderer, terrain)))
+  }
 
   const apply = (): void => {
     applyTime(renderer, air, current)
     terrain.material.wireframe = current.wireframe
     terrain.windSpeed = current.windSpeed
     terrain.castShadow = terrain.receiveShadow = current.shadows
+    setPlants(current.vegetation)
     ground.tour(current.tour ? TOUR.map(name => VIEWS[name]) : null, TOUR_SECONDS)
     if (current.color === color) return
     color = current.color
@@ -140,6 +153,11 @@ export async function createTerrain(
     terrain,
     ground,
     views: VIEWS,
-    apply
+    apply,
+    follow() {
+      // A still is planted at once.
+      plants?.update(camera, args.frame ? 0 : performance.now() / 1000, args.frame ? Infinity : 3)
+    },
+    dispose: () => setPlants(false)
   })
 }

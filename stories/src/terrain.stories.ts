@@ -18,6 +18,7 @@ const meta: Meta<TerrainArgs> = {
     tour: { name: 'Shore, summit, orbit', control: 'boolean' },
     windSpeed: { name: 'Wind [m/s]', control: { type: 'range', min: 0, max: 30, step: 0.5 } },
     shadows: { name: 'Shadows', control: 'boolean' },
+    vegetation: { name: 'Grass, flowers, trees', control: 'boolean' },
     ...timeArgTypes,
     ...rendererArgTypes
   },
@@ -28,6 +29,7 @@ const meta: Meta<TerrainArgs> = {
     tour: false,
     windSpeed: 7,
     shadows: true,
+    vegetation: false,
     day: Date.UTC(2026, 5, 21),
     hour: 15.5,
     exposure: 0,
@@ -41,8 +43,11 @@ export default meta
 
 type Story = StoryObj<TerrainArgs>
 
-/** Two metres above the ground, among mountains. */
+/** Two metres above the ground, among mountains: the ground alone. */
 export const Meadow: Story = {}
+
+/** The same with grass, flowers and trees on it: a sample, no part of the package. */
+export const Plants: Story = { name: 'Meadow and woods', args: { vegetation: true } }
 
 /** One take: a shore, a summit, orbit. */
 export const Take: Story = { name: 'Shore to orbit', args: { view: 'shore', tour: true } }
