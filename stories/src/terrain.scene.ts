@@ -1,6 +1,8 @@
-import { Atmosphere } from '@welkin/atmosphere'
+import { Atmosphere, heightFog } from '@welkin/atmosphere'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { PerspectiveCamera, Scene } from 'three'
+import { shadow } from 'three/tsl'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
 import {
@@ -83,6 +85,10 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
   /** Wind over the sea [m/s]. */
   windSpeed: number
   shadows: boolean
+  /** Broken clouds, which summits reach into. */
+  clouds: boolean
+  /** Mist over the valleys: extinction at sea level [1/km]. */
+  mist: number
   /** Grass, flowers and trees about the viewer. */
   vegetation: boolean
 }
@@ -93,6 +99,10 @@ const TOUR_SECONDS = 75
 
 /** Place of the world's origin [°]. */
 const ORIGIN = { longitude: 0.494, latitude: 46.35 }
+
+/** Clouds from below the snow line up [m], and height over which mist thins to 1/e [m]. */
+const CLOUDS = { baseAltitude: 2300, topAltitude: 3500, coverage: 0.4 }
+const MIST_FALLOFF = 220
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
@@ -108,7 +118,9 @@ export async function createTerrain(
   const current = { ...args }
   const atmosphere = new Atmosphere()
   atmosphere.place(ORIGIN)
-  const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  const air = new Air(renderer, scene, camera, args.clouds ? 'post' : args.path, atmosphere)
+  const mist = heightFog({ base: 0, falloff: MIST_FALLOFF, density: 0 })
+  if (args.mist > 0) atmosphere.add(mist)
   const options = args.frame ? STILL : {}
   // #region terrain
   const heights = new MountainHeights({ seed: 513 }) // a function: nothing is loaded
@@ -118,6 +130,15 @@ export async function createTerrain(
   scene.add(terrain)
   // #endregion
   prepareShadow(air.sun)
+  if (args.clouds && air.post !== undefined) {
+    const { color, depth, pipeline } = air.post
+    const layers = cloudPreset('fairWeather')
+    layers.at(0).set(CLOUDS)
+    const node = clouds(color, depth, camera, atmosphere, layers)
+    pipeline.outputNode = node
+    Object.assign(air.sun.shadow, { shadowNode: cloudShadow(node, shadow(air.sun)) })
+    cloudSkyLight(air.sky, node)
+  }
   const groundColor = terrain.material.colorNode
   let color: keyof typeof COLORS = 'ground'
 
@@ -136,6 +157,7 @@ export async function createTerrain(
     applyTime(renderer, air, current)
     terrain.material.wireframe = current.wireframe
     terrain.windSpeed = current.windSpeed
+    mist.density = current.mist / 1000
     terrain.castShadow = terrain.receiveShadow = current.shadows
     setPlants(current.vegetation)
     ground.tour(current.tour ? TOUR.map(name => VIEWS[name]) : null, TOUR_SECONDS)
